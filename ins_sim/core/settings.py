@@ -1,0 +1,299 @@
+"""
+Settings of the three nodes as frozen dataclasses: default, unit, bounds and doc of every key.
+
+This catalogue is the only place a parameter is described.  ROS parameters, the YAML reader and
+the configuration reference are derived from it.
+"""
+
+from dataclasses import dataclass, field
+import math
+
+
+def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
+    """Return a dataclass field carrying its unit, closed bounds, choices, array size and doc."""
+    return field(default=default, metadata={
+        'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': tuple(choices),
+        'size': size})
+
+
+def group(cls):
+    """Return a field holding a nested group of settings."""
+    return field(default_factory=cls)
+
+
+@dataclass(frozen=True)
+class Datum:
+    """Origin of ``map``; the bench motions stand there."""
+
+    latitude_deg: float = setting(55.75, 'geodetic latitude', 'deg', -89.9, 89.9)
+    longitude_deg: float = setting(37.62, 'longitude', 'deg', -180.0, 180.0)
+    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, 50000.0)
+
+
+@dataclass(frozen=True)
+class Earth:
+    """The Earth of truth and navigation alike."""
+
+    rotation: bool = setting(True, 'the Earth rotates, in the truth and in the navigation')
+
+
+@dataclass(frozen=True)
+class Time:
+    """Zero of motion time."""
+
+    epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 4000000000)
+
+
+@dataclass(frozen=True)
+class Rocking:
+    """Motion 1: angle = amplitude sin(2 pi f t) about one axis."""
+
+    axis: str = setting('north', 'level axis (east, north, up) or body axis (x, y, z)',
+                        choices=('east', 'north', 'up', 'x', 'y', 'z'))
+    amplitude_deg: float = setting(5.0, 'amplitude', 'deg', 0.0, 180.0)
+    frequency_hz: float = setting(1.0, 'frequency', 'Hz', 0.0, 1000.0)
+
+
+@dataclass(frozen=True)
+class TwoAxis:
+    """Motion 2: constant rates of psi and gamma at constant theta."""
+
+    psi_rate_rad_s: float = setting(1.0, 'rate of psi', 'rad/s', -100.0, 100.0)
+    gamma_rate_rad_s: float = setting(0.5, 'rate of gamma', 'rad/s', -100.0, 100.0)
+    detuning_rad_s: float = setting(0.0, 'added to the rate of psi', 'rad/s', -100.0, 100.0)
+
+
+@dataclass(frozen=True)
+class Coning:
+    """The body axis describes a cone about its mean direction."""
+
+    axis: str = setting('z', 'body axis that describes the cone', choices=('x', 'y', 'z'))
+    half_angle_deg: float = setting(1.0, 'half angle of the cone', 'deg', 0.0, 90.0)
+    frequency_hz: float = setting(1.0, 'frequency', 'Hz', 0.0, 1000.0)
+
+
+@dataclass(frozen=True)
+class Sculling:
+    """Rocking about the vertical with a vibration along the mean forward axis."""
+
+    amplitude_deg: float = setting(1.0, 'amplitude of the rocking', 'deg', 0.0, 90.0)
+    acceleration_m_s2: float = setting(5.0, 'amplitude of the vibration', 'm/s^2', 0.0, 1000.0)
+    frequency_hz: float = setting(1.0, 'frequency of both', 'Hz', 0.001, 1000.0)
+    phase_deg: float = setting(0.0, 'phase of the vibration', 'deg', -360.0, 360.0)
+
+
+@dataclass(frozen=True)
+class Sinusoids:
+    """One sinusoid on each angle (psi, theta, gamma) and on each coordinate (E, N, U)."""
+
+    angle_deg: tuple[float, ...] = setting((3.0, 2.0, 4.0), 'amplitudes of psi, theta, gamma',
+                                           'deg', -180.0, 180.0, size=3)
+    angle_hz: tuple[float, ...] = setting((0.3, 0.5, 0.7), 'their frequencies', 'Hz', 0.0,
+                                          1000.0, size=3)
+    angle_phase_deg: tuple[float, ...] = setting((0.0, 40.0, 80.0), 'their phases', 'deg',
+                                                 -360.0, 360.0, size=3)
+    position_m: tuple[float, ...] = setting((1.0, 1.0, 0.5), 'amplitudes of E, N, U', 'm',
+                                            -1e5, 1e5, size=3)
+    position_hz: tuple[float, ...] = setting((0.2, 0.3, 0.4), 'their frequencies', 'Hz', 0.0,
+                                             1000.0, size=3)
+    position_phase_deg: tuple[float, ...] = setting((0.0, 30.0, 60.0), 'their phases', 'deg',
+                                                    -360.0, 360.0, size=3)
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """Periodic angles: entry k of each list is the harmonic k + 1 of the period."""
+
+    period_s: float = setting(10.0, 'common period', 's', 1e-3, 1e6)
+    psi_deg: tuple[float, ...] = setting((2.0, 1.0, 0.5), 'amplitudes of psi', 'deg',
+                                         -180.0, 180.0)
+    psi_phase_deg: tuple[float, ...] = setting((0.0, 50.0, 100.0), 'phases of psi', 'deg',
+                                               -360.0, 360.0)
+    theta_deg: tuple[float, ...] = setting((1.0, 2.0, 0.5), 'amplitudes of theta', 'deg',
+                                           -90.0, 90.0)
+    theta_phase_deg: tuple[float, ...] = setting((70.0, 10.0, 120.0), 'phases of theta', 'deg',
+                                                 -360.0, 360.0)
+    gamma_deg: tuple[float, ...] = setting((3.0, 1.0, 1.0), 'amplitudes of gamma', 'deg',
+                                           -180.0, 180.0)
+    gamma_phase_deg: tuple[float, ...] = setting((20.0, 90.0, 200.0), 'phases of gamma', 'deg',
+                                                 -360.0, 360.0)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A recorded flight."""
+
+    path: str = setting('', 'CSV file, plain or gzip')
+    start_s: float = setting(3.0, 'recorder time of motion time zero, from the first row', 's',
+                             3.0, 1e7)
+    smoothing_s: float = setting(0.0, 'window of the boxcar smoothing; 0 = none', 's', 0.0, 60.0)
+    on_gap: str = setting('refuse', 'what to do about a gap or jump in the recording: refuse '
+                          'it, or cut the recording there and keep the part that holds start_s',
+                          choices=('refuse', 'cut'))
+
+
+MOTION_KINDS = ('static', 'rocking', 'two_axis', 'coning', 'sculling', 'sinusoids', 'harmonics',
+                'cruise', 'racetrack', 'aggressive', 'recording')
+
+
+@dataclass(frozen=True)
+class MotionSettings:
+    """The motion; only the group of its kind is used."""
+
+    kind: str = setting('two_axis', 'which motion', choices=MOTION_KINDS)
+    psi_deg: float = setting(0.0, 'mean or initial psi, counter-clockwise from north (bench '
+                             'motions)', 'deg', -360.0, 360.0)
+    theta_deg: float = setting(-30.0, 'mean or initial theta, nose up (bench motions)', 'deg',
+                               -89.9, 89.9)
+    gamma_deg: float = setting(0.0, 'mean or initial gamma, right wing down (bench motions)',
+                               'deg', -360.0, 360.0)
+    rocking: Rocking = group(Rocking)
+    two_axis: TwoAxis = group(TwoAxis)
+    coning: Coning = group(Coning)
+    sculling: Sculling = group(Sculling)
+    sinusoids: Sinusoids = group(Sinusoids)
+    harmonics: Harmonics = group(Harmonics)
+    recording: Recording = group(Recording)
+
+
+@dataclass(frozen=True)
+class Pacing:
+    """How fast the generator goes."""
+
+    real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
+                                      'slowest required consumer (implies lock_step)', '',
+                                      0.0, 1e6)
+    lock_step: bool = setting(False, 'wait for the acknowledgements of the required consumers')
+    window: int = setting(200, 'unanswered steps allowed in lock-step', 'steps', 1, 2000)
+    required: tuple[str, ...] = setting(('strapdown',), 'names of the consumers that must '
+                                        'acknowledge')
+    timeout_s: float = setting(30.0, 'wall time without an acknowledgement before the missing '
+                               'consumer is named and the run ends', 's', 0.1, 1e5)
+
+
+@dataclass(frozen=True)
+class Topics:
+    """Quality of service of the data topics (reliable, volatile)."""
+
+    depth: int = setting(2000, 'queue depth of publishers and subscriptions', 'messages', 1,
+                         100000)
+
+
+@dataclass(frozen=True)
+class MotionGeneratorSettings:
+    """Node motion_generator."""
+
+    datum: Datum = group(Datum)
+    earth: Earth = group(Earth)
+    time: Time = group(Time)
+    motion: MotionSettings = group(MotionSettings)
+    pacing: Pacing = group(Pacing)
+    topics: Topics = group(Topics)
+    rate_hz: float = setting(100.0, 'rate of the truth', 'Hz', 0.01, 20000.0)
+    start_s: float = setting(0.0, 'motion time of the first sample', 's', 0.0, 1e7)
+    duration_s: float = setting(3600.0, 'length of the run; 0 = endless (in simulate: refused)',
+                                's', 0.0, 1e7)
+    publish_clock: bool = setting(False, 'publish /clock')
+    exit_at_end: bool = setting(True, 'end the process after the last sample; else stay up')
+
+
+@dataclass(frozen=True)
+class DelaysUs:
+    """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
+
+    x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
+    y: float = setting(0.0, 'delay of the left channel (the paper calls it right, tau1)', 'us',
+                       -1e6, 1e6)
+    z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
+
+
+@dataclass(frozen=True)
+class Gyro:
+    """The gyro triad."""
+
+    delay_us: DelaysUs = group(DelaysUs)
+
+
+@dataclass(frozen=True)
+class Accelerometer:
+    """The accelerometer triad."""
+
+    delay_us: DelaysUs = group(DelaysUs)
+
+
+OUTPUTS = ('rotation_vector', 'integrated')
+
+
+@dataclass(frozen=True)
+class ImuSensorSettings:
+    """Node imu_sensor."""
+
+    datum: Datum = group(Datum)
+    earth: Earth = group(Earth)
+    time: Time = group(Time)
+    motion: MotionSettings = group(MotionSettings)
+    gyro: Gyro = group(Gyro)
+    accelerometer: Accelerometer = group(Accelerometer)
+    topics: Topics = group(Topics)
+    rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
+    source: str = setting('stream', 'where the motion comes from: the streamed truth, or the '
+                          'closed form or recording of motion.* (the stream then only paces)',
+                          choices=('stream', 'motion'))
+    output: str = setting('rotation_vector', 'rotation_vector: mean of the finite rotation and of '
+                          'the inertially rotated velocity increment; integrated: plain '
+                          'integrals of rate and specific force', choices=OUTPUTS)
+    history: str = setting('analytic', 'motion before the first instant: continued backwards '
+                           '(analytic) or held (frozen)', choices=('analytic', 'frozen'))
+    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
+                            'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
+
+
+@dataclass(frozen=True)
+class Vertical:
+    """The vertical channel."""
+
+    channel: str = setting('truth', 'height and vertical velocity from truth, free, or damped '
+                           'towards the height of the truth', choices=('truth', 'free', 'damped'))
+    time_constant_s: float = setting(20.0, 'time constant of the damped channel', 's', 0.1, 1e4)
+
+
+@dataclass(frozen=True)
+class Initial:
+    """Initial errors, added to the truth, resolved in East, North, Up."""
+
+    after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
+    attitude_error_deg: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'rotation vector of the '
+                                                    'attitude error', 'deg', -180.0, 180.0, size=3)
+    velocity_error_m_s: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'velocity error', 'm/s',
+                                                    -1e4, 1e4, size=3)
+    position_error_m: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'position error', 'm', -1e6,
+                                                  1e6, size=3)
+
+
+@dataclass(frozen=True)
+class StrapdownSettings:
+    """Node strapdown."""
+
+    datum: Datum = group(Datum)
+    earth: Earth = group(Earth)
+    time: Time = group(Time)
+    vertical: Vertical = group(Vertical)
+    initial: Initial = group(Initial)
+    topics: Topics = group(Topics)
+    rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
+    input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output)',
+                         choices=OUTPUTS)
+    output_every: int = setting(1, 'publish every n-th step', 'steps', 1, 1000000)
+    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
+                            'anew from truth (reset) or end the node (stop)',
+                            choices=('reset', 'stop'))
+
+
+NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
+         'strapdown': StrapdownSettings}
+
+
+def is_finite(value):
+    """Return whether value, a number or a tuple of numbers, holds no NaN and no infinity."""
+    values = value if isinstance(value, tuple) else (value,)
+    return all(math.isfinite(v) for v in values if isinstance(v, (int, float)))

@@ -1,0 +1,163 @@
+"""
+Truncated Taylor series in time: exact derivatives of closed-form motions.
+
+A motion is written once, as a pose; its velocities, accelerations and rates follow from the
+series.  Recurrences: Griewank and Walther, "Evaluating Derivatives", 2nd ed., table 13.1-13.2.
+"""
+
+import numpy as np
+
+
+class Series:
+    """
+    Taylor coefficients c[k] = f^(k)/k! of a function of time at n instants.
+
+    c has shape (order + 1, n).  Operations truncate to the lower order of the two operands.
+    """
+
+    __slots__ = ('c',)
+    __array_ufunc__ = None
+
+    def __init__(self, c):
+        self.c = c
+
+    @classmethod
+    def time(cls, t, order):
+        """Return the series of t itself at the instants t (n,), s."""
+        c = np.zeros((order + 1, len(t)))
+        c[0] = t
+        if order:
+            c[1] = 1.0
+        return cls(c)
+
+    @classmethod
+    def of_derivatives(cls, *derivatives):
+        """Return the series with the given value, first, second, ... derivative, each (n,)."""
+        factorial, rows = 1.0, []
+        for k, derivative in enumerate(derivatives):
+            factorial *= max(k, 1)
+            rows.append(np.asarray(derivative, dtype=float) / factorial)
+        return cls(np.array(rows))
+
+    def constant(self, value):
+        """Return the series of a constant at the same instants and order."""
+        c = np.zeros_like(self.c)
+        c[0] = value
+        return Series(c)
+
+    @property
+    def value(self):
+        """Return f, shape (n,)."""
+        return self.c[0]
+
+    def derivative(self):
+        """Return the series of f', one order lower."""
+        k = np.arange(1, len(self.c))[:, None]
+        return Series(self.c[1:] * k)
+
+    def integral(self, value):
+        """Return the series whose derivative this is and whose value is given, (n,)."""
+        k = np.arange(1, len(self.c) + 1)[:, None]
+        return Series(np.concatenate([np.broadcast_to(value, self.c[:1].shape), self.c / k]))
+
+    def __neg__(self):
+        return Series(-self.c)
+
+    def __add__(self, other):
+        if isinstance(other, Series):
+            n = min(len(self.c), len(other.c))
+            return Series(self.c[:n] + other.c[:n])
+        c = self.c.copy()
+        c[0] += other
+        return Series(c)
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return self + (-other)
+
+    def __rsub__(self, other):
+        return -self + other
+
+    def __mul__(self, other):
+        if not isinstance(other, Series):
+            return Series(self.c * other)
+        n = min(len(self.c), len(other.c))
+        return Series(np.array([_cauchy(self.c, other.c, k, 0) for k in range(n)]))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        if not isinstance(other, Series):
+            return Series(self.c / other)
+        n = min(len(self.c), len(other.c))
+        q = np.empty((n,) + self.c.shape[1:])
+        for k in range(n):
+            q[k] = (self.c[k] - _cauchy(other.c, q, k, 1)) / other.c[0]
+        return Series(q)
+
+    def __rtruediv__(self, other):
+        return self.constant(other) / self
+
+    def __pow__(self, exponent):
+        if exponent == 0.5:
+            return sqrt(self)
+        raise ValueError(f'Series has no power {exponent}, only 0.5')
+
+
+def _cauchy(a, b, k, first):
+    """Return sum over j = first..k of a[j] b[k - j]."""
+    total = a[first] * b[k - first] if first <= k else 0.0
+    for j in range(first + 1, k + 1):
+        total = total + a[j] * b[k - j]
+    return total
+
+
+def sincos(u):
+    """Return the series of sin u and cos u."""
+    s, c = np.empty_like(u.c), np.empty_like(u.c)
+    s[0], c[0] = np.sin(u.c[0]), np.cos(u.c[0])
+    w = u.derivative().c
+    for k in range(1, len(u.c)):
+        s[k] = _cauchy(w, c, k - 1, 0) / k
+        c[k] = -_cauchy(w, s, k - 1, 0) / k
+    return Series(s), Series(c)
+
+
+def sin(u):
+    """Return the series of sin u."""
+    return sincos(u)[0]
+
+
+def tanh(u):
+    """Return the series of tanh u, from T' = (1 - T^2) u'."""
+    t, v = np.empty_like(u.c), np.empty_like(u.c)
+    t[0] = np.tanh(u.c[0])
+    v[0] = 1.0 - t[0] * t[0]
+    w = u.derivative().c
+    for k in range(1, len(u.c)):
+        t[k] = _cauchy(w, v, k - 1, 0) / k
+        v[k] = -_cauchy(t, t, k, 0)
+    return Series(t)
+
+
+def sqrt(u):
+    """Return the series of the square root of u > 0."""
+    r = np.empty_like(u.c)
+    r[0] = np.sqrt(u.c[0])
+    for k in range(1, len(u.c)):
+        inner = sum((r[j] * r[k - j] for j in range(1, k)), 0.0)
+        r[k] = (u.c[k] - inner) / (2.0 * r[0])
+    return Series(r)
+
+
+def atan2(y, x):
+    """Return the series of the angle of (x, y), from a' = (x y' - y x') / (x^2 + y^2)."""
+    rate = (x * y.derivative() - y * x.derivative()) / (x * x + y * y)
+    return rate.integral(np.arctan2(y.c[0], x.c[0]))
+
+
+def log_cosh(u):
+    """Return the series of ln cosh u without overflow, from its derivative tanh(u) u'."""
+    a = np.abs(u.c[0])
+    return (tanh(u) * u.derivative()).integral(a + np.log1p(np.exp(-2.0 * a)) - np.log(2.0))
