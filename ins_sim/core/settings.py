@@ -6,7 +6,6 @@ the configuration reference are derived from it.
 """
 
 from dataclasses import dataclass, field
-import math
 
 
 def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
@@ -291,9 +290,3 @@ class StrapdownSettings:
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
          'strapdown': StrapdownSettings}
-
-
-def is_finite(value):
-    """Return whether value, a number or a tuple of numbers, holds no NaN and no infinity."""
-    values = value if isinstance(value, tuple) else (value,)
-    return all(math.isfinite(v) for v in values if isinstance(v, (int, float)))

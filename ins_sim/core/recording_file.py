@@ -1,0 +1,240 @@
+"""
+Reading a recorded flight: a CSV file, plain or gzip, refused in one sentence if it is not one.
+
+Columns (any order): t_s, lat_deg, lon_deg, height_m, roll_deg (right wing down), pitch_deg (nose
+up), heading_deg (clockwise from true north), vn_mps, ve_mps, vd_mps; att_gap may be added.  The
+velocities may be blank and are not used: the motion derives velocity from its one pose.
+
+Accepted both ways: longitude -180..180 or 0..360, heading 0..360 or -180..180; a byte order mark;
+blank lines.  The file may wrap; gaps and jumps are the business of ``recording_faults``.
+"""
+
+import csv
+from dataclasses import dataclass
+from decimal import Decimal
+import difflib
+import gzip
+import io
+import zlib
+
+import numpy as np
+
+# The splines are of latitude and longitude, which end at the poles; hence 89.9.  The heights keep
+# out sentinels (-9999) and feet above flight level 3280.
+USED = {'lat_deg': (-89.9, 89.9), 'lon_deg': (-180.0, 360.0), 'height_m': (-1000.0, 100000.0),
+        'roll_deg': (-180.0, 180.0), 'pitch_deg': (-90.0, 90.0), 'heading_deg': (-180.0, 360.0)}
+UNUSED = ('vn_mps', 've_mps', 'vd_mps')
+REQUIRED = ('t_s', *USED, *UNUSED)
+OPTIONAL = ('att_gap',)
+
+# int64 nanoseconds end at 9.22e9 s.
+LONGEST_STAMP_S = 9.2e9
+
+
+@dataclass(frozen=True)
+class RecordedRows:
+    """
+    Rows of a file, (n,) each.
+
+    t_ns int64, the file's own stamps; degrees and metres as in the file, longitude unwrapped;
+    resolution: the rounding step of lat_deg, lon_deg, height_m in their units.
+    """
+
+    path: str
+    t_ns: np.ndarray
+    lat_deg: np.ndarray
+    lon_deg: np.ndarray
+    height_m: np.ndarray
+    roll_deg: np.ndarray
+    pitch_deg: np.ndarray
+    heading_deg: np.ndarray
+    resolution: tuple[float, float, float]
+
+
+def read_rows(path):
+    """
+    Return the RecordedRows of a file.
+
+    Raises ValueError, one sentence with file, line, time, what was found and what was expected,
+    on a file that cannot be read, is no such table, or holds a value that is no such quantity.
+    """
+    path = str(path)
+    lines, rows = _table(path, _text(path))
+    table = _Table(path, lines, rows)
+    stamps = table.texts('t_s')
+    if not stamps:
+        raise ValueError(f'{path} has a header and no rows; expected a recorded flight')
+    t_s = table.numbers('t_s', (-LONGEST_STAMP_S, LONGEST_STAMP_S))
+    values = {name: table.numbers(name, bounds) for name, bounds in USED.items()}
+    for name in UNUSED:
+        table.numbers(name, (-1e5, 1e5), blank=True)
+    return RecordedRows(
+        path=path, t_ns=_nanoseconds(stamps, t_s),
+        **{name: np.unwrap(x, period=360.0) if name == 'lon_deg' else x
+           for name, x in values.items()},
+        resolution=tuple(_resolution(table.texts(name), values[name])
+                         for name in ('lat_deg', 'lon_deg', 'height_m')))
+
+
+def _text(path):
+    """Return the decoded content of a plain or gzip file, told apart by their first bytes."""
+    if not path:
+        raise ValueError("motion.recording.path is ''; expected the path of a CSV file")
+    try:
+        with open(path, 'rb') as file:
+            data = file.read()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, 'strerror', None) or str(error)
+        raise ValueError(f'cannot read the recording {path}: {reason}; expected a CSV file, '
+                         'plain or gzip') from error
+    if data[:2] == b'\x1f\x8b':
+        try:
+            data = gzip.decompress(data)
+        except (OSError, EOFError, zlib.error) as error:
+            raise ValueError(f'{path} is a broken gzip file ({error}); expected a whole '
+                             'one') from error
+    elif path.endswith('.gz') and data:
+        raise ValueError(f'{path} is named .gz and begins with {data[:2]!r}; expected a gzip '
+                         'file, which begins with 1f 8b')
+    try:
+        text = data.decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        line = data.count(b'\n', 0, error.start) + 1
+        raise ValueError(f'{path}, line {line}: byte {data[error.start]:#04x} is not UTF-8; '
+                         'expected UTF-8 text') from error
+    if '\0' in text:
+        line = text.count('\n', 0, text.index('\0')) + 1
+        raise ValueError(f'{path}, line {line}: found a zero byte, so this is a binary or UTF-16 '
+                         'file; expected UTF-8 text')
+    if not text.strip():
+        raise ValueError(f'{path} is empty; expected a header line and the rows of a recorded '
+                         'flight')
+    return text
+
+
+def _table(path, text):
+    """Return line numbers and fields of all lines that are not blank."""
+    reader = csv.reader(io.StringIO(text, newline=''))
+    lines, rows = [], []
+    try:
+        for row in reader:
+            if any(field.strip() for field in row) or len(row) > 1:
+                lines.append(reader.line_num)
+                rows.append(row)
+    except csv.Error as error:
+        raise ValueError(f'{path}, line {reader.line_num}: not a line of CSV ({error}); expected '
+                         'fields separated by commas') from error
+    return lines, rows
+
+
+class _Table:
+    """Fields by column name; every complaint names file, line and time."""
+
+    def __init__(self, path, lines, rows):
+        self.path = path
+        self.header = [name.strip() for name in rows[0]]
+        self._check_header(lines[0])
+        self.lines, self.rows = lines[1:], rows[1:]
+        for line, row in zip(self.lines, self.rows):
+            if len(row) != len(self.header):
+                raise ValueError(f'{path}, line {line} (t_s = {row[0].strip()!r}): {len(row)} '
+                                 f'fields; expected {len(self.header)} as in the header')
+        self.columns = dict(zip(self.header, zip(*self.rows)))
+
+    def _check_header(self, line):
+        header, expected = self.header, f'expected {", ".join(REQUIRED)}'
+        where = f'{self.path}, line {line}'
+        if len(header) == 1:
+            raise ValueError(f'{where}: {header[0][:60]!r} is a single column; {expected}, '
+                             'separated by commas')
+        if _is_number(header[0]):
+            raise ValueError(f'{where}: found numbers where the column names belong; {expected}')
+        known = REQUIRED + OPTIONAL
+        found = []
+        for name in header:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, 1, 0.5)
+                found.append(f'unknown column {name!r}'
+                             + (f' (the nearest known is {near[0]})' if near else ''))
+        found += [f'column {name} stands {header.count(name)} times'
+                  for name in known if header.count(name) > 1]
+        missing = [name for name in REQUIRED if name not in header]
+        if missing:
+            found.append(f'missing {", ".join(missing)}')
+        if found:
+            raise ValueError(f'{where}: {"; ".join(found)}; {expected}, and no other but '
+                             f'{", ".join(OPTIONAL)}')
+
+    def texts(self, name):
+        return self.columns.get(name, ())
+
+    def numbers(self, name, bounds, blank=False):
+        """Return a column, (n,); blank fields, where allowed, become 0 (they are not used)."""
+        texts = self.texts(name)
+        if blank:
+            texts = ['0' if not text or text.isspace() else text for text in texts]
+        try:
+            values = np.array(list(map(_number, texts)))
+            good = np.ones(len(values), dtype=bool)
+        except ValueError:
+            good = np.array([_is_number(text) for text in texts])
+            values = np.array([float(text) if ok else 0.0 for text, ok in zip(texts, good)])
+        low, high = bounds
+        # Comparisons with NaN are false, so the last test is also the test of finiteness.
+        ok = good & (values >= low) & (values <= high)
+        if not ok.all():
+            k = int(np.argmin(ok))
+            text = texts[k].strip()
+            what = 'is blank' if not text else f'is {text[:40]!r}'
+            if good[k] and not np.isfinite(values[k]):
+                what += ', not finite'
+            elif not good[k] and text:
+                what += ', not a number'
+            raise ValueError(f'{self.path}, line {self.lines[k]} (t_s = '
+                             f'{self.texts("t_s")[k].strip()!r}): {name} {what}; expected a '
+                             f'number {low:g}..{high:g}' + (' or a blank' if blank else ''))
+        return values
+
+
+def _number(text):
+    """Return the float of a text; Python's 1_000 is no number of a CSV file."""
+    if '_' in text:
+        raise ValueError(text)
+    return float(text)
+
+
+def _is_number(text):
+    try:
+        _number(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _nanoseconds(texts, t_s):
+    """Return stamps in ns from their decimal text: floats of epoch size resolve only 0.24 us."""
+    if len(t_s) and np.abs(t_s).max() < 1e5:
+        return np.round(t_s * 1e9).astype(np.int64)
+    return np.array([int((Decimal(text.strip()) * 1000000000).to_integral_value())
+                     for text in texts], dtype=np.int64)
+
+
+def _decimals(text):
+    """Return the number of decimals a text shows: 3 for 12.345 and for 1.2345e1."""
+    mantissa, _, exponent = text.strip().lower().partition('e')
+    return len(mantissa.partition('.')[2]) - int(exponent or 0)
+
+
+def _resolution(texts, values):
+    """
+    Return the step to which a column is rounded.
+
+    The last decimal any field shows (writers drop trailing zeros, hence the maximum); the
+    spacing of float32 if all values are float32 numbers printed to more decimals than they have.
+    """
+    step = 10.0 ** -max(map(_decimals, texts))
+    single = values.astype(np.float32)
+    spacing = float(np.spacing(np.abs(single).max()))
+    if step < 0.25 * spacing and np.all(np.abs(single - values) <= 0.51 * step + 1e-15):
+        return spacing
+    return step
