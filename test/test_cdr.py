@@ -1,0 +1,136 @@
+"""Messages as bytes: they are what ROS writes, and what ROS writes is read back."""
+
+from hypothesis import given, settings, strategies
+from ins_sim.messages.cdr import LAYOUTS, Reader, Writer
+import numpy as np
+import pytest
+
+FRAMES = ('', 'm', 'ab', 'map', 'base', 'base_link', 'a/long/name_of_a_frame')
+TYPES = sorted(LAYOUTS)
+
+
+def values_of(type_name):
+    rng = np.random.default_rng(len(type_name))
+    return tuple(rng.normal(size=LAYOUTS[type_name].doubles).tolist())
+
+
+def writer_of(type_name, frame):
+    layout = LAYOUTS[type_name]
+    return Writer(type_name, *[frame, frame + 'x'][:layout.strings], runs=((0, layout.doubles),))
+
+
+def ros_class(type_name):
+    module, _, name = type_name.split('/')
+    return getattr(pytest.importorskip(module + '.msg'), name)
+
+
+def leaves(message):
+    """Return stamp_ns, strings and doubles of a ROS message in the order of its fields."""
+    strings, doubles, stamp = [], [], []
+
+    def walk(value, name):
+        if hasattr(value, 'get_fields_and_field_types'):
+            for field in value.get_fields_and_field_types():
+                walk(getattr(value, field), field)
+        elif isinstance(value, str):
+            strings.append(value)
+        elif name in ('sec', 'nanosec'):
+            stamp.append(value)
+        elif name not in ('service', 'position_covariance_type') and \
+                (name != 'status' or isinstance(value, float)):
+            doubles.extend(np.ravel(value).tolist())
+    walk(message, '')
+    return stamp[0] * 10**9 + stamp[1], tuple(strings), tuple(doubles)
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('type_name', TYPES)
+def test_ros_reads_what_is_packed(type_name, frame):
+    cls = ros_class(type_name)
+    serialization = pytest.importorskip('rclpy.serialization')
+    stamp, values = 12_345_678_901_234_567, values_of(type_name)
+    data = writer_of(type_name, frame).pack(stamp, values)
+    message = serialization.deserialize_message(data, cls)
+    texts = (frame, frame + 'x')[:LAYOUTS[type_name].strings]
+    assert leaves(message) == (stamp, texts, values)
+    assert len(data) == len(serialization.serialize_message(message))
+
+
+@pytest.mark.parametrize('frame', FRAMES)
+@pytest.mark.parametrize('type_name', TYPES)
+def test_what_ros_packs_is_read(type_name, frame):
+    cls = ros_class(type_name)
+    serialization = pytest.importorskip('rclpy.serialization')
+    stamp, values = 987_654_321, values_of(type_name)
+    message = serialization.deserialize_message(
+        writer_of(type_name, frame).pack(stamp, values), cls)
+    data = serialization.serialize_message(message)
+    assert Reader(type_name).read(data) == (stamp, values)
+    assert Reader(type_name).strings(data) == (frame, frame + 'x')[:LAYOUTS[type_name].strings]
+
+
+@pytest.mark.parametrize('type_name', TYPES)
+def test_rosbags_reads_what_is_packed(type_name):
+    typesys = pytest.importorskip('rosbags.typesys')
+    store = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+    data = writer_of(type_name, 'map').pack(5, values_of(type_name))
+    message = store.deserialize_cdr(data, type_name)
+    again = store.serialize_cdr(message, type_name)
+    assert Reader(type_name).read(bytes(again)) == (5, values_of(type_name))
+
+
+@pytest.mark.parametrize('type_name', TYPES)
+def test_a_block_is_the_single_messages(type_name):
+    layout = LAYOUTS[type_name]
+    writer = Writer(type_name, *['map', 'base_link'][:layout.strings])
+    width = sum(b - a for a, b in layout.runs)
+    values = np.random.default_rng(1).normal(size=(7, width))
+    stamps = np.arange(7) * 10**9 // 3 - 10**9
+    singles = []
+    for stamp, row in zip(stamps.tolist(), values.tolist()):
+        cuts = np.cumsum([0] + [b - a for a, b in layout.runs])
+        singles.append(writer.pack(stamp, *[row[a:b] for a, b in zip(cuts, cuts[1:])]))
+    assert writer.pack_block(stamps, values) == singles
+
+
+def test_constants_stand_in_every_message():
+    writer = Writer('sensor_msgs/msg/Imu', 'imu_link', constants={3: 1.0, 4: -1.0},
+                    runs=((13, 16), (25, 28)))
+    _, doubles = Reader('sensor_msgs/msg/Imu').read(writer.pack(0, (1.0, 2.0, 3.0), (4.0, 5.0, 6.0)))
+    expected = [0.0] * 37
+    expected[3:5] = 1.0, -1.0
+    expected[13:16] = 1.0, 2.0, 3.0
+    expected[25:28] = 4.0, 5.0, 6.0
+    assert doubles == tuple(expected)
+
+
+@settings(max_examples=200, deadline=None)
+@given(stamp=strategies.integers(0, 2**31 * 10**9 - 1), frame=strategies.text(max_size=30).filter(
+    lambda s: '\x00' not in s and s.isprintable()),
+    values=strategies.lists(strategies.floats(allow_nan=False), min_size=49, max_size=49))
+def test_runs_come_back_whatever_the_strings(stamp, frame, values):
+    runs = ((0, 7), (43, 49))
+    a, b = tuple(values[:7]), tuple(values[43:])
+    data = Writer('nav_msgs/msg/Odometry', frame, 'b').pack(stamp, a, b)
+    assert Reader('nav_msgs/msg/Odometry', runs).read(data) == (stamp, a, b)
+
+
+@pytest.mark.parametrize('type_name', TYPES)
+def test_a_message_cut_anywhere_is_refused(type_name):
+    data = writer_of(type_name, 'map').pack(1, values_of(type_name))
+    reader = Reader(type_name)
+    reader.read(data)
+    for size in range(len(data)):
+        with pytest.raises(ValueError, match='expected'):
+            reader.read(data[:size])
+
+
+def test_big_endian_is_refused():
+    data = writer_of('std_msgs/msg/Header', 'map').pack(1, ())
+    with pytest.raises(ValueError, match='little-endian'):
+        Reader('std_msgs/msg/Header').read(b'\x00\x00' + data[2:])
+
+
+def test_the_wrong_number_of_strings_is_refused():
+    with pytest.raises(ValueError, match='takes 2 strings'):
+        Writer('nav_msgs/msg/Odometry', 'map')
