@@ -63,10 +63,14 @@ def excess(steps, dt):
     motion leaves only its third derivative.
     """
     from scipy.ndimage import median_filter
-    if len(dt) < 3:
-        return np.zeros(len(dt))
     rate = steps / dt[:, None]
-    usual = median_filter(rate, size=(5, 1), mode='mirror')
+    if len(dt) < 5:
+        usual = np.median(rate, axis=0) if len(dt) > 2 else rate
+    else:
+        # At the ends the median of three, and a straight line on to the last.
+        usual = median_filter(rate, size=(5, 1))
+        usual[1], usual[-2] = np.median(rate[:3], axis=0), np.median(rate[-3:], axis=0)
+        usual[0], usual[-1] = 2.0 * usual[1] - usual[2], 2.0 * usual[-2] - usual[-3]
     return np.sqrt((((rate - usual) * dt[:, None]) ** 2).sum(axis=1))
 
 

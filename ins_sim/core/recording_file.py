@@ -227,11 +227,13 @@ def _decimals(text):
 
 def _resolution(texts, values):
     """
-    Return the step to which a column is rounded.
+    Return the step to which a column is rounded; 0 for a constant one, which makes no noise.
 
     The last decimal any field shows (writers drop trailing zeros, hence the maximum); the
     spacing of float32 if all values are float32 numbers printed to more decimals than they have.
     """
+    if values.min() == values.max():
+        return 0.0
     step = 10.0 ** -max(map(_decimals, texts))
     single = values.astype(np.float32)
     spacing = float(np.spacing(np.abs(single).max()))

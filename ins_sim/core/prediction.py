@@ -1,0 +1,167 @@
+"""
+Predicting the drift and the position error that late channels cause (spec/delays section 5).
+
+The product w x (lag matrix) w is due to J. L. Farrell, "Performance of Strapdown Inertial
+Attitude Reference Systems", J. Spacecraft and Rockets, September 1966.
+"""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from . import attitude, earth
+from .error_model import propagate
+from .imu import delays_ns
+from .motions import make_motion
+from .simulation import check_length
+
+SUBSAMPLES = 8
+STEP_S = 0.1
+PER_PERIOD = 4096
+
+
+def _columns(vectors):
+    return tuple(np.moveaxis(vectors, -1, 0))
+
+
+def _to_n(truth, vectors_b):
+    return np.stack(attitude.rotate(_columns(truth.q_nb), _columns(vectors_b)), axis=-1)
+
+
+def rate_of_n(truth, earth_rotation):
+    """Return omega_in_n (n, 3), rad/s, of a Truth record (Groves 5.44, in ENU)."""
+    s, c = np.sin(truth.lat), np.cos(truth.lat)
+    r_n, r_e = earth.radii(s)
+    spin = earth.ROTATION_RATE if earth_rotation else 0.0
+    lon_rate = truth.v_n[:, 0] / ((r_e + truth.height) * c)
+    return np.stack((-truth.v_n[:, 1] / (r_n + truth.height), (spin + lon_rate) * c,
+                     (spin + lon_rate) * s), axis=-1)
+
+
+def drift_density(truth, omega_in_n, tau):
+    """
+    Return R (w x T w) and R T w (n, 3): integrand and boundary term of the attitude error.
+
+    tau (3,): delays of the gyro channels x, y, z, s.  The reading errs by -T w', so that the
+    attitude error grows by nu = -R T w' = -d/dt(R T w) + R (w_nb x T w).  The rate w under T is
+    that of b in i; the one that turns R is that of b in n (spec/delays section 5 neglects the
+    difference, the rotation of the Earth).
+    """
+    omega_in_b = np.stack(attitude.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
+    late = truth.omega_ib_b * np.asarray(tau)
+    density = np.stack(attitude.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)), -1)
+    return _to_n(truth, density), _to_n(truth, late)
+
+
+def mean_drift(motion, tau, earth_rotation, start_s, span_s):
+    """
+    Return the mean drift (3,) in East, North, Up, rad/s, to first order in the delays tau (3,), s.
+
+    Over one period where the motion has one (the trapezium rule then is spectrally accurate),
+    else over the span.
+    """
+    length = motion.period_s or span_s
+    count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
+    truth = motion.at(np.round((start_s + length * np.arange(count) / count) * 1e9).astype(np.int64))
+    density, _ = drift_density(truth, rate_of_n(truth, earth_rotation), tau)
+    return density.mean(axis=0)
+
+
+def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
+    """
+    Return the mean drift (3,), rad/s, of a periodic motion through linear channels.
+
+    responses: three functions, the complex frequency response H_i of an angular frequency array,
+    rad/s.  <nu> = sum_i sum_k Re(r_ik conj[(H_i(k w0) - 1) w_ik]), r_i column i of R (spec/delays
+    section 5).  Raises ValueError for a motion without a period.
+    """
+    if motion.period_s is None:
+        raise ValueError('the drift through channels is the sum over a Fourier series; expected '
+                         'a periodic motion')
+    t = start_s + motion.period_s * np.arange(count) / count
+    truth = motion.at(np.round(t * 1e9).astype(np.int64))
+    harmonic = 2.0 * np.pi / motion.period_s * np.fft.fftfreq(count, 1.0 / count)
+    drift = np.zeros(3)
+    for i, response in enumerate(responses):
+        unit = np.zeros((count, 3))
+        unit[:, i] = 1.0
+        r = np.fft.fft(_to_n(truth, unit), axis=0) / count
+        w = np.fft.fft(truth.omega_ib_b[:, i]) / count
+        error = (response(harmonic) - 1.0) * w
+        drift += (r * np.conj(error)[:, None]).sum(axis=0).real
+    return drift
+
+
+def delay_response(tau):
+    """Return the frequency response exp(-j w tau) of a delay, s."""
+    return lambda omega: np.exp(-1j * omega * tau)
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """
+    What the linear theory expects of a run.
+
+    drift (3,) rad/s, East, North, Up; t_s (n,) since the start; position (n, 3) and attitude
+    (n, 3): error histories, m and rad; resonances: list of (name, rate of psi rad/s, drift there
+    (3,) rad/s).
+    """
+
+    drift: np.ndarray
+    t_s: np.ndarray
+    attitude: np.ndarray
+    position: np.ndarray
+    resonances: list
+
+
+def predict(settings):
+    """Return the Prediction of simulation.Settings; ValueError where no such run exists."""
+    generator, sensor, nav = (settings.motion_generator, settings.imu_sensor, settings.strapdown)
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    check_length(generator, motion)
+    rotation = generator.earth.rotation
+    tau = np.array(delays_ns(sensor.gyro.delay_us)) * 1e-9
+    tau_f = np.array(delays_ns(sensor.accelerometer.delay_us)) * 1e-9
+    start_s = generator.start_s + nav.initial.after_s
+    span_s = generator.duration_s - nav.initial.after_s
+    steps = int(span_s / STEP_S)
+    if steps < 1:
+        raise ValueError(f'the run navigates for {span_s:g} s; expected more than {STEP_S:g} s')
+    fine_s = STEP_S / SUBSAMPLES
+    t = start_s + fine_s * np.arange(steps * SUBSAMPLES + 1)
+    truth = motion.at(np.round(t * 1e9).astype(np.int64))
+    omega_in = rate_of_n(truth, rotation)
+    density, late = drift_density(truth, omega_in, tau)
+    # attitude error in n without the turning of n: boundary term and running integral
+    running = np.concatenate([np.zeros((1, 3)),
+                              np.cumsum(0.5 * fine_s * (density[1:] + density[:-1]), axis=0)])
+    beta = late[0] - late + running + np.radians(nav.initial.attitude_error_deg)
+    f_n = _to_n(truth, truth.f_ib_b)
+    df_n = -_to_n(truth, np.gradient(truth.f_ib_b, fine_s, axis=0) * tau_f)
+    errors = propagate(truth, omega_in, f_n, beta, df_n, fine_s, SUBSAMPLES, rotation,
+                       nav.initial.position_error_m, nav.initial.velocity_error_m_s)
+    drift = mean_drift(motion, tau, rotation, start_s, span_s)
+    return Prediction(drift, STEP_S * np.arange(steps + 1), *errors,
+                      two_axis_resonances(generator.motion, tau))
+
+
+def two_axis_resonances(motion, tau):
+    """
+    Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
+
+    (19) of the paper: psi' = 2 gamma', and the one it misses: psi' = -2 gamma' (spec/delays
+    section 4).  tau (3,): delays of x, y, z, s; the paper's tau1 is y, tau3 is z.
+    """
+    if motion.kind != 'two_axis':
+        return []
+    theta, psi, gamma = (math.radians(a) for a in (motion.theta_deg, motion.psi_deg,
+                                                   motion.gamma_deg))
+    found = []
+    for sign, name in ((1.0, "psi' = 2 gamma'"), (-1.0, "psi' = -2 gamma'")):
+        rate = sign * 2.0 * motion.two_axis.gamma_rate_rad_s
+        phase = psi - sign * 2.0 * gamma
+        size = sign * 0.125 * rate * rate * (tau[1] - tau[2]) * math.cos(theta) * (
+            1.0 - sign * math.sin(theta))
+        found.append((name, rate, size * np.array((math.cos(phase), math.sin(phase), 0.0))))
+    return found
