@@ -101,7 +101,6 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
     dt = np.diff(t)
     interval_s = float(np.median(dt))
     sentences = []
-    # Neighbours that were smoothed share a window; steps are then ramps and not looked for.
     far = excess(displacements(lat, lon, height), dt)
     steps = _stand_out(far, STEP_M_S2 * interval_s ** 2)
     if len(steps):
@@ -109,7 +108,7 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
         sentences.append(
             f'{path}: {_count(steps, "position step")}{_cadence(t, steps)}, the largest '
             f'{far[worst]:.3g} m after t_s = {seconds(start_ns + round(t[worst] * 1e9))}; the '
-            f'spline follows them with up to {far[worst] / dt[worst] ** 2:.3g} m/s^2 or more')
+            f'spline makes about {far[worst] / dt[worst] ** 2:.2g} m/s^2 of it')
     turned = np.degrees(excess(turns, dt))
     steps = _stand_out(turned, STEP_DEG_S * interval_s)
     if len(steps):

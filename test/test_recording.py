@@ -1,0 +1,312 @@
+"""Recorded flights: what the splines must reproduce, and what a motion of them may not depend on."""
+
+import dataclasses
+import gzip
+import math
+
+from hypothesis import given, settings as profile, strategies as st
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from ins_sim.core import recording_quality, settings
+from ins_sim.core.motions import make_motion
+from ins_sim.core.recording import RecordedMotion
+from ins_sim.core.recording_faults import seconds
+from ins_sim.core.recording_file import read_rows, REQUIRED
+
+FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.csv.gz': 'refuse',
+           'uavaero_proto_flt09.csv': 'cut'}
+
+
+def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, heading=0.0,
+          digits='.17g'):
+    """Write columns in the file's units; scalars are repeated; return the path as text."""
+    columns = np.broadcast_arrays(t, lat, lon, height, roll, pitch, heading)
+    lines = [','.join(REQUIRED)]
+    lines += [','.join([*(format(x, digits) for x in row), '', '', '']) for row in zip(*columns)]
+    path.write_text('\n'.join(lines) + '\n')
+    return str(path)
+
+
+def load(path, rotation=True, **keys):
+    return RecordedMotion(settings.Recording(path=str(path), **keys),
+                          settings.Earth(rotation=rotation))
+
+
+def recorder_angles(q):
+    """Return roll, pitch, heading, deg, of q_nb (n, 4): independent of the package."""
+    c = Rotation.from_quat(q).as_matrix()
+    return np.degrees([np.arctan2(c[:, 2, 1], c[:, 2, 2]), np.arcsin(c[:, 2, 0]),
+                       np.arctan2(c[:, 0, 0], c[:, 1, 0])])
+
+
+def record(path, motion, rate_hz, duration_s):
+    """Write a closed-form motion as its recorder would have, unrounded."""
+    t_ns = np.arange(round(duration_s * rate_hz) + 1) * round(1e9 / rate_hz)
+    x = motion.at(t_ns)
+    roll, pitch, heading = recorder_angles(x.q_nb)
+    return write(path, t_ns * 1e-9, np.degrees(x.lat), np.degrees(x.lon), x.height, roll, pitch,
+                 heading % 360.0)
+
+
+def same(a, b):
+    return all(np.array_equal(getattr(a, f.name), getattr(b, f.name))
+               for f in dataclasses.fields(a))
+
+
+@pytest.fixture(scope='module')
+def flown(tmp_path_factory):
+    """Return a recorded motion with every degree of freedom, and 20 s of it."""
+    path = tmp_path_factory.mktemp('flown') / 'aggressive.csv'
+    motion = make_motion(settings.MotionSettings(kind='aggressive'), settings.Datum(),
+                         settings.Earth())
+    return load(record(path, motion, 20.0, 20.0)), motion
+
+
+# The three real files.
+
+@pytest.mark.parametrize('name', FLIGHTS)
+def test_spline_passes_through_every_recorded_sample(shared_data, name):
+    """Interpolation: to the rounding of radians, of the splines' offsets and of the stamps."""
+    path = shared_data / 'flights' / name
+    motion = load(path, on_gap=FLIGHTS[name])
+    rows = read_rows(path)
+    t_ns = rows.t_ns - rows.t_ns[0] - 3 * 10 ** 9
+    used = t_ns <= round((motion.end_s + 3.0) * 1e9)
+    x = motion.at(t_ns[used])
+    assert np.abs(x.lat - np.radians(rows.lat_deg[used])).max() < 1e-15
+    assert np.abs(x.lon - np.radians(rows.lon_deg[used])).max() < 2e-15
+    assert np.abs(x.height - rows.height_m[used]).max() < 1e-11
+    found = recorder_angles(x.q_nb)
+    wanted = (rows.roll_deg, rows.pitch_deg, rows.heading_deg)
+    for a, b in zip(found, wanted):
+        assert np.abs((a - b[used] + 180.0) % 360.0 - 180.0).max() < 1e-11
+
+
+@pytest.mark.parametrize('name', FLIGHTS)
+def test_rate_and_acceleration_are_continuous_at_the_samples(shared_data, name):
+    """C2: across a sample the rate moves by its slope (times 2 ns), the slope not at all."""
+    motion = load(shared_data / 'flights' / name, on_gap=FLIGHTS[name], rotation=False)
+    knots = motion._knots[20:-20]
+    d = 1000
+    rate = [motion.at(knots + k * d).omega_ib_b for k in (-2, -1, 1, 2)]
+    before, after = (rate[1] - rate[0]) / (d * 1e-9), (rate[3] - rate[2]) / (d * 1e-9)
+    jerk = np.abs(motion.at(knots[:-1]).omega_ib_b).max() / np.diff(knots).min() ** 2 * 1e18
+    # The slopes are 3 us apart, and differences of rates over 1 us keep 1e-16/1e-6 of the rates.
+    assert np.abs(after - before).max() < 3.0 * d * 1e-9 * 20.0 * jerk + 1e-8
+    assert np.abs(rate[2] - rate[1]).max() < 2.1 * d * 1e-9 * np.abs(before).max() + 1e-9
+
+
+@pytest.mark.parametrize('name', FLIGHTS)
+def test_rate_and_velocity_are_those_of_the_pose(shared_data, name):
+    """Central difference of quaternion and position over 2 ms against rate and velocity."""
+    motion = load(shared_data / 'flights' / name, on_gap=FLIGHTS[name], smoothing_s=2.0,
+                  rotation=False)
+    t_ns = np.linspace(0.0, motion.end_s * 1e9, 500).astype(np.int64)
+    d = 10 ** 6
+    a, x, b = (motion.at(t_ns + k * d) for k in (-1, 0, 1))
+    moved = (Rotation.from_quat(a.q_nb).inv() * Rotation.from_quat(b.q_nb)).as_rotvec()
+    # omega_in of a non-rotating Earth: the transport rate only.
+    transport = Rotation.from_quat(x.q_nb).inv().apply(np.stack([
+        -(b.lat - a.lat), (b.lon - a.lon) * np.cos(x.lat), (b.lon - a.lon) * np.sin(x.lat)], -1))
+    rate = (moved + transport) / (2.0 * d * 1e-9)
+    # Truncation d^2/6 times the third derivative; 2 s of smoothing leave the steps of the circuit
+    # jerks of 1500 m/s^3 and less than 100 rad/s^3.
+    assert np.abs(rate - x.omega_ib_b).max() < 1e-6 / 6.0 * 100.0
+    up = (b.height - a.height) / (2.0 * d * 1e-9)
+    assert np.abs(up - x.v_n[:, 2]).max() < 1e-6 / 6.0 * 3000.0
+
+
+@pytest.mark.parametrize('name', FLIGHTS)
+def test_warnings_name_what_the_rounding_does(shared_data, name):
+    warnings = ' '.join(load(shared_data / 'flights' / name, on_gap=FLIGHTS[name]).warnings)
+    assert 'differentiated twice' in warnings
+    assert ('cut there' in warnings) == (FLIGHTS[name] == 'cut')
+    if 'circuit' in name:
+        assert 'position steps, one about every 1 s, the largest 3.18 m after t_s = 198.94' \
+            in warnings
+
+
+def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
+    path = shared_data / 'flights' / 'uavaero_proto_flt09.csv'
+    with pytest.raises(ValueError) as refusal:
+        load(path)
+    for time in ('7 gaps', '31.5273', '118.3921', '199.216', '273.5144', '350.0913', '350.5968',
+                 '422.0697', "on_gap = 'cut'"):
+        assert time in str(refusal.value)
+    assert load(path, on_gap='cut').end_s == pytest.approx(31.5273 - 6.0, abs=1e-9)
+    assert load(path, on_gap='cut', start_s=280.0).end_s == pytest.approx(350.0913 - 283.0,
+                                                                          abs=1e-9)
+    with pytest.raises(ValueError, match='lies in no part'):
+        load(path, on_gap='cut', start_s=32.0)
+    with pytest.raises(ValueError, match='start_s is 31 s; expected 3 to 28.5273 s'):
+        load(path, on_gap='cut', start_s=31.0)
+
+
+def test_ten_hours_of_instants_take_seconds(shared_data):
+    """360 000 instants: seconds, not minutes (0.3 to 0.7 s where this was written)."""
+    import time
+    motion = load(shared_data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
+    t_ns = np.arange(360000) * 10 ** 7
+    began = time.process_time()
+    motion.at(t_ns)
+    assert time.process_time() - began < 10.0
+
+
+# Against closed forms.
+
+def test_recorded_closed_form_converges(tmp_path):
+    """Pose errs by h^6 and h^4, so force by h^4 and rate by h^3: halving h divides by 16 and 8."""
+    motion = make_motion(settings.MotionSettings(kind='aggressive'), settings.Datum(),
+                         settings.Earth())
+    t_ns = np.linspace(0.0, 30e9, 997).astype(np.int64)
+    errors = []
+    for rate in (2.5, 5.0):
+        x = load(record(tmp_path / 'r.csv', motion, rate, 40.0), start_s=4.0).at(t_ns)
+        y = motion.at(t_ns + 4 * 10 ** 9)
+        errors.append([np.abs(getattr(x, f) - getattr(y, f)).max() for f in
+                       ('f_ib_b', 'omega_ib_b')])
+        assert np.abs(np.abs((x.q_nb * y.q_nb).sum(1)) - 1.0).max() < 1e-9
+    ratio = np.array(errors[0]) / errors[1]
+    # The force is resolved by an attitude that errs by h^4 too: both orders, less a tenth.
+    assert ratio[0] > 2.0 ** 3.6 and ratio[1] > 2.0 ** 2.7
+    assert errors[1][0] < 1e-2 and errors[1][1] < 1e-3
+
+
+def test_angles_are_the_recorders(tmp_path):
+    """Heading clockwise from north, nose up, right wing down, one at a time; FLU to ENU."""
+    t = np.arange(101) * 0.1
+    for angles, body, world in (({'heading': 90.0}, (1, 0, 0), (1, 0, 0)),
+                                ({'heading': 0.0}, (1, 0, 0), (0, 1, 0)),
+                                ({'pitch': 30.0}, (1, 0, 0), (0, math.sqrt(0.75), 0.5)),
+                                ({'roll': 30.0}, (0, 1, 0), (-math.sqrt(0.75), 0, 0.5)),
+                                ({'roll': 30.0}, (0, 0, 1), (0.5, 0, math.sqrt(0.75)))):
+        q = load(write(tmp_path / 'r.csv', t, **angles)).at(np.array([0])).q_nb
+        assert np.abs(Rotation.from_quat(q).apply(body) - world).max() < 1e-15
+
+
+def test_wraps_of_heading_roll_and_longitude_change_nothing(tmp_path):
+    """A turn through north, a roll through 180, a flight over the date line: smooth."""
+    t = np.arange(201) * 0.1
+    heading, roll, lon = 350.0 + 2.0 * t, 170.0 + t, 179.99 + 0.002 * t
+    plain = load(write(tmp_path / 'plain.csv', t, lon=lon, roll=0.0, heading=heading % 360.0))
+    x = plain.at(np.arange(0, 14 * 10 ** 9, 10 ** 8))
+    assert np.abs(np.diff(x.lon) - math.radians(0.0002)).max() < 1e-12
+    wrapped = load(write(tmp_path / 'wrapped.csv', t, lon=(lon + 180.0) % 360.0 - 180.0,
+                         heading=(heading + 180.0) % 360.0 - 180.0))
+    y = wrapped.at(x.t_ns)
+    assert np.abs(x.lon - y.lon).max() < 1e-14
+    assert np.abs(x.omega_ib_b - y.omega_ib_b).max() < 1e-12
+    rolling = load(write(tmp_path / 'roll.csv', t, roll=(roll + 180.0) % 360.0 - 180.0),
+                   rotation=False).at(x.t_ns)
+    assert np.abs(rolling.omega_ib_b - [math.radians(1.0), 0.0, 0.0]).max() < 1e-9
+
+
+@pytest.mark.parametrize('window_s', (0.5, 1.0))
+def test_smoothing_is_a_boxcar(tmp_path, window_s):
+    """A sinusoid of frequency f keeps sin(pi f T) / (pi f T) of itself, -3 dB at 0.443 / T."""
+    f, t = 0.4429 / window_s, np.arange(3001) * 0.02
+    wave = np.sin(2.0 * math.pi * f * t)
+    path = write(tmp_path / 'r.csv', t, height=100.0 + wave, roll=wave)
+    motion = load(path, smoothing_s=window_s)
+    assert f'{window_s:g} s' in motion.warnings[0] and '-3 dB' in motion.warnings[0]
+    t_ns = np.arange(0, 50 * 10 ** 9, 7 * 10 ** 6)
+    x, y = motion.at(t_ns), load(path).at(t_ns)
+    assert np.sinc(f * window_s) == pytest.approx(math.sqrt(0.5), abs=1e-4)
+    expected = math.sqrt(0.5) * (y.height - 100.0)
+    # Spline errors (2 pi f h)^4 / 720, and 1e-4 of the constant 0.4429.
+    assert np.abs(x.height - 100.0 - expected).max() < 1.2e-4
+    # Mean of quaternions: third order in a degree.
+    roll = recorder_angles(x.q_nb)[0]
+    assert np.abs(roll - expected).max() < 2.5e-4
+
+
+def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
+    t = np.arange(601) * 0.1
+    path = write(tmp_path / 'r.csv', t, heading=(90.0 * t) % 360.0)
+    with pytest.raises(ValueError, match='smoothing_s is 6 s.*turns more than once'):
+        load(path, smoothing_s=6.0)
+
+
+# What the result may not depend on.
+
+@profile(max_examples=40, deadline=None)
+@given(cuts=st.lists(st.integers(0, 400), max_size=8))
+def test_any_cutting_gives_the_same_bits(flown, cuts):
+    motion = flown[0]
+    t_ns = np.linspace(-3e9, 17e9, 401).astype(np.int64)
+    whole = motion.at(t_ns)
+    parts = [motion.at(p) for p in np.split(t_ns, sorted(cuts))]
+    assert same(type(whole).concatenate(parts), whole)
+
+
+def test_long_runs_are_the_same_bits_as_single_instants(flown):
+    motion = flown[0]
+    t_ns = np.linspace(-3e9, 17e9, 40001).astype(np.int64)
+    whole = motion.at(t_ns)
+    for k in range(0, 40001, 997):
+        assert same(motion.at(t_ns[k:k + 1]), whole[k:k + 1])
+
+
+def test_gzip_is_the_plain_file(tmp_path, flown):
+    data = open(flown[0].path, 'rb').read()
+    packed = tmp_path / 'aggressive.csv.gz'
+    packed.write_bytes(gzip.compress(data))
+    t_ns = np.arange(0, 10 ** 10, 10 ** 7)
+    assert same(load(packed).at(t_ns), flown[0].at(t_ns))
+
+
+def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
+    """A float of 1.7e9 s resolves 0.24 us; the text is read as decimal."""
+    stamps = [f'17000000{k // 10:02d}.{k % 10}00000001' for k in range(101)]
+    lines = [','.join(REQUIRED)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
+    path = tmp_path / 'r.csv'
+    path.write_text('\n'.join(lines))
+    assert np.array_equal(np.diff(read_rows(path).t_ns), np.full(100, 10 ** 8))
+    assert seconds(read_rows(path).t_ns[0]) == '1700000000'
+
+
+# The domain.
+
+def test_outside_the_recording_is_a_sentence(flown):
+    motion = flown[0]
+    assert motion.end_s == pytest.approx(14.0) and motion.period_s is None
+    assert len(motion.at(np.array([], dtype=np.int64))) == 0
+    motion.at(np.array([-3 * 10 ** 9, 17 * 10 ** 9]))
+    for t_ns in (-3 * 10 ** 9 - 1, 17 * 10 ** 9 + 1):
+        with pytest.raises(ValueError, match='outside the recording .*; expected -3 to 17 s'):
+            motion.at(np.array([0, t_ns]))
+
+
+# Noise.
+
+def test_rounding_noise_is_what_rounding_does(tmp_path):
+    """Rounded heights of a level flight: force noise of the prediction within 5 % (n = 4000)."""
+    rng = np.random.default_rng(1)
+    t = np.arange(4000) * 0.1
+    # A slow random wander decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
+    height = np.round(100.0 + 3.0 * np.sin(0.005 * t) + 2.0 * np.sin(0.0037 * t + 1.0)
+                      + 0.3 * rng.standard_normal(4000), 1)
+    motion = load(write(tmp_path / 'r.csv', t, height=height, digits='.15g'))
+    predicted = recording_quality.rounding_noise((0.0, 0.0, math.sqrt(0.09 * 12.0 + 0.01)), 1.0,
+                                                 100.0, 0.1, 0.0)[2]
+    # Noise and rounding together: 0.09 + 0.01 / 12 m^2 of white height noise.
+    up = motion.at(motion._knots[50:-50]).f_ib_b[:, 2]
+    assert np.std(up) == pytest.approx(predicted, rel=0.05)
+    assert any('rounded to' in w and '0.1 m' in w for w in motion.warnings)
+    assert any('scatter from row to row' in w for w in motion.warnings)
+
+
+def test_unrounded_flight_draws_no_warning(flown):
+    assert flown[0].warnings == []
+
+
+def test_spline_gain_is_the_gain_of_the_spline():
+    """Impulse through make_interp_spline: root of the sum of squares of its second derivative."""
+    from scipy.interpolate import make_interp_spline
+    t = np.arange(201.0)
+    impulse = make_interp_spline(t, (t == 100.0).astype(float), k=5)
+    assert recording_quality.spline_gain() == pytest.approx(
+        math.sqrt((impulse(t, nu=2) ** 2).sum()), rel=1e-9)
+    assert recording_quality.spline_gain(10.0) < 0.1 * recording_quality.spline_gain()
