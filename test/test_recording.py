@@ -1,4 +1,4 @@
-"""Recorded flights: what the splines must reproduce, and what a motion of them may not depend on."""
+"""Recorded flights: what the splines must reproduce and what they may not depend on."""
 
 import dataclasses
 import gzip
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ins_sim.core import recording_quality, settings
+from ins_sim.core import attitude, recording, recording_quality, settings
 from ins_sim.core.motions import make_motion
 from ins_sim.core.recording import RecordedMotion
 from ins_sim.core.recording_faults import seconds
@@ -227,6 +227,27 @@ def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
     path = write(tmp_path / 'r.csv', t, heading=(90.0 * t) % 360.0)
     with pytest.raises(ValueError, match='smoothing_s is 6 s.*turns more than once'):
         load(path, smoothing_s=6.0)
+
+
+@pytest.mark.parametrize('largest', (1e-3, 0.1, 1.0, 3.0, 6.0))
+def test_exponential_series_is_the_rotation_and_its_rate(largest):
+    """Against SciPy for the rotation (rounding), against q' = q (0, omega) / 2 for the rate."""
+    rng = np.random.default_rng(2)
+    r = rng.standard_normal((3, 500))
+    r *= largest * rng.random(500) / np.sqrt((r * r).sum(0))
+    w = rng.standard_normal((3, 500))
+    terms = recording._terms(np.stack([0.0 * r, r]), np.ones(500))
+    q = np.array([x.c for x in recording._exponential(r, w, terms)])
+    expected = Rotation.from_rotvec(r.T).as_quat()
+    expected *= np.sign((expected * q[:, 0].T).sum(1))[:, None]
+    assert np.abs(q[:, 0].T - expected).max() < 1e-15
+    assert np.abs((q[:, 0] * q[:, 1]).sum(0)).max() < 2e-15
+    d = 1e-5
+    ends = [Rotation.from_rotvec((r + k * d * w).T) for k in (-1, 1)]
+    rate = (ends[0].inv() * ends[1]).as_rotvec() / (2.0 * d)
+    mine = 2.0 * np.array(attitude.multiply(attitude.conjugate(tuple(q[:, 0])),
+                                            tuple(q[:, 1])))[:3].T
+    assert np.abs(rate - mine).max() < 1e-8
 
 
 # What the result may not depend on.

@@ -176,7 +176,8 @@ def _exponential(r, r_rate, terms):
     """
     Return the quaternion Series of order 1 of a rotation vector (3, n), rad, and its rate.
 
-    terms: of the power series; the slope of S wants the last.  (S(x) u, C(x)) with u = r / 2, x = u . u, S = sinc, C = cos of sqrt x; C' = -S u . u'.
+    (S(x) u, C(x)) with u = r / 2, x = u . u, S = sinc and C = cos of sqrt x; C' = -S u . u'.
+    terms: how many of both power series are taken.
     """
     u, w = 0.5 * r, 0.5 * r_rate
     x = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
