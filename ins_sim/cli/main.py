@@ -1,0 +1,69 @@
+"""The command ``ins_sim``: each verb parses, calls and prints; nothing more."""
+
+import argparse
+import sys
+
+from .. import __version__
+
+
+def parser():
+    """Return the parser of all verbs."""
+    top = argparse.ArgumentParser(prog='ins_sim', description='Simulate an inertial measurement '
+                                  'unit and the strapdown navigation on it.')
+    top.add_argument('--version', action='version', version=f'ins_sim {__version__}')
+    verbs = top.add_subparsers(dest='verb', required=True, metavar='VERB')
+
+    simulate = verbs.add_parser('simulate', help='run offline and write the run',
+                                description='Run motion, IMU and strapdown offline, with the '
+                                'zero-delay twin, and write the run into a folder.')
+    _settings(simulate)
+    simulate.add_argument('-o', '--output', default='ins_sim_run', metavar='DIR',
+                          help='folder of the run (default: %(default)s)')
+    simulate.add_argument('--force', action='store_true', help='replace the run in DIR')
+    simulate.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
+
+    predict = verbs.add_parser('predict', help='predict drift and position error',
+                               description='Predict the mean drift and the position error by the '
+                               'linear theory, without a simulation.')
+    _settings(predict)
+
+    demo = verbs.add_parser('demo', help='run the three nodes over DDS and show the result',
+                            description='Start the three nodes, run them in lock-step, record '
+                            'their topics into a bag and compare with the prediction.')
+    demo.add_argument('-o', '--output', default='ins_sim_demo', metavar='DIR',
+                      help='folder of bags and figures, replaced (default: %(default)s)')
+    demo.add_argument('--recording', metavar='CSV', default=None, help='recorded flight of the '
+                      'second part (default: the closed-form cruise)')
+    demo.add_argument('--start', type=float, default=1000.0, metavar='S', help='where in the '
+                      'recording to start, s after its first row (default: %(default)s)')
+    demo.add_argument('--duration', type=float, default=3600.0, metavar='S',
+                      help='simulated length of each part, s (default: %(default)s)')
+    return top
+
+
+def _settings(verb):
+    verb.add_argument('--params-file', action='append', default=[], metavar='FILE',
+                      help='ROS parameter file, or the name of a shipped one such as motion_2; '
+                      'may be repeated, later ones win')
+    verb.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
+                      help='one parameter, for every node that knows it')
+
+
+def main(arguments=None):
+    """Run a verb; return the exit code: 0, 2 on bad input, 1 where a run failed."""
+    chosen = parser().parse_args(arguments)
+    # the verbs import what they need: "ins_sim --help" stays instant
+    from . import demo, predict, simulate
+    verb = {'simulate': simulate, 'predict': predict, 'demo': demo}[chosen.verb]
+    try:
+        return verb.run(chosen)
+    except (ValueError, OSError) as error:
+        print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f'ins_sim {chosen.verb}: interrupted; nothing was written', file=sys.stderr)
+        return 130
+
+
+if __name__ == '__main__':
+    sys.exit(main())

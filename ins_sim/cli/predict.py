@@ -1,0 +1,32 @@
+"""Verb predict: what the linear theory expects."""
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from . import settings as chosen_settings
+from ..core.prediction import predict
+from ..report import summary, table
+
+
+def run(chosen):
+    """Predict and show; return the exit code."""
+    settings = chosen_settings.read(chosen)
+    prediction = predict(settings)
+    key = summary.study_key(settings)
+    drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
+    shown = Table(title=chosen_settings.title(settings))
+    for head in ('figure', 'unit', 'predicted', 'paper / re-derived'):
+        shown.add_column(head, justify='left' if head in ('figure', 'unit') else 'right')
+    for axis, name in enumerate(('east', 'north', 'up')):
+        shown.add_row(f'mean drift {name}', 'deg/h',
+                      table.number(prediction.drift[axis] * summary.DEG_PER_HOUR),
+                      table.number(drift and drift[axis]))
+    largest = np.abs(prediction.position).max(axis=0)
+    for axis, name in ((1, 'north'), (0, 'east')):
+        shown.add_row(f'largest position error {name}', 'm', table.number(largest[axis]),
+                      table.number(place and place[1 - axis]))
+    console = Console()
+    console.print(shown)
+    table.show_resonances(prediction.resonances, console)
+    return 0

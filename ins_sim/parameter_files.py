@@ -1,0 +1,131 @@
+"""
+ROS parameter files (YAML) as the settings of the three nodes, without ROS.
+
+The offline command line reads the same files as ``ros2 run --ros-args --params-file``: sections
+``/**`` and node names, each with ``ros__parameters``; later files and assignments win.
+"""
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+
+import yaml
+
+from .core.catalogue import ALL_NAMES, build, flatten, unknown, values_of
+from .core.settings import NODES
+from .core.simulation import Settings
+
+ROS_OWN = ('use_sim_time', 'start_type_description_service')
+
+
+def read(paths, assignments=()):
+    """
+    Return simulation.Settings of parameter files, in order, and of NAME:=VALUE assignments.
+
+    Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
+    """
+    values = {node: {} for node in NODES}
+    for path in paths:
+        for section, parameters in _sections(path):
+            for name, value in _flat(parameters).items():
+                _assign(values, section, name, value, path)
+    for assignment in assignments:
+        name, separator, text = assignment.partition(':=')
+        if not separator:
+            raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
+        _assign(values, '/**', name, _parse(text, f'-p {assignment}'), '-p')
+    built = {}
+    for node, cls in NODES.items():
+        try:
+            built[node] = build(cls, values[node])
+        except ValueError as error:
+            raise ValueError(f'{node}: {error}') from None
+    return Settings(**built)
+
+
+def _parse(text, where):
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        problem = str(error).replace('\n', ' ')
+        raise ValueError(f'{where} is not YAML: {problem}') from None
+
+
+def _sections(path):
+    try:
+        with open(path, encoding='utf-8') as stream:
+            text = stream.read()
+    except UnicodeDecodeError as error:
+        raise ValueError(f'{path} is not UTF-8 text: {error}') from None
+    document = _parse(text, path)
+    if not isinstance(document, Mapping) or not document:
+        raise ValueError(f'{path} holds no parameters; expected sections such as '
+                         '"/**: ros__parameters: ..."')
+    for section, body in document.items():
+        node = _node_of(section)
+        if node is None:
+            near = get_close_matches(str(section), ['/**', *NODES], n=1, cutoff=0.0)[0]
+            raise ValueError(f'{path}: unknown section {section!r}; the nearest known one is '
+                             f'{near!r}')
+        if not isinstance(body, Mapping) or list(body) != ['ros__parameters'] or not isinstance(
+                body['ros__parameters'], Mapping):
+            raise ValueError(f'{path}: section {section!r} expects exactly one mapping, '
+                             '"ros__parameters"')
+        yield node, body['ros__parameters']
+
+
+def _node_of(section):
+    """Return the node of a section name ('strapdown', '/ns/strapdown', '/**'), or None."""
+    text = str(section)
+    if text == '/**':
+        return text
+    node = text.rsplit('/', 1)[-1]
+    return node if node in NODES else None
+
+
+def _flat(parameters, prefix=''):
+    values = {}
+    for key, value in parameters.items():
+        name = f'{prefix}{key}'
+        if isinstance(value, Mapping):
+            values.update(_flat(value, name + '.'))
+        else:
+            values[name] = value
+    return values
+
+
+def _assign(values, section, name, value, where):
+    if name in ROS_OWN or name.startswith('qos_overrides.'):
+        return
+    nodes = NODES if section == '/**' else (section,)
+    takers = [node for node in nodes if name in flatten(NODES[node])]
+    if not takers:
+        known = ALL_NAMES if section == '/**' else flatten(NODES[section])
+        raise ValueError(f'{where}: {unknown(name, known)}')
+    for node in takers:
+        kind = flatten(NODES[node])[name].type
+        values[node][name] = _number(value) if kind is float else value
+
+
+def _number(value):
+    """Return 1e-3 as the number it is: YAML 1.1, and so PyYAML, takes it for a text."""
+    if isinstance(value, str):
+        try:
+            return float(value)
+        except ValueError:
+            pass
+    return value
+
+
+def dump(settings):
+    """Return the text of a parameter file with every key of simulation.Settings."""
+    document = {}
+    for node in NODES:
+        tree = {}
+        for name, value in values_of(getattr(settings, node)).items():
+            *parents, leaf = name.split('.')
+            branch = tree
+            for parent in parents:
+                branch = branch.setdefault(parent, {})
+            branch[leaf] = list(value) if isinstance(value, tuple) else value
+        document[node] = {'ros__parameters': tree}
+    return yaml.safe_dump(document, sort_keys=False)

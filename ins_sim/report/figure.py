@@ -1,0 +1,50 @@
+"""The figure of a run: position, attitude and drift errors over time."""
+
+import matplotlib
+
+matplotlib.use('Agg')
+
+from matplotlib.figure import Figure  # noqa: E402
+import numpy as np  # noqa: E402
+
+from .summary import DEG_PER_HOUR  # noqa: E402
+
+COLOURS = {'east': 'tab:red', 'north': 'tab:blue', 'up': 'tab:green'}
+MOST_POINTS = 4000
+
+
+def save(path, title, errors, prediction=None):
+    """Save the figure as PNG; errors: NavErrors, prediction: Prediction or None."""
+    every = max(1, len(errors.t_ns) // MOST_POINTS)
+    errors = errors[::every]
+    t_min = (errors.t_ns - errors.t_ns[0]) * 1e-9 / 60.0
+    figure = Figure(figsize=(9, 9), layout='constrained')
+    top, middle, bottom = figure.subplots(3, 1, sharex=True)
+    for axis, name in enumerate(('east', 'north')):
+        top.plot(t_min, errors.position[:, axis], color=COLOURS[name], label=f'{name}, measured')
+        if prediction is not None:
+            top.plot(prediction.t_s[::20] / 60.0, prediction.position[::20, axis], 'k--', lw=1,
+                     label='linear prediction' if axis else None)
+    for axis, name in enumerate(COLOURS):
+        middle.plot(t_min, np.degrees(errors.attitude[:, axis]) * 3600.0, color=COLOURS[name],
+                    label=name)
+        bottom.plot(t_min, errors.drift[:, axis] * DEG_PER_HOUR, color=COLOURS[name], label=name)
+        if prediction is not None:
+            bottom.axhline(prediction.drift[axis] * DEG_PER_HOUR, color='k', ls='--', lw=1,
+                           label='prediction' if axis == 2 else None)
+    # the slope of the first seconds is no drift yet: scale by what follows
+    settled = errors.drift[len(errors.t_ns) // 20:] * DEG_PER_HOUR
+    if prediction is not None:
+        settled = np.concatenate([settled, prediction.drift[None] * DEG_PER_HOUR])
+    low, high = float(settled.min()), float(settled.max())
+    margin = 0.15 * (high - low) or 1e-9
+    bottom.set_ylim(low - margin, high + margin)
+    for axes, label in ((top, 'position error [m]'),
+                        (middle, 'inertial attitude error [arcsec]'),
+                        (bottom, 'drift since the start [deg/h]')):
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.3)
+        axes.legend(loc='best', fontsize='small')
+    bottom.set_xlabel('time [min]')
+    figure.suptitle(title)
+    figure.savefig(path, dpi=110)

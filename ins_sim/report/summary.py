@@ -1,0 +1,92 @@
+"""A run in numbers: predicted, measured and published, side by side."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+DEG_PER_HOUR = 180.0 / math.pi * 3600.0
+
+# Largest |dN|, |dE| in metres after one hour at 100 Hz: the tables of the paper's two motions and
+# of the closed-form flights, re-derived (docs/validation.md).  Key: kind, theta, detuning.
+PUBLISHED_POSITION = {
+    ('rocking', 0.0, 0.0): (111.98, 15.03),
+    ('two_axis', -30.0, 0.0): (4472.1, 623.94),
+    ('two_axis', -30.0, 0.001): (1963.4, 2931.6),
+    ('two_axis', -30.0, 0.01): (34.03, 211.79),
+    ('two_axis', -30.0, 0.1): (4.190, 25.60),
+    ('two_axis', 0.0, 0.0): (3442.8, 479.48),
+    ('two_axis', 0.0, 0.001): (1511.6, 2257.9),
+    ('two_axis', 0.0, 0.01): (26.42, 164.61),
+    ('two_axis', 0.0, 0.1): (3.501, 21.31),
+    ('cruise', None, None): (3.591, 3.327),
+    ('aggressive', None, None): (5.997, 10.741)}
+# Mean drift, deg/h, of the paper's closed forms (9) exact and (19)
+PUBLISHED_DRIFT = {
+    ('rocking', 0.0, 0.0): (0.0, 0.0, 0.0154884),
+    ('two_axis', -30.0, 0.0): (0.0334932, 0.0, 0.0),
+    ('two_axis', 0.0, 0.0): (0.0257831, 0.0, 0.0)}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure: name, unit, predicted, measured, zero-delay twin and published (or None)."""
+
+    name: str
+    unit: str
+    predicted: float | None
+    measured: float
+    twin: float | None
+    published: float | None
+
+
+def study_key(settings):
+    """Return the key of the published tables if the settings are theirs, else None."""
+    generator, sensor = settings.motion_generator, settings.imu_sensor
+    motion, delay = generator.motion, sensor.gyro.delay_us
+    taus = (delay.y, delay.x, delay.z)
+    nominal = (generator.duration_s == 3600.0 and generator.start_s == 0.0
+               and generator.earth.rotation)
+    bench = nominal and (generator.datum.latitude_deg, motion.gamma_deg) == (55.75, 0.0)
+    if motion.kind == 'rocking':
+        s = motion.rocking
+        if bench and taus == (0.0, 1.0, 0.0) and (
+                s.axis, s.amplitude_deg, s.frequency_hz, motion.psi_deg, motion.theta_deg) == (
+                'north', 5.0, 1.0, 45.0, 0.0):
+            return 'rocking', 0.0, 0.0
+    elif motion.kind == 'two_axis':
+        s = motion.two_axis
+        if bench and taus == (1.0, 0.0, 0.0) and (
+                s.psi_rate_rad_s, s.gamma_rate_rad_s, motion.psi_deg) == (1.0, 0.5, 0.0):
+            return 'two_axis', motion.theta_deg, s.detuning_rad_s
+    elif nominal and taus == (1.0, 2.0, 3.0) and (
+            generator.datum.latitude_deg, generator.datum.longitude_deg) == (55.0, 37.0):
+        return motion.kind, None, None
+    return None
+
+
+def rows(settings, errors, twin=None, prediction=None):
+    """Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction."""
+    key = study_key(settings)
+    place, drift = PUBLISHED_POSITION.get(key), PUBLISHED_DRIFT.get(key)
+    table = []
+    for axis, name in enumerate(('east', 'north', 'up')):
+        table.append(Row(
+            f'mean drift {name}', 'deg/h',
+            None if prediction is None else prediction.drift[axis] * DEG_PER_HOUR,
+            errors.drift[-1, axis] * DEG_PER_HOUR,
+            None if twin is None else twin.drift[-1, axis] * DEG_PER_HOUR,
+            None if drift is None else drift[axis]))
+    for axis, name in ((1, 'north'), (0, 'east')):
+        table.append(Row(
+            f'largest position error {name}', 'm',
+            None if prediction is None else np.abs(prediction.position[:, axis]).max(),
+            np.abs(errors.position[:, axis]).max(),
+            None if twin is None else np.abs(twin.position[:, axis]).max(),
+            None if place is None else place[1 - axis]))
+    if twin is not None:
+        for axis, name in ((1, 'north'), (0, 'east')):
+            table.append(Row(
+                f'largest position error {name} less twin', 'm', None,
+                np.abs(errors.position[:, axis] - twin.position[:, axis]).max(), None, None))
+    return table

@@ -1,0 +1,67 @@
+"""Write config/default.yaml from the catalogue of settings: every key, its unit, range and doc."""
+
+from dataclasses import is_dataclass, fields
+from pathlib import Path
+import textwrap
+
+from ins_sim.core.settings import MotionGeneratorSettings, NODES
+
+SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
+HEAD = """\
+# Every parameter of the three nodes with its default.  Written by tools/make_config.py from
+# ins_sim/core/settings.py; a test keeps it in step.  Overlays beside this file hold the studies:
+#   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
+"""
+
+
+def text(value):
+    """Return a value as YAML that ROS reads with the right type."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return '[' + ', '.join(text(v) for v in value) + ']'
+    return repr(value) if isinstance(value, float) else f'"{value}"' if value == '' else str(value)
+
+
+def remark(f):
+    """Return the comment of a field: doc, unit, range, choices."""
+    m = f.metadata
+    parts = [m['doc']]
+    if m['unit']:
+        parts[0] += f' [{m["unit"]}]'
+    if m['low'] is not None:
+        parts.append(f'{m["low"]:g} to {m["high"]:g}')
+    if m['choices']:
+        parts.append('one of ' + ', '.join(m['choices']))
+    return '; '.join(parts)
+
+
+def lines(cls, indent, skip=()):
+    """Yield the lines of a settings class."""
+    pad = ' ' * indent
+    for f in fields(cls):
+        if f.name in skip:
+            continue
+        if is_dataclass(f.default_factory):
+            doc = f.default_factory.__doc__.strip().splitlines()[0]
+            yield f'{pad}{f.name}:  # {doc}'
+            yield from lines(f.default_factory, indent + 2)
+        else:
+            for line in textwrap.wrap(remark(f), 97 - indent):
+                yield f'{pad}# {line}'
+            yield f'{pad}{f.name}: {text(f.default)}'
+
+
+def document():
+    """Return the whole file."""
+    out = [HEAD.rstrip(), '', '/**:', '  ros__parameters:']
+    own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
+    out += lines(MotionGeneratorSettings, 4, skip=own)
+    for node, cls in NODES.items():
+        out += ['', f'{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED)]
+    return '\n'.join(out) + '\n'
+
+
+if __name__ == '__main__':
+    path = Path(__file__).resolve().parents[1] / 'config' / 'default.yaml'
+    path.write_text(document(), encoding='utf-8')
