@@ -62,7 +62,7 @@ class Writer:
         layout = LAYOUTS[type_name]
         if len(strings) != layout.strings:
             raise ValueError(f'{type_name} takes {layout.strings} strings, not {len(strings)}')
-        self._runs = layout.runs if runs is None else tuple(runs)
+        self.runs = layout.runs if runs is None else tuple(runs)
         body = bytearray(8)
         for text in strings:
             body += bytes(_aligned(len(body), 4) - len(body))
@@ -79,13 +79,13 @@ class Writer:
         self._template = bytearray(ENCAPSULATION + body)
         self._stamp = struct.Struct('<iI').pack_into
         self._slots = [(struct.Struct(f'<{b - a}d').pack_into, first + 8 * a)
-                       for a, b in self._runs]
-        self._ends = np.cumsum([0] + [b - a for a, b in self._runs]).tolist()
-        names = [f'values{k}' for k in range(len(self._runs))]
+                       for a, b in self.runs]
+        self._ends = np.cumsum([0] + [b - a for a, b in self.runs]).tolist()
+        names = [f'values{k}' for k in range(len(self.runs))]
         self.dtype = np.dtype({
             'names': ['sec', 'nanosec', *names],
-            'formats': ['<i4', '<u4', *(('<f8', (b - a,)) for a, b in self._runs)],
-            'offsets': [4, 8, *(first + 8 * a for a, _ in self._runs)],
+            'formats': ['<i4', '<u4', *(('<f8', (b - a,)) for a, b in self.runs)],
+            'offsets': [4, 8, *(first + 8 * a for a, _ in self.runs)],
             'itemsize': len(self._template)})
 
     def pack(self, stamp_ns, *values):

@@ -1,0 +1,72 @@
+"""
+Records and messages: which quantity is which double of which message.
+
+Blocks are arrays of one row a message, in the order of the writer's runs; the ``..._one``
+functions give the runs of a single message as tuples of floats.
+"""
+
+import math
+
+from ins_sim.core import attitude
+import numpy as np
+
+from . import topics
+
+
+def truth_blocks(frame, truth):
+    """Return {Topic: values (n, k)} of a Truth record; frame: MapFrame."""
+    r_m, q_mb, v_b = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
+    return {
+        topics.TRUTH_ODOMETRY: np.concatenate(
+            [r_m, q_mb, v_b, _rate_in_map(frame, q_mb, truth.omega_ib_b)], axis=1),
+        topics.TRUTH_ATTITUDE: truth.q_nb,
+        topics.TRUTH_FIX: _fix(truth),
+        topics.TRUTH_IMU: np.concatenate([q_mb, truth.omega_ib_b, truth.f_ib_b], axis=1),
+    }
+
+
+def imu_block(imu):
+    """Return {Topic: values} of ImuSamples."""
+    return {topics.IMU_RAW: np.concatenate([imu.omega, imu.f], axis=1)}
+
+
+def state_blocks(frame, states, omega):
+    """
+    Return {Topic: values} of NavStates.
+
+    omega (n, 3): the readings of the gyros at the same stamps, from which the angular velocity
+    of the odometry is the rate relative to the Earth.
+    """
+    r_m, q_mb, v_b = frame.pose(states.lat, states.lon, states.height, states.v_n, states.q_nb)
+    return {
+        topics.INS_ODOMETRY: np.concatenate(
+            [r_m, q_mb, v_b, _rate_in_map(frame, q_mb, omega)], axis=1),
+        topics.INS_FIX: _fix(states),
+    }
+
+
+def error_blocks(errors):
+    """Return {Topic: values} of NavErrors."""
+    return dict(zip(topics.ERRORS, (errors.attitude, errors.velocity, errors.position,
+                                    errors.drift)))
+
+
+def odometry_one(frame, solution, omega):
+    """Return the two runs of ins/odometry: solution (lat, lon, height, v_n, q_nb), gyro reading."""
+    r_m, q_mb, v_b = frame.pose_one(*solution)
+    turn = attitude.rotate_back(q_mb, frame.omega_ie_m)
+    return (*r_m, *q_mb), (*v_b, omega[0] - turn[0], omega[1] - turn[1], omega[2] - turn[2])
+
+
+def fix_one(solution):
+    """Return the run of ins/fix."""
+    return math.degrees(solution[0]), math.degrees(solution[1]), solution[2]
+
+
+def _rate_in_map(frame, q_mb, omega):
+    turn = attitude.rotate_back(np.moveaxis(q_mb, -1, 0), frame.omega_ie_m)
+    return omega - np.stack(turn, axis=-1)
+
+
+def _fix(record):
+    return np.stack([np.degrees(record.lat), np.degrees(record.lon), record.height], axis=-1)

@@ -1,0 +1,60 @@
+"""Every topic: name, type and frames stand here and nowhere else.  No ROS is imported."""
+
+from dataclasses import dataclass
+
+from .cdr import Reader, Writer
+
+IMU = 'sensor_msgs/msg/Imu'
+ODOMETRY = 'nav_msgs/msg/Odometry'
+FIX = 'sensor_msgs/msg/NavSatFix'
+VECTOR = 'geometry_msgs/msg/Vector3Stamped'
+QUATERNION = 'geometry_msgs/msg/QuaternionStamped'
+HEADER = 'std_msgs/msg/Header'
+CLOCK = 'rosgraph_msgs/msg/Clock'
+STRING = 'std_msgs/msg/String'
+
+
+@dataclass(frozen=True)
+class Topic:
+    """
+    A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
+
+    constants: {index: value} of the doubles that a writer of it fills once; zero covariances
+    mean unknown, or exact for the truth.
+    """
+
+    name: str
+    type_name: str
+    frames: tuple = ()
+    constants: tuple = ()
+    runs: tuple | None = None
+
+    def writer(self):
+        """Return the Writer of its messages."""
+        return Writer(self.type_name, *self.frames, runs=self.runs,
+                      constants=dict(self.constants))
+
+    def reader(self, runs=None):
+        """Return a Reader of its messages, by default of the same runs as the writer."""
+        return Reader(self.type_name, self.writer().runs if runs is None else runs)
+
+
+TRUTH_IMU = Topic('truth/imu', IMU, ('imu_link',))
+TRUTH_ODOMETRY = Topic('truth/odometry', ODOMETRY, ('map', 'base_link'))
+TRUTH_ATTITUDE = Topic('truth/attitude', QUATERNION, ('enu',))
+TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',))
+# an orientation that is not measured: identity, and -1 at the head of its covariance (REP-145)
+IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13, 16), (25, 28)))
+INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'))
+INS_FIX = Topic('ins/fix', FIX, ('base_link',))
+ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))
+ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('enu',))
+ERROR_POSITION = Topic('ins/error/position', VECTOR, ('enu',))
+ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('enu',))
+ACK = Topic('sim/ack', HEADER)
+STATUS = Topic('sim/status', STRING)
+CLOCK_TOPIC = Topic('/clock', CLOCK)
+
+ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
+TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)
+DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)

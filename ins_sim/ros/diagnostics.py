@@ -1,0 +1,69 @@
+"""What a node says about itself on /diagnostics, once a second of wall time."""
+
+import time
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.clock import Clock, ClockType
+
+RECENT_S = 5.0
+
+
+class Monitor:
+    """
+    Counts of one node and its last fault.
+
+    The owner increments ``received`` and ``sent``.  input_name: what drives the node, or None;
+    it is stale after stale_s without a message.
+    """
+
+    def __init__(self, node, input_name=None, stale_s=2.0):
+        self.received = self.sent = self.faults = 0
+        self.state = 'running'
+        self.last_fault = ''
+        self._node, self._input, self._stale_s = node, input_name, stale_s
+        self._fault_time = self._seen_time = time.monotonic()
+        self._before = (time.monotonic(), 0, 0)
+        self._stale = False
+        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        # a wall timer: simulated time may stand still, and that is worth reporting
+        node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def fault(self, sentence, fatal=False):
+        """Count a fault and log it, at most once a second."""
+        self.faults += 1
+        self.last_fault = sentence
+        self._fault_time = time.monotonic()
+        logger = self._node.get_logger()
+        if fatal:
+            logger.fatal(sentence)
+        else:
+            logger.warning(sentence, throttle_duration_sec=1.0)
+
+    def publish(self):
+        """Publish the status."""
+        now = time.monotonic()
+        last, received, sent = self._before
+        if self.received != received:
+            self._seen_time, self._stale = now, False
+        status = DiagnosticStatus(level=DiagnosticStatus.OK, message=self.state,
+                                  name=self._node.get_fully_qualified_name(),
+                                  hardware_id='ins_sim')
+        silence = now - self._seen_time
+        if self._input and silence > self._stale_s:
+            status.level, status.message = DiagnosticStatus.WARN, (
+                f'no message on {self._input} for {silence:.1f} s; expected a steady stream')
+            if self.received and not self._stale:
+                self._node.get_logger().warning(status.message)
+                self._stale = True
+        if self.faults and now - self._fault_time < RECENT_S:
+            status.level, status.message = DiagnosticStatus.WARN, self.last_fault
+        span = max(now - last, 1e-3)
+        status.values = [KeyValue(key=key, value=str(value)) for key, value in (
+            ('received', self.received), ('sent', self.sent), ('faults', self.faults),
+            ('last fault', self.last_fault),
+            ('received per second', f'{(self.received - received) / span:.1f}'),
+            ('sent per second', f'{(self.sent - sent) / span:.1f}'))]
+        self._before = (now, self.received, self.sent)
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self._node.get_clock().now().to_msg()
+        self._publisher.publish(array)

@@ -1,0 +1,91 @@
+"""How far the generator may go: the clock, and in lock-step the consumers.  No ROS is imported."""
+
+import math
+import time
+
+REPEAT_S = 0.1
+SILENCE_S = 0.5
+STARTING = -1
+
+
+class Pace:
+    """
+    Real time: sample k is due k dt / factor after the start.
+
+    The clock counts samples, never ticks, so that nothing drifts and nothing is skipped.
+    """
+
+    def __init__(self, factor, dt_s):
+        self._step_s = dt_s / factor if factor else 0.0
+        self._start = 0.0
+
+    def anchor(self, k):
+        """Let sample k be due now."""
+        self._start = time.monotonic() - k * self._step_s
+
+    def allowed(self):
+        """Return how many samples may have been sent by now."""
+        if not self._step_s:
+            return math.inf
+        return int((time.monotonic() - self._start) / self._step_s) + 1
+
+    def wait_s(self, k):
+        """Return how long it is until sample k is due."""
+        return self._start + k * self._step_s - time.monotonic()
+
+
+class LockStep:
+    """
+    Lock-step: at most ``window`` samples ahead of the slowest required consumer.
+
+    Sample 0 is repeated until every consumer has acknowledged it, so that neither the order of
+    start nor the time of discovery matters.
+    """
+
+    def __init__(self, required, window, timeout_s):
+        self._required, self._window, self._timeout_s = tuple(required), window, timeout_s
+        self.restart()
+
+    def restart(self):
+        """Forget all acknowledgements."""
+        self._acked = dict.fromkeys(self._required, STARTING)
+        self._repeated = self.moved = time.monotonic()
+
+    def ack(self, name, k, sent):
+        """Take the acknowledgement of sample k; sent: number of samples sent."""
+        last = self._acked.get(name)
+        # before the first sample is acknowledged a later one can only be an echo of a past run
+        if last is None or k >= sent or k <= last or (last == STARTING and k != 0):
+            return
+        self._acked[name] = k
+        self.moved = time.monotonic()
+
+    @property
+    def slowest(self):
+        """Return the last sample that every consumer has acknowledged; STARTING before 0."""
+        return min(self._acked.values())
+
+    def allowed(self):
+        """Return how many samples may have been sent."""
+        slowest = self.slowest
+        return 1 if slowest == STARTING else slowest + 1 + self._window
+
+    def repeat_due(self, sent):
+        """Return whether sample 0 is to be sent again, at most every REPEAT_S."""
+        now = time.monotonic()
+        if sent != 1 or self.slowest != STARTING or now - self._repeated < REPEAT_S:
+            return False
+        self._repeated = now
+        return True
+
+    def done(self, count):
+        """Return whether all count samples are processed, as far as consumers will ever say."""
+        left = count - 1 - self.slowest
+        return left <= 0 or (left <= self._window and self.slowest != STARTING
+                             and time.monotonic() - self.moved > SILENCE_S)
+
+    def overdue(self, sent):
+        """Return the names of the consumers that have let the timeout pass, or ()."""
+        if sent - 1 <= self.slowest or time.monotonic() - self.moved < self._timeout_s:
+            return ()
+        return tuple(n for n, k in self._acked.items() if k == self.slowest)
