@@ -1,0 +1,32 @@
+# Each target runs in .venv, which tools/bootstrap.py makes on the first use.
+PYTHON ?= python3
+RUN = $(PYTHON) tools/bootstrap.py
+
+.PHONY: help setup demo test test-slow lint clean
+
+help:
+	@echo 'make setup      make .venv and install the package with what it needs'
+	@echo 'make demo       run the three nodes and show predicted against measured errors'
+	@echo 'make test       run the tests'
+	@echo 'make test-slow  run the slow tests'
+	@echo 'make lint       check the style'
+	@echo 'make clean      remove .venv, builds and caches'
+
+setup:
+	$(RUN)
+
+demo:
+	$(RUN) ins_sim demo
+
+test:
+	$(RUN) python -m pytest test
+
+test-slow:
+	$(RUN) python -m pytest test -m slow
+
+lint:
+	$(RUN) python -m flake8
+
+clean:
+	rm -rf .venv .venv.lock build dist install log *.egg-info .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
