@@ -319,8 +319,20 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
     assert any('scatter from row to row' in w for w in motion.warnings)
 
 
-def test_unrounded_flight_draws_no_warning(flown):
+def test_unrounded_flight_draws_no_warning(flown, tmp_path):
+    """Nor does one of few decimals that needs no more: 10 m/s written to 0.1 m at 100 Hz."""
     assert flown[0].warnings == []
+    t = np.arange(1001) * 0.01
+    assert load(write(tmp_path / 'r.csv', t, height=10.0 * t, digits='.12g')).warnings == []
+
+
+def test_single_precision_is_seen_through_its_decimals(tmp_path):
+    """Latitudes of float32 printed in full are rounded to 2^-18 deg = 0.42 m."""
+    t = np.arange(501) * 0.1
+    lat = np.float32(55.0 + 3e-4 * np.sin(0.3 * t)).astype(float)
+    path = write(tmp_path / 'r.csv', t, lat=lat)
+    assert read_rows(path).resolution == (2.0 ** -18, 0.0, 0.0)
+    assert any('rounded to 4e-06 deg' in w for w in load(path).warnings)
 
 
 def test_spline_gain_is_the_gain_of_the_spline():

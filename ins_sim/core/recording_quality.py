@@ -118,13 +118,16 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
             f'{turned[worst]:.3g} deg after t_s = {seconds(start_ns + round(t[worst] * 1e9))}')
     rounding = rounding_noise(resolution, float(lat.mean()), float(height.mean()), interval_s,
                               smoothing_s)
+    rms, robust = sample_noise(t, lat, lon, height)
+    # Few decimals are no noise where the values need no more: the scatter has to be there too
+    # (white noise scatters by half the force noise).
+    rounding[rms < 0.1 * rounding] = 0.0
     if rounding.max() >= WORTH_SAYING_M_S2:
         sentences.append(
             f'{path}: positions rounded to {resolution[0]:.1g} deg, {resolution[1]:.1g} deg, '
             f'{resolution[2]:.1g} m and differentiated twice at {1.0 / interval_s:.4g} Hz put '
             f'{_enu(rounding)} m/s^2 rms of noise (east, north, up) into the specific force; '
             'motion.recording.smoothing_s lowers it')
-    rms, robust = sample_noise(t, lat, lon, height)
     if rms.max() >= WORTH_SAYING_M_S2:
         sentences.append(
             f'{path}: the second differences of its positions scatter from row to row by '
