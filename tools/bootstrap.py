@@ -145,7 +145,8 @@ def install(facts, with_ros, fresh):
     # Wheels first, for there may be no compiler.  Without --use-pep517 an old pip would run
     # "setup.py develop", which obeys setup.cfg and hides the scripts in lib/ins_sim.
     run([python, '-m', 'pip', 'install', '--quiet', '--no-input', '--disable-pip-version-check',
-         '--prefer-binary', '--use-pep517', '--editable', '{}[{}]'.format(ROOT, ','.join(extras))], with_ros, 'installing')
+         '--prefer-binary', '--use-pep517', '--editable',
+         '{}[{}]'.format(ROOT, ','.join(extras))], with_ros, 'installing')
 
 
 def run(command, with_ros, doing):

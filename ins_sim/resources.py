@@ -1,0 +1,45 @@
+"""Where the parameter files and launch files of the package are, however it was installed."""
+
+from pathlib import Path
+import sys
+
+PACKAGE = 'ins_sim'
+
+
+def share_directories():
+    """
+    Return the directories that may hold ``config`` and ``launch``, the first the most trusted.
+
+    They are the share directory of the ament index (colcon), that of the interpreter (pip) and
+    the source tree (``pip install -e`` drops the data files).
+    """
+    directories = [Path(sys.prefix) / 'share' / PACKAGE, Path(__file__).resolve().parents[1]]
+    try:
+        from ament_index_python.packages import get_package_share_directory
+        directories.insert(0, Path(get_package_share_directory(PACKAGE)))
+    except (ImportError, OSError, LookupError):
+        # No ROS; AMENT_PREFIX_PATH unset; the package is not in the index.
+        pass
+    return directories
+
+
+def config(name):
+    """Return the path of the parameter file ``name``, such as 'motion_2'."""
+    return _find('config', name, '.yaml')
+
+
+def launch(name):
+    """Return the path of the launch file ``name``, such as 'simulation'."""
+    return _find('launch', name, '.launch.py')
+
+
+def _find(folder, name, suffix):
+    for directory in share_directories():
+        path = directory / folder / f'{name}{suffix}'
+        if path.is_file():
+            return path
+    known = sorted({path.name.removesuffix(suffix) for directory in share_directories()
+                    for path in (directory / folder).glob(f'*{suffix}')})
+    raise FileNotFoundError(f'no {folder} named {name!r}; ' + (
+        'expected one of ' + ', '.join(known) if known else
+        'none was installed in ' + ', '.join(str(path) for path in share_directories())))

@@ -1,0 +1,68 @@
+"""
+Start the motion generator, the IMU and the strapdown; end when the generator ends.
+
+Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_time_factor:=10.0
+"""
+
+from pathlib import Path
+
+from ins_sim import graph, resources
+from launch import LaunchDescription
+from launch.actions import (DeclareLaunchArgument, GroupAction, OpaqueFunction,
+                            RegisterEventHandler, Shutdown)
+from launch.event_handlers import OnProcessExit
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace
+from launch_ros.parameter_descriptions import ParameterValue
+
+ARGUMENTS = (
+    ('params_file', '', 'parameter file over the defaults: the name of a shipped one, such as '
+                        'motion_2, or a path'),
+    ('namespace', '', 'namespace of the nodes'),
+    ('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; empty = as '
+                             'the parameter files say'),
+    ('lock_step', '', 'true or false: wait for the consumers; empty = as the parameter files say'),
+    ('use_sim_time', 'false', 'true or false: the nodes take their time from /clock'),
+)
+
+
+def _config(name):
+    """Return the path of a parameter file given by name or path."""
+    path = Path(name)
+    if not path.is_file() and path.suffix == '' and path.parent == Path('.'):
+        return str(resources.config(name))
+    if not path.is_file():
+        raise FileNotFoundError(f'params_file {name!r} does not exist')
+    return str(path)
+
+
+def _overrides(process, value):
+    """Return the parameters that the launch arguments set for a process."""
+    parameters = {'use_sim_time': ParameterValue(value['use_sim_time'], value_type=bool)}
+    if process.name == graph.MASTER:
+        for name, kind in (('real_time_factor', float), ('lock_step', bool)):
+            if value[name]:
+                parameters['pacing.' + name] = ParameterValue(value[name], value_type=kind)
+    return parameters
+
+
+def _simulation(context):
+    """Return the actions, now that the values of the arguments are known."""
+    value = {name: LaunchConfiguration(name).perform(context) for name, _, _ in ARGUMENTS}
+    overlay = [_config(value['params_file'])] if value['params_file'] else []
+    nodes = {process.name: Node(
+        package='ins_sim', executable=process.executable, name=process.name, output='screen',
+        parameters=[*(str(resources.config(name)) for name in process.config), *overlay,
+                    _overrides(process, value)]) for process in graph.PROCESSES}
+    end = OnProcessExit(target_action=nodes[graph.MASTER],
+                        on_exit=[Shutdown(reason='the motion generator has ended')])
+    return [RegisterEventHandler(end),
+            GroupAction([PushRosNamespace(value['namespace']), *nodes.values()])]
+
+
+def generate_launch_description():
+    """Return the launch description."""
+    return LaunchDescription([
+        *(DeclareLaunchArgument(name, default_value=default, description=doc)
+          for name, default, doc in ARGUMENTS),
+        OpaqueFunction(function=_simulation)])
