@@ -23,8 +23,8 @@ def run(chosen):
                       table.number(prediction.drift[axis] * summary.DEG_PER_HOUR),
                       table.number(drift and drift[axis]))
     largest = np.abs(prediction.position).max(axis=0)
-    for axis, name in ((1, 'north'), (0, 'east')):
-        shown.add_row(f'largest position error {name}', 'm', table.number(largest[axis]),
+    for axis, name in ((1, 'N'), (0, 'E')):
+        shown.add_row(f'max |d{name}|', 'm', table.number(largest[axis]),
                       table.number(place and place[1 - axis]))
     console = Console()
     console.print(shown)

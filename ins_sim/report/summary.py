@@ -77,16 +77,16 @@ def rows(settings, errors, twin=None, prediction=None):
             errors.drift[-1, axis] * DEG_PER_HOUR,
             None if twin is None else twin.drift[-1, axis] * DEG_PER_HOUR,
             None if drift is None else drift[axis]))
-    for axis, name in ((1, 'north'), (0, 'east')):
+    for axis, name in ((1, 'N'), (0, 'E')):
         table.append(Row(
-            f'largest position error {name}', 'm',
+            f'max |d{name}|', 'm',
             None if prediction is None else np.abs(prediction.position[:, axis]).max(),
             np.abs(errors.position[:, axis]).max(),
             None if twin is None else np.abs(twin.position[:, axis]).max(),
             None if place is None else place[1 - axis]))
     if twin is not None:
-        for axis, name in ((1, 'north'), (0, 'east')):
+        for axis, name in ((1, 'N'), (0, 'E')):
             table.append(Row(
-                f'largest position error {name} less twin', 'm', None,
+                f'max |d{name} - twin|', 'm', None,
                 np.abs(errors.position[:, axis] - twin.position[:, axis]).max(), None, None))
     return table

@@ -8,7 +8,7 @@ from .summary import DEG_PER_HOUR
 
 def number(value):
     """Return a figure with six significant digits, or a dash."""
-    return '-' if value is None else f'{value:.6g}'
+    return '-' if value is None else f'{value + 0.0:.6g}'
 
 
 def show(title, rows, console=None):

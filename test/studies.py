@@ -1,0 +1,58 @@
+"""Settings of the studies the tests share, and a pool that runs the hour-long ones."""
+
+from concurrent.futures import ProcessPoolExecutor
+import multiprocessing
+
+from ins_sim.core.catalogue import build, flatten
+from ins_sim.core.settings import NODES
+from ins_sim.core.simulation import Settings, simulate
+
+DEG_PER_HOUR = 206264.806
+
+MOTION_1 = {'motion.kind': 'rocking', 'motion.psi_deg': 45.0, 'motion.theta_deg': 0.0,
+            'gyro.delay_us.x': 1.0}
+MOTION_2 = {'motion.kind': 'two_axis', 'gyro.delay_us.y': 1.0}
+FLIGHT = {'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0, 'gyro.delay_us.y': 1.0,
+          'gyro.delay_us.x': 2.0, 'gyro.delay_us.z': 3.0}
+
+
+def settings(values=None, **more):
+    """Return Settings of {dotted name: value}; double underscores in keywords are dots."""
+    values = {'source': 'motion', **(values or {}),
+              **{k.replace('__', '.'): v for k, v in more.items()}}
+    known = {node: flatten(cls) for node, cls in NODES.items()}
+    unused = set(values) - set().union(*known.values())
+    assert not unused, unused
+    return Settings(**{node: build(cls, {k: v for k, v in values.items() if k in known[node]})
+                       for node, cls in NODES.items()})
+
+
+def run(values):
+    """Return errors and twin errors (or None) of a run."""
+    result = simulate(settings(values))
+    return result.errors, result.twin
+
+
+class Pool:
+    """Runs studies in the background on every core; each is computed once."""
+
+    def __init__(self):
+        # spawn: the test process may hold threads of rclpy
+        self._pool = ProcessPoolExecutor(multiprocessing.cpu_count(),
+                                         multiprocessing.get_context('spawn'))
+        self._futures = {}
+
+    def submit(self, values):
+        """Start a study unless it has been started."""
+        key = tuple(sorted(values.items()))
+        if key not in self._futures:
+            self._futures[key] = self._pool.submit(run, values)
+        return self._futures[key]
+
+    def result(self, values):
+        """Return errors and twin errors of a study."""
+        return self.submit(values).result()
+
+    def close(self):
+        """Drop what has not started."""
+        self._pool.shutdown(cancel_futures=True)
