@@ -127,5 +127,6 @@ def dump(settings):
             for parent in parents:
                 branch = branch.setdefault(parent, {})
             branch[leaf] = list(value) if isinstance(value, tuple) else value
-        document[node] = {'ros__parameters': tree}
+        # Wildcard: a bare name would miss a node in a namespace.
+        document[f'/**/{node}'] = {'ros__parameters': tree}
     return yaml.safe_dump(document, sort_keys=False)

@@ -58,7 +58,7 @@ def document():
     own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
     out += lines(MotionGeneratorSettings, 4, skip=own)
     for node, cls in NODES.items():
-        out += ['', f'{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED)]
+        out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED)]
     return '\n'.join(out) + '\n'
 
 
