@@ -38,11 +38,12 @@ def _config(name):
 
 def _overrides(process, value):
     """Return the parameters that the launch arguments set for a process."""
-    parameters = {'use_sim_time': ParameterValue(value['use_sim_time'], value_type=bool)}
+    typed = {name: ParameterValue(LaunchConfiguration(name), value_type=kind) for name, kind in (
+        ('use_sim_time', bool), ('real_time_factor', float), ('lock_step', bool))}
+    parameters = {'use_sim_time': typed['use_sim_time']}
     if process.name == graph.MASTER:
-        for name, kind in (('real_time_factor', float), ('lock_step', bool)):
-            if value[name]:
-                parameters['pacing.' + name] = ParameterValue(value[name], value_type=kind)
+        parameters.update({'pacing.' + name: typed[name]
+                           for name in ('real_time_factor', 'lock_step') if value[name]})
     return parameters
 
 
