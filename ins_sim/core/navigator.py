@@ -127,6 +127,7 @@ class Navigator:
         self._strapdown = Strapdown(self._settings)
         self._imu = deque()
         self._last_ns = self.processed_ns = None
+        self._joined_ns = None
         self._repeat = None
         self._steps = 0
 
@@ -162,6 +163,8 @@ class Navigator:
             if t_ns == self._truth[-1][0]:
                 return []
             self._truth.clear()
+        if self._joined_ns is None:
+            self._joined_ns = t_ns
         self._truth.append((t_ns, r_m, q_mb, v_b))
         return self._match()
 
@@ -176,6 +179,9 @@ class Navigator:
                 break
             if truth[0][0] > t_ns:
                 imu.popleft()
+                if truth[0][0] == self._joined_ns:
+                    # the streams were joined at different times: pass over what came before
+                    continue
                 raise StreamFault(
                     f'imu at {seconds(t_ns)} has no truth of the same stamp, the nearest is '
                     f'{seconds(truth[0][0])}; expected a truth rate that is a multiple of the '

@@ -12,13 +12,13 @@ class Monitor:
     """
     Counts of one node and its last fault.
 
-    The owner increments ``received`` and ``sent``.  input_name: what drives the node, or None;
-    it is stale after stale_s without a message.
+    The owner increments ``received`` and ``sent``, and clears ``awaited`` while silence is in
+    order.  input_name: what drives the node, or None; it is stale after stale_s in silence.
     """
 
     def __init__(self, node, input_name=None, stale_s=2.0):
         self.received = self.sent = self.faults = 0
-        self.state = 'running'
+        self.state, self.awaited = 'running', True
         self.last_fault = ''
         self._node, self._input, self._stale_s = node, input_name, stale_s
         self._fault_time = self._seen_time = time.monotonic()
@@ -43,13 +43,13 @@ class Monitor:
         """Publish the status."""
         now = time.monotonic()
         last, received, sent = self._before
-        if self.received != received:
+        if self.received != received or not self.awaited:
             self._seen_time, self._stale = now, False
         status = DiagnosticStatus(level=DiagnosticStatus.OK, message=self.state,
                                   name=self._node.get_fully_qualified_name(),
                                   hardware_id='ins_sim')
         silence = now - self._seen_time
-        if self._input and silence > self._stale_s:
+        if self._input and self.awaited and silence > self._stale_s:
             status.level, status.message = DiagnosticStatus.WARN, (
                 f'no message on {self._input} for {silence:.1f} s; expected a steady stream')
             if self.received and not self._stale:

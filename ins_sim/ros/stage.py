@@ -5,12 +5,13 @@ from ins_sim.core.settings import NODES
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, Writer
 from rclpy.node import Node
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from . import qos
 from .diagnostics import Monitor
 from .parameters import declare_settings
-from .queue import DrivingQueue
+from .queue import DrivingQueue, LINGER_S
 from .runtime import EXIT_FAULT, Stop
 
 
@@ -36,7 +37,9 @@ class StageNode(Node):
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained)
+        self.create_subscription(String, topics.STATUS.name, self._on_status, qos.latched())
+        self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained,
+                                   LINGER_S)
 
     def _on_data(self, data):
         if not self.stop:
@@ -81,6 +84,10 @@ class StageNode(Node):
         if self._last_stamp is not None:
             self._ack_publisher.publish(self._ack.pack(self._last_stamp))
             self._last_stamp = None
+
+    def _on_status(self, message):
+        # silence of a generator that has paused or finished is no fault
+        self.monitor.awaited = message.data == 'running'
 
     def _on_reset(self, request, response):
         self.stage.reset()
