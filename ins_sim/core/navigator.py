@@ -120,6 +120,7 @@ class Navigator:
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._dt_ns = period_ns(settings.rate_hz)
         self._truth = deque(maxlen=settings.topics.depth)
+        self._joined_ns = None
         self.reset()
 
     def reset(self):
@@ -127,7 +128,6 @@ class Navigator:
         self._strapdown = Strapdown(self._settings)
         self._imu = deque()
         self._last_ns = self.processed_ns = None
-        self._joined_ns = None
         self._repeat = None
         self._steps = 0
 
@@ -163,7 +163,7 @@ class Navigator:
             if t_ns == self._truth[-1][0]:
                 return []
             self._truth.clear()
-        if self._joined_ns is None:
+        if not self._truth:
             self._joined_ns = t_ns
         self._truth.append((t_ns, r_m, q_mb, v_b))
         return self._match()
@@ -179,7 +179,7 @@ class Navigator:
                 break
             if truth[0][0] > t_ns:
                 imu.popleft()
-                if truth[0][0] == self._joined_ns:
+                if self._strapdown.state is None and truth[0][0] == self._joined_ns:
                     # the streams were joined at different times: pass over what came before
                     continue
                 raise StreamFault(
