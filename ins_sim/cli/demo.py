@@ -1,0 +1,85 @@
+"""Verb demo: the three nodes over DDS on motion 2 and then on a flight, against the prediction."""
+
+from dataclasses import replace
+import os
+from pathlib import Path
+import shutil
+import sys
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from . import settings as chosen_settings
+from .. import parameter_files, resources
+from ..bags.reading import read_errors
+from ..core.motions import make_motion
+from ..core.prediction import predict
+from ..core.settings import Pacing
+from ..report import figure, summary, table
+
+EVERY = 10
+
+
+def run(chosen):
+    """Run both parts and show them; return the exit code."""
+    try:
+        import rclpy  # noqa: F401
+    except ImportError as error:
+        raise ValueError(f'rclpy cannot be imported ({error}); source ROS 2 Jazzy or install '
+                         'ins_sim[ros]; "ins_sim simulate" needs no ROS') from None
+    console = Console()
+    folder = Path(chosen.output)
+    parts = [('motion_2', _settings('motion_2', chosen.duration))]
+    if chosen.recording is None:
+        parts.append(('cruise', _settings('cruise', chosen.duration)))
+        console.print('no recorded flight given (--recording CSV): the second part is the '
+                      'closed-form cruise')
+    else:
+        parts.append(('recorded_flight', _settings(
+            'recorded_flight', chosen.duration,
+            [f'motion.recording.path:="{Path(chosen.recording).resolve()}"',
+             f'motion.recording.start_s:={chosen.start}'])))
+    for name, settings in parts:
+        try:
+            _part(name, settings, folder / name, console)
+        except RuntimeError as error:
+            print(f'ins_sim demo: {name}: {error}; logs: {folder / name}', file=sys.stderr)
+            return 1
+    return 0
+
+
+def _settings(name, duration_s, assignments=()):
+    """Return the settings of a shipped study as the demo runs it: lock-step, recorded."""
+    settings = parameter_files.read(
+        [resources.config('default'), resources.config(name)],
+        [*assignments, f'output_every:={EVERY}', f'duration_s:={duration_s}'])
+    generator = settings.motion_generator
+    if generator.motion.kind == 'recording':
+        motion = make_motion(generator.motion, generator.datum, generator.earth)
+        generator = replace(generator, duration_s=float(int(min(duration_s, motion.end_s))))
+    pacing = Pacing(real_time_factor=0.0, lock_step=True, required=('strapdown', 'recorder'))
+    return replace(settings, motion_generator=replace(generator, pacing=pacing))
+
+
+def _part(name, settings, folder, console):
+    from ..ros.session import Session
+    # only what an earlier demo wrote is replaced
+    if folder.exists() and not (folder / 'parameters.yaml').exists() and any(folder.iterdir()):
+        raise ValueError(f'{folder} is not of an earlier demo; expected a new folder')
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    title = chosen_settings.title(settings)
+    namespace = f'ins_sim_demo_{os.getpid()}'
+    length_s = settings.motion_generator.duration_s
+    with Progress(TextColumn(f'{name}: three nodes in lock-step'), BarColumn(),
+                  TextColumn('{task.completed:.0f} of {task.total:.0f} s'),
+                  TimeRemainingColumn(), console=console, transient=True) as progress:
+        task = progress.add_task('', total=length_s)
+        with Session(settings, folder, folder / 'bag', namespace) as session:
+            counts = session.run(lambda t_s: progress.update(task, completed=t_s))
+    errors = read_errors(folder / 'bag', namespace)
+    prediction = predict(settings)
+    figure.save(folder / 'errors.png', title, errors, prediction)
+    table.show(title, summary.rows(settings, errors, None, prediction), console)
+    console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
+                  f'figure: {folder / "errors.png"}')

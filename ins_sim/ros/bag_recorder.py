@@ -78,3 +78,8 @@ class BagRecorder(Node):
         self._bag.close()
         (self._folder / self.path.name).rename(self.path)
         self._folder.rmdir()
+
+    def discard(self):
+        """Close and delete an incomplete bag."""
+        self._bag.close()
+        shutil.rmtree(self._folder, ignore_errors=True)
