@@ -142,10 +142,9 @@ def install(facts, with_ros, fresh):
         say('PyPI has no rclpy for this machine (wheels exist for Linux on x86-64 with glibc 2.28 '
             'or newer and Python 3.10 to 3.14): installing without it, the nodes will not start')
     say('installing into .venv; this takes a minute or two and is done only once')
-    # Wheels first, for there may be no compiler.  Without --use-pep517 an old pip would run
-    # "setup.py develop", which obeys setup.cfg and hides the scripts in lib/ins_sim.
+    # Wheels first, for there may be no compiler.
     run([python, '-m', 'pip', 'install', '--quiet', '--no-input', '--disable-pip-version-check',
-         '--prefer-binary', '--use-pep517', '--editable',
+         '--prefer-binary', '--editable',
          '{}[{}]'.format(ROOT, ','.join(extras))], with_ros, 'installing')
 
 
