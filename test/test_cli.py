@@ -1,0 +1,97 @@
+"""The command line offline: outputs, exit codes, sentences, and nothing half-written."""
+
+import json
+
+import numpy as np
+import pytest
+
+from ins_sim.cli.main import main
+from ins_sim.report import figure, storage
+
+
+def test_simulate_writes_a_run(tmp_path, capsys):
+    """Arrays, parameters, summary and a figure that is a picture; the parameters run again."""
+    out = tmp_path / 'run'
+    arguments = ['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=5.0']
+    assert main([*arguments, '-o', str(out)]) == 0
+    shown = capsys.readouterr().out
+    assert 'mean drift east' in shown and 'predicted' in shown and 'zero-delay twin' in shown
+    assert (out / 'errors.png').read_bytes().startswith(b'\x89PNG')
+    rows = json.loads((out / 'summary.json').read_text())
+    assert rows[0]['name'] == 'mean drift east'
+    with np.load(out / 'run.npz') as run:
+        assert run['errors_position'].shape == (501, 3)
+        assert run['imu_omega'].shape == (501, 3)
+        first = run['errors_position']
+    again = tmp_path / 'again'
+    assert main(['simulate', '--params-file', str(out / 'parameters.yaml'), '-o',
+                 str(again)]) == 0
+    with np.load(again / 'run.npz') as run:
+        assert np.array_equal(run['errors_position'], first)
+
+
+def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys):
+    """The column of the paper appears for the hour of motion 2 and not for another run."""
+    assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=5.0', '-o',
+                 str(tmp_path / 'run'), '--no-twin']) == 0
+    assert 're-derived' not in capsys.readouterr().out
+    assert main(['predict', '--params-file', 'motion_2']) == 0
+    shown = capsys.readouterr().out
+    assert '4472.1' in shown and '0.0334932' in shown and "psi' = -2 gamma'" in shown
+
+
+def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
+    """Exit 2 and the old run intact; --force replaces a run, and only a run."""
+    out = tmp_path / 'run'
+    arguments = ['simulate', '-p', 'duration_s:=1.0', '-o', str(out)]
+    assert main(arguments) == 0
+    before = (out / 'run.npz').read_bytes()
+    assert main(arguments) == 2
+    assert 'exists; expected a new folder' in capsys.readouterr().err
+    assert (out / 'run.npz').read_bytes() == before
+    assert main([*arguments, '--force']) == 0
+    other = tmp_path / 'other'
+    other.mkdir()
+    (other / 'precious').write_text('x')
+    assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(other), '--force']) == 2
+    assert (other / 'precious').exists()
+
+
+def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
+    """What breaks in the middle leaves no folder that could be taken for a run."""
+    def fail(*arguments):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(figure, 'save', fail)
+    assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run')]) == 2
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ValueError, match='exists'):
+        storage.check_free(tmp_path, force=False)
+
+
+@pytest.mark.parametrize('arguments, sentence', [
+    (['-p', 'gyro.delay.x:=1'], "nearest known one is 'gyro.delay_us.x'"),
+    (['--params-file', 'motion_3'], "no config named 'motion_3'; expected one of aggressive"),
+    (['--params-file', 'absent.yaml'], 'absent.yaml'),
+    (['-p', 'motion.kind:=recording', '-p', 'motion.recording.path:=absent.csv'], 'absent.csv'),
+    (['-p', 'duration_s:=0.0'], 'duration_s is 0'),
+    (['-p', 'initial.after_s:=10.0', '-p', 'duration_s:=5.0'], 'the run navigates for'),
+])
+@pytest.mark.parametrize('verb', ['simulate', 'predict'])
+def test_bad_input_is_one_sentence_and_exit_code_2(verb, arguments, sentence, tmp_path, capsys,
+                                                   monkeypatch):
+    """Nothing is written, and nothing is a traceback."""
+    monkeypatch.chdir(tmp_path)
+    assert main([verb, *arguments]) == 2
+    error = capsys.readouterr().err
+    assert sentence in error and error.startswith(f'ins_sim {verb}: ')
+    assert error.count('\n') == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_verb_is_exit_code_2(capsys):
+    """Argparse says what is known."""
+    with pytest.raises(SystemExit) as exit_:
+        main(['simulat'])
+    assert exit_.value.code == 2
+    assert 'simulate' in capsys.readouterr().err

@@ -1,0 +1,42 @@
+"""Recorded flights close: zero delay, zero error, one hour at 100 Hz within a centimetre."""
+
+import numpy as np
+import pytest
+from studies import FLIGHT, Pool
+
+# the Gulfstream's cruise from 748 s on; the circuit from the air start to before the landing
+FLIGHTS = [('cruise_gv_acclip_rf01.csv.gz', 1000.0, 3600.0, {}),
+           ('cruise_gv_acclip_rf01.csv.gz', 9000.0, 3600.0, {}),
+           ('uavcircuit_umn_thor_fl75.csv.gz', 3.0, 600.0,
+            {'motion.recording.smoothing_s': 1.0}),
+           ('uavaero_proto_flt09.csv', 3.0, 25.0, {'motion.recording.on_gap': 'cut'})]
+
+
+@pytest.fixture(scope='module')
+def pool():
+    """Return a pool for the hours."""
+    pool = Pool()
+    yield pool
+    pool.close()
+
+
+def study(folder, name, start_s, duration_s, more):
+    """Return the study of a recorded flight with delays of 1, 2, 3 us, and its twin."""
+    return {**FLIGHT, 'motion.kind': 'recording', 'motion.recording.path': str(folder / name),
+            'motion.recording.start_s': start_s, 'duration_s': duration_s,
+            'datum.latitude_deg': 25.0, 'datum.longitude_deg': 137.0, **more}
+
+
+@pytest.mark.parametrize('row', FLIGHTS, ids=lambda r: f'{r[0][:10]} {r[1]:g}')
+def test_recorded_flights_close(row, pool, shared_data):
+    """The twin is the closure; the delays give at most metres (the paper's conclusion)."""
+    folder = shared_data / 'flights'
+    for other in FLIGHTS:
+        pool.submit(study(folder, *other))
+    errors, twin = pool.result(study(folder, *row))
+    closure = np.abs(twin.position[:, :2]).max()
+    late = np.abs(errors.position - twin.position)[:, :2].max()
+    print(f'\n{row[0]} from {row[1]:g} s, {row[2]:g} s: closure {closure:.2e} m (1e-2), '
+          f'delays 1, 2, 3 us: {late:.3f} m')
+    assert closure <= 1e-2
+    assert late < 10.0
