@@ -141,6 +141,10 @@ class Navigator:
         check_finite('imu', t_ns, omega, f)
         if self._repeat is not None and t_ns == self._repeat[0]:
             return self._repeat[1]
+        if self._last_ns is not None and t_ns < self._last_ns and self._truth \
+                and self._truth[0][0] > t_ns:
+            # the truth that is known belongs to the time before the jump
+            self._truth.clear()
         if self._last_ns is not None and not (t_ns == self._last_ns and self._steps <= 1):
             check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
             self._repeat = None

@@ -51,7 +51,7 @@ class StageNode(Node):
         try:
             stamp_ns, *runs = reader.read(data)
         except ValueError as error:
-            self._fault(str(error))
+            self.fault(str(error))
             return None
         return (stamp_ns - self.epoch_ns, *runs)
 
@@ -60,17 +60,18 @@ class StageNode(Node):
         try:
             return push(*sample)
         except StreamFault as fault:
-            self._fault(str(fault))
+            self.fault(str(fault))
             if not fault.restart or self.stop:
                 return []
         self.stage.reset()
         try:
             return push(*sample)
         except StreamFault as fault:
-            self._fault(str(fault))
+            self.fault(str(fault))
             return []
 
-    def _fault(self, sentence):
+    def fault(self, sentence):
+        """Report a fault; end the node if on_fault says so."""
         self.monitor.fault(sentence, fatal=self._stops)
         if self._stops:
             self.stop.request(EXIT_FAULT)

@@ -14,6 +14,8 @@ from .stage import StageNode
 
 RETRY_S = 0.005
 PATIENCE_S = 0.001
+NAP_S = 5e-5
+MISSING_S = 2.0
 
 
 class StrapdownNode(StageNode):
@@ -28,7 +30,7 @@ class StrapdownNode(StageNode):
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
         self._rates = {}
-        self._first_ns = self._newest_ns = None
+        self._first_ns = self._newest_ns = self._missed_since = None
         return Navigator(settings)
 
     def make_outputs(self):
@@ -51,31 +53,41 @@ class StrapdownNode(StageNode):
             return
         self._newest_ns = sample[0]
         self._rates[sample[0]] = sample[1]
+        # the truth first: it may have jumped back as the IMU is about to
+        self._take_truth()
         self._publish(self.push(self.stage.push_imu, sample))
-        self._fetch_truth(PATIENCE_S)
+        self._await_truth(PATIENCE_S)
 
-    def _fetch_truth(self, patience_s):
-        until = None
+    def _take_truth(self):
+        while not self.stop and (data := self._truth.take()) is not None:
+            sample = self.read(self._truth_reader, data)
+            if sample is not None:
+                self._publish(self.push(self.stage.push_truth, sample))
+
+    def _await_truth(self, patience_s):
+        start = time.monotonic()
         while self.stage.waiting_for_truth and not self.stop:
-            data = self._truth.take()
-            if data is not None:
-                sample = self.read(self._truth_reader, data)
-                if sample is not None:
-                    self._publish(self.push(self.stage.push_truth, sample))
-                continue
             now = time.monotonic()
-            until = now + patience_s if until is None else until
-            if now >= until:
+            if self._missed_since is not None and now - self._missed_since > MISSING_S:
+                self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in '
+                           f'{MISSING_S:g} s; expected the truth of every reading')
+                self.stage.reset()
+            elif self._missed_since is not None or now - start >= patience_s:
+                self._missed_since = self._missed_since or start
                 self._retry.reset()
                 return
-            time.sleep(5e-5)
+            else:
+                time.sleep(NAP_S)
+                self._take_truth()
+        self._missed_since = None
         self._rates.clear()
         if self._newest_ns is not None:
             self.seen(self._newest_ns)
 
     def _on_retry(self):
         self._retry.cancel()
-        self._fetch_truth(0.0)
+        self._take_truth()
+        self._await_truth(0.0)
         self.on_drained()
 
     def _publish(self, outputs):
