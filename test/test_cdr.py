@@ -96,7 +96,8 @@ def test_a_block_is_the_single_messages(type_name):
 def test_constants_stand_in_every_message():
     writer = Writer('sensor_msgs/msg/Imu', 'imu_link', constants={3: 1.0, 4: -1.0},
                     runs=((13, 16), (25, 28)))
-    _, doubles = Reader('sensor_msgs/msg/Imu').read(writer.pack(0, (1.0, 2.0, 3.0), (4.0, 5.0, 6.0)))
+    message = writer.pack(0, (1.0, 2.0, 3.0), (4.0, 5.0, 6.0))
+    _, doubles = Reader('sensor_msgs/msg/Imu').read(message)
     expected = [0.0] * 37
     expected[3:5] = 1.0, -1.0
     expected[13:16] = 1.0, 2.0, 3.0

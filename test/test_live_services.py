@@ -110,7 +110,8 @@ def test_pause_step_reset_and_status(chain, ros_domain):
                                           lambda m: states.append(m.data), latched())
         heard = listener.heard['truth/imu']
         listener.poll_until(lambda: len(heard) > 10)
-        assert listener.call(SetBool, '/motion_generator/pause', SetBool.Request(data=True)).success
+        pause = SetBool.Request(data=True)
+        assert listener.call(SetBool, '/motion_generator/pause', pause).success
         time.sleep(0.5)
         listener.poll()
         count = len(heard)

@@ -34,7 +34,10 @@ def cases():
         yield f'random {seed}', *harmonics(seed)
 
 
-@pytest.mark.parametrize('name, values, w', list(cases()), ids=lambda x: x if type(x) is str else '')
+CASES = list(cases())
+
+
+@pytest.mark.parametrize('name, values, w', CASES, ids=[c[0] for c in CASES])
 def test_measured_drift_is_the_predicted_one(name, values, w):
     """The slope of the inertial attitude error, within 1e-4 + (w dt)^2 / 4 (section 5)."""
     s = settings(values, duration_s=1000.0)
@@ -47,7 +50,7 @@ def test_measured_drift_is_the_predicted_one(name, values, w):
     assert error <= bound
 
 
-@pytest.mark.parametrize('name, values, w', list(cases()), ids=lambda x: x if type(x) is str else '')
+@pytest.mark.parametrize('name, values, w', CASES, ids=[c[0] for c in CASES])
 def test_fourier_sum_equals_time_mean(name, values, w):
     """Equal to first order in the delay; at nanoseconds the second, k w tau, is below 1e-7."""
     s = settings(values)

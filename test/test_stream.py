@@ -136,7 +136,7 @@ def push_all(imu, motion, frame, t_ns):
 @pytest.mark.parametrize('truth_rate, delay_us', [(1000.0, 2500.0), (50.0, 0.0), (100.0, -30000.0),
                                                   (200.0, 123456.0)])
 def test_stream_at_another_rate_with_any_delay(truth_rate, delay_us):
-    """Truth faster or slower than the IMU, delays of any size and sign; against the closed form."""
+    """Truth faster or slower than the IMU, delays of any size and sign."""
     values = {**MOTION_2, 'gyro.delay_us.x': delay_us, 'accelerometer.delay_us.z': delay_us}
     s = settings(values, source='stream')
     generator = s.motion_generator

@@ -96,17 +96,19 @@ class PacedImu:
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         if self._imu is None:
             self._imu = MotionImu(self._settings, self._motion, t_ns)
+            self._first = []
             self._first_ns = self._last_ns = t_ns
         if t_ns < self._last_ns:
             raise StreamFault(f'truth jumps back from {seconds(self._last_ns)} to '
                               f'{seconds(t_ns)}; expected rising stamps', restart=True)
+        if t_ns == self._last_ns and self._first:
+            return self._first if t_ns == self._first_ns else []
         self._last_ns = t_ns
         readings = []
         while (self._ready or self._compute()) and self._ready[-1][0] <= t_ns:
             readings.append(self._ready.pop())
-        if t_ns == self._first_ns:
-            # the first sample may be repeated: keep its reading for the next time
-            self._ready.extend(reversed(readings))
+        if not self._first:
+            self._first = readings
         return readings
 
     def _compute(self):

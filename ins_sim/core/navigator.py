@@ -124,7 +124,7 @@ class Navigator:
         self.reset()
 
     def reset(self):
-        """Forget the solution; the next IMU sample starts anew.  The truth is no state: it stays."""
+        """Forget the solution; the next IMU sample starts anew.  Truth is no state: it stays."""
         self._strapdown = Strapdown(self._settings)
         self._imu = deque()
         self._last_ns = self.processed_ns = None

@@ -21,6 +21,10 @@ STEP_S = 0.1
 PER_PERIOD = 4096
 
 
+def _nanoseconds(t_s):
+    return np.round(t_s * 1e9).astype(np.int64)
+
+
 def _columns(vectors):
     return tuple(np.moveaxis(vectors, -1, 0))
 
@@ -63,7 +67,7 @@ def mean_drift(motion, tau, earth_rotation, start_s, span_s):
     """
     length = motion.period_s or span_s
     count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
-    truth = motion.at(np.round((start_s + length * np.arange(count) / count) * 1e9).astype(np.int64))
+    truth = motion.at(_nanoseconds(start_s + length * np.arange(count) / count))
     density, _ = drift_density(truth, rate_of_n(truth, earth_rotation), tau)
     return density.mean(axis=0)
 
@@ -80,7 +84,7 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
         raise ValueError('the drift through channels is the sum over a Fourier series; expected '
                          'a periodic motion')
     t = start_s + motion.period_s * np.arange(count) / count
-    truth = motion.at(np.round(t * 1e9).astype(np.int64))
+    truth = motion.at(_nanoseconds(t))
     harmonic = 2.0 * np.pi / motion.period_s * np.fft.fftfreq(count, 1.0 / count)
     drift = np.zeros(3)
     for i, response in enumerate(responses):
@@ -130,7 +134,7 @@ def predict(settings):
         raise ValueError(f'the run navigates for {span_s:g} s; expected more than {STEP_S:g} s')
     fine_s = STEP_S / SUBSAMPLES
     t = start_s + fine_s * np.arange(steps * SUBSAMPLES + 1)
-    truth = motion.at(np.round(t * 1e9).astype(np.int64))
+    truth = motion.at(_nanoseconds(t))
     omega_in = rate_of_n(truth, rotation)
     density, late = drift_density(truth, omega_in, tau)
     # attitude error in n without the turning of n: boundary term and running integral

@@ -57,7 +57,7 @@ class ImuSamples(Record):
 
 @dataclass(frozen=True)
 class NavStates(Record):
-    """Navigation solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3); q_nb (n, 4)."""
+    """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
 
     t_ns: np.ndarray
     lat: np.ndarray

@@ -52,7 +52,7 @@ def error_blocks(errors):
 
 
 def odometry_one(frame, solution, omega):
-    """Return the two runs of ins/odometry: solution (lat, lon, height, v_n, q_nb), gyro reading."""
+    """Return the runs of ins/odometry: solution (lat, lon, height, v_n, q_nb), gyro reading."""
     r_m, q_mb, v_b = frame.pose_one(*solution)
     turn = attitude.rotate_back(q_mb, frame.omega_ie_m)
     return (*r_m, *q_mb), (*v_b, omega[0] - turn[0], omega[1] - turn[1], omega[2] - turn[2])

@@ -56,7 +56,7 @@ class StageNode(Node):
         return (stamp_ns - self.epoch_ns, *runs)
 
     def push(self, push, sample):
-        """Return the outputs of a push; report a fault and start anew or stop, as on_fault says."""
+        """Return the outputs of a push; report a fault, start anew or stop, as on_fault says."""
         try:
             return push(*sample)
         except StreamFault as fault:
