@@ -1,6 +1,8 @@
 # Each target runs in .venv, which tools/bootstrap.py makes on the first use.
 PYTHON ?= python3
 RUN = $(PYTHON) tools/bootstrap.py
+# a recorded flight for the second part of the demo; without one it is the closed-form cruise
+RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
 .PHONY: help setup demo test test-slow lint clean
 
@@ -16,7 +18,7 @@ setup:
 	$(RUN)
 
 demo:
-	$(RUN) ins_sim demo
+	$(RUN) ins_sim demo $(if $(RECORDING),--recording $(RECORDING))
 
 test:
 	$(RUN) python -m pytest test

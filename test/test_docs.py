@@ -1,0 +1,59 @@
+"""Every example of the README runs, and every name the documents give exists."""
+
+import importlib
+from pathlib import Path
+import re
+import shlex
+
+import pytest
+
+from ins_sim.cli.main import main
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / 'README.md').read_text(encoding='utf-8')
+BLOCKS = re.findall(r'```(\w+)\n(.*?)```', README, re.DOTALL)
+COMMANDS = [line for kind, text in BLOCKS if kind == 'sh' for line in text.splitlines()
+            if line.startswith('ins_sim ')]
+DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
+
+
+@pytest.mark.parametrize('line', COMMANDS)
+def test_commands_of_the_readme(line, tmp_path, monkeypatch, request):
+    """Shortened to two seconds of simulated time; the flight is one of the recorded ones."""
+    monkeypatch.chdir(tmp_path)
+    if 'flight.csv.gz' in line:
+        data = request.getfixturevalue('shared_data')
+        (tmp_path / 'flight.csv.gz').symlink_to(data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
+    assert main([*shlex.split(line)[1:], '-p', 'duration_s:=2.0']) == 0
+
+
+@pytest.mark.parametrize('code', [text for kind, text in BLOCKS if kind == 'python'])
+def test_python_of_the_readme(code, capsys):
+    """It prints three components of position and drift."""
+    exec(compile(code, 'README.md', 'exec'), {})
+    assert len(re.findall(r'[-\d.e+]+', capsys.readouterr().out)) >= 6
+
+
+def test_make_targets_of_the_readme():
+    """The two commands are targets of the Makefile."""
+    makefile = (ROOT / 'Makefile').read_text(encoding='utf-8')
+    for target in re.findall(r'^make ([\w-]+)', README, re.MULTILINE):
+        assert f'\n{target}:' in makefile
+
+
+@pytest.mark.parametrize('path', DOCUMENTS, ids=lambda p: p.stem)
+def test_names_in_the_documents_exist(path):
+    """`core.module.name` and `ins_sim.module.name` can be imported."""
+    for name in re.findall(r'`(?:ins_sim\.)?((?:core|messages|ros|report)\.[\w.]+)`',
+                           path.read_text(encoding='utf-8')):
+        parts = name.split('.')
+        module = importlib.import_module('ins_sim.' + '.'.join(parts[:2]))
+        target = module
+        for part in parts[2:]:
+            target = getattr(target, part)
+
+
+def test_links_of_the_readme_lead_somewhere():
+    """Relative links name files that are there."""
+    for link in re.findall(r'\]\(([^)#:]+)\)', README):
+        assert (ROOT / link).exists(), link
