@@ -5,7 +5,7 @@ import math
 from .faults import check_finite, seconds, StreamFault
 from .imu import MotionImu, NODES, Triads
 from .motions import make_motion
-from .truth_buffer import TruthBuffer
+from .truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 
 BLOCK = 256
 
@@ -35,7 +35,8 @@ class StreamImu:
 
     def reset(self):
         """Forget everything; the next sample is the first."""
-        self._buffer = TruthBuffer(self._triads.frame, self._reach_ns, self._frozen)
+        wanted = (RATE, FORCE_B) if self._triads.integrated else (FORCE_M,)
+        self._buffer = TruthBuffer(self._triads.frame, self._reach_ns, self._frozen, wanted)
         self._next_ns = None
         self._q_start = None
 
@@ -61,21 +62,22 @@ class StreamImu:
     def _read(self, t_ns):
         triads, buffer = self._triads, self._buffer
         if triads.integrated:
-            return triads.integrals(self._nodes(t_ns, triads.gyro_delays, buffer.rate),
-                                    self._nodes(t_ns, triads.accel_delays, buffer.force_b))
+            return triads.integrals(self._nodes(t_ns, triads.gyro_delays, RATE),
+                                    self._nodes(t_ns, triads.accel_delays, FORCE_B))
         if self._q_start is None:
             self._q_start = [buffer.attitude(t_ns - triads.dt_ns - d)
                              for d in triads.attitude_delays]
         q_end = [buffer.attitude(t_ns - d) for d in triads.attitude_delays]
-        forces = self._nodes(t_ns, triads.accel_delays, buffer.force_m)
+        forces = self._nodes(t_ns, triads.accel_delays, FORCE_M)
         reading = triads.rotated(self._q_start, q_end, forces)
         self._q_start = q_end
         return reading
 
-    def _nodes(self, t_ns, delays, value):
+    def _nodes(self, t_ns, delays, field):
         o1, o2, o3 = self._node_ns
-        return [(value(t_ns + o1 - d), value(t_ns + o2 - d), value(t_ns + o3 - d))
-                for d in delays]
+        cubic = self._buffer.cubic
+        return [(cubic(t_ns + o1 - d, field), cubic(t_ns + o2 - d, field),
+                 cubic(t_ns + o3 - d, field)) for d in delays]
 
 
 class PacedImu:

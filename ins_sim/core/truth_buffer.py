@@ -10,8 +10,10 @@ from collections import deque
 from . import attitude
 from .faults import StreamFault, check_finite, check_interval, check_unit, seconds
 
-SAMPLES_OF_CUBIC = 4
+# fields of a sample
+FORCE_M, RATE, FORCE_B = 3, 4, 5
 TURN_LIMIT = 2.0
+ZERO = (0.0, 0.0, 0.0)
 
 
 def hermite(h, q_start, q_end, w_start, w_end):
@@ -34,25 +36,26 @@ def hermite(h, q_start, q_end, w_start, w_end):
     return a, c2, c3
 
 
-def newton(samples):
-    """Return the divided differences of up to four (t, vector) samples, newest first."""
-    times = [t for t, _ in samples]
-    column = [v for _, v in samples]
-    table = [column[0]]
-    for order in range(1, len(samples)):
-        column = [tuple((y - x) / (times[k + order] - times[k]) for x, y in zip(p, q))
-                  for k, (p, q) in enumerate(zip(column, column[1:]))]
-        table.append(column[0])
-    return times[:-1], table
+def newton(last, value, r1, r2, r3):
+    """
+    Return the divided differences d0..d3 at a new sample, newest first.
+
+    last: those at the sample before; value: the new vector; r1, r2, r3: reciprocals of the times
+    back to the last three samples, 1/s, zero where there is none (the order then is lower).
+    """
+    x, y, z = value
+    d = [value]
+    for (a, b, c), r in zip(last, (r1, r2, r3)):
+        x, y, z = (x - a) * r, (y - b) * r, (z - c) * r
+        d.append((x, y, z))
+    return d
 
 
-def newton_value(times, table, t):
-    """Return the vector of the polynomial of ``newton`` at t."""
-    x, y, z = table[-1]
-    for t_k, (a, b, c) in zip(reversed(times), reversed(table[:-1])):
-        s = t - t_k
-        x, y, z = x * s + a, y * s + b, z * s + c
-    return x, y, z
+def newton_value(differences, s0, s1, s2):
+    """Return the cubic of ``newton``; s0, s1, s2: time since the last three samples, s."""
+    (a0, b0, c0), (a1, b1, c1), (a2, b2, c2), (a3, b3, c3) = differences
+    return (a0 + s0 * (a1 + s1 * (a2 + s2 * a3)), b0 + s0 * (b1 + s1 * (b2 + s2 * b3)),
+            c0 + s0 * (c1 + s1 * (c2 + s2 * c3)))
 
 
 class TruthBuffer:
@@ -60,15 +63,18 @@ class TruthBuffer:
     Ring buffer of streamed truth that answers for any instant it covers.
 
     frame: MapFrame; reach_ns: how far behind the newest sample it must answer; frozen: the
-    history before the first sample stands still (else it goes on at the first rate and force).
+    history before the first sample stands still (else it goes on at the first rate and force);
+    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for.
     """
 
-    def __init__(self, frame, reach_ns, frozen):
+    def __init__(self, frame, reach_ns, frozen, wanted):
         self._frame = frame
         self._reach_ns = reach_ns
+        self._wanted = wanted
         self._frozen = frozen
         self._pieces = deque()
-        self._last = deque(maxlen=SAMPLES_OF_CUBIC)
+        self._last = deque(maxlen=3)
+        self._cubics = None
         self._first = None
         self._step_ns = None
 
@@ -97,6 +103,7 @@ class TruthBuffer:
         if not self._last:
             self._first = sample
             self._last.appendleft(sample)
+            self._cubics = {k: [sample[k], ZERO, ZERO, ZERO] for k in self._wanted}
             return
         start = self._last[0]
         step_ns = t_ns - start[0]
@@ -108,11 +115,14 @@ class TruthBuffer:
                 f'step; expected less than {TURN_LIMIT:g}: raise rate_hz of motion_generator',
                 restart=True)
         self._step_ns = step_ns
+        back = [1e9 / (t_ns - other[0]) for other in self._last] + [0.0, 0.0]
+        self._cubics = {k: newton(cubic, sample[k], *back[:3])
+                        for k, cubic in self._cubics.items()}
         self._last.appendleft(sample)
+        times = tuple(other[0] for other in self._last)
         curve = hermite(h, start[1], q_mb, start[2], omega_mb_b)
-        # the cubics are built when first asked for: most channels never ask
-        self._pieces.append([start[0], t_ns, start[1], 1.0 / step_ns, curve, tuple(self._last),
-                             {}])
+        self._pieces.append((start[0], t_ns, start[1], 1.0 / step_ns, curve, self._cubics,
+                             times + (t_ns,) * (3 - len(times))))
         while self._pieces[0][1] < t_ns - self._reach_ns:
             self._pieces.popleft()
 
@@ -138,24 +148,11 @@ class TruthBuffer:
              s * (c1[2] + s * (c2[2] + s * c3[2])))
         return attitude.multiply(q, attitude.exponential(r))
 
-    def force_m(self, t_ns):
-        """Return the specific force in m, m/s^2."""
-        return self._cubic(t_ns, 3)
-
-    def rate(self, t_ns):
-        """Return omega_ib_b, rad/s."""
-        return self._cubic(t_ns, 4)
-
-    def force_b(self, t_ns):
-        """Return f_ib_b, m/s^2."""
-        return self._cubic(t_ns, 5)
-
-    def _cubic(self, t_ns, field):
+    def cubic(self, t_ns, field):
+        """Return FORCE_M (m/s^2 in m), RATE (omega_ib_b, rad/s) or FORCE_B (f_ib_b, m/s^2)."""
         if t_ns <= self._first[0]:
             return self._first[field]
         piece = self._piece(t_ns)
-        cubic = piece[6].get(field)
-        if cubic is None:
-            cubic = newton([((s[0] - piece[0]) * piece[3], s[field]) for s in piece[5]])
-            piece[6][field] = cubic
-        return newton_value(*cubic, (t_ns - piece[0]) * piece[3])
+        t0, t1, t2 = piece[6]
+        return newton_value(piece[5][field], (t_ns - t0) * 1e-9, (t_ns - t1) * 1e-9,
+                            (t_ns - t2) * 1e-9)
