@@ -124,9 +124,10 @@ class MotionGeneratorNode(Node):
         self._announce('finished')
         self.get_logger().info(f'finished after {self._next} samples')
         if self.settings.exit_at_end:
-            # what has left this process only counts once the readers' side has it
-            for publisher in (*self._publishers, self._status):
-                publisher.wait_for_all_acked(Duration(seconds=1.0))
+            # what has left this process only counts once the readers have it; in lock-step
+            # the consumers have said so
+            for publisher in (self._status, *(() if self._lock else self._publishers)):
+                publisher.wait_for_all_acked(Duration(seconds=0.3))
             stop.request()
 
     def _on_pause(self, request, response):

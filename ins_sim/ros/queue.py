@@ -8,7 +8,7 @@ from . import qos
 
 TURN_S = 0.01
 LINGER_S = 0.003
-NAP_S = 2e-4
+NAP_S = 5e-4
 BATCH = 50
 
 

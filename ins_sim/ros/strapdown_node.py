@@ -15,7 +15,7 @@ from .stage import StageNode
 RETRY_S = 0.005
 PATIENCE_S = 0.001
 NAP_S = 5e-5
-MISSING_S = 2.0
+MISSING_S = 5.0
 
 
 class StrapdownNode(StageNode):
