@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 pytest.importorskip('rclpy')
-import live  # noqa: F401, I100, I202
-from live_chain import run  # noqa: I100, I202
+import live  # noqa: E402, F401, I100, I202
+from live_chain import run  # noqa: E402, I100, I202
 
 pytestmark = pytest.mark.live
 
