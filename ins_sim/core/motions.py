@@ -57,6 +57,16 @@ def make_motion(motion, datum, earth_settings):
     return Motion(pose, 2, earth_settings.rotation, period_s)
 
 
+def check_length(generator, motion):
+    """Raise ValueError unless the run is finite and lies within the motion."""
+    if generator.duration_s == 0.0:
+        raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
+    end_s = generator.start_s + generator.duration_s
+    if end_s > motion.end_s:
+        raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most {motion.end_s:g}'
+                         ' s, the end of the recording')
+
+
 class _Place:
     """The datum, and small excursions about it; the radii at the datum only scale the path."""
 

@@ -13,8 +13,7 @@ import numpy as np
 from . import attitude, earth
 from .error_model import propagate
 from .imu import delays_ns
-from .motions import make_motion
-from .simulation import check_length
+from .motions import check_length, make_motion
 
 SUBSAMPLES = 8
 STEP_S = 0.1

@@ -40,7 +40,7 @@ class Earth:
 class Time:
     """Zero of motion time."""
 
-    epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 4000000000)
+    epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 2147483647)
 
 
 @dataclass(frozen=True)

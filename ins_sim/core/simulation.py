@@ -7,7 +7,7 @@ import numpy as np
 from .imu import MotionImu, period_ns
 from .imu_stream import StreamImu
 from .map_frame import MapFrame
-from .motions import make_motion
+from .motions import check_length, make_motion
 from .navigator import Strapdown
 from .records import ImuSamples, NavErrors, NavStates, Truth
 from .settings import Accelerometer, DelaysUs, Gyro, ImuSensorSettings, MotionGeneratorSettings, \
@@ -146,16 +146,6 @@ def simulate(settings, twin=True, progress=None):
         twin_errors = NavErrors.concatenate(e for _, _, e in navigate(settings.strapdown, motion,
                                                                       blocks))
     return Run(truth, ImuSamples.concatenate(imu), states, errors, twin_errors)
-
-
-def check_length(generator, motion):
-    """Raise ValueError unless the run is finite and lies within the motion."""
-    if generator.duration_s == 0.0:
-        raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
-    end_s = generator.start_s + generator.duration_s
-    if end_s > motion.end_s:
-        raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most {motion.end_s:g}'
-                         ' s, the end of the recording')
 
 
 def _steps(generator):

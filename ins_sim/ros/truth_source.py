@@ -4,8 +4,7 @@ import math
 
 from ins_sim.core.imu import period_ns
 from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.simulation import check_length
+from ins_sim.core.motions import check_length, make_motion
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.convert import truth_blocks
