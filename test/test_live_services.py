@@ -150,7 +150,7 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
     """
     CPU up to a node that is ready to publish, beside a bare one: at most 0.1 s more.
 
-    A busy machine slows both alike, so the difference is scaled to a bare node of 0.3 s.
+    Bare is a node with one publisher of a data topic.
     """
     bare = ('import rclpy, time; rclpy.init(); from nav_msgs.msg import Odometry; '
             'node = rclpy.create_node("x"); node.create_publisher(Odometry, "y", 10); '
@@ -160,38 +160,17 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
             'bad = {{"scipy", "matplotlib", "numba", "rosbags"}} & set(sys.modules); '
             'assert not bad, bad')
 
-    def cost(code):
-        return min(float(subprocess.run([sys.executable, '-c', code], env=chain.environment,
-                                        capture_output=True, text=True, check=True).stdout)
-                   for _ in range(4))
-
-    base = cost(bare)
-    for name, cls in (('motion_generator', 'MotionGeneratorNode'),
-                      ('imu_sensor', 'ImuSensorNode'), ('strapdown', 'StrapdownNode')):
-        extra = (cost(ours.format(name, cls)) - base) * min(1.0, 0.3 / base)
-        print(f'{name}: {extra:.3f} s more than a bare node')
-        assert extra < 0.1
-
-
-def test_reset_in_lock_step_begins_the_same_run_again(chain, ros_domain):
-    from std_srvs.srv import Trigger
-    listener = Listener(ros_domain, (topics.INS_ODOMETRY,))
-    parameters = {'rate_hz': 100.0, 'duration_s': 0.0, 'pacing.lock_step': True}
-    try:
-        for node in ('imu_sensor', 'strapdown', 'motion_generator'):
-            chain.start(node, parameters)
-        heard = listener.heard['ins/odometry']
-        runs = []
-        for _ in range(2):
-            listener.poll_until(lambda: len(heard) > 10)
-            listener.call(Trigger, '/motion_generator/reset')
-            listener.poll()
-            heard.clear()
-            listener.poll_until(lambda: 0 in heard and 10**9 in heard)
-            runs.append(dict(heard))
-        first, again = runs
-        common = [t for t in first if t in again and t <= 10**9]
-        assert len(common) > 50
-        assert all(first[t] == again[t] for t in common)
-    finally:
-        listener.close()
+    codes = {'bare': bare, **{name: ours.format(name, cls) for name, cls in (
+        ('motion_generator', 'MotionGeneratorNode'), ('imu_sensor', 'ImuSensorNode'),
+        ('strapdown', 'StrapdownNode'))}}
+    # in turn, the best of eight: what else runs on the machine can only add
+    best = dict.fromkeys(codes, 1e9)
+    for _ in range(8):
+        for name, code in codes.items():
+            text = subprocess.run([sys.executable, '-c', code], env=chain.environment,
+                                  capture_output=True, text=True, check=True).stdout
+            best[name] = min(best[name], float(text))
+    base = best.pop('bare')
+    for name, cost in best.items():
+        print(f'{name}: {cost - base:.3f} s more than a bare node of {base:.3f} s')
+        assert cost - base < 0.1

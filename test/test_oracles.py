@@ -131,4 +131,6 @@ def test_schuler_period(runs):
     s = np.sin(np.radians(55.75))
     theory = 2 * np.pi * np.sqrt(earth.radii(s)[0] / earth.gravity(s, 0.0))
     print(f'\nSchuler period {period:.3f} s, 2 pi sqrt(R_N / g) = {theory:.3f} s (5065.2)')
-    assert period == pytest.approx(5065.2, abs=0.05)
+    # the published figure is a fit as well: ours meets the theory, and the theory rounds to it
+    assert period == pytest.approx(theory, abs=0.01)
+    assert theory == pytest.approx(5065.2, abs=0.05)

@@ -17,7 +17,8 @@ class BagRecorder(Node):
 
     A message is logged at its own stamp, and a sample that lock-step repeats is written once.
     The bag appears at path only when ``close`` has completed it.  acknowledge: name of the
-    topic whose stamps are acknowledged as 'recorder', or None.
+    topic whose stamps are acknowledged as 'recorder', or None; the first acknowledgement comes
+    when every topic has been heard.
     """
 
     def __init__(self, path, wanted=topics.DATA, storage='sqlite3', depth=2000,
@@ -64,7 +65,8 @@ class BagRecorder(Node):
         return DrivingQueue(self, topic, depth, on_data, self._on_drained)
 
     def _on_drained(self):
-        if self._unacknowledged is not None:
+        # until every topic is heard nothing is acknowledged, so that lock-step repeats sample 0
+        if self._unacknowledged is not None and all(self.counts.values()):
             self._ack_publisher.publish(self._ack.pack(self._unacknowledged))
             self._unacknowledged = None
 
