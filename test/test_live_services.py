@@ -163,14 +163,12 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
     codes = {'bare': bare, **{name: ours.format(name, cls) for name, cls in (
         ('motion_generator', 'MotionGeneratorNode'), ('imu_sensor', 'ImuSensorNode'),
         ('strapdown', 'StrapdownNode'))}}
-    # in turn, the best of eight: what else runs on the machine can only add
-    best = dict.fromkeys(codes, 1e9)
-    for _ in range(8):
-        for name, code in codes.items():
-            text = subprocess.run([sys.executable, '-c', code], env=chain.environment,
-                                  capture_output=True, text=True, check=True).stdout
-            best[name] = min(best[name], float(text))
-    base = best.pop('bare')
-    for name, cost in best.items():
-        print(f'{name}: {cost - base:.3f} s more than a bare node of {base:.3f} s')
-        assert cost - base < 0.1
+    # round by round, so that a drift of the machine's speed hits all; the best of nine rounds, as
+    # what else runs on the machine can only add
+    rounds = [{name: float(subprocess.run([sys.executable, '-c', code], env=chain.environment,
+                                          capture_output=True, text=True, check=True).stdout)
+               for name, code in codes.items()} for _ in range(9)]
+    for name in list(codes)[1:]:
+        extra = min(c[name] for c in rounds) - min(c['bare'] for c in rounds)
+        print(f'{name}: {extra:.3f} s more than a bare node')
+        assert extra < 0.1
