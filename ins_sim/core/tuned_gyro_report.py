@@ -40,14 +40,15 @@ def rk4_window(roots):
     fastest = np.abs(roots).max()
 
     def decays(h):
-        return bool((np.abs(rk4_amplification(roots * h)) < 1.0).all())
+        return (np.abs(rk4_amplification(np.multiply.outer(h, roots))) < 1.0).all(axis=-1)
 
+    # RK4 is stable nowhere in the left half plane beyond |z| = 3
     steps = np.linspace(0.0, 3.0, GRID + 1)[1:] / fastest
-    inside = [decays(h) for h in steps]
-    if not any(inside):
+    inside = decays(steps)
+    if not inside.any():
         return None
-    first = inside.index(True)
-    last = first + (inside[first:] + [False]).index(False)
+    first = int(inside.argmax())
+    last = first + int(np.append(inside[first:], False).argmin())
     if first:
         low = bisect(decays, steps[first], steps[first - 1])
     else:

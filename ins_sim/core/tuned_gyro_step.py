@@ -28,14 +28,16 @@ def exact_matrices(space, dt_s, hold):
     Columns: state at the start, rates at start, middle, end.  Matrix exponential of the system
     augmented by the integral of the reading and by the rate's derivatives (Van Loan 1978).
     """
-    from scipy.linalg import expm
+    from scipy.linalg import expm, matrix_balance
     n = len(space.g)
     big = np.zeros((n + 4, n + 4), dtype=complex)
     big[:n, :n] = space.f * dt_s
     big[:n, n + 1] = space.g * dt_s
     big[n, :n], big[n, n + 1] = space.c, space.d
     big[n + 1, n + 2] = big[n + 2, n + 3] = 1.0
-    power = expm(big)[:n + 1]
+    # balanced by powers of two, which is exact: theta and v differ by the nutation's frequency
+    big, (scale, _) = matrix_balance(big, permute=False, separate=True)
+    power = (scale[:, None] * expm(big) / scale)[:n + 1]
     by_value, by_slope, by_bend = power[:, n + 1], power[:, n + 2], power[:, n + 3]
     if hold == 'linear':
         start, middle, end = by_value - by_slope, 0.0 * by_slope, by_slope
