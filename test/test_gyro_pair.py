@@ -4,9 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from studies import DEG_PER_HOUR, MOTION_2, settings
 
+from ins_sim.core import attitude
 from ins_sim.core.gyro_pair import (ARRANGEMENTS, CHANNELS, COVARIANCE_FACTORS, geometry,
                                     GyroPair)
+from ins_sim.core.motions import make_motion
+from ins_sim.core.orientation import Orientation
+from ins_sim.core.prediction import channel_drift
 from ins_sim.core.tuned_gyro import PRESETS
 
 TACTICAL = PRESETS['tactical']
@@ -45,9 +50,11 @@ def test_combination_is_least_squares(arrangement):
 def test_channels_are_the_body_rates_along_their_axes(arrangement):
     """A steady rate, settled; each case is a right-handed triad (spin, y_c, z_c)."""
     w = (0.1, -0.2, 0.3)
-    gyros = pair(arrangement)
+    gyros, settled = pair(arrangement), pair(arrangement)
     for _ in range(300):
         y = gyros.channels(w, w, w)
+    settled.settle(w)
+    np.testing.assert_allclose(settled.channels(w, w, w), y, atol=1e-12)
     np.testing.assert_allclose(y, geometry(arrangement) @ w, atol=1e-12)
     omega, parity = gyros.step(w, w, w)
     np.testing.assert_allclose(omega, w, atol=1e-12)
@@ -130,3 +137,50 @@ def test_bad_input(sentence):
     """One sentence each."""
     with pytest.raises(ValueError, match=sentence):
         BAD[sentence]()
+
+
+@pytest.mark.parametrize('preset', ['tactical'])
+def test_drift_of_motion_2_is_the_predicted_one(preset):
+    """
+    Within 1 %: the pair's response in the Fourier sum against an attitude integrated at 1 kHz.
+
+    The Earth stands still, so that n is inertial; the error is that of the readings alone, slope
+    over whole periods.
+    """
+    values = {**MOTION_2, 'earth.rotation': False}
+    generator = settings(values, duration_s=100.0).motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    gyros = GyroPair(PRESETS[preset], DT, 'turned')
+    predicted = channel_drift(motion, gyros.response)
+    period = motion.period_s
+    settle, count = 1000, round(2 * period / DT)
+    t = np.arange(settle + count + 1) * round(1e9 * DT)
+    ends = motion.at(t).omega_ib_b.tolist()
+    mids = motion.at(t[:-1] + round(5e8 * DT)).omega_ib_b.tolist()
+    true, found, offs, worst = Orientation('quaternion'), Orientation('quaternion'), [], 0.0
+    gyros.settle(ends[0])
+    for k, (start, mid, end) in enumerate(zip(ends, mids, ends[1:])):
+        reading, parity = gyros.step(start, mid, end)
+        worst = max(worst, abs(parity))
+        true.step((start, mid, mid, end), DT)
+        found.advance(reading, DT)
+        if k + 1 in (settle, settle + count):
+            offs.append(attitude.logarithm(attitude.multiply(
+                found.q, attitude.conjugate(true.q))))
+    # from the inertial frame of the start to n
+    q_start = tuple(motion.at(t[:1]).q_nb[0].tolist())
+    measured = np.array(attitude.rotate(q_start, np.subtract(offs[1], offs[0]) / (count * DT)))
+    error = np.linalg.norm(measured - predicted) / np.linalg.norm(predicted)
+    print(f'\n{preset}: predicted {predicted * DEG_PER_HOUR} deg/h, measured '
+          f'{measured * DEG_PER_HOUR}, off by {error:.1e}; '
+          f'parity up to {worst:.1e} rad/s')
+    assert error <= 0.01
+
+
+def test_parity_of_a_healthy_pair_in_motion():
+    """It is -x (w_y + w_z) / sqrt 2, x = j w A / (B Omega) at low frequency, 1 % at 1 Hz."""
+    w, gyros = 2 * math.pi, pair('turned')
+    found = gyros.advance(steps(lambda t: (np.cos(w * t), np.cos(w * t), 0.0 * t), 2000))[1]
+    lag = TACTICAL.transverse_inertia / (TACTICAL.input_inertia * TACTICAL.omega)
+    print(f'\nA / (B Omega) = {lag:.4e} s, parity up to {abs(found[1000:]).max():.3e} rad/s')
+    assert abs(found[1000:]).max() == pytest.approx(w * lag / math.sqrt(2.0), rel=0.01)

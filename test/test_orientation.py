@@ -36,13 +36,21 @@ def run(kind, duration, dt):
 
 
 def test_three_algorithms_agree():
-    """20 s at 10 ms through three switches at pi: 1e-9 in any element of the DCM."""
+    """
+    20 s at 10 ms through three switches at pi, any element of the DCM.
+
+    RK4 on C' = C [w x] lags by (w h)^5 / 120 a step, here 1.67e-9 rad in all: that truncation
+    bound is the tolerance of Poisson; the other two are good to 1e-11.
+    """
+    bound = (SPIN * 0.01) ** 4 / 120.0 * SPIN * 20.0
     errors, histories = zip(*(run(kind, 20.0, 0.01) for kind in KINDS))
     for kind, error in zip(KINDS, errors):
         print(f'\n{kind}: {error:.2e} from the closed form')
     difference = abs(histories[0] - histories[1]).max()
     print(f'Poisson against the Euler vector: {difference:.2e}')
-    assert difference <= 1e-9 and max(errors) <= 1e-9
+    assert difference <= bound and errors[0] <= bound and max(errors[1:]) <= 1e-11
+    # at 8 ms it is below 1e-9 throughout
+    assert abs(run('poisson', 20.0, 0.008)[1] - run('euler_vector', 20.0, 0.008)[1]).max() <= 1e-9
 
 
 @pytest.mark.parametrize('kind', KINDS)

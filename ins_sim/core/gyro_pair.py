@@ -103,6 +103,11 @@ class GyroPair:
             return complex(_R * (x + y), _R * (y - x)), complex(_R * (z + x), _R * (x - z))
         return complex(x, y), complex(z, x)
 
+    def settle(self, w):
+        """Take the state of gyros that have long turned at the constant body rate w, rad/s."""
+        for gyro, u in zip(self.gyros, self._into_cases(w)):
+            gyro.settle(u)
+
     def _out(self, a, b):
         """Return the four channels of two complex readings."""
         y = a.real, a.imag, b.real, b.imag
@@ -130,7 +135,7 @@ class GyroPair:
                 zip(first.step_stages(a0, am, a1), second.step_stages(b0, bm, b1))]
 
     def advance(self, w):
-        """Return rates (n, 3) and parity (n,) of n steps; w (n, 3, 3): start, middle, end; axis."""
+        """Return rates (n, 3) and parity (n,) of n steps; w (n, 3 instants, 3 axes), rad/s."""
         omega, parity = zip(*(self.step(*row) for row in np.asarray(w, dtype=float).tolist()))
         return np.array(omega), np.array(parity)
 

@@ -144,7 +144,7 @@ class TunedGyroParameters:
 _ROTOR = {'rotor_axial_kg_m2': 5.0e-6, 'rotor_equatorial_kg_m2': 2.82e-6,
           'ring_axial_kg_m2': 1.5e-7, 'ring_equatorial_kg_m2': 1.0e-7,
           'rotating_damping_n_m_s': 1.0e-7, 'speed_hz': 230.0}
-# ``paper`` is physically unstable (nutation +7.45 1/s): RK4 at 0.75 ms hides it, nothing else does.
+# ``paper`` is physically unstable (nutation +7.45 1/s); RK4 at 0.75 ms hides it.
 PRESETS = MappingProxyType({
     'paper': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550),
     'paper_damped': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550,
@@ -220,6 +220,7 @@ def state_space(p, speed_hz=None):
     rows = [[0.0, 1.0, 0.0],
             [-(stiffness + proportional) / a, (complex(-f, h) - derivative) / a, -integral / a],
             [1.0, 0.0, 0.0]]
-    return StateSpace(np.array(rows, dtype=complex), np.array([-1.0, (into + derivative) / a, 0.0]),
+    return StateSpace(np.array(rows, dtype=complex),
+                      np.array([-1.0, (into + derivative) / a, 0.0]),
                       -1j * scale * np.array([proportional, derivative, integral]),
                       1j * scale * derivative)

@@ -1,4 +1,4 @@
-"""What a dynamically tuned gyro is good for: roots, bandwidth, margin, and the steps RK4 allows."""
+"""What a tuned gyro is good for: roots, bandwidth, margin, and the steps that RK4 allows."""
 
 from dataclasses import dataclass
 import math
@@ -97,7 +97,7 @@ class TunedGyroReport:
 
 
 def report(parameters, speed_hz=None):
-    """Return the TunedGyroReport of TunedGyroParameters, at a speed other than nominal if given."""
+    """Return the TunedGyroReport of TunedGyroParameters, at the nominal speed unless given."""
     p, space = parameters, state_space(parameters, speed_hz)
 
     def gain(hz):

@@ -145,8 +145,9 @@ class TunedGyro:
 
     parameters: TunedGyroParameters; dt_s: step; method: exact or rk4; hold: quadratic or linear
     (of the exact method); on_unstable: refuse or warn; speed_hz: where it is not the nominal one.
-    state: a tuple of complex numbers that can be kept and set back.  Raises ValueError where the
-    steps would grow.
+    state: a tuple of complex numbers that can be kept and set back; zero at first, a rotor without
+    tilt that does not turn in inertial space (see settle).  Raises ValueError where the steps
+    would grow.
     """
 
     def __init__(self, parameters, dt_s, method='exact', hold='quadratic', on_unstable='refuse',
@@ -214,6 +215,10 @@ class TunedGyro:
         x = self.physical_state
         self._build(speed_hz)
         self.physical_state = x
+
+    def settle(self, u):
+        """Take the state of a gyro that has long turned at the constant rate u, rad/s."""
+        self.physical_state = np.linalg.solve(self._space.f, -self._space.g * u)
 
     def step(self, u_start, u_mid, u_end):
         """Advance by dt; rates u_y + j u_z of the case, rad/s; return the mean reading."""
