@@ -76,8 +76,9 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     Return the mean drift (3,), rad/s, of a periodic motion through linear channels.
 
     responses: three functions, the complex frequency response H_i of an angular frequency array,
-    rad/s.  <nu> = sum_i sum_k Re(r_ik conj[(H_i(k w0) - 1) w_ik]), r_i column i of R (spec/delays
-    section 5).  Raises ValueError for a motion without a period.
+    rad/s; or one function that returns the response (n, 3, 3) of channels that see each other's
+    axes (core.gyro_pair).  <nu> = sum_i sum_k Re(r_ik conj[sum_j (H_ij(k w0) - 1_ij) w_jk]), r_i
+    column i of R (spec/delays section 5).  Raises ValueError for a motion without a period.
     """
     if motion.period_s is None:
         raise ValueError('the drift through channels is the sum over a Fourier series; expected '
@@ -85,14 +86,17 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     t = start_s + motion.period_s * np.arange(count) / count
     truth = motion.at(_nanoseconds(t))
     harmonic = 2.0 * np.pi / motion.period_s * np.fft.fftfreq(count, 1.0 / count)
+    w = np.fft.fft(truth.omega_ib_b, axis=0) / count
+    if callable(responses):
+        error = ((responses(harmonic) - np.eye(3)) * w[:, None, :]).sum(axis=-1)
+    else:
+        error = np.stack([(h(harmonic) - 1.0) * w[:, i] for i, h in enumerate(responses)], axis=-1)
     drift = np.zeros(3)
-    for i, response in enumerate(responses):
+    for i in range(3):
         unit = np.zeros((count, 3))
         unit[:, i] = 1.0
         r = np.fft.fft(_to_n(truth, unit), axis=0) / count
-        w = np.fft.fft(truth.omega_ib_b[:, i]) / count
-        error = (response(harmonic) - 1.0) * w
-        drift += (r * np.conj(error)[:, None]).sum(axis=0).real
+        drift += (r * np.conj(error[:, i])[:, None]).sum(axis=0).real
     return drift
 
 

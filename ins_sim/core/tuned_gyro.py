@@ -1,0 +1,226 @@
+"""
+The dynamically tuned gyro: parameters, equations of motion, transfer function and report.
+
+Case axes, right-handed: x_c is the spin axis, y_c and z_c are sensitive.  Vectors of the
+sensitive plane are complex, u = u_y + j u_z.  With theta the tilt of the rotor in the case, u
+the inertial rate of the case, M the moment of the torquer and v = theta' + u, so that u' never
+appears (spec/dtg section 1):
+
+    theta' = v - u,   A v' = -(f - j H) v - (k2 - j c) theta + (f - j (H - B Omega)) u + M
+
+Open loop: M = 0 and the reading is -c theta / (B Omega).  Closed loop: M = -[Dc s + dc - j K +
+(di - j Ki) / s] theta, and the reading is j M / (B Omega).  The read-out and the loop's gains are
+those of the nominal speed, as electronics are; the rotor may turn at another.
+"""
+
+from dataclasses import dataclass, fields
+import math
+from types import MappingProxyType
+
+import numpy as np
+
+LOOPS = ('open', 'closed')
+# The nominal speed may be off the one the hinges tune the rotor to by this part.
+TUNING_TOLERANCE = 0.01
+
+
+@dataclass(frozen=True)
+class TunedGyroParameters:
+    """
+    Physical parameters, SI; the letters of the equations in brackets.
+
+    rotor_axial_kg_m2 [Jr], rotor_equatorial_kg_m2 [Jer], ring_axial_kg_m2 [Jk],
+    ring_equatorial_kg_m2 [Jek]: inertias of rotor and ring.  rotating_damping_n_m_s [fe]: turns
+    with the shaft; case_damping_n_m_s [D]: does not.  cross_feedback_n_m_rad [K]: pick-off to
+    torquer, turned by +j; open loop only.  hinge_stiffness_n_m_rad [(K_alpha + K_beta) / 2]: mean
+    of the two hinges; None is the one that tunes the rotor at speed_hz [Omega / 2 pi].  loop: open
+    or closed, the latter placing natural_rad_s [w0], damping_ratio [zeta] and the decay of the
+    nutation, nutation_rad_s [Wn].  Raises ValueError for what no such instrument can have.
+    """
+
+    rotor_axial_kg_m2: float
+    rotor_equatorial_kg_m2: float
+    ring_axial_kg_m2: float
+    ring_equatorial_kg_m2: float
+    speed_hz: float
+    rotating_damping_n_m_s: float = 0.0
+    case_damping_n_m_s: float = 0.0
+    cross_feedback_n_m_rad: float = 0.0
+    hinge_stiffness_n_m_rad: float | None = None
+    loop: str = 'open'
+    natural_rad_s: float = 2.0 * math.pi * 35.0
+    damping_ratio: float = 1.0
+    nutation_rad_s: float = 200.0
+
+    def __post_init__(self):
+        """Check what depends on no other choice than the parameters."""
+        if self.loop not in LOOPS:
+            raise ValueError(f'loop is {self.loop!r}; expected open or closed')
+        positive = {'rotor_axial_kg_m2', 'rotor_equatorial_kg_m2', 'speed_hz'}
+        if self.loop == 'closed':
+            positive |= {'natural_rad_s', 'damping_ratio', 'nutation_rad_s'}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == 'loop' or value is None and 'hinge' in field.name:
+                continue
+            if not (isinstance(value, (int, float)) and math.isfinite(value)):
+                raise ValueError(f'{field.name} is {value!r}; expected a finite number')
+            if value < 0.0 or value == 0.0 and field.name in positive:
+                raise ValueError(f'{field.name} is {value:g}; expected a number '
+                                 + ('above 0' if field.name in positive else 'not below 0'))
+        for part in ('rotor', 'ring'):
+            axial = getattr(self, f'{part}_axial_kg_m2')
+            equatorial = getattr(self, f'{part}_equatorial_kg_m2')
+            if axial > 2.0 * equatorial:
+                raise ValueError(f'{part}_axial_kg_m2 is {axial:g}; expected at most twice '
+                                 f'{part}_equatorial_kg_m2, {2.0 * equatorial:g}: no rigid body '
+                                 'has more')
+        self._check_tuning()
+        if self.loop == 'closed' and self.cross_feedback_n_m_rad:
+            raise ValueError(f'cross_feedback_n_m_rad is {self.cross_feedback_n_m_rad:g} with '
+                             'loop closed; expected 0, as the loop sets its own')
+        if self.loop == 'open' and self.coupling == 0.0:
+            raise ValueError('cross_feedback_n_m_rad and rotating_damping_n_m_s are 0 with loop '
+                             'open; expected one above 0, as the reading is proportional to them')
+
+    def _check_tuning(self):
+        """Refuse hinges that tune the rotor to another speed."""
+        if self.hinge_stiffness_n_m_rad is None:
+            return
+        per_speed = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
+        tuned_hz = (math.sqrt(self.hinge_stiffness_n_m_rad / per_speed) / (2.0 * math.pi)
+                    if per_speed > 0.0 else math.inf)
+        if not abs(tuned_hz - self.speed_hz) <= TUNING_TOLERANCE * self.speed_hz:
+            raise ValueError(f'hinge_stiffness_n_m_rad is {self.hinge_stiffness_n_m_rad:g}, which '
+                             f'tunes the rotor at {tuned_hz:.6g} Hz; expected within '
+                             f'{TUNING_TOLERANCE:.0%} of speed_hz, {self.speed_hz:g}')
+
+    @property
+    def transverse_inertia(self):
+        """A = Jer + Jek / 2, kg m^2."""
+        return self.rotor_equatorial_kg_m2 + 0.5 * self.ring_equatorial_kg_m2
+
+    @property
+    def input_inertia(self):
+        """B = Jr + Jk / 2, kg m^2."""
+        return self.rotor_axial_kg_m2 + 0.5 * self.ring_axial_kg_m2
+
+    @property
+    def axial_inertia(self):
+        """J = Jr + Jek, kg m^2."""
+        return self.rotor_axial_kg_m2 + self.ring_equatorial_kg_m2
+
+    @property
+    def omega(self):
+        """Omega, the nominal spin speed, rad/s."""
+        return 2.0 * math.pi * self.speed_hz
+
+    @property
+    def momentum(self):
+        """H = J Omega, N m s."""
+        return self.axial_inertia * self.omega
+
+    @property
+    def coupling(self):
+        """c = fe Omega + K, N m/rad; in closed loop K is the one that the loop sets."""
+        closed = self.loop == 'closed'
+        feedback = -loop_gains(self)[1].imag if closed else self.cross_feedback_n_m_rad
+        return self.rotating_damping_n_m_s * self.omega + feedback
+
+    @property
+    def damping(self):
+        """f = fe + D, N m s."""
+        return self.rotating_damping_n_m_s + self.case_damping_n_m_s
+
+    def stiffness(self, speed_hz=None):
+        """Return k2 at a speed, the nominal one by default, N m/rad."""
+        omega = self.omega if speed_hz is None else 2.0 * math.pi * speed_hz
+        per_speed = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
+        if self.hinge_stiffness_n_m_rad is None:
+            return per_speed * (self.omega - omega) * (self.omega + omega)
+        return self.hinge_stiffness_n_m_rad - per_speed * omega * omega
+
+
+_ROTOR = {'rotor_axial_kg_m2': 5.0e-6, 'rotor_equatorial_kg_m2': 2.82e-6,
+          'ring_axial_kg_m2': 1.5e-7, 'ring_equatorial_kg_m2': 1.0e-7,
+          'rotating_damping_n_m_s': 1.0e-7, 'speed_hz': 230.0}
+# ``paper`` is physically unstable (nutation +7.45 1/s); RK4 at 0.75 ms hides it.
+PRESETS = MappingProxyType({
+    'paper': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550),
+    'paper_damped': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550,
+                                        case_damping_n_m_s=3.80e-5),
+    'tactical': TunedGyroParameters(**_ROTOR, case_damping_n_m_s=6.0e-7, loop='closed')})
+
+
+def loop_gains(p):
+    """
+    Return Dc, dc - j K and di - j Ki, the derivative, proportional and integral gains.
+
+    They turn the characteristic polynomial into (A (s + Wn) - j H)(s^2 + 2 zeta w0 s + w0^2).
+    """
+    a, h, w0, wn = p.transverse_inertia, p.momentum, p.natural_rad_s, p.nutation_rad_s
+    twice = 2.0 * p.damping_ratio * w0
+    return (a * (wn + twice) - p.damping,
+            complex(a * (twice * wn + w0 * w0) - p.stiffness(),
+                    p.rotating_damping_n_m_s * p.omega - twice * h),
+            complex(a * wn * w0 * w0, -h * w0 * w0))
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """
+    The gyro as x' = F x + g u, reading = c x + d u, complex.
+
+    f (n, n), g (n,), c (n,), d: x is (theta, v) or, in closed loop, (theta, v, integral of
+    theta); rad, rad/s, rad s.
+    """
+
+    f: np.ndarray
+    g: np.ndarray
+    c: np.ndarray
+    d: complex
+
+    @property
+    def roots(self):
+        """Characteristic roots, 1/s, the least stable first."""
+        return tuple(sorted(np.linalg.eigvals(self.f).tolist(), key=lambda s: -s.real))
+
+    def response(self, omega):
+        """Return the complex transfer function at j omega (any shape, rad/s, either sign)."""
+        s = 1j * np.asarray(omega, dtype=float)
+        left = s[..., None, None] * np.eye(len(self.g)) - self.f
+        right = np.broadcast_to(self.g[:, None], (*s.shape, len(self.g), 1))
+        return (np.linalg.solve(left, right)[..., 0] * self.c).sum(axis=-1) + self.d
+
+    def axis_responses(self, omega):
+        """
+        Return the responses of an axis to its own rate and to that of the other axis.
+
+        As real signals, reading_y = direct u_y - cross u_z, reading_z = cross u_y + direct u_z:
+        direct = (G(j w) + conj G(-j w)) / 2, cross = (G(j w) - conj G(-j w)) / 2j.
+        """
+        omega = np.asarray(omega, dtype=float)
+        plus, minus = self.response(omega), np.conj(self.response(-omega))
+        return 0.5 * (plus + minus), -0.5j * (plus - minus)
+
+
+def state_space(p, speed_hz=None):
+    """Return the StateSpace of a rotor at a speed, by default the nominal one."""
+    omega = p.omega if speed_hz is None else 2.0 * math.pi * speed_hz
+    a, h, f = p.transverse_inertia, p.axial_inertia * omega, p.damping
+    stiffness = complex(p.stiffness(speed_hz),
+                        -p.rotating_damping_n_m_s * omega - p.cross_feedback_n_m_rad)
+    into = complex(f, p.input_inertia * omega - h)
+    scale = 1.0 / (p.input_inertia * p.omega)
+    if p.loop == 'open':
+        rows = [[0.0, 1.0], [-stiffness / a, complex(-f, h) / a]]
+        return StateSpace(np.array(rows, dtype=complex), np.array([-1.0, into / a]),
+                          np.array([-p.coupling * scale, 0.0j]), 0.0j)
+    derivative, proportional, integral = loop_gains(p)
+    rows = [[0.0, 1.0, 0.0],
+            [-(stiffness + proportional) / a, (complex(-f, h) - derivative) / a, -integral / a],
+            [1.0, 0.0, 0.0]]
+    return StateSpace(np.array(rows, dtype=complex),
+                      np.array([-1.0, (into + derivative) / a, 0.0]),
+                      -1j * scale * np.array([proportional, derivative, integral]),
+                      1j * scale * derivative)
