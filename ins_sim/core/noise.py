@@ -1,9 +1,9 @@
 """
 Random numbers as pure functions of (seed, run, name) and the sample's index.
 
-A stream holds normals and uniforms by index, in blocks of a counter-based generator (Philox, Salmon
-et al., SC11, 2011), so that the number of a sample does not depend on what was asked before: not
-on cutting, loss, restart, worker, nor on other streams.  ``Processes`` makes Gauss-Markov
+A stream holds normals and uniforms by index, in blocks of a counter-based generator (Philox;
+Salmon et al., SC11, 2011), so that the number of a sample does not depend on what was asked
+before: not on cutting, loss, restart, worker, nor on other streams.  ``Processes`` makes Gauss-Markov
 processes and random walks of a stream in the same way: a value depends on its index alone.
 """
 
@@ -40,7 +40,7 @@ class Stream:
         self._generator = np.random.Generator(self._philox)
         self._shape = block if width is None else (block, width)
         self._block = block
-        self._normals_of = self._uniforms_of = -1
+        self._normals_of = self._uniforms_of = None
         self._normals = self._uniforms = ()
 
     def normal(self, index):

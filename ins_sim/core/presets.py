@@ -60,10 +60,10 @@ _MEMS = _preset(
 
 _FOG = _preset(
     'tactical_fog', 'tactical-grade fibre-optic IMU (class of LN-200, KVH 1750)',
-    'gyro: repeatability 1 deg/h, in-run 0.07 deg/h, ARW 0.012 deg/sqrt(h), scale factor '
+    'gyro: repeatability 1 deg/h, in-run 0.07 deg/h, ARW 0.01 deg/sqrt(h), scale factor '
     '100 ppm, range 490 deg/s; accelerometer: repeatability 0.3 mg, in-run 13 ug, VRW 0.02 '
     'm/s/sqrt(h), scale factor 300 ppm, range 30 g',
-    {'turn_on_bias_sigma_deg_h': 1.0, 'angle_random_walk_deg_sqrt_h': 0.012,
+    {'turn_on_bias_sigma_deg_h': 1.0, 'angle_random_walk_deg_sqrt_h': 0.01,
      'bias_instability_deg_h': 0.1, 'rate_random_walk_deg_h_sqrt_h': 0.5,
      'scale_factor_sigma_ppm': 100.0, 'scale_asymmetry_ppm': 10.0, 'cubic_ppm_s2_deg2': 2e-4,
      'misalignment_sigma_mrad': 0.1, 'non_orthogonality_mrad': 0.1, 'bandwidth_hz': 400.0,
@@ -79,14 +79,14 @@ _FOG = _preset(
 _RLG = _preset(
     'navigation_rlg', 'navigation-grade ring-laser IMU with quartz accelerometers (class of '
     '1 nmi/h: GG1320, LN-93 and larger cavities)',
-    'gyro: 0.01 deg/h over hours, repeatability 0.005 deg/h, in-run 0.002 deg/h, ARW 0.0004 '
-    'deg/sqrt(h), scale factor 5 ppm, range 400 deg/s; accelerometer: repeatability 25 ug, '
-    'in-run 2 ug, VRW 0.003 m/s/sqrt(h), scale factor 50 ppm, range 25 g',
-    {'turn_on_bias_sigma_deg_h': 0.005, 'angle_random_walk_deg_sqrt_h': 0.0004,
-     'bias_instability_deg_h': 0.003, 'rate_random_walk_deg_h_sqrt_h': 0.012,
+    'gyro: 0.01 deg/h over hours, repeatability 0.005 deg/h, in-run 0.0017 deg/h, ARW 0.00025 '
+    'deg/sqrt(h), scale factor 5 ppm, range 400 deg/s, pulses 0.01 arcsec; accelerometer: '
+    'repeatability 25 ug, in-run 2 ug, VRW 0.003 m/s/sqrt(h), scale factor 50 ppm, range 25 g',
+    {'turn_on_bias_sigma_deg_h': 0.005, 'angle_random_walk_deg_sqrt_h': 0.00025,
+     'bias_instability_deg_h': 0.0025, 'rate_random_walk_deg_h_sqrt_h': 0.012,
      'scale_factor_sigma_ppm': 5.0, 'scale_asymmetry_ppm': 0.5,
      'misalignment_sigma_mrad': 0.01, 'non_orthogonality_mrad': 0.01, 'bandwidth_hz': 500.0,
-     'bandwidth_order': 1, 'saturation_deg_s': 400.0, 'quantisation_arcsec': 0.02,
+     'bandwidth_order': 1, 'saturation_deg_s': 400.0, 'quantisation_arcsec': 0.01,
      'temperature_bias_deg_h_c': 1e-4, 'temperature_scale_ppm_c': 0.1},
     {'turn_on_bias_sigma_ug': 25.0, 'velocity_random_walk_m_s_sqrt_h': 0.003,
      'bias_instability_ug': 3.0, 'acceleration_random_walk_ug_sqrt_h': 15.0,

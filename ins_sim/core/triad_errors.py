@@ -18,7 +18,7 @@ from .triad_model import triad_model
 
 ZERO = (0.0, 0.0, 0.0)
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
-# variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2 % from 1 s to 30000 s.
+# variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
 FLICKER_TIMES = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
 FLICKER_SIGMA = math.sqrt(math.log(10.0) / math.pi)
 
@@ -50,7 +50,7 @@ class TriadErrors:
         if not any(model.bandwidth_hz):
             self._lags = None
         self._noise = make_noise(model, seed, run, name, dt_s)
-        self._noise_of = -1
+        self._noise_of = None
         self._rows = ()
         self._range = tuple(s or math.inf for s in model.saturation)
         if not any(model.saturation):
