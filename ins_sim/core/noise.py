@@ -3,8 +3,9 @@ Random numbers as pure functions of (seed, run, name) and the sample's index.
 
 A stream holds normals and uniforms by index, in blocks of a counter-based generator (Philox;
 Salmon et al., SC11, 2011), so that the number of a sample does not depend on what was asked
-before: not on cutting, loss, restart, worker, nor on other streams.  ``Processes`` makes Gauss-Markov
-processes and random walks of a stream in the same way: a value depends on its index alone.
+before: not on cutting, loss, restart, worker, nor on other streams.  ``Processes`` makes
+Gauss-Markov processes and random walks of a stream in the same way: a value depends on its index
+alone.
 """
 
 from functools import lru_cache
