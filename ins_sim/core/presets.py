@@ -1,0 +1,141 @@
+"""
+Instrument error presets, each a class of instruments with the figures such data sheets give.
+
+The figures are typical of the class, not of one product; what data sheets leave out (rate random
+walk, temperature, non-linearity) is engineering judgement.  Data sheets give the lowest Allan
+deviation as "in-run stability": B is that over 0.664.  Presets cannot be changed: ``preset``
+returns a new dict of settings to be read below one's own.
+"""
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from types import MappingProxyType
+
+from .error_settings import AccelerometerErrors, GyroErrors
+
+GYRO, ACCELEROMETER = 'gyro.errors.', 'accelerometer.errors.'
+
+
+@dataclass(frozen=True)
+class Preset:
+    """
+    A class of instruments.
+
+    datasheet: the class; figures: those of its data sheets; values: read-only {dotted key of
+    imu_sensor: value}.
+    """
+
+    name: str
+    datasheet: str
+    figures: str
+    values: MappingProxyType
+
+
+def _preset(name, datasheet, figures, gyro, accelerometer):
+    values = {}
+    for prefix, terms in ((GYRO, gyro), (ACCELEROMETER, accelerometer)):
+        for key, value in terms.items():
+            values[prefix + key] = value if key == 'bandwidth_order' else (value,) * 3
+    return Preset(name, datasheet, figures, MappingProxyType(values))
+
+
+_MEMS = _preset(
+    'tactical_mems', 'tactical-grade MEMS IMU (class of HG4930, STIM300, ADIS16490)',
+    'gyro: repeatability 7 deg/h, in-run 0.27 deg/h, ARW 0.04 deg/sqrt(h), scale factor 500 ppm, '
+    'range 400 deg/s; accelerometer: repeatability 1.7 mg, in-run 27 ug, VRW 0.03 m/s/sqrt(h), '
+    'scale factor 500 ppm, range 20 g',
+    {'turn_on_bias_sigma_deg_h': 7.0, 'angle_random_walk_deg_sqrt_h': 0.04,
+     'bias_instability_deg_h': 0.4, 'rate_random_walk_deg_h_sqrt_h': 2.0,
+     'scale_factor_sigma_ppm': 500.0, 'scale_asymmetry_ppm': 50.0, 'cubic_ppm_s2_deg2': 0.001,
+     'misalignment_sigma_mrad': 0.5, 'non_orthogonality_mrad': 0.2,
+     'g_sensitivity_deg_h_g': 3.0, 'g2_sensitivity_deg_h_g2': 0.1, 'bandwidth_hz': 200.0,
+     'bandwidth_order': 2, 'saturation_deg_s': 400.0, 'quantisation_arcsec': 0.1,
+     'temperature_bias_deg_h_c': 0.2, 'temperature_scale_ppm_c': 10.0},
+    {'turn_on_bias_sigma_ug': 1700.0, 'velocity_random_walk_m_s_sqrt_h': 0.03,
+     'bias_instability_ug': 40.0, 'acceleration_random_walk_ug_sqrt_h': 200.0,
+     'scale_factor_sigma_ppm': 500.0, 'scale_asymmetry_ppm': 50.0, 'quadratic_ug_g2': 100.0,
+     'cubic_ug_g3': 10.0, 'misalignment_sigma_mrad': 0.5, 'non_orthogonality_mrad': 0.2,
+     'bandwidth_hz': 200.0, 'bandwidth_order': 2, 'saturation_g': 20.0,
+     'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 50.0, 'temperature_scale_ppm_c': 10.0})
+
+_FOG = _preset(
+    'tactical_fog', 'tactical-grade fibre-optic IMU (class of LN-200, KVH 1750)',
+    'gyro: repeatability 1 deg/h, in-run 0.07 deg/h, ARW 0.01 deg/sqrt(h), scale factor '
+    '100 ppm, range 490 deg/s; accelerometer: repeatability 0.3 mg, in-run 13 ug, VRW 0.02 '
+    'm/s/sqrt(h), scale factor 300 ppm, range 30 g',
+    {'turn_on_bias_sigma_deg_h': 1.0, 'angle_random_walk_deg_sqrt_h': 0.01,
+     'bias_instability_deg_h': 0.1, 'rate_random_walk_deg_h_sqrt_h': 0.5,
+     'scale_factor_sigma_ppm': 100.0, 'scale_asymmetry_ppm': 10.0, 'cubic_ppm_s2_deg2': 2e-4,
+     'misalignment_sigma_mrad': 0.1, 'non_orthogonality_mrad': 0.1, 'bandwidth_hz': 400.0,
+     'bandwidth_order': 1, 'saturation_deg_s': 490.0, 'quantisation_arcsec': 0.1,
+     'temperature_bias_deg_h_c': 0.02, 'temperature_scale_ppm_c': 3.0},
+    {'turn_on_bias_sigma_ug': 300.0, 'velocity_random_walk_m_s_sqrt_h': 0.02,
+     'bias_instability_ug': 20.0, 'acceleration_random_walk_ug_sqrt_h': 100.0,
+     'scale_factor_sigma_ppm': 300.0, 'scale_asymmetry_ppm': 30.0, 'quadratic_ug_g2': 30.0,
+     'cubic_ug_g3': 2.0, 'misalignment_sigma_mrad': 0.1, 'non_orthogonality_mrad': 0.1,
+     'bandwidth_hz': 200.0, 'bandwidth_order': 2, 'saturation_g': 30.0,
+     'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 20.0, 'temperature_scale_ppm_c': 5.0})
+
+_RLG = _preset(
+    'navigation_rlg', 'navigation-grade ring-laser IMU with quartz accelerometers (class of '
+    '1 nmi/h: GG1320, LN-93 and larger cavities)',
+    'gyro: 0.01 deg/h over hours, repeatability 0.005 deg/h, in-run 0.0017 deg/h, ARW 0.00025 '
+    'deg/sqrt(h), scale factor 5 ppm, range 400 deg/s, pulses 0.01 arcsec; accelerometer: '
+    'repeatability 25 ug, in-run 2 ug, VRW 0.003 m/s/sqrt(h), scale factor 50 ppm, range 25 g',
+    {'turn_on_bias_sigma_deg_h': 0.005, 'angle_random_walk_deg_sqrt_h': 0.00025,
+     'bias_instability_deg_h': 0.0025, 'rate_random_walk_deg_h_sqrt_h': 0.012,
+     'scale_factor_sigma_ppm': 5.0, 'scale_asymmetry_ppm': 0.5,
+     'misalignment_sigma_mrad': 0.01, 'non_orthogonality_mrad': 0.01, 'bandwidth_hz': 500.0,
+     'bandwidth_order': 1, 'saturation_deg_s': 400.0, 'quantisation_arcsec': 0.01,
+     'temperature_bias_deg_h_c': 1e-4, 'temperature_scale_ppm_c': 0.1},
+    {'turn_on_bias_sigma_ug': 25.0, 'velocity_random_walk_m_s_sqrt_h': 0.003,
+     'bias_instability_ug': 3.0, 'acceleration_random_walk_ug_sqrt_h': 15.0,
+     'scale_factor_sigma_ppm': 50.0, 'scale_asymmetry_ppm': 5.0, 'quadratic_ug_g2': 10.0,
+     'cubic_ug_g3': 0.5, 'misalignment_sigma_mrad': 0.02, 'non_orthogonality_mrad': 0.02,
+     'bandwidth_hz': 300.0, 'bandwidth_order': 2, 'saturation_g': 25.0,
+     'quantisation_mm_s': 0.002, 'temperature_bias_ug_c': 1.0, 'temperature_scale_ppm_c': 1.0})
+
+_DTG = _preset(
+    'tactical_dtg', 'tactical dynamically tuned gyros with quartz accelerometers (model of IEEE '
+    'Std 813)',
+    'gyro: fixed drift 1 deg/h, Gauss-Markov 0.02 deg/h over 100 s, mass unbalance 0.5 deg/h/g, '
+    'anisoelastic 0.02 deg/h/g^2, torquer 200 ppm, asymmetry 30 ppm, 200 deg/s, axes 0.2 mrad, '
+    'ARW 0.005 deg/sqrt(h), pulses 0.3 arcsec; accelerometer: repeatability 100 ug, VRW 0.01 '
+    'm/s/sqrt(h), range 20 g',
+    {'turn_on_bias_sigma_deg_h': 1.0, 'in_run_bias_sigma_deg_h': 0.02,
+     'in_run_bias_time_s': 100.0, 'angle_random_walk_deg_sqrt_h': 0.005,
+     'bias_instability_deg_h': 0.05, 'rate_random_walk_deg_h_sqrt_h': 0.25,
+     'scale_factor_sigma_ppm': 200.0, 'scale_asymmetry_ppm': 30.0, 'cubic_ppm_s2_deg2': 0.001,
+     'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,
+     'g_sensitivity_deg_h_g': 0.5, 'g2_sensitivity_deg_h_g2': 0.02, 'saturation_deg_s': 200.0,
+     'quantisation_arcsec': 0.3, 'temperature_bias_deg_h_c': 0.02,
+     'temperature_scale_ppm_c': 5.0},
+    {'turn_on_bias_sigma_ug': 100.0, 'velocity_random_walk_m_s_sqrt_h': 0.01,
+     'bias_instability_ug': 10.0, 'acceleration_random_walk_ug_sqrt_h': 50.0,
+     'scale_factor_sigma_ppm': 150.0, 'scale_asymmetry_ppm': 15.0, 'quadratic_ug_g2': 20.0,
+     'cubic_ug_g3': 1.0, 'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,
+     'bandwidth_hz': 300.0, 'bandwidth_order': 2, 'saturation_g': 20.0,
+     'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 10.0, 'temperature_scale_ppm_c': 3.0})
+
+PRESETS = MappingProxyType({p.name: p for p in (_MEMS, _FOG, _RLG, _DTG)})
+
+
+def preset(name):
+    """
+    Return a new dict {dotted key of imu_sensor: value} of the preset of that name.
+
+    Raises ValueError, naming the nearest known one, where there is none.
+    """
+    if name not in PRESETS:
+        near = get_close_matches(str(name), sorted(PRESETS), n=1, cutoff=0.0)
+        raise ValueError(f'unknown instrument preset {name!r}; the nearest known one is '
+                         f'{near[0]!r}')
+    return dict(PRESETS[name].values)
+
+
+def triads(name):
+    """Return (GyroErrors, AccelerometerErrors) of the preset of that name."""
+    values = preset(name)
+    return tuple(cls(**{key.removeprefix(prefix): value for key, value in values.items()
+                        if key.startswith(prefix)})
+                 for cls, prefix in ((GyroErrors, GYRO), (AccelerometerErrors, ACCELEROMETER)))
