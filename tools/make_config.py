@@ -1,9 +1,10 @@
-"""Write config/default.yaml from the catalogue of settings: every key, its unit, range and doc."""
+"""Write config/default.yaml and the overlays of the presets from the catalogue of settings."""
 
 from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
+from ins_sim.core.presets import PRESETS
 from ins_sim.core.settings import MotionGeneratorSettings, NODES
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
@@ -62,6 +63,23 @@ def document():
     return '\n'.join(out) + '\n'
 
 
+def preset_document(preset):
+    """Return the overlay of an instrument preset."""
+    out = [f'# Instrument errors of a {preset.datasheet}.', '#']
+    out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
+    out += ['# Written by tools/make_config.py from ins_sim/core/presets.py.', '/**/imu_sensor:',
+            '  ros__parameters:']
+    out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
+    return '\n'.join(out) + '\n'
+
+
+def documents():
+    """Return {file name: text} of every written file."""
+    return {'default.yaml': document(),
+            **{f'imu_{name}.yaml': preset_document(p) for name, p in PRESETS.items()}}
+
+
 if __name__ == '__main__':
-    path = Path(__file__).resolve().parents[1] / 'config' / 'default.yaml'
-    path.write_text(document(), encoding='utf-8')
+    for name, content in documents().items():
+        (Path(__file__).resolve().parents[1] / 'config' / name).write_text(content,
+                                                                           encoding='utf-8')

@@ -85,6 +85,9 @@ def check(name, value, f):
             raise ValueError(f'{name} has {len(value)} entries; expected {size}')
     low, high, choices = f.metadata['low'], f.metadata['high'], f.metadata['choices']
     for v in values:
+        # infinity is a value only where it is the bound
+        if isinstance(v, float) and not math.isfinite(v) and v != high:
+            raise ValueError(f'{name} is {v}; expected a finite number')
         if choices and v not in choices:
             near = get_close_matches(str(v), choices, n=1, cutoff=0.0)
             raise ValueError(f'{name} is {v!r}; expected one of {", ".join(choices)} (nearest: '
@@ -99,10 +102,7 @@ def _scalar(name, value, kind):
     if isinstance(value, bool) != (kind is bool):
         raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
     if kind is float and isinstance(value, (int, float)):
-        value = float(value)
-        if not math.isfinite(value):
-            raise ValueError(f'{name} is {value}; expected a finite number')
-        return value
+        return float(value)
     if not isinstance(value, kind):
         raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
     return value

@@ -7,8 +7,9 @@ triads are alike; ``ins_sim.core.triad_model`` brings both to SI.
 """
 
 from dataclasses import dataclass
+import math
 
-from .settings import setting
+from .setting import setting
 
 Axes = tuple[float, ...]
 MOST = 1e9
@@ -47,7 +48,7 @@ class GyroErrors:
     bias_deg_h: Axes = axes(BIAS, 'deg/h', -MOST)
     turn_on_bias_sigma_deg_h: Axes = axes(TURN_ON, 'deg/h')
     in_run_bias_sigma_deg_h: Axes = axes(IN_RUN, 'deg/h')
-    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, default=300.0)
+    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, math.inf, default=300.0)
     angle_random_walk_deg_sqrt_h: Axes = axes('angle random walk N', 'deg/sqrt(h)')
     rate_random_walk_deg_h_sqrt_h: Axes = axes('rate random walk K', 'deg/h/sqrt(h)')
     bias_instability_deg_h: Axes = axes(INSTABILITY, 'deg/h')
@@ -80,7 +81,7 @@ class AccelerometerErrors:
     bias_ug: Axes = axes(BIAS, 'ug', -MOST)
     turn_on_bias_sigma_ug: Axes = axes(TURN_ON, 'ug')
     in_run_bias_sigma_ug: Axes = axes(IN_RUN, 'ug')
-    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, default=300.0)
+    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, math.inf, default=300.0)
     velocity_random_walk_m_s_sqrt_h: Axes = axes('velocity random walk N', 'm/s/sqrt(h)')
     acceleration_random_walk_ug_sqrt_h: Axes = axes('acceleration random walk K', 'ug/sqrt(h)')
     bias_instability_ug: Axes = axes(INSTABILITY, 'ug')

@@ -4,6 +4,7 @@ import math
 
 from .faults import check_finite, seconds, StreamFault
 from .imu import MotionImu, NODES, Triads
+from .instrument import ErringImu, with_errors
 from .motions import make_motion
 from .truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 
@@ -11,8 +12,10 @@ BLOCK = 256
 
 
 def make_imu(settings):
-    """Return the IMU that ImuSensorSettings name; both kinds have push(...) and reset()."""
-    return StreamImu(settings) if settings.source == 'stream' else PacedImu(settings)
+    """Return the IMU that ImuSensorSettings name; every kind has push(...) and reset()."""
+    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings)
+    errors = with_errors(settings)
+    return imu if errors is None else ErringImu(imu, errors)
 
 
 class StreamImu:

@@ -5,19 +5,10 @@ This catalogue is the only place a parameter is described.  ROS parameters, the 
 the configuration reference are derived from it.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-
-def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
-    """Return a dataclass field carrying its unit, closed bounds, choices, array size and doc."""
-    return field(default=default, metadata={
-        'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': tuple(choices),
-        'size': size})
-
-
-def group(cls):
-    """Return a field holding a nested group of settings."""
-    return field(default_factory=cls)
+from .error_settings import AccelerometerErrors, GyroErrors, Temperature
+from .setting import group, setting
 
 
 @dataclass(frozen=True)
@@ -211,6 +202,7 @@ class Gyro:
     """The gyro triad."""
 
     delay_us: DelaysUs = group(DelaysUs)
+    errors: GyroErrors = group(GyroErrors)
 
 
 @dataclass(frozen=True)
@@ -218,6 +210,7 @@ class Accelerometer:
     """The accelerometer triad."""
 
     delay_us: DelaysUs = group(DelaysUs)
+    errors: AccelerometerErrors = group(AccelerometerErrors)
 
 
 OUTPUTS = ('rotation_vector', 'integrated')
@@ -233,7 +226,10 @@ class ImuSensorSettings:
     motion: MotionSettings = group(MotionSettings)
     gyro: Gyro = group(Gyro)
     accelerometer: Accelerometer = group(Accelerometer)
+    temperature: Temperature = group(Temperature)
     topics: Topics = group(Topics)
+    seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
+                        2147483647)
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
     source: str = setting('stream', 'where the motion comes from: the streamed truth, or the '
                           'closed form or recording of motion.* (the stream then only paces)',

@@ -6,12 +6,12 @@ import numpy as np
 
 from .imu import MotionImu, period_ns
 from .imu_stream import StreamImu
+from .instrument import with_errors
 from .map_frame import MapFrame
 from .motions import check_length, make_motion
 from .navigator import Strapdown
 from .records import ImuSamples, NavErrors, NavStates, Truth
-from .settings import Accelerometer, DelaysUs, Gyro, ImuSensorSettings, MotionGeneratorSettings, \
-    StrapdownSettings
+from .settings import DelaysUs, ImuSensorSettings, MotionGeneratorSettings, StrapdownSettings
 
 BLOCK = 4096
 
@@ -40,19 +40,27 @@ class Settings:
     strapdown: StrapdownSettings
 
     def without_delays(self):
-        """Return the settings of the zero-delay twin."""
-        imu = replace(self.imu_sensor, gyro=replace(self.imu_sensor.gyro, delay_us=DelaysUs()),
-                      accelerometer=Accelerometer(DelaysUs()))
-        return replace(self, imu_sensor=imu)
+        """Return the settings of the zero-delay twin; it has the same instrument errors."""
+        imu = self.imu_sensor
+        return replace(self, imu_sensor=replace(
+            imu, gyro=replace(imu.gyro, delay_us=DelaysUs()),
+            accelerometer=replace(imu.accelerometer, delay_us=DelaysUs())))
 
     @property
     def delayed(self):
         """Return whether any channel is late."""
-        return self.imu_sensor.gyro != Gyro() or self.imu_sensor.accelerometer != Accelerometer()
+        imu = self.imu_sensor
+        return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
 
 
 def sense(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
+    errors = with_errors(settings.imu_sensor)
+    for block in _ideal(settings, motion):
+        yield block if errors is None else errors.advance(block)
+
+
+def _ideal(settings, motion):
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
     steps = _steps(generator)

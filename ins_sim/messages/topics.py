@@ -1,6 +1,6 @@
 """Every topic: name, type and frames stand here and nowhere else.  No ROS is imported."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .cdr import Reader, Writer
 
@@ -58,3 +58,9 @@ CLOCK_TOPIC = Topic('/clock', CLOCK)
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)
 DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
+
+
+def imu_raw(rate_variance, force_variance):
+    """Return IMU_RAW with covariances: variances by axis, (rad/s)^2 and (m/s^2)^2."""
+    diagonals = zip((16, 20, 24, 28, 32, 36), (*rate_variance, *force_variance))
+    return replace(IMU_RAW, constants=(*IMU_RAW.constants, *diagonals))

@@ -1,6 +1,7 @@
 """Node imu_sensor: streamed truth in, readings of the IMU out."""
 
 from ins_sim.core.imu_stream import make_imu
+from ins_sim.core.instrument import with_errors
 from ins_sim.messages import topics
 
 from . import qos
@@ -20,7 +21,9 @@ class ImuSensorNode(StageNode):
     def make_outputs(self):
         """Make publisher, reader and writer."""
         self._publisher = qos.publisher(self, topics.IMU_RAW, self.depth)
-        self._reader, self._writer = topics.TRUTH_IMU.reader(), topics.IMU_RAW.writer()
+        errors = with_errors(self.settings)
+        topic = topics.IMU_RAW if errors is None else topics.imu_raw(*errors.variances)
+        self._reader, self._writer = topics.TRUTH_IMU.reader(), topic.writer()
 
     def on_message(self, data):
         """Give one truth message to the IMU and publish what it completes."""

@@ -1,0 +1,69 @@
+"""
+From the ideal IMU to the instrument: the errors of both triads, applied to its readings.
+
+Errors act on the mean rate and the mean specific force of a sampling interval.  They are a
+function of seed and instant: the index of a sample is its motion time over the period.
+"""
+
+import numpy as np
+
+from .error_settings import AccelerometerErrors, GyroErrors
+from .imu import period_ns
+from .records import ImuSamples
+
+
+def with_errors(settings):
+    """
+    Return the InstrumentErrors of ImuSensorSettings, or None for a perfect instrument.
+
+    Raises ValueError where the error terms do not fit together.
+    """
+    if settings.gyro.errors == GyroErrors() \
+            and settings.accelerometer.errors == AccelerometerErrors():
+        return None
+    return InstrumentErrors(settings)
+
+
+class InstrumentErrors:
+    """
+    The errors of gyros and accelerometers of one IMU.
+
+    variances: white variance of a sample by axis, (rad/s)^2 and (m/s^2)^2, or what the settings
+    report in its place.
+    """
+
+    def __init__(self, settings):
+        # NumPy's generators cost a perfect node's start nothing
+        from .triad_errors import TriadErrors
+        from .triad_model import white_variance
+        self._dt_ns = period_ns(settings.rate_hz)
+        dt = self._dt_ns * 1e-9
+        triads = ((settings.gyro.errors, 'gyro.errors'),
+                  (settings.accelerometer.errors, 'accelerometer.errors'))
+        self._gyro, self._accel = (TriadErrors(errors, settings.seed, 0, name, dt,
+                                               settings.temperature) for errors, name in triads)
+        self.variances = tuple(white_variance(errors, dt, name) for errors, name in triads)
+
+    def step(self, t_ns, omega, f):
+        """Return omega, f of the instrument for those of the ideal IMU at motion time t_ns."""
+        index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
+        return (self._gyro.step(index, omega, f, t_s), self._accel.step(index, f, f, t_s))
+
+    def advance(self, imu):
+        """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
+        samples = zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist())
+        omega, f = zip(*(self.step(*sample) for sample in samples))
+        return ImuSamples(imu.t_ns, np.array(omega), np.array(f))
+
+
+class ErringImu:
+    """An IMU with push and reset whose readings pass through InstrumentErrors."""
+
+    def __init__(self, imu, errors):
+        self._imu, self._errors = imu, errors
+        self.reset = imu.reset
+
+    def push(self, *sample):
+        """Return the readings that a truth sample completes, as the ideal IMU does."""
+        return [(t_ns, *self._errors.step(t_ns, omega, f))
+                for t_ns, omega, f in self._imu.push(*sample)]
