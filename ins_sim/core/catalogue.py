@@ -121,6 +121,9 @@ def _check_together(settings):
     if values.get('pacing.required') == () and (values['pacing.lock_step']
                                                 or values['pacing.real_time_factor'] == 0.0):
         raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
+    if values.get('gyro.model') == 'dtg' and values['output'] != 'integrated':
+        raise ValueError(f'output is {values["output"]} with gyro.model dtg; expected integrated: '
+                         'a tuned gyro reads the integral of its rate')
     if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
         raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
                          'file')

@@ -54,6 +54,15 @@ def velocity_increment(q_start, forces_m, node_rotations):
     return attitude.rotate_back(q_start, mean)
 
 
+def make_pair(gyro, dt_s):
+    """Return the GyroPair of settings.Gyro where its model is dtg, else None."""
+    if gyro.model != 'dtg':
+        return None
+    from .gyro_pair import GyroPair
+    from .tuned_gyro import PRESETS
+    return GyroPair(PRESETS[gyro.dtg.preset], dt_s, gyro.dtg.arrangement, hold=gyro.dtg.hold)
+
+
 class Triads:
     """
     The channels of both triads: which distinct delay each has, and what one step reads.
@@ -73,6 +82,10 @@ class Triads:
         self._gyro_at = tuple(self.attitude_delays.index(d) for d in self.gyro_delays)
         self._accel_at = tuple(self.attitude_delays.index(d) for d in self.accel_delays)
         dt = self.dt_ns * 1e-9
+        self.pair = make_pair(settings.gyro, dt)
+        # a tuned gyro takes the rate at the start, the middle and the end of a step
+        self.rate_nodes = NODES if self.pair is None else (0.0, 0.5, 1.0)
+        self._settled = False
         self._per_dt = 1.0 / dt
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
         turn = self.frame.omega_ie_m
@@ -98,9 +111,19 @@ class Triads:
         """
         Return omega, f of one step of the output ``integrated``.
 
-        rates, forces_b: for each gyro and each accelerometer delay, the vector in b at the nodes.
+        rates, forces_b: for each gyro and each accelerometer delay, the vector in b at
+        ``rate_nodes`` and at the Gauss nodes.
         """
-        return (self._pick_means(rates, self._gyro), self._pick_means(forces_b, self._accel))
+        force = self._pick_means(forces_b, self._accel)
+        if self.pair is None:
+            return self._pick_means(rates, self._gyro), force
+        # an axis is late at the input of the rotors, which are linear
+        start, middle, end = (tuple(rates[k][node][i] for i, k in enumerate(self._gyro))
+                              for node in range(3))
+        if not self._settled:
+            self.pair.settle(start)
+            self._settled = True
+        return self.pair.step(start, middle, end)[0], force
 
     @staticmethod
     def _pick_means(nodes, picks):
@@ -131,7 +154,7 @@ class MotionImu:
         t_ns = self.next_ns + triads.dt_ns * np.arange(count, dtype=np.int64)
         self.next_ns += triads.dt_ns * count
         if triads.integrated:
-            rates = self._at_nodes(t_ns, triads.gyro_delays, self._rates)
+            rates = self._at_nodes(t_ns, triads.gyro_delays, self._rates, triads.rate_nodes)
             forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_b)
             readings = [triads.integrals(w, f) for w, f in zip(rates, forces)]
         else:
@@ -164,8 +187,8 @@ class MotionImu:
     def _forces_b(self, t_ns):
         return self._truth(t_ns).f_ib_b.tolist()
 
-    def _at_nodes(self, t_ns, delays, values):
-        """Yield for each step, for each delay, the values at the three Gauss nodes."""
+    def _at_nodes(self, t_ns, delays, values, nodes=NODES):
+        """Yield for each step, for each delay, the values at three nodes of [0, 1]."""
         dt_ns = self._triads.dt_ns
-        offsets = [round(dt_ns * (s - 1.0)) for s in NODES]
+        offsets = [round(dt_ns * (s - 1.0)) for s in nodes]
         return zip(*(zip(*(values(t_ns + (o - d)) for o in offsets)) for d in delays))

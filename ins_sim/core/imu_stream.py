@@ -28,18 +28,21 @@ class StreamImu:
     """
 
     def __init__(self, settings):
-        self._triads = Triads(settings)
+        self._settings = settings
         self._frozen = settings.history == 'frozen'
-        self._node_ns = [round(self._triads.dt_ns * (s - 1.0)) for s in NODES]
-        delays = self._triads.attitude_delays
-        self._lead_ns = max(0, -min(delays))
-        self._reach_ns = max(0, max(delays)) + 2 * self._triads.dt_ns + self._lead_ns
         self.reset()
+        dt_ns, delays = self._triads.dt_ns, self._triads.attitude_delays
+        self._node_ns = [round(dt_ns * (s - 1.0)) for s in NODES]
+        self._rate_node_ns = [round(dt_ns * (s - 1.0)) for s in self._triads.rate_nodes]
+        self._lead_ns = max(0, -min(delays))
 
     def reset(self):
         """Forget everything; the next sample is the first."""
-        wanted = (RATE, FORCE_B) if self._triads.integrated else (FORCE_M,)
-        self._buffer = TruthBuffer(self._triads.frame, self._reach_ns, self._frozen, wanted)
+        self._triads = triads = Triads(self._settings)
+        wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
+        delays = triads.attitude_delays
+        reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
+        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted)
         self._next_ns = None
         self._q_start = None
 
@@ -65,19 +68,20 @@ class StreamImu:
     def _read(self, t_ns):
         triads, buffer = self._triads, self._buffer
         if triads.integrated:
-            return triads.integrals(self._nodes(t_ns, triads.gyro_delays, RATE),
-                                    self._nodes(t_ns, triads.accel_delays, FORCE_B))
+            rates = self._nodes(t_ns, triads.gyro_delays, RATE, self._rate_node_ns)
+            return triads.integrals(rates, self._nodes(t_ns, triads.accel_delays, FORCE_B,
+                                                       self._node_ns))
         if self._q_start is None:
             self._q_start = [buffer.attitude(t_ns - triads.dt_ns - d)
                              for d in triads.attitude_delays]
         q_end = [buffer.attitude(t_ns - d) for d in triads.attitude_delays]
-        forces = self._nodes(t_ns, triads.accel_delays, FORCE_M)
+        forces = self._nodes(t_ns, triads.accel_delays, FORCE_M, self._node_ns)
         reading = triads.rotated(self._q_start, q_end, forces)
         self._q_start = q_end
         return reading
 
-    def _nodes(self, t_ns, delays, field):
-        o1, o2, o3 = self._node_ns
+    def _nodes(self, t_ns, delays, field, offsets):
+        o1, o2, o3 = offsets
         cubic = self._buffer.cubic
         return [(cubic(t_ns + o1 - d, field), cubic(t_ns + o2 - d, field),
                  cubic(t_ns + o3 - d, field)) for d in delays]

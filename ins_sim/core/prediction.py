@@ -12,7 +12,7 @@ import numpy as np
 
 from . import attitude, earth
 from .error_model import propagate
-from .imu import delays_ns
+from .imu import delays_ns, make_pair
 from .motions import check_length, make_motion
 
 SUBSAMPLES = 8
@@ -69,6 +69,37 @@ def mean_drift(motion, tau, earth_rotation, start_s, span_s):
     truth = motion.at(_nanoseconds(start_s + length * np.arange(count) / count))
     density, _ = drift_density(truth, rate_of_n(truth, earth_rotation), tau)
     return density.mean(axis=0)
+
+
+def late_attitude_error(truth, omega_in_n, tau, step_s):
+    """
+    Return beta (n, 3), rad: the boundary term and the running integral of ``drift_density``.
+
+    truth (n,): at steps of step_s; tau (3,): delays, s.
+    """
+    density, late = drift_density(truth, omega_in_n, tau)
+    running = np.cumsum(0.5 * step_s * (density[1:] + density[:-1]), axis=0)
+    return late[0] - late + np.concatenate([np.zeros((1, 3)), running])
+
+
+def pair_attitude_error(motion, gyro, tau, t):
+    """
+    Return beta (n, 3), rad, of two tuned gyros: the integral of R (reading - rate).
+
+    gyro: settings.Gyro; tau (3,): delays, s; t (n,): motion times, s.  The rotors are run over the
+    rates of the motion; the mean rate of a step is Simpson's.
+    """
+    step_s = (t[-1] - t[0]) / (len(t) - 1)
+    halves = t[0] + 0.5 * step_s * np.arange(2 * len(t) - 1)
+    late = np.stack([motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
+                     for i, d in enumerate(tau)], axis=-1)
+    pair = make_pair(gyro, step_s)
+    pair.settle(late[0])
+    reading, _ = pair.advance(np.stack((late[:-1:2], late[1::2], late[2::2]), axis=1))
+    truth = motion.at(_nanoseconds(halves))
+    w = truth.omega_ib_b
+    growth = _to_n(truth[1::2], reading - (w[:-1:2] + 4.0 * w[1::2] + w[2::2]) / 6.0)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(step_s * growth, axis=0)])
 
 
 def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
@@ -139,16 +170,22 @@ def predict(settings):
     t = start_s + fine_s * np.arange(steps * SUBSAMPLES + 1)
     truth = motion.at(_nanoseconds(t))
     omega_in = rate_of_n(truth, rotation)
-    density, late = drift_density(truth, omega_in, tau)
-    # attitude error in n without the turning of n: boundary term and running integral
-    running = np.concatenate([np.zeros((1, 3)),
-                              np.cumsum(0.5 * fine_s * (density[1:] + density[:-1]), axis=0)])
-    beta = late[0] - late + running + np.radians(nav.initial.attitude_error_deg)
+    # attitude error in n without the turning of n
+    if sensor.gyro.model == 'ideal':
+        beta = late_attitude_error(truth, omega_in, tau, fine_s)
+        drift = mean_drift(motion, tau, rotation, start_s, span_s)
+    else:
+        beta = pair_attitude_error(motion, sensor.gyro, tau, t)
+        drift = beta[-1] / span_s
+        if motion.period_s:
+            response = make_pair(sensor.gyro, fine_s).response
+            drift = channel_drift(motion, lambda w: response(w) * np.exp(
+                -1j * np.multiply.outer(w, tau))[:, None, :])
+    beta += np.radians(nav.initial.attitude_error_deg)
     f_n = _to_n(truth, truth.f_ib_b)
     df_n = -_to_n(truth, np.gradient(truth.f_ib_b, fine_s, axis=0) * tau_f)
     errors = propagate(truth, omega_in, f_n, beta, df_n, fine_s, SUBSAMPLES, rotation,
                        nav.initial.position_error_m, nav.initial.velocity_error_m_s)
-    drift = mean_drift(motion, tau, rotation, start_s, span_s)
     return Prediction(drift, STEP_S * np.arange(steps + 1), *errors,
                       two_axis_resonances(generator.motion, tau))
 

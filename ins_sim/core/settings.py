@@ -198,9 +198,26 @@ class DelaysUs:
 
 
 @dataclass(frozen=True)
+class Dtg:
+    """Two dynamically tuned gyros in place of the ideal triad."""
+
+    preset: str = setting('tactical', 'parameters of both gyros (core.tuned_gyro.PRESETS); the '
+                          'undamped rotor of the paper is unstable and only for its study',
+                          choices=('paper_damped', 'tactical'))
+    arrangement: str = setting('paper', 'paper: gyro 1 senses x and y, gyro 2 senses z and x; '
+                               'turned: each pick-off pair turned 45 deg about its spin axis',
+                               choices=('paper', 'turned'))
+    hold: str = setting('quadratic', 'rate within a step: the parabola or the straight line',
+                        choices=('quadratic', 'linear'))
+
+
+@dataclass(frozen=True)
 class Gyro:
     """The gyro triad."""
 
+    model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
+                         'integrated)', choices=('ideal', 'dtg'))
+    dtg: Dtg = group(Dtg)
     delay_us: DelaysUs = group(DelaysUs)
     errors: GyroErrors = group(GyroErrors)
 
