@@ -85,13 +85,17 @@ class Triads:
         self.pair = make_pair(settings.gyro, dt)
         # a tuned gyro takes the rate at the start, the middle and the end of a step
         self.rate_nodes = NODES if self.pair is None else (0.0, 0.5, 1.0)
-        self._settled = False
+        self.begin()
         self._per_dt = 1.0 / dt
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
         turn = self.frame.omega_ie_m
         self._dq_earth = attitude.exponential(tuple(w * dt for w in turn))
         self._node_rotations = tuple(attitude.exponential(tuple(w * dt * s for w in turn))
                                      for s in NODES)
+
+    def begin(self):
+        """Let the rotors of tuned gyros, if any, be settled at the start of the next step."""
+        self._settled = False
 
     def rotated(self, q_start, q_end, forces_m):
         """
@@ -156,7 +160,12 @@ class MotionImu:
         if triads.integrated:
             rates = self._at_nodes(t_ns, triads.gyro_delays, self._rates, triads.rate_nodes)
             forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_b)
-            readings = [triads.integrals(w, f) for w, f in zip(rates, forces)]
+            readings = []
+            for t, w, f in zip(t_ns.tolist(), rates, forces):
+                readings.append(triads.integrals(w, f))
+                if t == self._first_ns:
+                    # the run begins here, as on a stream, which knows nothing of before
+                    triads.begin()
         else:
             if self._q_start is None:
                 before = t_ns[:1] - triads.dt_ns
