@@ -38,6 +38,12 @@ def parser():
                       'recording to start, s after its first row (default: %(default)s)')
     demo.add_argument('--duration', type=float, default=3600.0, metavar='S',
                       help='simulated length of each part, s (default: %(default)s)')
+
+    dtg = verbs.add_parser('dtg-study', help='the tables and figures of the tuned-gyro paper',
+                           description='Recover a rocking base through two dynamically tuned '
+                           'gyros as the paper does, and compare with what it prints.')
+    dtg.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
+                     help='folder of the two figures (default: %(default)s)')
     return top
 
 
@@ -53,8 +59,9 @@ def main(arguments=None):
     """Run a verb; return the exit code: 0, 2 on bad input, 1 where a run failed."""
     chosen = parser().parse_args(arguments)
     # the verbs import what they need: "ins_sim --help" stays instant
-    from . import demo, predict, simulate
-    verb = {'simulate': simulate, 'predict': predict, 'demo': demo}[chosen.verb]
+    from . import demo, dtg_study, predict, simulate
+    verb = {'simulate': simulate, 'predict': predict, 'demo': demo,
+            'dtg-study': dtg_study}[chosen.verb]
     try:
         return verb.run(chosen)
     except (ValueError, OSError) as error:
