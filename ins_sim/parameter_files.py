@@ -7,6 +7,7 @@ The offline command line reads the same files as ``ros2 run --ros-args --params-
 
 from collections.abc import Mapping
 from difflib import get_close_matches
+import re
 
 import yaml
 
@@ -108,11 +109,8 @@ def _assign(values, section, name, value, where):
 
 def _number(value):
     """Return 1e-3 as the number it is: YAML 1.1, and so PyYAML, takes it for a text."""
-    if isinstance(value, str):
-        try:
-            return float(value)
-        except ValueError:
-            pass
+    if isinstance(value, str) and re.fullmatch(r'[-+]?\d+e[-+]?\d+', value, re.IGNORECASE):
+        return float(value)
     return value
 
 

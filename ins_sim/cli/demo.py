@@ -15,7 +15,7 @@ from ..bags.reading import read_errors
 from ..core.motions import make_motion
 from ..core.prediction import predict
 from ..core.settings import Pacing
-from ..report import figure, summary, table
+from ..report import figure, storage, summary, table
 
 EVERY = 10
 
@@ -43,7 +43,7 @@ def run(chosen):
         try:
             _part(name, settings, folder / name, console)
         except RuntimeError as error:
-            print(f'ins_sim demo: {name}: {error}; logs: {folder / name}', file=sys.stderr)
+            print(f'ins_sim demo: {name}: {error}', file=sys.stderr)
             return 1
     return 0
 
@@ -62,12 +62,21 @@ def _settings(name, duration_s, assignments=()):
 
 
 def _part(name, settings, folder, console):
+    storage.check_free(folder, force=True, mark='parameters.yaml')
+    # what is there stays until the new part is complete
+    work = folder.with_name(f'.{folder.name}.part')
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    try:
+        _run(name, settings, work, folder, console)
+        shutil.rmtree(folder, ignore_errors=True)
+        work.rename(folder)
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def _run(name, settings, work, folder, console):
     from ..ros.session import Session
-    # only what an earlier demo wrote is replaced
-    if folder.exists() and not (folder / 'parameters.yaml').exists() and any(folder.iterdir()):
-        raise ValueError(f'{folder} is not of an earlier demo; expected a new folder')
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     title = chosen_settings.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
@@ -75,11 +84,11 @@ def _part(name, settings, folder, console):
                   TextColumn('{task.completed:.0f} of {task.total:.0f} s'),
                   TimeRemainingColumn(), console=console, transient=True) as progress:
         task = progress.add_task('', total=length_s)
-        with Session(settings, folder, folder / 'bag', namespace) as session:
+        with Session(settings, work, work / 'bag', namespace) as session:
             counts = session.run(lambda t_s: progress.update(task, completed=t_s))
-    errors = read_errors(folder / 'bag', namespace)
+    errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings)
-    figure.save(folder / 'errors.png', title, errors, prediction)
+    figure.save(work / 'errors.png', title, errors, prediction)
     table.show(title, summary.rows(settings, errors, None, prediction), console)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
                   f'figure: {folder / "errors.png"}')

@@ -1,6 +1,8 @@
 """The command ``ins_sim``: each verb parses, calls and prints; nothing more."""
 
 import argparse
+from importlib import import_module
+import signal
 import sys
 
 from .. import __version__
@@ -56,13 +58,12 @@ def _settings(verb):
 
 
 def main(arguments=None):
-    """Run a verb; return the exit code: 0, 2 on bad input, 1 where a run failed."""
+    """Run a verb; return the exit code: 0, 2 bad input, 1 a run that failed, 130 interrupted."""
     chosen = parser().parse_args(arguments)
-    # the verbs import what they need: "ins_sim --help" stays instant
-    from . import demo, dtg_study, predict, simulate
-    verb = {'simulate': simulate, 'predict': predict, 'demo': demo,
-            'dtg-study': dtg_study}[chosen.verb]
+    signal.signal(signal.SIGTERM, _interrupt)
     try:
+        # the verbs import what they need: "ins_sim --help" stays instant
+        verb = import_module(f'ins_sim.cli.{chosen.verb.replace("-", "_")}')
         return verb.run(chosen)
     except (ValueError, OSError) as error:
         print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
@@ -70,6 +71,11 @@ def main(arguments=None):
     except KeyboardInterrupt:
         print(f'ins_sim {chosen.verb}: interrupted; nothing was written', file=sys.stderr)
         return 130
+
+
+def _interrupt(number, frame):
+    """End as Ctrl-C does: verbs clean up after KeyboardInterrupt."""
+    raise KeyboardInterrupt
 
 
 if __name__ == '__main__':

@@ -192,7 +192,7 @@ class DelaysUs:
     """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
 
     x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
-    y: float = setting(0.0, 'delay of the left channel (the paper calls it right, tau1)', 'us',
+    y: float = setting(0.0, 'delay of the left channel (tau1, right, in the paper)', 'us',
                        -1e6, 1e6)
     z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
 

@@ -39,6 +39,13 @@ class Settings:
     imu_sensor: ImuSensorSettings
     strapdown: StrapdownSettings
 
+    def __post_init__(self):
+        """Refuse rates that do not go together; a live strapdown reports them."""
+        sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
+        if sends != expects:
+            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
+                             f'{sends:g} Hz')
+
     def without_delays(self):
         """Return the settings of the zero-delay twin; it has the same instrument errors."""
         imu = self.imu_sensor

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, fields
 import json
+import os
 from pathlib import Path
 import shutil
 import tempfile
@@ -14,14 +15,22 @@ from .. import parameter_files
 MARK = 'summary.json'
 
 
-def check_free(folder, force):
-    """Raise ValueError unless the folder may be written: absent, or a run and force is given."""
+def check_free(folder, force, mark=MARK):
+    """
+    Raise ValueError unless the folder may be written: absent, or a run and force is given.
+
+    mark: the file by which a run is known.
+    """
     folder = Path(folder)
+    parent = next(p for p in folder.absolute().parents if p.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise ValueError(f'{folder} cannot be made in {parent}; expected a folder that may be '
+                         'written')
     if not folder.exists():
         return
     if not force:
         raise ValueError(f'{folder} exists; expected a new folder (or --force)')
-    if not folder.is_dir() or (any(folder.iterdir()) and not (folder / MARK).exists()):
+    if not folder.is_dir() or (any(folder.iterdir()) and not (folder / mark).exists()):
         raise ValueError(f'{folder} is no run of ins_sim; --force replaces only runs')
 
 

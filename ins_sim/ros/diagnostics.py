@@ -1,5 +1,7 @@
 """What a node says about itself on /diagnostics, once a second of wall time."""
 
+import math
+import re
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -19,7 +21,7 @@ class Monitor:
     def __init__(self, node, input_name=None, stale_s=2.0):
         self.received = self.sent = self.faults = 0
         self.state, self.awaited = 'running', True
-        self.last_fault = ''
+        self.last_fault, self._logged = '', {}
         self._node, self._input, self._stale_s = node, input_name, stale_s
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
@@ -29,7 +31,7 @@ class Monitor:
         node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def fault(self, sentence, fatal=False):
-        """Count a fault and log it, at most once a second."""
+        """Count a fault and log it, each kind at most once a second."""
         self.faults += 1
         self.last_fault = sentence
         self._fault_time = time.monotonic()
@@ -37,7 +39,11 @@ class Monitor:
         if fatal:
             logger.fatal(sentence)
         else:
-            logger.warning(sentence, throttle_duration_sec=1.0)
+            # by kind: the sentence without its numbers
+            kind = re.sub(r'[-+.\d]+(e[-+]?\d+)?', '#', sentence)
+            if self._fault_time - self._logged.get(kind, -math.inf) >= 1.0:
+                self._logged[kind] = self._fault_time
+                logger.warning(sentence)
 
     def publish(self):
         """Publish the status."""
@@ -49,7 +55,10 @@ class Monitor:
                                   name=self._node.get_fully_qualified_name(),
                                   hardware_id='ins_sim')
         silence = now - self._seen_time
-        if self._input and self.awaited and silence > self._stale_s:
+        if self._input and not self.received:
+            status.level, status.message = DiagnosticStatus.WARN, (
+                f'no message on {self._input} yet')
+        elif self._input and self.awaited and silence > self._stale_s:
             status.level, status.message = DiagnosticStatus.WARN, (
                 f'no message on {self._input} for {silence:.1f} s; expected a steady stream')
             if self.received and not self._stale:

@@ -59,6 +59,10 @@ class MotionGeneratorNode(Node):
     def run(self, executor, stop):
         """Publish until the end or until stop is set."""
         self._announce('running')
+        if not self._lock and not self._publishers[-1].get_subscription_count():
+            self.get_logger().warning(
+                f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
+                '(pacing.lock_step: true waits for the consumers and loses none)')
         self._pace.anchor(0)
         served = 0.0
         while not stop:
@@ -83,7 +87,9 @@ class MotionGeneratorNode(Node):
             if late and not self._paused:
                 self.monitor.fault(f'no acknowledgement on {topics.ACK.name} from '
                                    f'{", ".join(late)} for {self.settings.pacing.timeout_s:g} s; '
-                                   'expected the consumers of pacing.required to run', fatal=True)
+                                   'expected the consumers of pacing.required to run'
+                                   + (f' (heard: {", ".join(sorted(lock.strangers))})'
+                                      if lock.strangers else ''), fatal=True)
                 stop.request(EXIT_CONSUMER)
             if lock.repeat_due(self._next):
                 self._send(0)

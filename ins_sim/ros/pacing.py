@@ -49,11 +49,14 @@ class LockStep:
     def restart(self):
         """Forget all acknowledgements."""
         self._acked = dict.fromkeys(self._required, STARTING)
+        self.strangers = set()
         self._repeated = self.moved = time.monotonic()
 
     def ack(self, name, k, sent):
         """Take the acknowledgement of sample k; sent: number of samples sent."""
         last = self._acked.get(name)
+        if last is None:
+            self.strangers.add(name)
         # before the first sample is acknowledged a later one can only be an echo of a past run
         if last is None or k >= sent or k <= last or (last == STARTING and k != 0):
             return
