@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from difflib import get_close_matches
 import math
 
 from .settings import NODES
@@ -34,10 +33,16 @@ def values_of(settings, prefix=''):
 ALL_NAMES = frozenset(name for cls in NODES.values() for name in flatten(cls))
 
 
+def nearest(name, known):
+    """Return the known text that is most like name."""
+    # on the way of an error only, and off the way of a node's start
+    from difflib import get_close_matches
+    return get_close_matches(str(name), sorted(known), n=1, cutoff=0.0)[0]
+
+
 def unknown(name, known=ALL_NAMES):
     """Return the sentence about an unknown key, naming the nearest known one."""
-    near = get_close_matches(name, sorted(known), n=1, cutoff=0.0)
-    return f'unknown parameter {name!r}; the nearest known one is {near[0]!r}'
+    return f'unknown parameter {name!r}; the nearest known one is {nearest(name, known)!r}'
 
 
 def build(cls, values):
@@ -89,9 +94,8 @@ def check(name, value, f):
         if isinstance(v, float) and not math.isfinite(v) and v != high:
             raise ValueError(f'{name} is {v}; expected a finite number')
         if choices and v not in choices:
-            near = get_close_matches(str(v), choices, n=1, cutoff=0.0)
             raise ValueError(f'{name} is {v!r}; expected one of {", ".join(choices)} (nearest: '
-                             f'{near[0]})')
+                             f'{nearest(v, choices)})')
         if low is not None and not low <= v <= high:
             raise ValueError(f'{name} is {v:g}{" " + unit if unit else ""}; expected {low:g} to '
                              f'{high:g}{" " + unit if unit else ""}')

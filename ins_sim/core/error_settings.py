@@ -6,10 +6,9 @@ never the scatter of a sample, so that nothing changes meaning with the rate.  K
 triads are alike; ``ins_sim.core.triad_model`` brings both to SI.
 """
 
-from dataclasses import dataclass
 import math
 
-from .setting import setting
+from .setting import setting, Settings, settings_class
 
 Axes = tuple[float, ...]
 MOST = 1e9
@@ -41,8 +40,8 @@ REPORTED = ('standard deviation reported in place of that of the noise; negative
             'noise')
 
 
-@dataclass(frozen=True)
-class GyroErrors:
+@settings_class
+class GyroErrors(Settings):
     """Errors of the gyro triad."""
 
     bias_deg_h: Axes = axes(BIAS, 'deg/h', -MOST)
@@ -74,8 +73,8 @@ class GyroErrors:
     reported_sigma_deg_s: Axes = axes(REPORTED, 'deg/s', -1.0, default=-1.0)
 
 
-@dataclass(frozen=True)
-class AccelerometerErrors:
+@settings_class
+class AccelerometerErrors(Settings):
     """Errors of the accelerometer triad."""
 
     bias_ug: Axes = axes(BIAS, 'ug', -MOST)
@@ -104,8 +103,8 @@ class AccelerometerErrors:
     reported_sigma_m_s2: Axes = axes(REPORTED, 'm/s^2', -1.0, default=-1.0)
 
 
-@dataclass(frozen=True)
-class Temperature:
+@settings_class
+class Temperature(Settings):
     """Temperature of the instruments: constant, ramp and sinusoid of motion time."""
 
     reference_c: float = setting(25.0, 'temperature of the calibration', 'C', -100.0, 200.0)
@@ -115,8 +114,8 @@ class Temperature:
     period_s: float = setting(3600.0, 'period of the sinusoid', 's', 1.0, 1e7)
 
 
-@dataclass(frozen=True)
-class Sampling:
+@settings_class
+class Sampling(Settings):
     """How samples reach the outside; both triads share it, as they share a message."""
 
     latency_us: float = setting(0.0, 'added to every stamp', 'us', -1e6, 1e6)

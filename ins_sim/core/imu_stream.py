@@ -5,7 +5,6 @@ import math
 from .faults import check_finite, seconds, StreamFault
 from .imu import MotionImu, NODES, Triads
 from .instrument import ErringImu, with_errors
-from .motions import make_motion
 from .truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 
 BLOCK = 256
@@ -92,6 +91,7 @@ class PacedImu:
 
     def __init__(self, settings):
         self._settings = settings
+        from .motions import make_motion
         self._motion = make_motion(settings.motion, settings.datum, settings.earth)
         self.reset()
 

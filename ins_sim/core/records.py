@@ -22,7 +22,7 @@ class Record:
                       for f in fields(cls)})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Truth(Record):
     """
     True motion at instants.
@@ -41,7 +41,7 @@ class Truth(Record):
     f_ib_b: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ImuSamples(Record):
     """
     Mean reading over the interval (t - dt, t] that ends at the stamp.
@@ -55,7 +55,7 @@ class ImuSamples(Record):
     f: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NavStates(Record):
     """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
 
@@ -67,7 +67,7 @@ class NavStates(Record):
     q_nb: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NavErrors(Record):
     """
     Solution less truth, resolved in n: t_ns (n,) and four (n, 3) arrays.

@@ -5,14 +5,12 @@ This catalogue is the only place a parameter is described.  ROS parameters, the 
 the configuration reference are derived from it.
 """
 
-from dataclasses import dataclass
-
 from .error_settings import AccelerometerErrors, GyroErrors, Temperature
-from .setting import group, setting
+from .setting import group, setting, Settings, settings_class
 
 
-@dataclass(frozen=True)
-class Datum:
+@settings_class
+class Datum(Settings):
     """Origin of ``map``; the bench motions stand there."""
 
     latitude_deg: float = setting(55.75, 'geodetic latitude', 'deg', -89.9, 89.9)
@@ -20,22 +18,22 @@ class Datum:
     height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, 50000.0)
 
 
-@dataclass(frozen=True)
-class Earth:
+@settings_class
+class Earth(Settings):
     """The Earth of truth and navigation alike."""
 
     rotation: bool = setting(True, 'the Earth rotates, in the truth and in the navigation')
 
 
-@dataclass(frozen=True)
-class Time:
+@settings_class
+class Time(Settings):
     """Zero of motion time."""
 
     epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 2147483647)
 
 
-@dataclass(frozen=True)
-class Rocking:
+@settings_class
+class Rocking(Settings):
     """Motion 1: angle = amplitude sin(2 pi f t) about one axis."""
 
     axis: str = setting('north', 'level axis (east, north, up) or body axis (x, y, z)',
@@ -44,8 +42,8 @@ class Rocking:
     frequency_hz: float = setting(1.0, 'frequency', 'Hz', 0.0, 1000.0)
 
 
-@dataclass(frozen=True)
-class TwoAxis:
+@settings_class
+class TwoAxis(Settings):
     """Motion 2: constant rates of psi and gamma at constant theta."""
 
     psi_rate_rad_s: float = setting(1.0, 'rate of psi', 'rad/s', -100.0, 100.0)
@@ -53,8 +51,8 @@ class TwoAxis:
     detuning_rad_s: float = setting(0.0, 'added to the rate of psi', 'rad/s', -100.0, 100.0)
 
 
-@dataclass(frozen=True)
-class Coning:
+@settings_class
+class Coning(Settings):
     """The body axis describes a cone about its mean direction."""
 
     axis: str = setting('z', 'body axis that describes the cone', choices=('x', 'y', 'z'))
@@ -62,8 +60,8 @@ class Coning:
     frequency_hz: float = setting(1.0, 'frequency', 'Hz', 0.0, 1000.0)
 
 
-@dataclass(frozen=True)
-class Sculling:
+@settings_class
+class Sculling(Settings):
     """Rocking about the vertical with a vibration along the mean forward axis."""
 
     amplitude_deg: float = setting(1.0, 'amplitude of the rocking', 'deg', 0.0, 90.0)
@@ -72,8 +70,8 @@ class Sculling:
     phase_deg: float = setting(0.0, 'phase of the vibration', 'deg', -360.0, 360.0)
 
 
-@dataclass(frozen=True)
-class Sinusoids:
+@settings_class
+class Sinusoids(Settings):
     """One sinusoid on each angle (psi, theta, gamma) and on each coordinate (E, N, U)."""
 
     angle_deg: tuple[float, ...] = setting((3.0, 2.0, 4.0), 'amplitudes of psi, theta, gamma',
@@ -90,8 +88,8 @@ class Sinusoids:
                                                     -360.0, 360.0, size=3)
 
 
-@dataclass(frozen=True)
-class Harmonics:
+@settings_class
+class Harmonics(Settings):
     """Periodic angles: entry k of each list is the harmonic k + 1 of the period."""
 
     period_s: float = setting(10.0, 'common period', 's', 1e-3, 1e6)
@@ -109,8 +107,8 @@ class Harmonics:
                                                  -360.0, 360.0)
 
 
-@dataclass(frozen=True)
-class Recording:
+@settings_class
+class Recording(Settings):
     """A recorded flight."""
 
     path: str = setting('', 'CSV file, plain or gzip')
@@ -126,8 +124,8 @@ MOTION_KINDS = ('static', 'rocking', 'two_axis', 'coning', 'sculling', 'sinusoid
                 'cruise', 'racetrack', 'aggressive', 'recording')
 
 
-@dataclass(frozen=True)
-class MotionSettings:
+@settings_class
+class MotionSettings(Settings):
     """The motion; only the group of its kind is used."""
 
     kind: str = setting('two_axis', 'which motion', choices=MOTION_KINDS)
@@ -146,8 +144,8 @@ class MotionSettings:
     recording: Recording = group(Recording)
 
 
-@dataclass(frozen=True)
-class Pacing:
+@settings_class
+class Pacing(Settings):
     """How fast the generator goes."""
 
     real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
@@ -161,16 +159,16 @@ class Pacing:
                                'consumer is named and the run ends', 's', 0.1, 1e5)
 
 
-@dataclass(frozen=True)
-class Topics:
+@settings_class
+class Topics(Settings):
     """Quality of service of the data topics (reliable, volatile)."""
 
     depth: int = setting(2000, 'queue depth of publishers and subscriptions', 'messages', 1,
                          100000)
 
 
-@dataclass(frozen=True)
-class MotionGeneratorSettings:
+@settings_class
+class MotionGeneratorSettings(Settings):
     """Node motion_generator."""
 
     datum: Datum = group(Datum)
@@ -187,8 +185,8 @@ class MotionGeneratorSettings:
     exit_at_end: bool = setting(True, 'end the process after the last sample; else stay up')
 
 
-@dataclass(frozen=True)
-class DelaysUs:
+@settings_class
+class DelaysUs(Settings):
     """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
 
     x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
@@ -197,8 +195,8 @@ class DelaysUs:
     z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
 
 
-@dataclass(frozen=True)
-class Dtg:
+@settings_class
+class Dtg(Settings):
     """Two dynamically tuned gyros in place of the ideal triad."""
 
     preset: str = setting('tactical', 'parameters of both gyros (core.tuned_gyro.PRESETS); the '
@@ -211,8 +209,8 @@ class Dtg:
                         choices=('quadratic', 'linear'))
 
 
-@dataclass(frozen=True)
-class Gyro:
+@settings_class
+class Gyro(Settings):
     """The gyro triad."""
 
     model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
@@ -222,8 +220,8 @@ class Gyro:
     errors: GyroErrors = group(GyroErrors)
 
 
-@dataclass(frozen=True)
-class Accelerometer:
+@settings_class
+class Accelerometer(Settings):
     """The accelerometer triad."""
 
     delay_us: DelaysUs = group(DelaysUs)
@@ -233,8 +231,8 @@ class Accelerometer:
 OUTPUTS = ('rotation_vector', 'integrated')
 
 
-@dataclass(frozen=True)
-class ImuSensorSettings:
+@settings_class
+class ImuSensorSettings(Settings):
     """Node imu_sensor."""
 
     datum: Datum = group(Datum)
@@ -260,8 +258,8 @@ class ImuSensorSettings:
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
 
 
-@dataclass(frozen=True)
-class Vertical:
+@settings_class
+class Vertical(Settings):
     """The vertical channel."""
 
     channel: str = setting('truth', 'height and vertical velocity from truth, free, or damped '
@@ -269,8 +267,8 @@ class Vertical:
     time_constant_s: float = setting(20.0, 'time constant of the damped channel', 's', 0.1, 1e4)
 
 
-@dataclass(frozen=True)
-class Initial:
+@settings_class
+class Initial(Settings):
     """Initial errors, added to the truth, resolved in East, North, Up."""
 
     after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
@@ -282,8 +280,8 @@ class Initial:
                                                   1e6, size=3)
 
 
-@dataclass(frozen=True)
-class StrapdownSettings:
+@settings_class
+class StrapdownSettings(Settings):
     """Node strapdown."""
 
     datum: Datum = group(Datum)

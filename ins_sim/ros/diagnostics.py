@@ -25,7 +25,7 @@ class Monitor:
         self._node, self._input, self._stale_s = node, input_name, stale_s
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
-        self._stale = False
+        self._stale, self._told = False, None
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
         # a wall timer: simulated time may stand still, and that is worth reporting
         node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -55,6 +55,11 @@ class Monitor:
                                   name=self._node.get_fully_qualified_name(),
                                   hardware_id='ins_sim')
         silence = now - self._seen_time
+        if self._input and self._told != bool(self.received):
+            # here and not at the start, where the first log line would cost 50 ms of CPU
+            self._told = bool(self.received)
+            self._node.get_logger().info(
+                f'{"receiving" if self._told else "waiting for"} {self._input}')
         if self._input and not self.received:
             status.level, status.message = DiagnosticStatus.WARN, (
                 f'no message on {self._input} yet')

@@ -40,12 +40,9 @@ class StageNode(Node):
         self.create_subscription(String, topics.STATUS.name, self._on_status, qos.latched())
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained,
                                    LINGER_S)
-        self.get_logger().info(f'waiting for {self._queue.subscription.topic_name}')
 
     def _on_data(self, data):
         if not self.stop:
-            if not self.monitor.received:
-                self.get_logger().info(f'first message on {self._queue.subscription.topic_name}')
             self.monitor.received += 1
             self.on_message(data)
 
