@@ -6,12 +6,11 @@ The offline command line reads the same files as ``ros2 run --ros-args --params-
 """
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 import re
 
 import yaml
 
-from .core.catalogue import ALL_NAMES, build, flatten, unknown, values_of
+from .core.catalogue import ALL_NAMES, build, flatten, nearest, unknown, values_of
 from .core.settings import NODES
 from .core.simulation import Settings
 
@@ -64,9 +63,8 @@ def _sections(path):
     for section, body in document.items():
         node = _node_of(section)
         if node is None:
-            near = get_close_matches(str(section), ['/**', *NODES], n=1, cutoff=0.0)[0]
             raise ValueError(f'{path}: unknown section {section!r}; the nearest known one is '
-                             f'{near!r}')
+                             f'{nearest(section, ["/**", *NODES])!r}')
         if not isinstance(body, Mapping) or list(body) != ['ros__parameters'] or not isinstance(
                 body['ros__parameters'], Mapping):
             raise ValueError(f'{path}: section {section!r} expects exactly one mapping, '

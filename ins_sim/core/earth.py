@@ -45,7 +45,7 @@ def geodetic(x, y, z):
     """
     Return latitude, longitude (rad) and height (m) of a point in e, floats, not at the pole.
 
-    Bowring's start and Newton-like fixed point in the reduced latitude; five rounds reach the
+    Bowring's start and Newton-like fixed point in the reduced latitude; three rounds reach the
     rounding floor (1e-9 m) from -10 km to 1000 km.
     """
     p = math.hypot(x, y)

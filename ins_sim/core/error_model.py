@@ -30,9 +30,6 @@ def propagate(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, posi
         ends = (x[per_step::per_step] - x[:-1:per_step]) / (2.0 * per_step)
         return body + ends
 
-    def product(a, b):
-        return np.cross(a, b)
-
     spin = earth.ROTATION_RATE if rotation else 0.0
     sin, cos = np.sin(truth.lat), np.cos(truth.lat)
     r_n, r_e = earth.radii(sin)
@@ -40,8 +37,8 @@ def propagate(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, posi
     pull = np.stack((g / (r_e + truth.height), g / (r_n + truth.height)), axis=-1)
     pull[:, 0] += spin * spin
     pull[:, 1] += (spin * sin) ** 2
-    force = mean(product(beta, f_n) + df_n)
-    turn = mean(-product(omega_in, beta))
+    force = mean(np.cross(beta, f_n) + df_n)
+    turn = mean(-np.cross(omega_in, beta))
     rows = zip(mean(omega_in).tolist(), mean(f_n).tolist(), force.tolist(), turn.tolist(),
                mean(pull).tolist())
 

@@ -8,9 +8,9 @@ returns a new dict of settings to be read below one's own.
 """
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from types import MappingProxyType
 
+from .catalogue import nearest
 from .error_settings import AccelerometerErrors, GyroErrors
 
 GYRO, ACCELEROMETER = 'gyro.errors.', 'accelerometer.errors.'
@@ -127,9 +127,8 @@ def preset(name):
     Raises ValueError, naming the nearest known one, where there is none.
     """
     if name not in PRESETS:
-        near = get_close_matches(str(name), sorted(PRESETS), n=1, cutoff=0.0)
         raise ValueError(f'unknown instrument preset {name!r}; the nearest known one is '
-                         f'{near[0]!r}')
+                         f'{nearest(name, PRESETS)!r}')
     return dict(PRESETS[name].values)
 
 
