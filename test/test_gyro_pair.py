@@ -163,7 +163,7 @@ def test_drift_of_motion_2_is_the_predicted_one(preset):
         reading, parity = gyros.step(start, mid, end)
         worst = max(worst, abs(parity))
         true.step((start, mid, mid, end), DT)
-        found.advance(reading, DT)
+        found.advance(tuple(DT * w for w in reading), DT)
         if k + 1 in (settle, settle + count):
             offs.append(attitude.logarithm(attitude.multiply(
                 found.q, attitude.conjugate(true.q))))

@@ -8,7 +8,7 @@ from studies import MOTION_2, settings
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.imu_stream import make_imu, StreamImu
-from ins_sim.core.instrument import with_errors
+from ins_sim.core.instrument import reported_variances, with_errors
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
 from ins_sim.core.records import ImuSamples
@@ -61,7 +61,7 @@ def test_noise_has_the_density_of_the_settings():
     """Variance of the readings less the ideal ones, within 4 sigma of chi-square."""
     s, _, noisy = offline(NOISY)
     _, _, ideal = offline({**MOTION_2, 'source': 'stream'})
-    variances = with_errors(s.imu_sensor).variances
+    variances = reported_variances(s.imu_sensor)
     for error, variance in zip((noisy.omega - ideal.omega, noisy.f - ideal.f), variances):
         ratio = error.var(axis=0) / variance
         print(f'\nvariance over reported variance {ratio}')
@@ -72,7 +72,7 @@ def test_noise_has_the_density_of_the_settings():
 def test_covariances_reach_the_message():
     """sensor_msgs/Imu: the diagonals hold the variances, row-major; unknown where perfect."""
     s, _, _ = offline(NOISY)
-    variances = with_errors(s.imu_sensor).variances
+    variances = reported_variances(s.imu_sensor)
     topic = topics.imu_raw(*variances)
     _, doubles = topic.reader([(0, 37)]).read(topic.writer().pack(0, (0.0,) * 3, (0.0,) * 3))
     assert doubles[4] == -1.0

@@ -65,7 +65,7 @@ def test_quaternion_is_exact_for_a_constant_rate():
     """One step of any length."""
     w = (0.3, -0.8, 1.1)
     algorithm = Orientation('quaternion')
-    algorithm.advance(w, 1.3)
+    algorithm.advance(tuple(1.3 * a for a in w), 1.3)
     np.testing.assert_allclose(algorithm.q, attitude.exponential(tuple(1.3 * a for a in w)),
                                atol=1e-15)
 
@@ -77,10 +77,10 @@ def test_readings_alone_and_a_kept_state(kind):
     assert min(abs(np.array(algorithm.q) - start).max(),
                abs(np.array(algorithm.q) + start).max()) < 1e-14
     kept = algorithm.state
-    algorithm.advance((0.1, 0.2, 0.3), 0.01)
+    algorithm.advance((0.001, 0.002, 0.003), 0.01)
     once = algorithm.state
     algorithm.state = kept
-    algorithm.advance((0.1, 0.2, 0.3), 0.01)
+    algorithm.advance((0.001, 0.002, 0.003), 0.01)
     assert algorithm.state == once
     expected = attitude.multiply(tuple(start), attitude.exponential((0.001, 0.002, 0.003)))
     np.testing.assert_allclose(algorithm.dcm, dcm_of(expected), atol=1e-12)

@@ -96,8 +96,13 @@ class GyroPair:
         """Let every channel read what it should."""
         self._faults = None
 
-    def _into_cases(self, w):
-        """Return the complex rates of both cases of a body rate."""
+    @staticmethod
+    def spins(w):
+        """Return the components of a body vector along both spin axes."""
+        return w[2], w[1]
+
+    def into_cases(self, w):
+        """Return the components y + j z of a body vector in both cases, in two complex numbers."""
         x, y, z = w
         if self._turned:
             return complex(_R * (x + y), _R * (y - x)), complex(_R * (z + x), _R * (x - z))
@@ -105,7 +110,7 @@ class GyroPair:
 
     def settle(self, w):
         """Take the state of gyros that have long turned at the constant body rate w, rad/s."""
-        for gyro, u in zip(self.gyros, self._into_cases(w)):
+        for gyro, u in zip(self.gyros, self.into_cases(w)):
             gyro.settle(u)
 
     def _out(self, a, b):
@@ -115,12 +120,24 @@ class GyroPair:
             return y
         return tuple([bias + scale * v for v, (bias, scale) in zip(y, self._faults)])
 
-    def channels(self, w_start, w_mid, w_end):
-        """Advance by dt; body rates omega_ib_b, rad/s; return the mean of the four channels."""
-        (a0, b0), (am, bm) = self._into_cases(w_start), self._into_cases(w_mid)
-        a1, b1 = self._into_cases(w_end)
+    def instant(self, w):
+        """Return the four channels of perfect gyros that turn at the body rate w, rad/s."""
+        return self._out(*self.into_cases(w))
+
+    def channels(self, w_start, w_mid, w_end, disturbances=None):
+        """
+        Advance by dt; body rates omega_ib_b, rad/s; return the mean of the four channels.
+
+        disturbances: (moment, tilt, jump) of either gyro, as TunedGyro.step_disturbed takes them.
+        """
+        (a0, b0), (am, bm) = self.into_cases(w_start), self.into_cases(w_mid)
+        a1, b1 = self.into_cases(w_end)
         first, second = self.gyros
-        return self._out(first.step(a0, am, a1), second.step(b0, bm, b1))
+        if disturbances is None:
+            return self._out(first.step(a0, am, a1), second.step(b0, bm, b1))
+        one, two = disturbances
+        return self._out(first.step_disturbed(a0, am, a1, *one),
+                         second.step_disturbed(b0, bm, b1, *two))
 
     def step(self, w_start, w_mid, w_end):
         """Advance by dt; return the mean body rates (x, y, z), rad/s, and the parity, rad/s."""
@@ -128,8 +145,8 @@ class GyroPair:
 
     def step_stages(self, w_start, w_mid, w_end):
         """Advance by dt with RK4; return the body rates at its four stages, rad/s."""
-        (a0, b0), (am, bm) = self._into_cases(w_start), self._into_cases(w_mid)
-        a1, b1 = self._into_cases(w_end)
+        (a0, b0), (am, bm) = self.into_cases(w_start), self.into_cases(w_mid)
+        a1, b1 = self.into_cases(w_end)
         first, second = self.gyros
         return [self.combine(self._out(a, b))[0] for a, b in
                 zip(first.step_stages(a0, am, a1), second.step_stages(b0, bm, b1))]

@@ -54,15 +54,6 @@ def velocity_increment(q_start, forces_m, node_rotations):
     return attitude.rotate_back(q_start, mean)
 
 
-def make_pair(gyro, dt_s):
-    """Return the GyroPair of settings.Gyro where its model is dtg, else None."""
-    if gyro.model != 'dtg':
-        return None
-    from .gyro_pair import GyroPair
-    from .tuned_gyro import PRESETS
-    return GyroPair(PRESETS[gyro.dtg.preset], dt_s, gyro.dtg.arrangement, hold=gyro.dtg.hold)
-
-
 class Triads:
     """
     The channels of both triads: which distinct delay each has, and what one step reads.
@@ -82,9 +73,11 @@ class Triads:
         self._gyro_at = tuple(self.attitude_delays.index(d) for d in self.gyro_delays)
         self._accel_at = tuple(self.attitude_delays.index(d) for d in self.accel_delays)
         dt = self.dt_ns * 1e-9
-        self.pair = make_pair(settings.gyro, dt)
-        # a tuned gyro takes the rate at the start, the middle and the end of a step
-        self.rate_nodes = NODES if self.pair is None else (0.0, 0.5, 1.0)
+        self.pair, self.rate_nodes = None, NODES
+        if settings.gyro.model == 'dtg':
+            from .pair_instrument import PairInstrument
+            self.pair = PairInstrument(settings)
+            self.rate_nodes = self.pair.nodes
         self.begin()
         self._per_dt = 1.0 / dt
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
@@ -99,7 +92,7 @@ class Triads:
 
     def rotated(self, q_start, q_end, forces_m):
         """
-        Return omega, f of one step of the output ``rotation_vector``.
+        Return omega, f, None of one step of the output ``rotation_vector``.
 
         q_start, q_end: q_mb at each attitude delay; forces_m: for each accelerometer delay, the
         specific force in m at the three Gauss nodes.
@@ -109,25 +102,33 @@ class Triads:
              for k, f in zip(self._accel_at, forces_m)]
         (g0, g1, g2), (a0, a1, a2), n = self._gyro, self._accel, self._per_dt
         return ((phi[g0][0] * n, phi[g1][1] * n, phi[g2][2] * n),
-                (u[a0][0], u[a1][1], u[a2][2]))
+                (u[a0][0], u[a1][1], u[a2][2]), None)
 
-    def integrals(self, rates, forces_b):
+    def instant(self, t_ns, omega, f):
+        """Return omega, f, parity or None of rate and specific force at an instant."""
+        if self.pair is None:
+            return omega, f, None
+        rate, parity = self.pair.first(t_ns, omega, f)
+        return rate, f, parity
+
+    def integrals(self, t_ns, rates, forces_b):
         """
-        Return omega, f of one step of the output ``integrated``.
+        Return omega, f, parity or None of one step, ending at t_ns, of the output ``integrated``.
 
         rates, forces_b: for each gyro and each accelerometer delay, the vector in b at
         ``rate_nodes`` and at the Gauss nodes.
         """
         force = self._pick_means(forces_b, self._accel)
         if self.pair is None:
-            return self._pick_means(rates, self._gyro), force
+            return self._pick_means(rates, self._gyro), force, None
         # an axis is late at the input of the rotors, which are linear
-        start, middle, end = (tuple(rates[k][node][i] for i, k in enumerate(self._gyro))
-                              for node in range(3))
+        x, y, z = self._gyro
+        late = [(a[0], b[1], c[2]) for a, b, c in zip(rates[x], rates[y], rates[z])]
         if not self._settled:
-            self.pair.settle(start)
+            self.pair.settle(late[0])
             self._settled = True
-        return self.pair.step(start, middle, end)[0], force
+        omega, parity = self.pair.step(t_ns, late, force)
+        return omega, force, parity
 
     @staticmethod
     def _pick_means(nodes, picks):
@@ -140,11 +141,13 @@ class MotionImu:
     """
     The IMU fed by a motion that can be evaluated anywhere (closed form or recording).
 
-    settings: ImuSensorSettings; motion: has at(t_ns) -> Truth; first_ns: motion time of sample 0.
+    settings: ImuSensorSettings; motion: has at(t_ns) -> Truth; first_ns: motion time of sample 0;
+    triads: of the same settings, to be used instead of new ones.
     """
 
-    def __init__(self, settings, motion, first_ns):
-        self._triads = Triads(settings)
+    def __init__(self, settings, motion, first_ns, triads=None):
+        self._triads = Triads(settings) if triads is None else triads
+        self._triads.begin()
         self._motion = motion
         self._first_ns = first_ns
         self._frozen = settings.history == 'frozen'
@@ -162,7 +165,7 @@ class MotionImu:
             forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_b)
             readings = []
             for t, w, f in zip(t_ns.tolist(), rates, forces):
-                readings.append(triads.integrals(w, f))
+                readings.append(triads.integrals(t, w, f))
                 if t == self._first_ns:
                     # the run begins here, as on a stream, which knows nothing of before
                     triads.begin()
@@ -176,8 +179,7 @@ class MotionImu:
             for q_end, f in zip(ends, forces):
                 readings.append(triads.rotated(self._q_start, q_end, f))
                 self._q_start = q_end
-        omega, f = zip(*readings)
-        return ImuSamples(t_ns=t_ns, omega=np.array(omega), f=np.array(f))
+        return ImuSamples.of_readings(t_ns, readings)
 
     def _truth(self, t_ns):
         return self._motion.at(np.maximum(t_ns, self._first_ns) if self._frozen else t_ns)
@@ -197,7 +199,7 @@ class MotionImu:
         return self._truth(t_ns).f_ib_b.tolist()
 
     def _at_nodes(self, t_ns, delays, values, nodes=NODES):
-        """Yield for each step, for each delay, the values at three nodes of [0, 1]."""
+        """Yield for each step, for each delay, the values at the nodes of [0, 1]."""
         dt_ns = self._triads.dt_ns
         offsets = [round(dt_ns * (s - 1.0)) for s in nodes]
         return zip(*(zip(*(values(t_ns + (o - d)) for o in offsets)) for d in delays))

@@ -27,8 +27,9 @@ class StreamImu:
     """
 
     def __init__(self, settings):
-        self._settings = settings
         self._frozen = settings.history == 'frozen'
+        self._triads = Triads(settings)
+        self.pair = self._triads.pair
         self.reset()
         dt_ns, delays = self._triads.dt_ns, self._triads.attitude_delays
         self._node_ns = [round(dt_ns * (s - 1.0)) for s in NODES]
@@ -37,7 +38,8 @@ class StreamImu:
 
     def reset(self):
         """Forget everything; the next sample is the first."""
-        self._triads = triads = Triads(self._settings)
+        triads = self._triads
+        triads.begin()
         wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
         delays = triads.attitude_delays
         reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
@@ -49,15 +51,15 @@ class StreamImu:
         """
         Take one truth sample (motion time) and return the readings it completes.
 
-        Return a list of (t_ns, omega, f).  Raise StreamFault as TruthBuffer.push does; the first
-        sample may be repeated, and is answered again.
+        Return a list of (t_ns, omega, f, parity or None).  Raise StreamFault as TruthBuffer.push
+        does; the first sample may be repeated, and is answered again.
         """
         buffer = self._buffer
         if not (buffer.count_is_one and t_ns == buffer.newest_ns):
             buffer.push(t_ns, q_mb, omega_ib_b, f_ib_b)
         if buffer.count_is_one:
             self._next_ns = t_ns + self._triads.dt_ns
-            return [(t_ns, omega_ib_b, f_ib_b)]
+            return [(t_ns, *self._triads.instant(t_ns, omega_ib_b, f_ib_b))]
         readings = []
         while self._next_ns + self._lead_ns <= t_ns:
             readings.append((self._next_ns, *self._read(self._next_ns)))
@@ -68,8 +70,8 @@ class StreamImu:
         triads, buffer = self._triads, self._buffer
         if triads.integrated:
             rates = self._nodes(t_ns, triads.gyro_delays, RATE, self._rate_node_ns)
-            return triads.integrals(rates, self._nodes(t_ns, triads.accel_delays, FORCE_B,
-                                                       self._node_ns))
+            return triads.integrals(t_ns, rates, self._nodes(t_ns, triads.accel_delays, FORCE_B,
+                                                             self._node_ns))
         if self._q_start is None:
             self._q_start = [buffer.attitude(t_ns - triads.dt_ns - d)
                              for d in triads.attitude_delays]
@@ -80,10 +82,8 @@ class StreamImu:
         return reading
 
     def _nodes(self, t_ns, delays, field, offsets):
-        o1, o2, o3 = offsets
         cubic = self._buffer.cubic
-        return [(cubic(t_ns + o1 - d, field), cubic(t_ns + o2 - d, field),
-                 cubic(t_ns + o3 - d, field)) for d in delays]
+        return [[cubic(t_ns + o - d, field) for o in offsets] for d in delays]
 
 
 class PacedImu:
@@ -93,6 +93,8 @@ class PacedImu:
         self._settings = settings
         from .motions import make_motion
         self._motion = make_motion(settings.motion, settings.datum, settings.earth)
+        self._triads = Triads(settings)
+        self.pair = self._triads.pair
         self.reset()
 
     def reset(self):
@@ -104,7 +106,7 @@ class PacedImu:
         """Return the readings up to the stamp t_ns, as StreamImu.push does."""
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         if self._imu is None:
-            self._imu = MotionImu(self._settings, self._motion, t_ns)
+            self._imu = MotionImu(self._settings, self._motion, t_ns, self._triads)
             self._first = []
             self._first_ns = self._last_ns = t_ns
         if t_ns < self._last_ns:
@@ -129,6 +131,7 @@ class PacedImu:
         if left <= 0:
             return False
         block = imu.advance(left)
+        parity = [None] * left if block.parity is None else block.parity.tolist()
         self._ready = list(zip(block.t_ns.tolist(), map(tuple, block.omega.tolist()),
-                               map(tuple, block.f.tolist())))[::-1]
+                               map(tuple, block.f.tolist()), parity))[::-1]
         return True

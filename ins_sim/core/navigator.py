@@ -12,6 +12,7 @@ from .errors import ErrorMeter
 from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
 from .imu import period_ns
 from .map_frame import MapFrame
+from .orientation import Orientation
 
 CHANNELS = {'truth': strapdown.FROM_TRUTH, 'free': strapdown.FREE, 'damped': strapdown.DAMPED}
 
@@ -31,13 +32,13 @@ class Strapdown:
         self._channel = CHANNELS[settings.vertical.channel]
         self._damping = strapdown.damping(settings.vertical.time_constant_s)
         self._after_ns = round(settings.initial.after_s * 1e9)
-        self._state = None
+        self._place = self._orientation = None
         self._first_ns = None
 
     @property
     def state(self):
         """Return (q_ib, lat, lon, height, v), or None before the start."""
-        return self._state
+        return None if self._place is None else (self._orientation.q, *self._place)
 
     def step(self, t_ns, omega, f, truth):
         """
@@ -45,7 +46,7 @@ class Strapdown:
 
         omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb).
         """
-        if self._state is None:
+        if self._place is None:
             if self._first_ns is None:
                 self._first_ns = t_ns
             if t_ns < self._first_ns + self._after_ns:
@@ -68,9 +69,10 @@ class Strapdown:
         elif self._channel == strapdown.DAMPED:
             reference = (truth[2], *self._damping, self._wander)
         turned = self._spin * (0.5 * ((last_ns - self._start_ns) + (t_ns - self._start_ns)) * 1e-9)
-        *state, self._wander = strapdown.step(*self._state, phi, u, dt, self._spin, turned,
-                                              self._channel, reference)
-        self._state = tuple(state)
+        *place, self._wander = strapdown.step(self._orientation.q, *self._place, u, dt, self._spin,
+                                              turned, self._channel, reference)
+        self._place = tuple(place)
+        self._orientation.advance(phi, dt)
         self._last = (t_ns, alpha, nu)
         return True
 
@@ -88,21 +90,23 @@ class Strapdown:
             height += up
         else:
             v = (*v[:2], truth[3][2])
-        self._state = (q_ib, lat, lon, height, v)
+        self._orientation = Orientation(self._settings.orientation, q_ib)
+        self._place = (lat, lon, height, v)
         self._start_ns = t_ns
         self._wander = 0.0
         self._meter = ErrorMeter(self._spin)
 
     def solution(self, t_ns):
         """Return lat, lon, height, v_n, q_nb at the last step."""
-        q_ib, lat, lon, height, v = self._state
+        lat, lon, height, v = self._place
         inertial_lon = lon + self._spin * ((t_ns - self._start_ns) * 1e-9)
         q_in = strapdown.level_frame(lat, inertial_lon)
-        return lat, lon, height, v, attitude.multiply(attitude.conjugate(q_in), q_ib)
+        q_nb = attitude.multiply(attitude.conjugate(q_in), self._orientation.q)
+        return lat, lon, height, v, q_nb
 
     def errors(self, t_ns, truth):
         """Return attitude, velocity, position errors and drift; once a step, in order."""
-        return self._meter.measure((t_ns - self._start_ns) * 1e-9, self._state, truth)
+        return self._meter.measure((t_ns - self._start_ns) * 1e-9, self.state, truth)
 
 
 class Navigator:
@@ -189,7 +193,8 @@ class Navigator:
                 raise StreamFault(
                     f'imu at {seconds(t_ns)} has no truth of the same stamp, the nearest is '
                     f'{seconds(truth[0][0])}; expected a truth rate that is a multiple of the '
-                    'IMU rate, both from the same start', restart=True)
+                    'IMU rate, both from the same start (imu_time: nominal for stamps with jitter '
+                    'or latency)', restart=True)
             imu.popleft()
             output = self._advance(t_ns, omega, f, self._frame.geodetic_one(*truth[0][1:]))
             outputs.extend(output)

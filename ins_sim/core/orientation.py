@@ -111,6 +111,11 @@ def quaternion(q, rates, dt):
     phi = (s * (w1[0] + 2.0 * (w2[0] + w3[0]) + w4[0]) + t * c[0],
            s * (w1[1] + 2.0 * (w2[1] + w3[1]) + w4[1]) + t * c[1],
            s * (w1[2] + 2.0 * (w2[2] + w3[2]) + w4[2]) + t * c[2])
+    return turn(q, phi)
+
+
+def turn(q, phi):
+    """Return the unit quaternion q after the rotation vector phi, rad: exact."""
     return attitude.normalise(attitude.multiply(q, attitude.exponential(phi)))
 
 
@@ -142,9 +147,13 @@ class Orientation:
         """Advance by dt, s; rates: four vectors at start, middle, middle, end, rad/s."""
         self.state = self._step(self.state, rates, dt)
 
-    def advance(self, reading, dt):
-        """Advance by dt, s, at the mean rate of an interval, rad/s."""
-        self.state = self._step(self.state, (reading,) * 4, dt)
+    def advance(self, phi, dt):
+        """Advance by the rotation vector phi, rad, of an interval dt, s, at its constant rate."""
+        if self._step is quaternion:
+            self.state = turn(self.state, phi)
+        else:
+            rate = (phi[0] / dt, phi[1] / dt, phi[2] / dt)
+            self.state = self._step(self.state, (rate,) * 4, dt)
 
     @property
     def q(self):

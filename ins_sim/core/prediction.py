@@ -5,15 +5,16 @@ The product w x (lag matrix) w is due to J. L. Farrell, "Performance of Strapdow
 Attitude Reference Systems", J. Spacecraft and Rockets, September 1966.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 
 from . import attitude, earth
 from .error_model import propagate
-from .imu import delays_ns, make_pair
+from .imu import delays_ns
 from .motions import check_length, make_motion
+from .pair_instrument import make_pair
 
 SUBSAMPLES = 8
 STEP_S = 0.1
@@ -82,6 +83,19 @@ def late_attitude_error(truth, omega_in_n, tau, step_s):
     return late[0] - late + np.concatenate([np.zeros((1, 3)), running])
 
 
+class NoPrediction(ValueError):
+    """The linear theory does not hold for the settings."""
+
+
+def exact_pair(gyro, step_s):
+    """Return the GyroPair of settings.Gyro by the exact method; NoPrediction if it is unstable."""
+    try:
+        return make_pair(replace(gyro, dtg=replace(gyro.dtg, method='exact',
+                                                   on_unstable='refuse')), step_s)
+    except ValueError as error:
+        raise NoPrediction(f'no prediction: {error}') from None
+
+
 def pair_attitude_error(motion, gyro, tau, t):
     """
     Return beta (n, 3), rad, of two tuned gyros: the integral of R (reading - rate).
@@ -93,7 +107,7 @@ def pair_attitude_error(motion, gyro, tau, t):
     halves = t[0] + 0.5 * step_s * np.arange(2 * len(t) - 1)
     late = np.stack([motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
                      for i, d in enumerate(tau)], axis=-1)
-    pair = make_pair(gyro, step_s)
+    pair = exact_pair(gyro, step_s)
     pair.settle(late[0])
     reading, _ = pair.advance(np.stack((late[:-1:2], late[1::2], late[2::2]), axis=1))
     truth = motion.at(_nanoseconds(halves))
@@ -154,7 +168,11 @@ class Prediction:
 
 
 def predict(settings):
-    """Return the Prediction of simulation.Settings; ValueError where no such run exists."""
+    """
+    Return the Prediction of simulation.Settings.
+
+    Raises ValueError where no such run exists, NoPrediction for rotors that only RK4 damps.
+    """
     generator, sensor, nav = (settings.motion_generator, settings.imu_sensor, settings.strapdown)
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
@@ -178,7 +196,7 @@ def predict(settings):
         beta = pair_attitude_error(motion, sensor.gyro, tau, t)
         drift = beta[-1] / span_s
         if motion.period_s:
-            response = make_pair(sensor.gyro, fine_s).response
+            response = exact_pair(sensor.gyro, fine_s).response
             drift = channel_drift(motion, lambda w: response(w) * np.exp(
                 -1j * np.multiply.outer(w, tau))[:, None, :])
     beta += np.radians(nav.initial.attitude_error_deg)

@@ -6,20 +6,24 @@ import numpy as np
 
 
 class Record:
-    """Slicing and joining along the leading (time) axis, for every record class."""
+    """Slicing and joining along the leading (time) axis; a field that is None stays None."""
 
     def __len__(self):
         return len(self.t_ns)
 
     def __getitem__(self, index):
-        return type(self)(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
+        return type(self)(**{name: value[index] for name, value in self.arrays().items()})
+
+    def arrays(self):
+        """Return {field: array} of the fields that are there."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
 
     @classmethod
     def concatenate(cls, parts):
         """Join histories in the order given."""
-        parts = list(parts)
-        return cls(**{f.name: np.concatenate([getattr(p, f.name) for p in parts])
-                      for f in fields(cls)})
+        parts = [part.arrays() for part in parts]
+        return cls(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +51,21 @@ class ImuSamples(Record):
     Mean reading over the interval (t - dt, t] that ends at the stamp.
 
     t_ns (n,) int64; omega (n, 3) rad/s and f (n, 3) m/s^2: the increments of the output mode
-    divided by dt (see ``ins_sim.core.imu``).
+    divided by dt (see ``ins_sim.core.imu``).  parity (n,) rad/s: of a pair of tuned gyros, else
+    None.
     """
 
     t_ns: np.ndarray
     omega: np.ndarray
     f: np.ndarray
+    parity: np.ndarray | None = None
+
+    @classmethod
+    def of_readings(cls, t_ns, readings):
+        """Return the record of instants t_ns (n,) and a list of (omega, f, parity or None)."""
+        omega, f, parity = zip(*readings)
+        return cls(np.asarray(t_ns, dtype=np.int64), np.array(omega), np.array(f),
+                   None if parity[0] is None else np.array(parity))
 
 
 @dataclass(frozen=True, eq=False)

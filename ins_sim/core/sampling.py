@@ -1,6 +1,8 @@
-"""How samples reach the outside: latency, stamp jitter and drop-outs."""
+"""How samples reach the outside, latency, stamp jitter and drop-outs, and their instants again."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
+
+import numpy as np
 
 from .catalogue import check
 from .error_settings import Sampling
@@ -26,6 +28,7 @@ class Sampler:
         if settings.jitter_us > most_us:
             raise ValueError(f'{name}.jitter_us is {settings.jitter_us:g} us; expected at most '
                              f'{most_us:g} us, a tenth of the sampling period')
+        self._dt_ns = dt_ns
         self._latency_ns = round(1000.0 * settings.latency_us)
         self._jitter_ns = 1000.0 * settings.jitter_us
         self._most_ns = (dt_ns - 1) // 2
@@ -44,3 +47,31 @@ class Sampler:
             shift = round(self._jitter_ns * self._jitters.normal(index))
             t_ns += max(-self._most_ns, min(self._most_ns, shift))
         return t_ns + self._latency_ns
+
+    def take(self, imu):
+        """Return the ImuSamples that get through, with their stamps."""
+        if self.perfect:
+            return imu
+        stamps = [self.stamp(t_ns // self._dt_ns, t_ns) for t_ns in imu.t_ns.tolist()]
+        kept = [k for k, stamp_ns in enumerate(stamps) if stamp_ns is not None]
+        return replace(imu[kept], t_ns=np.array([stamps[k] for k in kept], dtype=np.int64))
+
+
+class SampleClock:
+    """
+    The instants of readings by their stamps, as StrapdownSettings say.
+
+    imu_time ``stamp``: the stamps themselves; ``nominal``: less the known latency, the nearest
+    multiples of the period dt_ns in motion time.
+    """
+
+    def __init__(self, settings, dt_ns):
+        self._dt_ns = dt_ns
+        self._nominal = settings.imu_time == 'nominal'
+        self._shift_ns = dt_ns // 2 - round(1000.0 * settings.imu_latency_us)
+
+    def instant(self, stamp_ns):
+        """Return the instant of a stamp, ns (an integer or an array of them)."""
+        if not self._nominal:
+            return stamp_ns
+        return (stamp_ns + self._shift_ns) // self._dt_ns * self._dt_ns

@@ -5,7 +5,8 @@ This catalogue is the only place a parameter is described.  ROS parameters, the 
 the configuration reference are derived from it.
 """
 
-from .error_settings import AccelerometerErrors, GyroErrors, Temperature
+from .dtg_settings import Dtg
+from .error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .setting import group, setting, Settings, settings_class
 
 
@@ -196,20 +197,6 @@ class DelaysUs(Settings):
 
 
 @settings_class
-class Dtg(Settings):
-    """Two dynamically tuned gyros in place of the ideal triad."""
-
-    preset: str = setting('tactical', 'parameters of both gyros (core.tuned_gyro.PRESETS); the '
-                          'undamped rotor of the paper is unstable and only for its study',
-                          choices=('paper_damped', 'tactical'))
-    arrangement: str = setting('paper', 'paper: gyro 1 senses x and y, gyro 2 senses z and x; '
-                               'turned: each pick-off pair turned 45 deg about its spin axis',
-                               choices=('paper', 'turned'))
-    hold: str = setting('quadratic', 'rate within a step: the parabola or the straight line',
-                        choices=('quadratic', 'linear'))
-
-
-@settings_class
 class Gyro(Settings):
     """The gyro triad."""
 
@@ -242,6 +229,7 @@ class ImuSensorSettings(Settings):
     gyro: Gyro = group(Gyro)
     accelerometer: Accelerometer = group(Accelerometer)
     temperature: Temperature = group(Temperature)
+    sampling: Sampling = group(Sampling)
     topics: Topics = group(Topics)
     seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
                         2147483647)
@@ -293,6 +281,14 @@ class StrapdownSettings(Settings):
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
     input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output)',
                          choices=OUTPUTS)
+    orientation: str = setting('quaternion', 'attitude algorithm: quaternion (exact), or by RK4 '
+                               'the matrix of Poisson\'s equation or the Euler vector',
+                               choices=('quaternion', 'poisson', 'euler_vector'))
+    imu_time: str = setting('stamp', 'instant of a reading: its stamp, or the nearest multiple of '
+                            'the period in motion time (nominal; for jitter and latency)',
+                            choices=('stamp', 'nominal'))
+    imu_latency_us: float = setting(0.0, 'known latency of the stamps, taken off before the '
+                                    'nominal instant is found', 'us', -1e6, 1e6)
     output_every: int = setting(1, 'publish every n-th step', 'steps', 1, 1000000)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew from truth (reset) or end the node (stop)',

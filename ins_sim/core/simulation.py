@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .faults import check_interval, StreamFault
 from .imu import MotionImu, period_ns
 from .imu_stream import StreamImu
 from .instrument import with_errors
@@ -11,6 +12,7 @@ from .map_frame import MapFrame
 from .motions import check_length, make_motion
 from .navigator import Strapdown
 from .records import ImuSamples, NavErrors, NavStates, Truth
+from .sampling import SampleClock, Sampler
 from .settings import DelaysUs, ImuSensorSettings, MotionGeneratorSettings, StrapdownSettings
 
 BLOCK = 4096
@@ -21,7 +23,8 @@ class Run:
     """
     One offline run: the truth, the solution and its errors at the output instants.
 
-    imu holds every reading; twin the errors of the same run with all delays zero (or None).
+    imu holds every reading; twin the errors of the same run with all delays zero (or None);
+    faults a sentence for each gap at which the strapdown started anew.
     """
 
     truth: Truth
@@ -29,6 +32,7 @@ class Run:
     states: NavStates
     errors: NavErrors
     twin: NavErrors | None
+    faults: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,11 @@ class Settings:
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
                              f'{sends:g} Hz')
+        start_ns, dt_ns = round(1e9 * self.motion_generator.start_s), period_ns(sends)
+        if self.strapdown.imu_time == 'nominal' and start_ns % dt_ns:
+            raise ValueError(f'motion_generator: start_s is {self.motion_generator.start_s:.9g} s '
+                             'with imu_time nominal; expected a multiple of the period of the '
+                             f'IMU, {dt_ns * 1e-9:.9g} s')
 
     def without_delays(self):
         """Return the settings of the zero-delay twin; it has the same instrument errors."""
@@ -62,9 +71,13 @@ class Settings:
 
 def sense(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
-    errors = with_errors(settings.imu_sensor)
+    sensor = settings.imu_sensor
+    errors = with_errors(sensor)
+    sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))
     for block in _ideal(settings, motion):
-        yield block if errors is None else errors.advance(block)
+        block = sampler.take(block if errors is None else errors.advance(block))
+        if len(block):
+            yield block
 
 
 def _ideal(settings, motion):
@@ -87,37 +100,57 @@ def _ideal(settings, motion):
                           truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):
             readings.extend(imu.push(*sample))
         if readings:
-            t_ns, omega, f = zip(*readings)
-            yield ImuSamples(np.array(t_ns, dtype=np.int64), np.array(omega), np.array(f))
+            yield ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
 
 
-def navigate(settings, motion, blocks):
+def navigate(settings, motion, blocks, faults=None):
     """
     Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
 
-    Yield (truth, states, errors) records of the output instants of each block.
+    Yield (truth, states, errors) records of the output instants of each block.  A gap is handled
+    as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
+    the list faults, or ValueError is raised.
     """
-    nav, every = Strapdown(settings), settings.output_every
-    count = 0
+    nav, every, dt_ns = Strapdown(settings), settings.output_every, period_ns(settings.rate_hz)
+    clock = SampleClock(settings, dt_ns)
+    first_ns = last_ns = None
     for imu in blocks:
-        truth = motion.at(imu.t_ns)
+        t_ns = clock.instant(imu.t_ns)
+        truth = motion.at(t_ns)
         kept, solutions, errors = [], [], []
-        samples = zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), truth.lat.tolist(),
+        samples = zip(t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), truth.lat.tolist(),
                       truth.lon.tolist(), truth.height.tolist(), truth.v_n.tolist(),
                       truth.q_nb.tolist())
-        for k, (t_ns, omega, f, *now) in enumerate(samples):
-            if not nav.step(t_ns, omega, f, now):
+        for k, (now_ns, omega, f, *now) in enumerate(samples):
+            fault = _gap(now_ns, last_ns, dt_ns)
+            if fault is not None:
+                if settings.on_fault == 'stop':
+                    raise ValueError(str(fault))
+                if faults is not None:
+                    faults.append(str(fault))
+                nav = Strapdown(settings)
+            last_ns = now_ns
+            if not nav.step(now_ns, omega, f, now):
                 continue
-            error = nav.errors(t_ns, now)
-            if count % every == 0:
+            error = nav.errors(now_ns, now)
+            first_ns = now_ns if first_ns is None else first_ns
+            if (now_ns - first_ns + dt_ns // 2) // dt_ns % every == 0:
                 kept.append(k)
-                solutions.append(nav.solution(t_ns))
+                solutions.append(nav.solution(now_ns))
                 errors.append(error)
-            count += 1
         if kept:
-            t_ns = imu.t_ns[kept]
-            yield (truth[kept], NavStates(t_ns, *map(np.array, zip(*solutions))),
-                   NavErrors(t_ns, *map(np.array, zip(*errors))))
+            yield (truth[kept], NavStates(t_ns[kept], *map(np.array, zip(*solutions))),
+                   NavErrors(t_ns[kept], *map(np.array, zip(*errors))))
+
+
+def _gap(now_ns, last_ns, dt_ns):
+    """Return the StreamFault of an interval that is none, or None."""
+    if last_ns is not None:
+        try:
+            check_interval('imu', now_ns, last_ns, dt_ns, 0.2)
+        except StreamFault as fault:
+            return fault
+    return None
 
 
 def simulate(settings, twin=True, progress=None):
@@ -141,14 +174,15 @@ def simulate(settings, twin=True, progress=None):
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
     first_ns = round(generator.start_s * 1e9)
-    imu = []
+    imu, faults = [], []
 
     def keep(blocks):
         for block in blocks:
             imu.append(block)
             yield block
 
-    parts = list(navigate(settings.strapdown, motion, keep(watch(sense(settings, motion), 0))))
+    parts = list(navigate(settings.strapdown, motion, keep(watch(sense(settings, motion), 0)),
+                          faults))
     if not parts:
         raise ValueError('the run has no navigation output; expected duration_s longer than '
                          'initial.after_s')
@@ -160,7 +194,7 @@ def simulate(settings, twin=True, progress=None):
         blocks = watch(sense(ideal, motion), total / 2)
         twin_errors = NavErrors.concatenate(e for _, _, e in navigate(settings.strapdown, motion,
                                                                       blocks))
-    return Run(truth, ImuSamples.concatenate(imu), states, errors, twin_errors)
+    return Run(truth, ImuSamples.concatenate(imu), states, errors, twin_errors, tuple(faults))
 
 
 def _steps(generator):

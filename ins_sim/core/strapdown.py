@@ -1,9 +1,10 @@
 """
 The strapdown kernel: one step of attitude, velocity and position in East, North, Up.
 
-The inertial attitude q_ib is integrated from the gyros alone; the local level frame is placed
-in i by latitude, longitude and Earth rotation at the middle of the interval (spec/delays section
-3; Savage, "Strapdown Inertial Navigation Integration Algorithm Design", JGCD 21, 1998).
+The inertial attitude q_ib is integrated from the gyros alone (core.orientation); the local level
+frame is placed in i by latitude, longitude and Earth rotation at the middle of the interval
+(spec/delays section 3; Savage, "Strapdown Inertial Navigation Integration Algorithm Design", JGCD
+21, 1998).
 """
 
 import math
@@ -39,13 +40,13 @@ def two_sample_increments(alpha, nu, alpha_last, nu_last):
     return phi, u
 
 
-def step(q_ib, lat, lon, height, v, phi, u, dt, spin, turned, channel, reference):
+def step(q_ib, lat, lon, height, v, u, dt, spin, turned, channel, reference):
     """
-    Return q_ib, lat, lon, height, v, wander at the end of one interval.
+    Return lat, lon, height, v, wander at the end of one interval.
 
-    q_ib, lat, lon, height, v: state at its start, v = (V_E, V_N, V_U).  phi: rotation vector of
-    the interval, rad; u: velocity increment in b of its start, m/s.  spin: rate of the Earth;
-    turned: angle of the Earth at mid-interval since i and e coincided, rad.  channel and
+    q_ib, lat, lon, height, v: state at its start, v = (V_E, V_N, V_U); the attitude is advanced
+    apart (core.orientation).  u: velocity increment in b of its start, m/s.  spin: rate of the
+    Earth; turned: angle of the Earth at mid-interval since i and e coincided, rad.  channel and
     reference: FROM_TRUTH with (height, V_U) at the end; FREE with (); DAMPED with (reference
     height, c1, c2, c3, wander) of the third-order damping.
     """
@@ -90,8 +91,7 @@ def step(q_ib, lat, lon, height, v, phi, u, dt, spin, turned, channel, reference
                 wander = held + dt * c3 * off
         m_e, m_n, m_u, m_h = 0.5 * (v_e + e), 0.5 * (v_n + n), 0.5 * (v_u + up), 0.5 * (height + h)
         quarter_e, quarter_n = 0.5 * (v_e + m_e), 0.5 * (v_n + m_n)
-    q_ib = attitude.normalise(attitude.multiply(q_ib, attitude.exponential(phi)))
-    return (q_ib, lat + dt * m_n / r_n, lon + dt * m_e / (r_e * cos_m), h, (e, n, up), wander)
+    return (lat + dt * m_n / r_n, lon + dt * m_e / (r_e * cos_m), h, (e, n, up), wander)
 
 
 def damping(time_constant):

@@ -164,5 +164,9 @@ def white_variance(settings, dt_s, name=''):
     That of the noise, or where the setting reported_sigma is not negative its square.
     """
     model = triad_model(settings, dt_s, name)
-    return tuple(v if s < 0.0 else s * s
-                 for v, s in zip(noise_variance(model, dt_s), model.reported_sigma))
+    return reported_variance(noise_variance(model, dt_s), model.reported_sigma)
+
+
+def reported_variance(variances, sigmas):
+    """Return the variances by axis, or where a sigma is not negative its square."""
+    return tuple(v if s < 0.0 else s * s for v, s in zip(variances, sigmas))

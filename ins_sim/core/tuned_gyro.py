@@ -11,6 +11,9 @@ appears (spec/dtg section 1):
 Open loop: M = 0 and the reading is -c theta / (B Omega).  Closed loop: M = -[Dc s + dc - j K +
 (di - j Ki) / s] theta, and the reading is j M / (B Omega).  The read-out and the loop's gains are
 those of the nominal speed, as electronics are; the rotor may turn at another.
+
+Disturbances: a moment on the rotor is given as the rate d it is mistaken for, M = j B Omega d; the
+pick-off reads theta + n, n being its offset and noise, in loop and read-out alike.
 """
 
 from dataclasses import dataclass, fields
@@ -132,6 +135,22 @@ class TunedGyroParameters:
         """f = fe + D, N m s."""
         return self.rotating_damping_n_m_s + self.case_damping_n_m_s
 
+    @property
+    def vibration_2n_factor(self):
+        """
+        Drift over the amplitude of an angular vibration at 2 Omega: (2Jek - Jk)(1 + dJ/g)/(8B).
+
+        dJ = Jek - Jk/2, g = Jr - 2 Jer.  The ring takes part about one axis of the rotor alone, so
+        that it turns the vibration into a constant moment.  Raises ValueError for a flat rotor,
+        whose nutation is at 2 Omega.
+        """
+        d = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
+        g = self.rotor_axial_kg_m2 - 2.0 * self.rotor_equatorial_kg_m2
+        if g == 0.0:
+            raise ValueError('rotor_axial_kg_m2 is twice rotor_equatorial_kg_m2 with a vibration '
+                             'at twice the speed; expected less, as such a rotor resonates')
+        return 2.0 * d * (1.0 + d / g) / (8.0 * self.input_inertia)
+
     def stiffness(self, speed_hz=None):
         """Return k2 at a speed, the nominal one by default, N m/rad."""
         omega = self.omega if speed_hz is None else 2.0 * math.pi * speed_hz
@@ -172,13 +191,21 @@ class StateSpace:
     The gyro as x' = F x + g u, reading = c x + d u, complex.
 
     f (n, n), g (n,), c (n,), d: x is (theta, v) or, in closed loop, (theta, v, integral of
-    theta); rad, rad/s, rad s.
+    theta + n); rad, rad/s, rad s.  moment, tilt (n,): x' by a disturbing moment d, rad/s, and by a
+    pick-off error n, rad; tilt_reading: its reading.  jump (n,), jump_reading, rad: change of x
+    and integral of the reading by a jump of n, to which the derivative gain answers by an
+    impulse.
     """
 
     f: np.ndarray
     g: np.ndarray
     c: np.ndarray
     d: complex
+    moment: np.ndarray
+    tilt: np.ndarray
+    tilt_reading: complex
+    jump: np.ndarray
+    jump_reading: complex
 
     @property
     def roots(self):
@@ -212,15 +239,21 @@ def state_space(p, speed_hz=None):
                         -p.rotating_damping_n_m_s * omega - p.cross_feedback_n_m_rad)
     into = complex(f, p.input_inertia * omega - h)
     scale = 1.0 / (p.input_inertia * p.omega)
+    mistaken = 1j * p.input_inertia * omega / a
     if p.loop == 'open':
         rows = [[0.0, 1.0], [-stiffness / a, complex(-f, h) / a]]
-        return StateSpace(np.array(rows, dtype=complex), np.array([-1.0, into / a]),
-                          np.array([-p.coupling * scale, 0.0j]), 0.0j)
+        return StateSpace(
+            np.array(rows, dtype=complex), np.array([-1.0, into / a]),
+            np.array([-p.coupling * scale, 0.0j]), 0.0j, np.array([0.0, mistaken]),
+            np.array([0.0, 1j * p.cross_feedback_n_m_rad / a]), complex(-p.coupling * scale),
+            np.zeros(2, dtype=complex), 0.0j)
     derivative, proportional, integral = loop_gains(p)
     rows = [[0.0, 1.0, 0.0],
             [-(stiffness + proportional) / a, (complex(-f, h) - derivative) / a, -integral / a],
             [1.0, 0.0, 0.0]]
-    return StateSpace(np.array(rows, dtype=complex),
-                      np.array([-1.0, (into + derivative) / a, 0.0]),
-                      -1j * scale * np.array([proportional, derivative, integral]),
-                      1j * scale * derivative)
+    return StateSpace(
+        np.array(rows, dtype=complex), np.array([-1.0, (into + derivative) / a, 0.0]),
+        -1j * scale * np.array([proportional, derivative, integral]), 1j * scale * derivative,
+        np.array([0.0, mistaken, 0.0]), np.array([0.0, -proportional / a, 1.0]),
+        -1j * scale * proportional, np.array([0.0j, -derivative / a, 0.0]),
+        -1j * scale * derivative)

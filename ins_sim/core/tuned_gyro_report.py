@@ -129,3 +129,32 @@ def report(parameters, speed_hz=None):
     roots = space.roots
     return TunedGyroReport(roots, lag, float(bandwidth), peak, peak_hz, margin, -roots[0].real,
                            rk4_window(roots))
+
+
+def pickoff_gain(rotor, dt_s):
+    """
+    Return the variance of mean readings over that of pick-off noise, (rad/s)^2/rad^2.
+
+    rotor: TunedGyro; the noise is white from one interval dt_s, s, to the next and constant within
+    it.  Stationary solution of the discrete Lyapunov equation of the state and the last noise.
+    """
+    from scipy.linalg import solve_discrete_lyapunov
+    table, added = rotor.matrices
+    n = len(added) - 1
+    # columns: state at the start of the interval, noise in it, its jump
+    x, read = np.eye(n, n + 2, dtype=complex), np.zeros(n + 2, dtype=complex)
+    steps = round(dt_s / rotor.dt_s)
+    for k in range(steps):
+        push = np.zeros((n + 1, n + 2), dtype=complex)
+        push[:, n] = added[:, 1]
+        if k == 0:
+            push[:, n + 1] = added[:, 2]
+        push += table[:, :n] @ x
+        x = push[:n]
+        read += push[n] / steps
+    carry = np.zeros((n + 1, n + 1), dtype=complex)
+    carry[:n, :n], carry[:n, n] = x[:, :n], -x[:, n + 1]
+    drive = np.append(x[:, n] + x[:, n + 1], 1.0)
+    out = np.append(read[:n], -read[n + 1])
+    spread = solve_discrete_lyapunov(carry, np.outer(drive, drive.conj()))
+    return float((out @ spread @ out.conj()).real + abs(read[n] + read[n + 1]) ** 2)

@@ -7,6 +7,7 @@ at its start, middle and end.  Exact steps take the rate between these as the pa
 (``quadratic``) or the straight line (``linear``) through them (spec/dtg section 5).
 """
 
+from dataclasses import replace
 import math
 import warnings
 
@@ -69,6 +70,22 @@ def rk4_matrices(space, dt_s):
                        ((state, start), (at2, middle), (at3, middle), (at4, end))])
     mean = (stages[0] + 2.0 * stages[1] + 2.0 * stages[2] + stages[3]) / 6.0
     return np.vstack((state + dt_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), mean)), stages
+
+
+def disturbance_matrix(table, space, dt_s, step_map):
+    """
+    Return what disturbances add to one step, (n + 1, 3): next state and mean reading.
+
+    Columns: a moment and a pick-off error, constant over the step, and a jump of the latter at its
+    start.  table: the map of the step; step_map: function (StateSpace) -> map, linear in g and d,
+    whose three rate columns add up to the answer to a constant input.
+    """
+    n = len(space.g)
+    moment = step_map(replace(space, g=space.moment, d=0.0j))[:, n:].sum(axis=1)
+    tilt = step_map(replace(space, g=space.tilt, d=space.tilt_reading))[:, n:].sum(axis=1)
+    jump = table[:, :n] @ space.jump
+    jump[n] += space.jump_reading / dt_s
+    return np.column_stack((moment, tilt, jump))
 
 
 def modes(space):
@@ -174,18 +191,25 @@ class TunedGyro:
         n, stages = len(space.g), None
         if method == 'exact':
             table = exact_matrices(space, self.dt_s, hold)
+            added = disturbance_matrix(table, space, self.dt_s,
+                                       lambda s: exact_matrices(s, self.dt_s, hold))
         else:
             table, stages = rk4_matrices(space, self.dt_s)
+            added = disturbance_matrix(table, space, self.dt_s,
+                                       lambda s: rk4_matrices(s, self.dt_s)[0])
         basis = modes(space)
         modal = basis is not None
         if modal:
             table[:n] = np.linalg.solve(basis, table[:n])
             table[:, :n] = table[:, :n] @ basis
+            added[:n] = np.linalg.solve(basis, added[:n])
             if stages is not None:
                 stages[:, :n] = stages[:, :n] @ basis
         self.speed_hz = self.parameters.speed_hz if speed_hz is None else speed_hz
         self._space, self._basis = space, np.eye(n) if basis is None else basis
         self._kernel, self._gains = _KERNELS[n, modal], tuple(map(tuple, table.tolist()))
+        self.matrices = table, added
+        self._added = tuple(map(tuple, added.tolist()))
         self._stages = None if stages is None else tuple(map(tuple, stages.tolist()))
         self._reading = (*(space.c @ self._basis).tolist(), space.d)
 
@@ -216,14 +240,29 @@ class TunedGyro:
         self._build(speed_hz)
         self.physical_state = x
 
-    def settle(self, u):
+    def settle(self, u, moment=0.0, tilt=0.0):
         """Take the state of a gyro that has long turned at the constant rate u, rad/s."""
-        self.physical_state = np.linalg.solve(self._space.f, -self._space.g * u)
+        space = self._space
+        self.physical_state = np.linalg.solve(
+            space.f, -(space.g * u + space.moment * moment + space.tilt * tilt))
 
     def step(self, u_start, u_mid, u_end):
         """Advance by dt; rates u_y + j u_z of the case, rad/s; return the mean reading."""
         self.state, mean = self._kernel(self.state, u_start, u_mid, u_end, self._gains)
         return mean
+
+    def step_disturbed(self, u_start, u_mid, u_end, moment, tilt, jump):
+        """
+        Advance by dt as ``step`` does, under disturbances; return the mean reading.
+
+        moment, complex rad/s: the rate it is mistaken for; tilt, rad: error of the pick-off; both
+        constant over the step.  jump: by how much tilt differs from that of the step before.
+        """
+        state, mean = self._kernel(self.state, u_start, u_mid, u_end, self._gains)
+        *rows, (a, b, c) = self._added
+        self.state = tuple([x + (p * moment + q * tilt + r * jump)
+                            for x, (p, q, r) in zip(state, rows)])
+        return mean + (a * moment + b * tilt + c * jump)
 
     def reading(self, u):
         """Return the reading of this instant, the rate being u, rad/s."""

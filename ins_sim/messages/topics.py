@@ -45,6 +45,8 @@ TRUTH_ATTITUDE = Topic('truth/attitude', QUATERNION, ('enu',))
 TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',))
 # an orientation that is not measured: identity, and -1 at the head of its covariance (REP-145)
 IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13, 16), (25, 28)))
+# x: parity of the reading, y: its mean over the last window, z: what that may be; rad/s
+IMU_PARITY = Topic('imu/parity', VECTOR, ('imu_link',))
 INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'))
 INS_FIX = Topic('ins/fix', FIX, ('base_link',))
 ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))

@@ -1,6 +1,6 @@
 """A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
 
-from dataclasses import asdict, fields
+from dataclasses import asdict
 import json
 import os
 from pathlib import Path
@@ -49,8 +49,7 @@ def write(folder, settings, run, rows, prediction, title, force=False):
         for name in ('truth', 'imu', 'states', 'errors', 'twin'):
             record = getattr(run, name)
             if record is not None:
-                arrays.update({f'{name}_{f.name}': getattr(record, f.name)
-                               for f in fields(record)})
+                arrays.update({f'{name}_{k}': v for k, v in record.arrays().items()})
         arrays['predicted_t_s'] = prediction.t_s
         arrays['predicted_position'] = prediction.position
         np.savez(work / 'run.npz', **arrays)

@@ -26,9 +26,14 @@ class Monitor:
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
         self._stale, self._told = False, None
+        self._more = []
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
         # a wall timer: simulated time may stand still, and that is worth reporting
         node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def add(self, describe):
+        """Let describe() -> (what is wrong or '', [(key, value)]) have its say once a second."""
+        self._more.append(describe)
 
     def fault(self, sentence, fatal=False):
         """Count a fault and log it, each kind at most once a second."""
@@ -69,6 +74,10 @@ class Monitor:
             if self.received and not self._stale:
                 self._node.get_logger().warning(status.message)
                 self._stale = True
+        more = [describe() for describe in self._more]
+        for wrong, _ in more:
+            if wrong:
+                self.fault(wrong)
         if self.faults and now - self._fault_time < RECENT_S:
             status.level, status.message = DiagnosticStatus.WARN, self.last_fault
         span = max(now - last, 1e-3)
@@ -76,7 +85,8 @@ class Monitor:
             ('received', self.received), ('sent', self.sent), ('faults', self.faults),
             ('last fault', self.last_fault),
             ('received per second', f'{(self.received - received) / span:.1f}'),
-            ('sent per second', f'{(self.sent - sent) / span:.1f}'))]
+            ('sent per second', f'{(self.sent - sent) / span:.1f}'),
+            *(pair for _, values in more for pair in values))]
         self._before = (now, self.received, self.sent)
         array = DiagnosticArray(status=[status])
         array.header.stamp = self._node.get_clock().now().to_msg()

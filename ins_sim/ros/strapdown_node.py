@@ -5,6 +5,7 @@ import time
 from ins_sim.core.imu import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.navigator import Navigator
+from ins_sim.core.sampling import SampleClock
 from ins_sim.messages import topics
 from ins_sim.messages.convert import fix_one, odometry_one
 
@@ -29,6 +30,7 @@ class StrapdownNode(StageNode):
         settings = self.settings
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
+        self._clock = SampleClock(settings, self._dt_ns)
         self._rates = {}
         self._first_ns = self._newest_ns = self._missed_since = None
         return Navigator(settings)
@@ -51,6 +53,7 @@ class StrapdownNode(StageNode):
         sample = self.read(self._imu_reader, data)
         if sample is None:
             return
+        sample = (self._clock.instant(sample[0]), *sample[1:])
         self._newest_ns = sample[0]
         self._rates[sample[0]] = sample[1]
         # the truth first: it may have jumped back as the IMU is about to
@@ -94,7 +97,7 @@ class StrapdownNode(StageNode):
         for t_ns, solution, errors in outputs:
             if self._first_ns is None or t_ns < self._first_ns:
                 self._first_ns = t_ns
-            if (t_ns - self._first_ns) // self._dt_ns % self._every:
+            if (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns % self._every:
                 continue
             stamp_ns = t_ns + self.epoch_ns
             rate = self._rates.get(t_ns, (0.0, 0.0, 0.0))
