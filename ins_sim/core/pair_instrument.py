@@ -109,6 +109,11 @@ class PairInstrument:
         self._scheduled = False
         self._set_fault(on)
 
+    def _keep_schedule(self, t_ns):
+        if self._fault is not None and self._scheduled:
+            start, end = self._fault_ns
+            self._set_fault(start <= t_ns < end)
+
     def _set_fault(self, on):
         self.pair.clear_faults()
         if on:
@@ -122,6 +127,7 @@ class PairInstrument:
 
     def first(self, t_ns, w, force):
         """Return body rates and parity of rotors that are settled at the instant t_ns."""
+        self._keep_schedule(t_ns)
         return self._finish(t_ns, self.pair.instant(w), w, force)
 
     def step(self, t_ns, rates, force):
@@ -130,9 +136,7 @@ class PairInstrument:
 
         rates: body rates at ``nodes``; force: mean specific force in b, m/s^2.
         """
-        if self._fault is not None and self._scheduled:
-            start, end = self._fault_ns
-            self._set_fault(start <= t_ns < end)
+        self._keep_schedule(t_ns)
         steps, channels = self._steps, self.pair.channels
         disturbances = self._disturbances
         if disturbances is None:

@@ -136,9 +136,9 @@ def pickoff_gain(rotor, dt_s):
     Return the variance of mean readings over that of pick-off noise, (rad/s)^2/rad^2.
 
     rotor: TunedGyro; the noise is white from one interval dt_s, s, to the next and constant within
-    it.  Stationary solution of the discrete Lyapunov equation of the state and the last noise.
+    it.  Stationary solution of the discrete Lyapunov equation of the state and the last noise, by
+    Smith's doubling, to which the scale of the states does not matter.
     """
-    from scipy.linalg import solve_discrete_lyapunov
     table, added = rotor.matrices
     n = len(added) - 1
     # columns: state at the start of the interval, noise in it, its jump
@@ -156,5 +156,8 @@ def pickoff_gain(rotor, dt_s):
     carry[:n, :n], carry[:n, n] = x[:, :n], -x[:, n + 1]
     drive = np.append(x[:, n] + x[:, n + 1], 1.0)
     out = np.append(read[:n], -read[n + 1])
-    spread = solve_discrete_lyapunov(carry, np.outer(drive, drive.conj()))
+    spread, power = np.outer(drive, drive.conj()), carry
+    while power.any():
+        spread = spread + power @ spread @ power.conj().T
+        power = power @ power
     return float((out @ spread @ out.conj()).real + abs(read[n] + read[n + 1]) ** 2)
