@@ -106,3 +106,45 @@ def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
     for name in ('frequency', 'speed'):
         path = tmp_path / 'study' / f'error_over_{name}.png'
         assert path.read_bytes().startswith(b'\x89PNG')
+
+
+def test_dtg_report(capsys):
+    """Roots, bandwidth and steps of the gyros of the parameters."""
+    assert main(['dtg-report', '-p', 'gyro.dtg.errors.speed_ppm:=[100.0, 0.0]']) == 0
+    text = capsys.readouterr().out
+    assert 'tuned gyro tactical, closed loop, rotor at 230 Hz' in text and 'stable' in text
+    assert '-3 dB at 86.75 Hz' in text and 'gyro 1, 100 ppm off: roots' in text
+    assert main(['dtg-report', '-p', 'gyro.dtg.preset:=paper']) == 0
+    text = capsys.readouterr().out
+    assert 'UNSTABLE' in text and 'time constant 0.133652 s' in text
+    assert 'RK4 decays for steps of 0.3322 to 1.099 ms' in text
+    bad = ['-p', 'gyro.dtg.preset:=custom', '-p', 'gyro.dtg.custom.rotor_axial_kg_m2:=1.0']
+    assert main(['dtg-report', *bad]) == 2
+    assert 'no rigid body has more' in capsys.readouterr().err
+
+
+def test_compare_orientation(capsys):
+    """One table of the three."""
+    assert main(['compare-orientation', '--params-file', 'motion_2', '-p',
+                 'duration_s:=20.0']) == 0
+    text = capsys.readouterr().out
+    assert all(word in text for word in ('quaternion', 'poisson', 'euler_vector',
+                                         'off the quaternion', 'max |dN|'))
+
+
+def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
+    """A faulty channel, lost samples, rotors without a prediction."""
+    dtg = ['simulate', '--params-file', 'dtg_motion_2', '-p', 'duration_s:=20.0']
+    fault = ['-p', 'gyro.dtg.fault.channel:=gyro_1_y', '-p', 'gyro.dtg.fault.bias_deg_h:=9000.0',
+             '-p', 'gyro.dtg.fault.start_s:=10.0', '-p', 'sampling.drop_out_probability:=0.005']
+    assert main([*dtg, *fault, '-o', str(tmp_path / 'a')]) == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert 'beyond the threshold in' in text and 'the strapdown started anew' in text
+    arrays = np.load(tmp_path / 'a' / 'run.npz')
+    assert arrays['imu_parity'].shape == arrays['imu_t_ns'].shape
+    paper = ['-p', 'gyro.dtg.preset:=paper', '-p', 'gyro.dtg.method:=rk4', '-p',
+             'gyro.dtg.steps_per_sample:=13']
+    assert main([*dtg, *paper, '-o', str(tmp_path / 'b')]) == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert 'no prediction: the gyro is unstable' in text and 'at most' in text
+    assert 'predicted_t_s' not in np.load(tmp_path / 'b' / 'run.npz')

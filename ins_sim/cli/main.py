@@ -46,6 +46,17 @@ def parser():
                            'gyros as the paper does, and compare with what it prints.')
     dtg.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
                      help='folder of the two figures (default: %(default)s)')
+
+    dtg_report = verbs.add_parser('dtg-report', help='roots, bandwidth and margin of a tuned gyro',
+                                  description='Show what the tuned gyros of gyro.dtg.* are good '
+                                  'for: roots, time constant, bandwidth, stability margin and the '
+                                  'steps that RK4 allows.')
+    _settings(dtg_report)
+
+    orientation = verbs.add_parser('compare-orientation', help='the orientation algorithms on one '
+                                   'run', description='Navigate one offline run by quaternion, '
+                                   'Poisson\'s equation and Euler vector, and compare them.')
+    _settings(orientation)
     return top
 
 

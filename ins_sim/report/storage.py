@@ -36,7 +36,7 @@ def check_free(folder, force, mark=MARK):
 
 def write(folder, settings, run, rows, prediction, title, force=False):
     """
-    Write a Run and what was predicted of it into a folder that appears only when complete.
+    Write a Run, and what was predicted of it or None, into a folder that appears when complete.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).
     """
@@ -50,8 +50,9 @@ def write(folder, settings, run, rows, prediction, title, force=False):
             record = getattr(run, name)
             if record is not None:
                 arrays.update({f'{name}_{k}': v for k, v in record.arrays().items()})
-        arrays['predicted_t_s'] = prediction.t_s
-        arrays['predicted_position'] = prediction.position
+        if prediction is not None:
+            arrays['predicted_t_s'] = prediction.t_s
+            arrays['predicted_position'] = prediction.position
         np.savez(work / 'run.npz', **arrays)
         (work / 'parameters.yaml').write_text(parameter_files.dump(settings), encoding='utf-8')
         figure.save(work / 'errors.png', title, run.errors, prediction)

@@ -90,3 +90,29 @@ def rows(settings, errors, twin=None, prediction=None):
                 f'max |d{name} - twin|', 'm', None,
                 np.abs(errors.position[:, axis] - twin.position[:, axis]).max(), None, None))
     return table
+
+
+def gaps(faults):
+    """Return the lines about the gaps at which the strapdown started anew."""
+    if not faults:
+        return []
+    return [f'{len(faults)} gaps, at each of which the strapdown started anew; the first: '
+            f'{faults[0]}']
+
+
+def parity(sensor, imu):
+    """Return the lines about the parity of tuned gyros; sensor: ImuSensorSettings."""
+    if imu.parity is None:
+        return []
+    from ..core.pair_instrument import PairInstrument
+    from ..core.parity import windows
+    found = windows(sensor, PairInstrument(sensor), imu)
+    beyond = found[found[:, 3] > 0.0]
+    if not len(beyond):
+        most = (np.abs(found[:, 1]) / found[:, 2]).max() if len(found) else 0.0
+        return [f'parity of the gyro channels: at most {most:.2f} of the threshold in '
+                f'{len(found)} windows']
+    t_s, mean, threshold, _ = beyond[0]
+    return [f'parity of the gyro channels: beyond the threshold in {len(beyond)} of {len(found)} '
+            f'windows, first in that to {t_s:g} s: {mean * DEG_PER_HOUR:.4g} deg/h, expected at '
+            f'most {threshold * DEG_PER_HOUR:.4g}']

@@ -1,0 +1,23 @@
+"""Verb dtg-report: what the tuned gyros of the parameters are good for."""
+
+from ..core.imu import period_ns
+from ..core.pair_instrument import parameters
+from ..core.tuned_gyro_report import report
+from . import settings as chosen_settings
+
+
+def run(chosen):
+    """Show roots, time constant, bandwidth, margin and the steps of RK4; return the exit code."""
+    sensor = chosen_settings.read(chosen).imu_sensor
+    dtg = sensor.gyro.dtg
+    p = parameters(dtg)
+    nominal = report(p)
+    print(f'tuned gyro {dtg.preset}, {p.loop} loop, rotor at {p.speed_hz:g} Hz')
+    print('\n'.join(nominal.lines()))
+    for gyro, ppm in enumerate(dtg.errors.speed_ppm, 1):
+        if ppm:
+            there = report(p, p.speed_hz * (1.0 + 1e-6 * ppm))
+            print(f'gyro {gyro}, {ppm:g} ppm off: ' + there.lines()[0])
+    step_ms = period_ns(sensor.rate_hz) * 1e-6 / dtg.steps_per_sample
+    print(f'steps of {step_ms:.4g} ms by the method {dtg.method} at {sensor.rate_hz:g} Hz')
+    return 0
