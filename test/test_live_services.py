@@ -166,3 +166,37 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
             capture_output=True, text=True, check=True).stdout) for _ in range(15))
         print(f'{name}: {extra:.3f} s more than a bare node')
         assert extra < 0.1
+
+
+def test_an_injected_fault_is_seen(chain, ros_domain):
+    """The service ~/fault makes a channel fail; imu/parity and /diagnostics say so, and stop."""
+    from std_srvs.srv import SetBool
+    dtg = {'gyro.model': 'dtg', 'output': 'integrated', 'gyro.dtg.fault.channel': 'gyro_2_z',
+           'gyro.dtg.fault.bias_deg_h': 500.0, 'gyro.dtg.fault.start_s': -1.0,
+           'motion.kind': 'static'}
+    listener = Listener(ros_domain, (topics.IMU_PARITY,))
+    seen = listener.diagnostics()
+    try:
+        sensor = chain.start('imu_sensor', dtg)
+        chain.start('motion_generator', {**dtg, 'duration_s': 0.0})
+        parities = listener.heard['imu/parity']
+
+        def hear(condition):
+            listener.spin_until(lambda: listener.poll() or (
+                parities and condition(parities[max(parities)])))
+
+        # x the parity of the reading, y its mean over a window, z what that may be
+        hear(lambda p: p[2] > 0.0)
+        assert abs(parities[max(parities)][1]) <= parities[max(parities)][2]
+        assert not [m for _, _, m in seen if 'parity' in m]
+        answer = listener.call(SetBool, 'imu_sensor/fault', SetBool.Request(data=True))
+        assert answer.success and answer.message == 'gyro_2_z has its fault'
+        hear(lambda p: abs(p[1]) > 100.0 * p[2])
+        listener.spin_until(lambda: [level for name, level, m in seen if name == '/imu_sensor'
+                                     and 'a channel has a fault' in m and level == b'\x01'])
+        answer = listener.call(SetBool, 'imu_sensor/fault', SetBool.Request(data=False))
+        assert answer.message == 'gyro_2_z is healthy'
+        hear(lambda p: abs(p[1]) <= p[2])
+        chain.wait_text(sensor, 'parity of the gyro channels is')
+    finally:
+        listener.close()

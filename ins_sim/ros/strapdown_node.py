@@ -30,7 +30,7 @@ class StrapdownNode(StageNode):
         settings = self.settings
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
-        self._clock = SampleClock(settings, self._dt_ns)
+        self._sample_clock = SampleClock(settings, self._dt_ns)
         self._rates = {}
         self._first_ns = self._newest_ns = self._missed_since = None
         return Navigator(settings)
@@ -53,7 +53,7 @@ class StrapdownNode(StageNode):
         sample = self.read(self._imu_reader, data)
         if sample is None:
             return
-        sample = (self._clock.instant(sample[0]), *sample[1:])
+        sample = (self._sample_clock.instant(sample[0]), *sample[1:])
         self._newest_ns = sample[0]
         self._rates[sample[0]] = sample[1]
         # the truth first: it may have jumped back as the IMU is about to
