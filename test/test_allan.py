@@ -14,46 +14,70 @@ from ins_sim.report import allan
 
 RATE = 10.0
 SAMPLES = 108000
-RUNS = 4
+RUNS = 9
 # Earth rate, rad/s, and gravity, m/s^2, on a table at rest.
 AT_REST = {'gyro': (4.4e-5, 2.2e-5, 5.4e-5), 'accelerometer': (0.1, -0.2, 9.8)}
 TOLERANCES = np.array([0.05, 0.2, 0.3])
+# What three hours show of a triad whose white noise hides the rest: N alone.
+SHOWN = {('navigation_rlg', 'gyro'): slice(1)}
 
 
-def ratios(model, record):
+def ratios(model, record, rate_hz=RATE):
     """Return fitted over simulated N, B, K of a record of three axes."""
-    found = allan.estimate(record, RATE)
+    found = allan.estimate(record, rate_hz)
     c = allan.fit(found, allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[0],
                                                      model.in_run_time[0]))
     return (c.random_walk / model.white[0], c.instability / model.flicker[0],
             c.rate_random_walk / model.walk[0])
 
 
+def noise_record(model, run, name, rate_hz, samples):
+    """Return a record of the noise alone, (samples, 3)."""
+    noise = make_noise(model, 1, run, name, 1.0 / rate_hz)
+    return np.concatenate([noise(b) for b in range(samples // BLOCK + 1)])[:samples]
+
+
 @pytest.mark.parametrize('name', PRESETS)
 @pytest.mark.parametrize('triad', ['gyro', 'accelerometer'])
 def test_round_trip(name, triad):
     """
-    One three-hour record with everything on: N within 5 %, B within 20 %, K within 30 %.
+    Three-hour records: N within 5 %, B within 20 %, K within 30 %; see SHOWN for one exception.
 
-    A record of three axes holds so few long intervals that K scatters by 12 to 17 % from record
-    to record (B by 5 to 10 %): the root mean square of more runs is held to the same bounds.
+    The first has everything on.  A record of three axes holds so few long intervals that B
+    scatters by up to 12 % and K by up to 20 % from record to record, which is printed: the root
+    mean square of nine records is held to the bounds, at least four standard deviations of it.
     """
     settings = triads(name)[triad == 'accelerometer']
     model = triad_model(settings, 1.0 / RATE)
     rest = np.tile(AT_REST[triad], (SAMPLES, 1))
     errors = TriadErrors(settings, 1, 0, f'{name}.{triad}', 1.0 / RATE)
     whole = errors.advance(0, rest, rest, rest[:, 0])
-    found = [ratios(model, whole)]
-    for run in range(1, RUNS):
-        noise = make_noise(model, 1, run, f'{name}.{triad}', 1.0 / RATE)
-        blocks = [noise(b) for b in range(SAMPLES // BLOCK + 1)]
-        found.append(ratios(model, np.concatenate(blocks)[:SAMPLES]))
-    found = np.array(found)
-    mean = np.sqrt(np.mean(found ** 2, axis=0))
-    print(f'{name} {triad}: N, B, K over simulated, one record '
-          f'{found[0].round(3)}, {RUNS} records {mean.round(3)}')
-    assert (np.abs(found[0] - 1.0) < TOLERANCES).all()
-    assert (np.abs(mean - 1.0) < TOLERANCES).all()
+    found = np.array([ratios(model, whole), *(
+        ratios(model, noise_record(model, run, f'{name}.{triad}', RATE, SAMPLES))
+        for run in range(1, RUNS))])
+    mean, scatter = np.sqrt(np.mean(found ** 2, axis=0)), found.std(axis=0, ddof=1)
+    print(f'{name} {triad}: N, B, K over simulated, one record {found[0].round(3)}, {RUNS} '
+          f'records {mean.round(3)}, scatter of one {scatter.round(3)}')
+    shown = SHOWN.get((name, triad), slice(None))
+    assert (np.abs(found[0] - 1.0) < TOLERANCES)[shown].all()
+    assert (np.abs(mean - 1.0) < TOLERANCES)[shown].all()
+    assert (4.0 * scatter / math.sqrt(RUNS) < TOLERANCES)[shown].all()
+
+
+def test_ring_laser_shows_floor_and_walk_in_weeks():
+    """
+    One record of sixty days, a reading a minute: the bounds of test_round_trip for N, B, K.
+
+    In three hours the Allan deviation of the gyro has only fallen to 0.0023 deg/h at the longest
+    tau, by white noise; the floor of 0.001 and the walk cross it at four hours and later.
+    """
+    model = triad_model(triads('navigation_rlg')[0], 60.0)
+    found = np.array([ratios(model, noise_record(model, run, 'weeks', 1.0 / 60.0, 86400),
+                             1.0 / 60.0) for run in range(4)])
+    scatter = found.std(axis=0, ddof=1)
+    print(f'navigation_rlg gyro, 60 days: N, B, K over simulated {found.round(3).tolist()}, '
+          f'scatter {scatter.round(3)}')
+    assert (np.abs(found - 1.0) < TOLERANCES).all()
 
 
 def test_coefficients_of_a_curve():

@@ -35,7 +35,7 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
                  'm/s/sqrt(h)', 'ug/sqrt(h)', 'mm/s', 'settings'):
         assert text in shown
     found = rows(out)
-    preset = {'gyro': (0.01, 0.1, 0.5), 'accelerometer': (0.02, 20.0, 100.0)}
+    preset = {'gyro': (0.012, 0.075, 0.3), 'accelerometer': (0.02, 20.0, 100.0)}
     for triad, values in preset.items():
         for symbol, value, tolerance in zip('NBK', values, (0.05, 0.2, 0.3)):
             row = found[triad, symbol]
@@ -54,9 +54,9 @@ def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
     shown = capsys.readouterr().out
     assert 'gyro: run, 10 Hz, 300.1 s' in shown and 'not static' not in shown
     n = rows(out)['gyro', 'N']
-    assert n['settings'] == pytest.approx([0.01] * 3)
+    assert n['settings'] == pytest.approx([0.012] * 3)
     # 3000 samples and three axes: N is known to about 2 %
-    assert n['all'] == pytest.approx(0.01, rel=0.08)
+    assert n['all'] == pytest.approx(0.012, rel=0.08)
     assert main([*arguments, '-p', 'motion.kind:=rocking', '--force']) == 0
     assert main(['allan', str(run), '-o', str(out), '--force']) == 0
     assert 'the motion is rocking, not static' in capsys.readouterr().out
