@@ -44,8 +44,14 @@ def parser():
     dtg = verbs.add_parser('dtg-study', help='the tables and figures of the tuned-gyro paper',
                            description='Recover a rocking base through two dynamically tuned '
                            'gyros as the paper does, and compare with what it prints.')
+    dtg.add_argument('--params-file', action='append', default=[], metavar='FILE',
+                     help='parameter file of one table, or the name of a shipped one; may be '
+                     'repeated (default: dtg_study_frequency and dtg_study_speed)')
+    dtg.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
+                     help='one parameter, for every table')
     dtg.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
-                     help='folder of the two figures (default: %(default)s)')
+                     help='folder of the figures (default: %(default)s)')
+
     allan = verbs.add_parser('allan', help='Allan deviation of a record or of simulated noise',
                              description='Show Allan deviations and the noise coefficients '
                              'fitted to them: of a run of "simulate", of the Imu messages of a '
