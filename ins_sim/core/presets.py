@@ -74,8 +74,8 @@ _FOG = _preset(
     'tactical_fog', 'tactical-grade fibre-optic IMU (class of LN-200, KVH 1750)',
     'gyro: in-run 0.05 deg/h, ARW 0.012 deg/sqrt(h), range 490 deg/s, bandwidth 440 Hz (KVH '
     '1750), repeatability 1 deg/h, scale factor 100 ppm, alignment 0.1 mrad (LN-200); '
-    'accelerometer: repeatability 0.3 mg, VRW 0.02 m/s/sqrt(h), scale factor 300 ppm (LN-200), range 30 g (KVH '
-    '1750); the rest is judgement, in-run 13 ug among it',
+    'accelerometer: repeatability 0.3 mg, VRW 0.02 m/s/sqrt(h), scale factor 300 ppm (LN-200), '
+    'range 30 g (KVH 1750); the rest is judgement, in-run 13 ug among it',
     {'turn_on_bias_sigma_deg_h': 1.0, 'angle_random_walk_deg_sqrt_h': 0.012,
      'bias_instability_deg_h': 0.075, 'rate_random_walk_deg_h_sqrt_h': 0.3,
      'scale_factor_sigma_ppm': 100.0, 'scale_asymmetry_ppm': 10.0, 'cubic_ppm_s2_deg2': 2e-4,
