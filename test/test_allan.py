@@ -105,15 +105,20 @@ def test_white_noise_of_one_rad_s():
     """The deviation at one sample is that of the samples, within 4 sigma of 2000."""
     found = allan.estimate(np.random.default_rng(1).normal(size=(2000, 3)), 100.0)
     assert found.deviation[0] == pytest.approx(np.ones(3), abs=4 / math.sqrt(2000))
-    assert allan.fit(found).seen(found.tau_s).tolist()[1]
+    assert allan.fit(found).seen(found).tolist() == [False, True, False, False]
 
 
 def test_coefficients_are_seen_where_they_matter():
-    """A floor a hundred times below the rest is not; one that is the lowest part is."""
+    """A floor far below the rest is not, nor one that few intervals show; a longer record does."""
     tau = np.geomspace(0.1, 1000.0, 30)
-    for values, seen in (((0.0, 1.0, 1e-4, 0.01), [False, True, False, True]),
-                         ((0.0, 1.0, 0.1, 1e-4), [False, True, True, False])):
-        assert allan.Coefficients(*values).seen(tau).tolist() == seen
+    for values, length_s, seen in (
+            ((0.0, 1.0, 1e-4, 0.01), 1e4, [False, True, False, True]),
+            ((0.0, 1.0, 0.1, 1e-4), 1e4, [False, True, True, False]),
+            ((0.0, 1.0, 0.03, 1e-4), 4e3, [False, True, False, False]),
+            ((0.0, 1.0, 0.03, 1e-4), 4e5, [False, True, True, False])):
+        c = allan.Coefficients(*values)
+        curve = allan.Allan(tau, c.deviation(tau)[:, None], length_s)
+        assert c.seen(curve).tolist() == seen, values
 
 
 def stamps(n=1000, dt_ns=10_000_000):

@@ -24,8 +24,9 @@ LEAST = 10 * FEWEST
 JITTER = 0.5
 # The mean interval of each of so many parts of a record is that of the whole within STEADY.
 PARTS, STEADY = 100, 0.02
-# A coefficient is seen where it makes up this part of the Allan variance at some tau.
-SEEN = 0.05
+# A coefficient is seen where its part of the Allan variance at some tau is at least SEEN, and so
+# many standard deviations of that variance.
+SEEN, SIGMAS = 0.05, 2.0
 
 
 @dataclass(frozen=True)
@@ -59,10 +60,17 @@ class Coefficients:
         return np.sqrt(_terms(np.asarray(tau_s, dtype=float))) * (
             self.quantisation, self.random_walk, self.instability, self.rate_random_walk)
 
-    def seen(self, tau_s):
-        """Return which coefficients, in the order above, matter at any tau_s (m,)."""
-        squares = self.parts(tau_s) ** 2
-        return (squares >= SEEN * squares.sum(axis=-1, keepdims=True)).any(axis=0)
+    def seen(self, allan):
+        """
+        Return which coefficients, in the order above, the Allan they were fitted to shows.
+
+        The variance at tau has the relative standard deviation sqrt(tau/T) of a record of length
+        T (IEEE Std 952, C.1.2, to a factor of the overlap), over the root of the channels.
+        """
+        squares = self.parts(allan.tau_s) ** 2
+        doubt = np.sqrt(allan.tau_s / (allan.length_s * allan.deviation.shape[-1]))
+        least = np.maximum(SEEN, SIGMAS * doubt)[:, None] * squares.sum(axis=-1, keepdims=True)
+        return ((squares >= least) & (squares > 0.0)).any(axis=0)
 
 
 def rate_of(t_ns):

@@ -72,11 +72,13 @@ class Noise:
         """
         Return for each Term a dict of texts and numbers in its unit.
 
-        None stands for what the record does not show: a constant axis, or a coefficient that is
-        a small part of the Allan variance at every tau.
+        None stands for what the record does not show: a constant axis, or a coefficient whose
+        part of the Allan variance is small, or in doubt, at every tau.
         """
         found = {**dict(zip(self.axes, self.by_axis)), 'all': self.together}
-        seen = {axis: c.seen(self.allan.tau_s) for axis, c in found.items()}
+        seen = {axis: c.seen(self.allan.channels([k]))
+                for k, (axis, c) in enumerate(zip(self.axes, self.by_axis))}
+        seen['all'] = self.together.seen(self.allan)
         rows = []
         for k, term in enumerate(TRIADS[self.triad]):
             row = {'triad': self.triad, 'symbol': term.symbol, 'name': term.name,
