@@ -22,7 +22,8 @@ def save(path, title, noise):
     axes = figure.subplots()
     for axis, channel in zip(noise.axes, deviation.T):
         axes.loglog(tau, channel, '.-', ms=5, lw=0.8, color=COLOURS[axis], label=f'axis {axis}')
-    axes.loglog(tau, noise.together.deviation(tau) / si, 'k-', lw=1.5, label='fit to all axes')
+    fitted = np.sqrt(noise.together.deviation(tau) ** 2 + noise.known)
+    axes.loglog(tau, fitted / si, 'k-', lw=1.5, label='fit to all axes')
     span = np.geomspace(tau[0], tau[-1], 60)
     guides = noise.together.parts(span).T / si
     low, high = deviation.min() / 2.0, deviation.max() * 2.0

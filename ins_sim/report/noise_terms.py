@@ -57,13 +57,15 @@ class Noise:
     The noise found in one triad.
 
     triad: 'gyro' or 'accelerometer'; axes: those that are not constant; allan: of these, SI;
-    by_axis: their Coefficients; together: those of their mean variance; settings: what is to be
-    expected, Q, N, B, K by axis (4, 3) in SI, or None.
+    known: mean Allan variance (m,) that was taken for known; by_axis: their Coefficients;
+    together: those of their mean variance; settings: what is to be expected, Q, N, B, K by axis
+    (4, 3) in SI, or None.
     """
 
     triad: str
     axes: tuple
     allan: allan.Allan
+    known: np.ndarray
     by_axis: tuple
     together: allan.Coefficients
     settings: np.ndarray | None
@@ -129,12 +131,13 @@ def analyse(triad, samples, rate_hz, errors=None):
         wanted = expected(errors, 1.0 / rate_hz, name)
         known = np.stack([allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[k],
                                                       model.in_run_time[k]) for k in noisy], -1)
+    mean = known.mean(axis=-1)
     try:
         by_axis = tuple(allan.fit(found.channels([k]), known[:, k]) for k in range(len(noisy)))
-        together = allan.fit(found, known.mean(axis=-1))
+        together = allan.fit(found, mean)
     except ValueError as error:
         raise ValueError(f'{triad}: {error}') from None
-    return Noise(triad, tuple(AXES[k] for k in noisy), found, by_axis, together, wanted)
+    return Noise(triad, tuple(AXES[k] for k in noisy), found, mean, by_axis, together, wanted)
 
 
 def show(noise, title, console):
