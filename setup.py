@@ -20,12 +20,13 @@ setup(
         ('share/' + package_name + '/launch', sorted(glob('launch/*.launch.py'))),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags'],
+    install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags',
+                      'allantools'],
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'allantools'],
+        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

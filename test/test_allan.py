@@ -14,45 +14,70 @@ from ins_sim.report import allan
 
 RATE = 10.0
 SAMPLES = 108000
-RUNS = 4
+RUNS = 9
 # Earth rate, rad/s, and gravity, m/s^2, on a table at rest.
 AT_REST = {'gyro': (4.4e-5, 2.2e-5, 5.4e-5), 'accelerometer': (0.1, -0.2, 9.8)}
 TOLERANCES = np.array([0.05, 0.2, 0.3])
+# What three hours show of a triad whose white noise hides the rest: N alone.
+SHOWN = {('navigation_rlg', 'gyro'): slice(1)}
 
 
-def ratios(model, record):
+def ratios(model, record, rate_hz=RATE):
     """Return fitted over simulated N, B, K of a record of three axes."""
-    c = allan.fit(allan.estimate(record, RATE), (model.in_run_sigma[0], model.in_run_time[0]))
+    found = allan.estimate(record, rate_hz)
+    c = allan.fit(found, allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[0],
+                                                     model.in_run_time[0]))
     return (c.random_walk / model.white[0], c.instability / model.flicker[0],
             c.rate_random_walk / model.walk[0])
+
+
+def noise_record(model, run, name, rate_hz, samples):
+    """Return a record of the noise alone, (samples, 3)."""
+    noise = make_noise(model, 1, run, name, 1.0 / rate_hz)
+    return np.concatenate([noise(b) for b in range(samples // BLOCK + 1)])[:samples]
 
 
 @pytest.mark.parametrize('name', PRESETS)
 @pytest.mark.parametrize('triad', ['gyro', 'accelerometer'])
 def test_round_trip(name, triad):
     """
-    One three-hour record with everything on: N within 5 %, B within 20 %, K within 30 %.
+    Three-hour records: N within 5 %, B within 20 %, K within 30 %; see SHOWN for one exception.
 
-    A record of three axes holds so few long intervals that K scatters by 12 to 17 % from record
-    to record (B by 5 to 10 %): the root mean square of more runs is held to the same bounds.
+    The first has everything on.  A record of three axes holds so few long intervals that B
+    scatters by up to 12 % and K by up to 20 % from record to record, which is printed: the root
+    mean square of nine records is held to the bounds, at least four standard deviations of it.
     """
-    pytest.importorskip('allantools')
     settings = triads(name)[triad == 'accelerometer']
     model = triad_model(settings, 1.0 / RATE)
     rest = np.tile(AT_REST[triad], (SAMPLES, 1))
     errors = TriadErrors(settings, 1, 0, f'{name}.{triad}', 1.0 / RATE)
     whole = errors.advance(0, rest, rest, rest[:, 0])
-    found = [ratios(model, whole)]
-    for run in range(1, RUNS):
-        noise = make_noise(model, 1, run, f'{name}.{triad}', 1.0 / RATE)
-        blocks = [noise(b) for b in range(SAMPLES // BLOCK + 1)]
-        found.append(ratios(model, np.concatenate(blocks)[:SAMPLES]))
-    found = np.array(found)
-    mean = np.sqrt(np.mean(found ** 2, axis=0))
-    print(f'{name} {triad}: N, B, K over simulated, one record '
-          f'{found[0].round(3)}, {RUNS} records {mean.round(3)}')
-    assert (np.abs(found[0] - 1.0) < TOLERANCES).all()
-    assert (np.abs(mean - 1.0) < TOLERANCES).all()
+    found = np.array([ratios(model, whole), *(
+        ratios(model, noise_record(model, run, f'{name}.{triad}', RATE, SAMPLES))
+        for run in range(1, RUNS))])
+    mean, scatter = np.sqrt(np.mean(found ** 2, axis=0)), found.std(axis=0, ddof=1)
+    print(f'{name} {triad}: N, B, K over simulated, one record {found[0].round(3)}, {RUNS} '
+          f'records {mean.round(3)}, scatter of one {scatter.round(3)}')
+    shown = SHOWN.get((name, triad), slice(None))
+    assert (np.abs(found[0] - 1.0) < TOLERANCES)[shown].all()
+    assert (np.abs(mean - 1.0) < TOLERANCES)[shown].all()
+    assert (4.0 * scatter / math.sqrt(RUNS) < TOLERANCES)[shown].all()
+
+
+def test_ring_laser_shows_floor_and_walk_in_weeks():
+    """
+    One record of sixty days, a reading a minute: the bounds of test_round_trip for N, B, K.
+
+    In three hours the Allan deviation of the gyro has only fallen to 0.0023 deg/h at the longest
+    tau, by white noise; the floor of 0.001 and the walk cross it at four hours and later.
+    """
+    model = triad_model(triads('navigation_rlg')[0], 60.0)
+    found = np.array([ratios(model, noise_record(model, run, 'weeks', 1.0 / 60.0, 86400),
+                             1.0 / 60.0) for run in range(4)])
+    scatter = found.std(axis=0, ddof=1)
+    print(f'navigation_rlg gyro, 60 days: N, B, K over simulated {found.round(3).tolist()}, '
+          f'scatter {scatter.round(3)}')
+    assert (np.abs(found - 1.0) < TOLERANCES).all()
 
 
 def test_coefficients_of_a_curve():
@@ -76,19 +101,59 @@ def test_gauss_markov_variance_joins_its_limits():
     assert not allan.gauss_markov_variance(1.0, 2.0, math.inf)
 
 
-def test_figure(tmp_path):
-    """It is drawn, with and without a fit."""
-    pytest.importorskip('allantools')
+def test_white_noise_of_one_rad_s():
+    """The deviation at one sample is that of the samples, within 4 sigma of 2000."""
     found = allan.estimate(np.random.default_rng(1).normal(size=(2000, 3)), 100.0)
-    assert found.deviation[0] == pytest.approx(np.ones(3), rel=0.1)
-    allan.save_figure(tmp_path / 'a.png', 'white noise', found, 'rad/s', 'xyz', allan.fit(found))
-    allan.save_figure(tmp_path / 'b.png', 'white noise', found, 'rad/s')
-    assert (tmp_path / 'a.png').stat().st_size > 10000 < (tmp_path / 'b.png').stat().st_size
+    assert found.deviation[0] == pytest.approx(np.ones(3), abs=4 / math.sqrt(2000))
+    assert allan.fit(found).seen(found).tolist() == [False, True, False, False]
+
+
+def test_coefficients_are_seen_where_they_matter():
+    """A floor far below the rest is not, nor one that few intervals show; a longer record does."""
+    tau = np.geomspace(0.1, 1000.0, 30)
+    for values, length_s, seen in (
+            ((0.0, 1.0, 1e-4, 0.01), 1e4, [False, True, False, True]),
+            ((0.0, 1.0, 0.1, 1e-4), 1e4, [False, True, True, False]),
+            ((0.0, 1.0, 0.03, 1e-4), 4e3, [False, True, False, False]),
+            ((0.0, 1.0, 0.03, 1e-4), 4e5, [False, True, True, False])):
+        c = allan.Coefficients(*values)
+        curve = allan.Allan(tau, c.deviation(tau)[:, None], length_s)
+        assert c.seen(curve).tolist() == seen, values
+
+
+def stamps(n=1000, dt_ns=10_000_000):
+    """Return regular stamps, ns."""
+    return 5_000_000_000 + dt_ns * np.arange(n)
+
+
+def test_rate_of_regular_stamps():
+    """Exact stamps give the exact rate; a jitter of 5 % does no harm."""
+    assert allan.rate_of(stamps()) == pytest.approx(100.0, rel=1e-12)
+    jitter = np.random.default_rng(2).normal(scale=0.05 * 1e7, size=200_000).astype(int)
+    assert allan.rate_of(stamps(200_000) + jitter) == pytest.approx(100.0, rel=1e-5)
+
+
+def test_irregular_stamps_are_refused_and_located():
+    """A lost sample, a step back, a doubled stamp and a change of rate, each with its place."""
+    lost = np.delete(stamps(), 700)
+    with pytest.raises(ValueError, match=r'0.02 s from sample 699 to 700, 6.99 s after its start; '
+                                         'expected the usual 0.01 s'):
+        allan.rate_of(lost)
+    back = stamps()
+    back[300:] -= 1_000_000_000
+    with pytest.raises(ValueError, match=r'-0.99 s from sample 299 to 300, 2.99 s'):
+        allan.rate_of(back)
+    with pytest.raises(ValueError, match=r': 0 s from sample 5 to 6'):
+        allan.rate_of(np.insert(stamps(), 5, stamps()[5]))
+    faster = np.concatenate([stamps(), stamps()[-1] + 9_000_000 * np.arange(1, 1001)])
+    with pytest.raises(ValueError, match='the rate of the record changes: 100 Hz from sample 0'):
+        allan.rate_of(faster)
+    with pytest.raises(ValueError, match='has 1 samples; expected at least 40'):
+        allan.rate_of(stamps(1))
 
 
 def test_bad_records_are_refused(monkeypatch):
     """One sentence each, and one that names the missing package."""
-    pytest.importorskip('allantools')
     with pytest.raises(ValueError, match='has 5 samples; expected at least 40'):
         allan.estimate(np.zeros(5), 10.0)
     with pytest.raises(ValueError, match='NaN or infinity'):
@@ -103,5 +168,5 @@ def test_bad_records_are_refused(monkeypatch):
         return real(name, *args, **kwargs)
 
     monkeypatch.setattr(builtins, '__import__', without)
-    with pytest.raises(ImportError, match='pip install allantools'):
+    with pytest.raises(ValueError, match='pip install allantools'):
         allan.estimate(np.zeros(100), 10.0)

@@ -101,10 +101,10 @@ def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
     """The cells and the limits are held in test_dtg_study; here they reach the person."""
     assert main(['dtg-study', '-o', str(tmp_path / 'study')]) == 0
     shown = capsys.readouterr().out
-    for text in ('9.9777', '9.8140', '129.4 to 337.4 Hz', '9.65'):
+    for text in ('9.9777', '9.8140', '129.4 to 337.4 Hz', '9.65', '[rad/s]'):
         assert text in shown
     for name in ('frequency', 'speed'):
-        path = tmp_path / 'study' / f'error_over_{name}.png'
+        path = tmp_path / 'study' / f'dtg_study_{name}.png'
         assert path.read_bytes().startswith(b'\x89PNG')
 
 

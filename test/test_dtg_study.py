@@ -1,14 +1,20 @@
-"""The study of the paper: both tables, both stability limits."""
+"""The study of the paper: both tables, both stability limits, and the files that hold them."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ins_sim.core.dtg_study import (frequency_table, half_peak_to_peak, PAPER_LIMITS_HZ,
-                                    speed_table, stability_limits)
+from ins_sim import parameter_files
+from ins_sim.cli.main import main
+from ins_sim.core.dtg_study import (curve, gyro_at, half_peak_to_peak, stability_limits, table)
+from ins_sim.core.dtg_study_settings import DtgStudySettings
 from ins_sim.core.tuned_gyro import PRESETS
 from ins_sim.core.tuned_gyro_report import report
+
+CONFIG = Path(__file__).resolve().parents[1] / 'config'
+FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))
 
 # what the `paper` preset gives by the specification, deg
 SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
@@ -16,10 +22,16 @@ SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
              320.0: 9.832, 337.0: 9.814}
 
 
+def read(name, *assignments):
+    """Return the DtgStudySettings of config/dtg_study_<name>.yaml."""
+    return parameter_files.read_nodes([CONFIG / f'dtg_study_{name}.yaml'], assignments,
+                                      {'dtg_study': DtgStudySettings})['dtg_study']
+
+
 @pytest.fixture(scope='module')
 def tables():
-    """Both tables of the paper preset, RK4 at 0.75 ms."""
-    return {'frequency': frequency_table(), 'speed': speed_table()}
+    """Both tables of the paper, RK4 at 0.75 ms."""
+    return {name: table(read(name)) for name in ('frequency', 'speed')}
 
 
 def show(cells, unit):
@@ -63,8 +75,8 @@ def test_amplitudes_are_those_of_a_first_order_lag(tables):
 
 def test_exact_propagation_of_the_damped_preset(tables):
     """`paper_damped`, physically stable, gives the same tables to 1e-4 deg."""
-    damped = PRESETS['paper_damped']
-    cells = [*frequency_table(damped, method='exact'), *speed_table(damped, method='exact')]
+    cells = [c for name in tables
+             for c in table(read(name, 'preset:=paper_damped', 'method:=exact'))]
     off = max(abs(a.poisson_deg - b.poisson_deg)
               for a, b in zip(cells, (*tables['frequency'], *tables['speed'])))
     print(f'\nexact, paper_damped: off by {off:.1e} deg')
@@ -73,25 +85,75 @@ def test_exact_propagation_of_the_damped_preset(tables):
 
 def test_stability_limits():
     """129.4 and 337.4 Hz at 0.75 ms, found by search; the paper says 130 and 337."""
-    low, high = stability_limits()
-    print(f'\nRK4 at 0.75 ms is stable from {low:.4f} to {high:.4f} Hz; paper {PAPER_LIMITS_HZ}')
+    settings = read('speed')
+    assert settings.paper_limits_hz == (130.0, 337.0)
+    step_s = 1e-3 * settings.step_ms
+    low, high = stability_limits(gyro_at(settings), step_s)
+    print(f'\nRK4 at 0.75 ms is stable from {low:.4f} to {high:.4f} Hz; paper '
+          f'{settings.paper_limits_hz}')
     assert abs(low - 129.4) <= 0.1 and abs(high - 337.4) <= 0.1
-    assert stability_limits(low_hz=200.0, high_hz=300.0) == (None, None)
+    assert stability_limits(gyro_at(settings), step_s, 200.0, 300.0) == (None, None)
 
 
 def test_unstable_speeds_are_refused():
     """In a table as in the search."""
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which this gyro grows'):
-        speed_table(speeds_hz=[340.0])
+        curve(read('speed', 'curve_values:=[340.0]'))
     with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
-        stability_limits(step_s=2e-3)
+        stability_limits(PRESETS['paper'], 2e-3)
 
 
-def test_progress_is_told():
-    """After each cell."""
+def test_progress_is_told_and_the_amplitude_scales():
+    """After each cell; a quarter of the rocking is a quarter of what is recovered."""
     told = []
-    frequency_table(rates_rad_s=[400.0], step_s=1e-3, progress=lambda k, n: told.append((k, n)))
-    assert told == [(1, 1)]
+    few = ('values:=[400.0]', 'paper_deg:=[]', 'step_ms:=1.0')
+    (whole,) = table(read('frequency', *few), lambda: told.append(1))
+    (quarter,) = table(read('frequency', *few, 'amplitude_deg:=2.5'), lambda: told.append(1))
+    assert len(told) == 2 and whole.paper_deg is None
+    assert whole.poisson_deg == pytest.approx(4.0 * quarter.poisson_deg, rel=1e-6)
+
+
+@pytest.mark.parametrize('path', FILES, ids=lambda path: path.stem)
+def test_every_shipped_study_runs(path, tmp_path, capsys):
+    """Each file alone, shortened to one cell with a coarse step, saves its figure and no other."""
+    settings = read(path.stem.removeprefix('dtg_study_'))
+    assert len(settings.paper_deg) == len(settings.values)
+    assert main(['dtg-study', '--params-file', path.stem, '-o', str(tmp_path),
+                 '-p', 'step_ms:=1.0', '-p', 'values:=[230.0]', '-p', 'paper_deg:=[10.0]',
+                 '-p', 'curve_values:=[220.0, 230.0]', '-p', 'base_rate_rad_s:=300.0']) == 0
+    assert [p.name for p in tmp_path.iterdir()] == [f'{path.stem}.png']
+    assert '1 ms' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('assignment, sentence', [
+    ('sweep:=speed', "sweep is 'speed'; expected one of base_rate, rotor_speed"),
+    ('valuess:=[1.0]', "unknown parameter 'valuess'; the nearest known one is 'values'"),
+    ('values:=[1.0]', 'paper_deg has 5 entries; expected none or 1, one for each of values'),
+    ('values:=[]', 'paper_deg has 5 entries; expected none or 0'),
+    ('values:=[-1.0, 1.0, 2.0, 4.0, 8.0]', 'values is -1; expected 0.001 to 10000'),
+    ('paper_limits_hz:=[130.0]', 'paper_limits_hz has 1 entries; expected none or 2'),
+    ('preset:=papr', 'preset is \'papr\'; expected one of paper, paper_damped, tactical'),
+    ('step_ms:=0.0', 'step_ms is 0 ms; expected 0.001 to 100 ms'),
+])
+def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
+    """Exit 2, nothing written."""
+    out = tmp_path / 'study'
+    assert main(['dtg-study', '--params-file', 'dtg_study_frequency', '-p', assignment, '-o',
+                 str(out)]) == 2
+    error = capsys.readouterr().err
+    assert sentence in error and error.count('\n') == 1 and not out.exists()
+
+
+def test_files_of_another_kind_are_refused(tmp_path, capsys):
+    """A study is no run and a run no study; two files of one name would share a figure."""
+    assert main(['dtg-study', '--params-file', 'imu_tactical_fog']) == 2
+    assert "unknown section '/**/imu_sensor'; the nearest known one is" in capsys.readouterr().err
+    assert main(['predict', '--params-file', 'dtg_study_speed']) == 2
+    assert "unknown section '/**/dtg_study'" in capsys.readouterr().err
+    copy = tmp_path / 'dtg_study_speed.yaml'
+    copy.write_text((CONFIG / copy.name).read_text())
+    assert main(['dtg-study', '--params-file', str(copy), '--params-file', 'dtg_study_speed']) == 2
+    assert 'two parameter files are named dtg_study_speed' in capsys.readouterr().err
 
 
 def test_vertices_by_parabola():

@@ -13,7 +13,9 @@ from ins_sim.core.settings import NODES
 from ins_sim.core.simulation import simulate
 
 ROOT = Path(__file__).resolve().parent.parent
-CONFIG = sorted(p.stem for p in (ROOT / 'config').glob('*.yaml'))
+# those of the tuned-gyro study are in test_dtg_study
+CONFIG = sorted(p.stem for p in (ROOT / 'config').glob('*.yaml')
+                if not p.stem.startswith('dtg_study_'))
 NUMBERS = [(node, name) for node, cls in NODES.items() for name, f in flatten(cls).items()
            if f.type is float]
 

@@ -1,46 +1,54 @@
-"""Verb dtg-study: both tables, both figures and both stability limits of the DTG paper."""
+"""Verb dtg-study: tables, figures and limits of stability of the DTG paper, one file each."""
 
 from pathlib import Path
 
-import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from . import settings as chosen_settings
+from .. import parameter_files, resources
 from ..core import dtg_study as study
+from ..core.dtg_study_settings import DtgStudySettings
 from ..report import dtg_study as report
 
-CURVE_POINTS = 13
+NODE = 'dtg_study'
+SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')
 
 
 def run(chosen):
-    """Compute, show and save; return the exit code."""
+    """Compute, show and save the study of each parameter file; return the exit code."""
+    paths = ([chosen_settings.locate(name) for name in chosen.params_file]
+             or [resources.config(name) for name in SHIPPED])
+    studies = {}
+    for path in paths:
+        if path.stem in studies:
+            raise ValueError(f'two parameter files are named {path.stem}; expected different '
+                             'names, as the figures bear them')
+        studies[path.stem] = parameter_files.read_nodes([path], chosen.param,
+                                                        {NODE: DtgStudySettings})[NODE]
+    console = Console()
+    figures = [(name, settings, *_study(name, settings, console))
+               for name, settings in studies.items()]
     folder = Path(chosen.output)
     folder.mkdir(parents=True, exist_ok=True)
-    console = Console()
-    limits = study.stability_limits()
-    rates = np.geomspace(0.5, 8.0, CURVE_POINTS).tolist()
-    speeds = np.linspace(limits[0] + 1.0, limits[1] - 1.0, CURVE_POINTS).tolist()
-    jobs = (('base frequency', study.frequency_table, {}),
-            ('rotor speed', study.speed_table, {}),
-            ('curve over frequency', study.frequency_table, {'rates_rad_s': rates}),
-            ('curve over speed', study.speed_table, {'speeds_hz': speeds}))
-    results = []
+    for name, *figure in figures:
+        report.save_figure(folder / f'{name}.png', *figure)
+        console.print(f'figure: {folder / name}.png', soft_wrap=True)
+    return 0
+
+
+def _study(name, settings, console):
+    """Show one table; return the Cells of the curve, those of the table, and the limits."""
+    step_s, limits = 1e-3 * settings.step_ms, ()
+    if settings.sweep == 'rotor_speed' and settings.method == 'rk4':
+        limits = study.stability_limits(study.gyro_at(settings), step_s)
     with Progress(TextColumn('{task.description}'), BarColumn(),
                   TextColumn('{task.completed:.0f} of {task.total:.0f}'), console=console,
                   transient=True) as progress:
-        for name, table, arguments in jobs:
-            task = progress.add_task(name, total=CURVE_POINTS)
-            results.append(table(progress=lambda done, total, task=task: progress.update(
-                task, completed=done, total=total), **arguments))
-    by_rate, by_speed, rate_curve, speed_curve = results
-    report.show('rotor at 230 Hz', 'base [rad/s]', by_rate, console)
-    report.show('base at 1 rad/s', 'rotor [Hz]', by_speed, console)
-    console.print('RK4 at 0.75 ms is stable from {:.1f} to {:.1f} Hz; the paper: {:g} to {:g} Hz'
-                  .format(*limits, *study.PAPER_LIMITS_HZ))
-    for name, label, curve, table, lines in (
-            ('frequency', 'base frequency [rad/s]', rate_curve, by_rate, ()),
-            ('speed', 'rotor speed [Hz]', speed_curve, by_speed, limits)):
-        path = folder / f'error_over_{name}.png'
-        report.save_figure(path, label, curve, table, study.AMPLITUDE_DEG, lines)
-        console.print(f'figure: {path}')
-    return 0
+        task = progress.add_task(name, total=len(settings.values) + len(settings.curve_values))
+        cells = study.table(settings, lambda: progress.advance(task))
+        curve = study.curve(settings, lambda: progress.advance(task)) or cells
+    report.show(settings, cells, console)
+    if limits:
+        report.show_limits(settings, limits, console)
+    return curve, cells, limits

@@ -44,8 +44,13 @@ def parser():
     dtg = verbs.add_parser('dtg-study', help='the tables and figures of the tuned-gyro paper',
                            description='Recover a rocking base through two dynamically tuned '
                            'gyros as the paper does, and compare with what it prints.')
+    dtg.add_argument('--params-file', action='append', default=[], metavar='FILE',
+                     help='parameter file of one table, or the name of a shipped one; may be '
+                     'repeated (default: dtg_study_frequency and dtg_study_speed)')
+    dtg.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
+                     help='one parameter, for every table')
     dtg.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
-                     help='folder of the two figures (default: %(default)s)')
+                     help='folder of the figures (default: %(default)s)')
 
     dtg_report = verbs.add_parser('dtg-report', help='roots, bandwidth and margin of a tuned gyro',
                                   description='Show what the tuned gyros of gyro.dtg.* are good '
@@ -57,6 +62,22 @@ def parser():
                                    'run', description='Navigate one offline run by quaternion, '
                                    'Poisson\'s equation and Euler vector, and compare them.')
     _settings(orientation)
+
+    allan = verbs.add_parser('allan', help='Allan deviation of a record or of simulated noise',
+                             description='Show Allan deviations and the noise coefficients '
+                             'fitted to them: of a run of "simulate", of the Imu messages of a '
+                             'bag, or, without SOURCE, of the instrument of the parameters '
+                             'simulated at rest.')
+    allan.add_argument('source', nargs='?', default=None, metavar='SOURCE',
+                       help='folder of a run or of a rosbag2 bag')
+    _settings(allan)
+    allan.add_argument('--topic', default=None, metavar='NAME',
+                       help='topic of the bag, where it has more than one of sensor_msgs/msg/Imu')
+    allan.add_argument('--duration', type=float, default=None, metavar='S',
+                       help='length of the simulated record, s (default: 10800)')
+    allan.add_argument('-o', '--output', default='ins_sim_allan', metavar='DIR',
+                       help='folder of the two figures (default: %(default)s)')
+    allan.add_argument('--force', action='store_true', help='replace the figures in DIR')
     return top
 
 

@@ -83,7 +83,7 @@ def check(name, value, f):
     else:
         if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, '__iter__'):
             raise ValueError(f'{name} is {value!r}; expected a list')
-        element = type(f.default[0])
+        element = kind.__args__[0]
         value = values = tuple(_scalar(f'{name}[{k}]', v, element) for k, v in enumerate(value))
         size = f.metadata['size']
         if size is not None and len(value) != size:

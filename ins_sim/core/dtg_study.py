@@ -3,7 +3,8 @@ The study of Sapegin, Romanov, Bugaiov 2016: what the lag of two tuned gyros cos
 
 The base rocks in roll by 10 deg sin(w t).  Its rates go through two gyros, and the readings into
 Poisson's equation and into that of the Euler vector, all by RK4 with one step; half of the peak to
-peak of the roll so found over the last whole period is the amplitude (spec/dtg section 3).
+peak of the roll so found over the last whole period is the amplitude (spec/dtg section 3).  What
+the paper's tables hold and print stands in config/dtg_study_*.yaml.
 """
 
 from dataclasses import dataclass, replace
@@ -16,15 +17,6 @@ from .orientation import dcm_of, euler_vector, poisson, roll
 from .attitude import exponential
 from .tuned_gyro import PRESETS, state_space
 from .tuned_gyro_step import rk4_matrices
-
-AMPLITUDE_DEG = 10.0
-STEP_S = 0.75e-3
-SPEED_TABLE_RAD_S = 1.0
-# what the paper prints: amplitude in deg by rad/s of the base (230 Hz) and by Hz of the rotor
-PAPER_FREQUENCY_TABLE = ((0.5, 10.0), (1.0, 9.92), (2.0, 9.65), (4.0, 8.83), (8.0, 6.8))
-PAPER_SPEED_TABLE = ((130.0, 9.98), (143.0, 9.97), (170.0, 9.95), (200.0, 9.93), (250.0, 9.89),
-                     (270.0, 9.88), (320.0, 9.83), (337.0, 9.81))
-PAPER_LIMITS_HZ = (130.0, 337.0)
 
 
 @dataclass(frozen=True)
@@ -51,17 +43,17 @@ def half_peak_to_peak(y):
     return 0.5 * (highest(y) + highest([-v for v in y]))
 
 
-def rocking_amplitudes(pair, rate_rad_s, step_s, method='rk4'):
+def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
     """
     Return the amplitudes of roll, deg, recovered by Poisson and by the Euler vector.
 
-    pair: GyroPair at rest, of the step and method; rate_rad_s: w of the base.  The record is 20 s
-    or three periods, whichever is longer.
+    pair: GyroPair at rest, of the step and method; amplitude_deg, rate_rad_s: of the base.  The
+    record is 20 s or three periods, whichever is longer.
     """
     period = 2.0 * math.pi / rate_rad_s
     steps = math.ceil(max(20.0, 3.0 * period) / step_s)
     first = steps - math.ceil(period / step_s)
-    top = math.radians(AMPLITUDE_DEG) * rate_rad_s
+    top = math.radians(amplitude_deg) * rate_rad_s
     c, theta = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0)
     found, staged = ([], []), method == 'rk4'
     u_end = (top, 0.0, 0.0)
@@ -80,27 +72,9 @@ def rocking_amplitudes(pair, rate_rad_s, step_s, method='rk4'):
     return tuple(math.degrees(half_peak_to_peak(y)) for y in found)
 
 
-def _table(cases, paper, step_s, method, progress):
-    cells, printed = [], dict(paper)
-    for k, (value, parameters, rate_rad_s) in enumerate(cases):
-        pair = GyroPair(parameters, step_s, method=method)
-        cells.append(Cell(value, *rocking_amplitudes(pair, rate_rad_s, step_s, method),
-                          printed.get(value)))
-        if progress:
-            progress(k + 1, len(cases))
-    return tuple(cells)
-
-
-def frequency_table(parameters=PRESETS['paper'], rates_rad_s=None, step_s=STEP_S, method='rk4',
-                    progress=None):
-    """
-    Return a Cell for each rate of the base, by default those of the paper.
-
-    progress: function of (cells done, cells in all).  Raises ValueError for an unstable gyro.
-    """
-    rates_rad_s = rates_rad_s or [w for w, _ in PAPER_FREQUENCY_TABLE]
-    cases = [(w, parameters, w) for w in rates_rad_s]
-    return _table(cases, PAPER_FREQUENCY_TABLE, step_s, method, progress)
+def gyro_at(settings, speed_hz=None):
+    """Return the TunedGyroParameters of DtgStudySettings, tuned at a speed or at its own."""
+    return at_speed(PRESETS[settings.preset], speed_hz or settings.rotor_speed_hz)
 
 
 def at_speed(parameters, speed_hz):
@@ -108,12 +82,34 @@ def at_speed(parameters, speed_hz):
     return replace(parameters, speed_hz=speed_hz, hinge_stiffness_n_m_rad=None)
 
 
-def speed_table(parameters=PRESETS['paper'], speeds_hz=None, step_s=STEP_S, method='rk4',
-                progress=None):
-    """Return a Cell for each speed of the rotor, tuned there, the base rocking at 1 rad/s."""
-    speeds_hz = speeds_hz or [hz for hz, _ in PAPER_SPEED_TABLE]
-    cases = [(hz, at_speed(parameters, hz), SPEED_TABLE_RAD_S) for hz in speeds_hz]
-    return _table(cases, PAPER_SPEED_TABLE, step_s, method, progress)
+def table(settings, progress=None):
+    """
+    Return a Cell for each of the values of DtgStudySettings, with what the paper prints.
+
+    progress: function called after each cell.  Raises ValueError for an unstable gyro.
+    """
+    paper = settings.paper_deg or (None,) * len(settings.values)
+    return _cells(settings, settings.values, paper, progress)
+
+
+def curve(settings, progress=None):
+    """Return a Cell for each of the curve_values of DtgStudySettings, as ``table`` does."""
+    return _cells(settings, settings.curve_values, (None,) * len(settings.curve_values), progress)
+
+
+def _cells(settings, values, paper, progress):
+    step_s, method, cells = 1e-3 * settings.step_ms, settings.method, []
+    for value, printed in zip(values, paper):
+        if settings.sweep == 'base_rate':
+            gyro, rate_rad_s = gyro_at(settings), value
+        else:
+            gyro, rate_rad_s = gyro_at(settings, value), settings.base_rate_rad_s
+        pair = GyroPair(gyro, step_s, method=method)
+        cells.append(Cell(value, *rocking_amplitudes(pair, settings.amplitude_deg, rate_rad_s,
+                                                     step_s, method), printed))
+        if progress:
+            progress()
+    return tuple(cells)
 
 
 def rk4_radius(parameters, speed_hz, step_s):
@@ -123,8 +119,8 @@ def rk4_radius(parameters, speed_hz, step_s):
     return float(np.abs(np.linalg.eigvals(rk4_matrices(space, step_s)[0][:n, :n])).max())
 
 
-def stability_limits(parameters=PRESETS['paper'], step_s=STEP_S, low_hz=20.0, high_hz=2000.0,
-                     resolution_hz=1.0, tolerance_hz=1e-6):
+def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution_hz=1.0,
+                     tolerance_hz=1e-6):
     """
     Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
 

@@ -1,5 +1,5 @@
 """
-Allan deviation of a record, the noise coefficients fitted to it, and the figure.
+Allan deviation of a record and the noise coefficients fitted to it.
 
 The estimate is that of allantools (overlapping Allan deviation), the model that of IEEE Std 952:
 
@@ -18,6 +18,15 @@ from scipy.optimize import least_squares, nnls
 PER_DECADE = 8
 # The longest tau leaves this many intervals in the record.
 FEWEST = 4
+LEAST = 10 * FEWEST
+# An interval between stamps is regular within this part of the mean one, so that a jitter of 5 %
+# passes in a record of any length and a lost sample does not.
+JITTER = 0.5
+# The mean interval of each of so many parts of a record is that of the whole within STEADY.
+PARTS, STEADY = 100, 0.02
+# A coefficient is seen where its part of the Allan variance at some tau is at least SEEN, and so
+# many standard deviations of that variance.
+SEEN, SIGMAS = 0.05, 2.0
 
 
 @dataclass(frozen=True)
@@ -27,6 +36,10 @@ class Allan:
     tau_s: np.ndarray
     deviation: np.ndarray
     length_s: float
+
+    def channels(self, which):
+        """Return the Allan of some channels, by number."""
+        return Allan(self.tau_s, self.deviation[:, which], self.length_s)
 
 
 @dataclass(frozen=True)
@@ -40,9 +53,51 @@ class Coefficients:
 
     def deviation(self, tau_s):
         """Return the Allan deviation of the model at tau_s, s."""
-        squares = np.square([self.quantisation, self.random_walk, self.instability,
-                             self.rate_random_walk])
-        return np.sqrt(_terms(np.asarray(tau_s, dtype=float)) @ squares)
+        return np.sqrt(np.sum(self.parts(tau_s) ** 2, axis=-1))
+
+    def parts(self, tau_s):
+        """Return the Allan deviation of each coefficient alone, (..., 4) in the order above."""
+        return np.sqrt(_terms(np.asarray(tau_s, dtype=float))) * (
+            self.quantisation, self.random_walk, self.instability, self.rate_random_walk)
+
+    def seen(self, allan):
+        """
+        Return which coefficients, in the order above, the Allan they were fitted to shows.
+
+        The variance at tau has the relative standard deviation sqrt(tau/T) of a record of length
+        T (IEEE Std 952, C.1.2, to a factor of the overlap), over the root of the channels.
+        """
+        squares = self.parts(allan.tau_s) ** 2
+        doubt = np.sqrt(allan.tau_s / (allan.length_s * allan.deviation.shape[-1]))
+        least = np.maximum(SEEN, SIGMAS * doubt)[:, None] * squares.sum(axis=-1, keepdims=True)
+        return ((squares >= least) & (squares > 0.0)).any(axis=0)
+
+
+def rate_of(t_ns):
+    """
+    Return the rate, Hz, of stamps t_ns (n,) that are regular but for a small jitter.
+
+    Raises ValueError, in one sentence that says where, on a gap, a step back or another rate.
+    """
+    if len(t_ns) < 2:
+        raise ValueError(f'the record has {len(t_ns)} samples; expected at least {LEAST}')
+    steps = np.diff(t_ns) * 1e-9
+    usual = float(np.median(steps))
+    odd = np.abs(steps - usual) > JITTER * abs(usual)
+    if usual <= 0.0 or odd.any():
+        k = int(odd.argmax()) if odd.any() else 0
+        raise ValueError(f'the record is not regular: {steps[k]:.6g} s from sample {k} to '
+                         f'{k + 1}, {(t_ns[k] - t_ns[0]) * 1e-9:.6g} s after its start; expected '
+                         f'the usual {usual:.6g} s, so cut the record there')
+    mean = float(steps.mean())
+    starts = np.linspace(0, len(steps), min(PARTS, len(steps) // 20 + 1) + 1).astype(int)
+    for start, end in zip(starts, starts[1:]):
+        here = float(steps[start:end].mean())
+        if abs(here - mean) > STEADY * mean:
+            raise ValueError(f'the rate of the record changes: {1.0 / here:.6g} Hz from sample '
+                             f'{start} to {end}, {(t_ns[start] - t_ns[0]) * 1e-9:.6g} s after '
+                             f'its start; expected the mean of {1.0 / mean:.6g} Hz throughout')
+    return 1.0 / mean
 
 
 def _terms(tau):
@@ -54,19 +109,19 @@ def estimate(samples, rate_hz):
     """
     Return the Allan deviation of samples (n,) or (n, channels), taken at rate_hz.
 
-    Raises ValueError where the record is too short or not finite, and ImportError, naming the
-    package to install, where allantools is missing.
+    Raises ValueError where the record is too short or not finite, or allantools is missing.
     """
     try:
+        # no Ubuntu package exists: a machine with ROS may lack it
         import allantools
     except ImportError as error:
-        raise ImportError('the Allan deviation needs the package allantools; expected '
-                          '"pip install allantools"') from error
+        raise ValueError(f'allantools cannot be imported ({error}); the Allan deviation expects '
+                         '"pip install allantools"') from None
     samples = np.asarray(samples, dtype=float)
     samples = samples.reshape(len(samples), -1)
-    if len(samples) < 10 * FEWEST:
+    if len(samples) < LEAST:
         raise ValueError(f'the record has {len(samples)} samples; expected at least '
-                         f'{10 * FEWEST}')
+                         f'{LEAST}')
     if not np.isfinite(samples).all():
         raise ValueError('the record holds NaN or infinity; expected finite samples')
     most = len(samples) // FEWEST
@@ -79,18 +134,17 @@ def estimate(samples, rate_hz):
     return Allan(tau_s, np.stack(deviations, axis=-1), len(samples) / rate_hz)
 
 
-def fit(allan, gauss_markov=(0.0, math.inf)):
+def fit(allan, known=0.0):
     """
     Return the Coefficients that fit the mean Allan variance of all channels best.
 
     Least squares of the logarithm of the variance, weighted by the number of intervals of length
-    tau in the record, all coefficients not negative.  gauss_markov: standard deviation and
-    correlation time, s, of a Gauss-Markov process known to be there besides.
+    tau in the record, all coefficients not negative.  known: Allan variance at each tau (m,) of
+    what is known to be there besides, such as gauss_markov_variance.
     """
     tau, variance = allan.tau_s, np.mean(allan.deviation ** 2, axis=-1)
     if not variance.all():
         raise ValueError('the record is constant over an interval; expected noise to fit')
-    known = gauss_markov_variance(tau, *gauss_markov)
     terms = _terms(tau)
     weight = np.sqrt(allan.length_s / tau)
     start, _ = nnls(terms * (weight / variance)[:, None],
@@ -115,27 +169,3 @@ def gauss_markov_variance(tau_s, sigma, time_s):
     bracket = np.where(r < 1e-3, r * r * (1.0 / 3.0 - r / 4.0),
                        1.0 - (4.0 * -np.expm1(-r) + np.expm1(-2.0 * r)) / (2.0 * r))
     return 2.0 * sigma ** 2 / r * bracket
-
-
-def save_figure(path, title, allan, unit, labels=(), coefficients=None):
-    """Save the Allan deviations as PNG; unit: text of the unit; coefficients: their fit."""
-    import matplotlib
-    matplotlib.use('Agg')
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8, 6), layout='constrained')
-    axes = figure.subplots()
-    for k, channel in enumerate(allan.deviation.T):
-        axes.loglog(allan.tau_s, channel, '.-', ms=4, lw=0.8,
-                    label=labels[k] if k < len(labels) else f'channel {k}')
-    if coefficients is not None:
-        c = coefficients
-        axes.loglog(allan.tau_s, c.deviation(allan.tau_s), 'k--', lw=1.2,
-                    label=f'N {c.random_walk:.3g}, B {c.instability:.3g}, '
-                          f'K {c.rate_random_walk:.3g}')
-    axes.set_xlabel('tau [s]')
-    axes.set_ylabel(f'Allan deviation [{unit}]')
-    axes.grid(which='both', alpha=0.3)
-    axes.legend(fontsize='small')
-    axes.set_title(title)
-    figure.savefig(path, dpi=110)

@@ -1,25 +1,30 @@
 """A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
 
-from dataclasses import asdict
+from contextlib import contextmanager
+from dataclasses import asdict, fields
 import json
 import os
 from pathlib import Path
 import shutil
 import tempfile
+from zipfile import BadZipFile
 
 import numpy as np
 
 from . import figure
 from .. import parameter_files
+from ..core.records import ImuSamples
 
 MARK = 'summary.json'
+ARRAYS = 'run.npz'
+PARAMETERS = 'parameters.yaml'
 
 
 def check_free(folder, force, mark=MARK):
     """
-    Raise ValueError unless the folder may be written: absent, or a run and force is given.
+    Raise ValueError unless the folder may be written: absent, or with its mark and force given.
 
-    mark: the file by which a run is known.
+    mark: the file by which what a command writes is known.
     """
     folder = Path(folder)
     parent = next(p for p in folder.absolute().parents if p.exists())
@@ -31,7 +36,30 @@ def check_free(folder, force, mark=MARK):
     if not force:
         raise ValueError(f'{folder} exists; expected a new folder (or --force)')
     if not folder.is_dir() or (any(folder.iterdir()) and not (folder / mark).exists()):
-        raise ValueError(f'{folder} is no run of ins_sim; --force replaces only runs')
+        raise ValueError(f'{folder} holds no {mark}; --force replaces only what the same command '
+                         'wrote')
+
+
+@contextmanager
+def whole(folder, force=False, mark=MARK):
+    """
+    Give a folder to write into that takes the place of ``folder`` once the block is through.
+
+    Whatever breaks in the block leaves what was there before.  Raises as check_free does.
+    """
+    folder = Path(folder)
+    check_free(folder, force, mark)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
+    try:
+        yield work
+        work.chmod(0o755)
+        if folder.exists():
+            shutil.rmtree(folder)
+        work.rename(folder)
+    except BaseException:
+        shutil.rmtree(work, ignore_errors=True)
+        raise
 
 
 def write(folder, settings, run, rows, prediction, title, force=False):
@@ -40,11 +68,7 @@ def write(folder, settings, run, rows, prediction, title, force=False):
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).
     """
-    folder = Path(folder)
-    check_free(folder, force)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
-    try:
+    with whole(folder, force) as work:
         arrays = {}
         for name in ('truth', 'imu', 'states', 'errors', 'twin'):
             record = getattr(run, name)
@@ -53,15 +77,26 @@ def write(folder, settings, run, rows, prediction, title, force=False):
         if prediction is not None:
             arrays['predicted_t_s'] = prediction.t_s
             arrays['predicted_position'] = prediction.position
-        np.savez(work / 'run.npz', **arrays)
-        (work / 'parameters.yaml').write_text(parameter_files.dump(settings), encoding='utf-8')
+        np.savez(work / ARRAYS, **arrays)
+        (work / PARAMETERS).write_text(parameter_files.dump(settings), encoding='utf-8')
         figure.save(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
-        work.chmod(0o755)
-        if folder.exists():
-            shutil.rmtree(folder)
-        work.rename(folder)
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
-        raise
+
+
+def read_imu(folder):
+    """
+    Return the ImuSamples of a run in a folder.
+
+    Raises ValueError where run.npz is none that ``write`` made.
+    """
+    path = Path(folder) / ARRAYS
+    try:
+        with np.load(path) as run:
+            # the parity is there of tuned gyros alone
+            names = [f.name for f in fields(ImuSamples)
+                     if f.name != 'parity' or 'imu_parity' in run]
+            return ImuSamples(**{name: run[f'imu_{name}'] for name in names})
+    except (BadZipFile, EOFError, KeyError, ValueError) as error:
+        raise ValueError(f'{path} holds no IMU record ({error}); expected the arrays of '
+                         '"ins_sim simulate"') from None

@@ -1,0 +1,96 @@
+"""Verb allan: the Allan deviation of both triads, from a run, a bag or the settings alone."""
+
+import json
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from . import settings as chosen_settings
+from .. import parameter_files
+from ..bags.reading import read_imu
+from ..core.imu import period_ns
+from ..core.instrument import with_errors
+from ..core.records import ImuSamples
+from ..core.resting_record import resting_record
+from ..report import allan, allan_figure, noise_terms, storage
+
+MARK = 'allan.json'
+DURATION_S = 10800.0
+EXPECTED = 'expected noise, such as that of "--params-file imu_tactical_fog"'
+
+
+def run(chosen):
+    """Read or simulate, show and save; return the exit code."""
+    storage.check_free(chosen.output, chosen.force, MARK)
+    console = Console()
+    imu, settings, title = _record(chosen, console)
+    rate_hz = allan.rate_of(imu.t_ns)
+    found = []
+    for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
+        sensor = settings and getattr(settings.imu_sensor, triad)
+        noise = noise_terms.analyse(triad, samples, rate_hz, sensor and sensor.errors)
+        if noise is None:
+            console.print(f'{triad}: constant throughout, no noise to show')
+        else:
+            found.append(noise)
+    if not found:
+        raise ValueError(f'{title}: both triads are constant throughout; {EXPECTED}')
+    title = f'{title}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'
+    with storage.whole(chosen.output, chosen.force, MARK) as work:
+        for noise in found:
+            allan_figure.save(work / f'{noise.triad}.png', title, noise)
+        rows = [row for noise in found for row in noise.rows()]
+        (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
+    for noise in found:
+        noise_terms.show(noise, title, console)
+        console.print(f'figure: {Path(chosen.output) / noise.triad}.png', soft_wrap=True)
+    return 0
+
+
+def _record(chosen, console):
+    """Return the ImuSamples, the simulation.Settings behind them or None, and a title."""
+    given = [chosen_settings.locate(name) for name in chosen.params_file]
+    if chosen.source is None:
+        if chosen.topic is not None:
+            raise ValueError(f'--topic is {chosen.topic}; expected a bag as SOURCE with it')
+        settings = parameter_files.read(given, chosen.param)
+        sensor = settings.imu_sensor
+        if sensor.gyro.model == 'ideal' and with_errors(sensor) is None:
+            raise ValueError(f'the instrument of the parameters is perfect; {EXPECTED}')
+        length_s = DURATION_S if chosen.duration is None else chosen.duration
+        names = [path.stem for path in given] or ['the default parameters']
+        return _simulated(settings, length_s, console), settings, ', '.join(names)
+    source = Path(chosen.source)
+    if chosen.duration is not None:
+        raise ValueError(f'--duration is {chosen.duration:g}; expected no SOURCE with it')
+    if (source / storage.ARRAYS).is_file():
+        if chosen.topic is not None:
+            raise ValueError(f'--topic is {chosen.topic}, but {source} is a run; expected a bag')
+        settings = parameter_files.read([source / storage.PARAMETERS, *given], chosen.param)
+        kind = settings.motion_generator.motion.kind
+        if kind != 'static':
+            console.print(f'{source}: the motion is {kind}, not static: its own Allan deviation '
+                          'is in the record', soft_wrap=True)
+        return storage.read_imu(source), settings, source.name
+    if not (source / 'metadata.yaml').is_file():
+        raise ValueError(f'{source} is neither a run of "ins_sim simulate" ({storage.ARRAYS}) nor '
+                         'a rosbag2 bag (metadata.yaml)')
+    known = given or chosen.param
+    settings = parameter_files.read(given, chosen.param) if known else None
+    return read_imu(source, chosen.topic), settings, source.name
+
+
+def _simulated(settings, length_s, console):
+    dt_s = period_ns(settings.imu_sensor.rate_hz) * 1e-9
+    if not allan.LEAST * dt_s <= length_s <= 1e7:
+        raise ValueError(f'--duration is {length_s:g} s; expected {allan.LEAST * dt_s:g} to 1e+07 '
+                         's')
+    blocks = []
+    with Progress(TextColumn('simulating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
+                  TimeRemainingColumn(), console=console, transient=True) as progress:
+        task = progress.add_task('', total=length_s)
+        for block in resting_record(settings, length_s):
+            blocks.append(block)
+            progress.update(task, advance=len(block.t_ns) * dt_s)
+    return ImuSamples.concatenate(blocks)

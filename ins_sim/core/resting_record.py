@@ -1,0 +1,22 @@
+"""The record of an instrument that rests on a level table, straight from its settings."""
+
+from dataclasses import replace
+
+from .motions import make_motion
+from .settings import MotionSettings
+from .simulation import sense
+
+
+def at_rest(settings, duration_s):
+    """Return simulation.Settings with the same instrument, level and at rest for duration_s."""
+    generator = replace(settings.motion_generator, duration_s=duration_s, motion=MotionSettings(
+        kind='static', psi_deg=0.0, theta_deg=0.0, gamma_deg=0.0))
+    sensor = replace(settings.imu_sensor, source='motion', motion=generator.motion)
+    return replace(settings, motion_generator=generator, imu_sensor=sensor)
+
+
+def resting_record(settings, duration_s):
+    """Yield blocks of ImuSamples of the instrument at rest (see ``at_rest``)."""
+    settings = at_rest(settings, duration_s)
+    generator = settings.motion_generator
+    yield from sense(settings, make_motion(generator.motion, generator.datum, generator.earth))

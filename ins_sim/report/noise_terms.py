@@ -1,0 +1,163 @@
+"""The noise of a triad in the units of data sheets: the fit beside what the settings say."""
+
+from dataclasses import dataclass, fields
+import math
+
+import numpy as np
+from rich.table import Table
+
+from . import allan
+from ..core.error_settings import AccelerometerErrors, GyroErrors
+from ..core.triad_model import KEYS, triad_model
+
+AXES = ('x', 'y', 'z')
+# A channel that scatters by less than this part of its size holds rounding, not noise.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Term:
+    """
+    One noise coefficient of a triad.
+
+    symbol: Q, N, B or K; name, unit: as in data sheets; si: one unit in SI; slope: of its Allan
+    deviation over tau in a double logarithmic plot.
+    """
+
+    symbol: str
+    name: str
+    unit: str
+    si: float
+    slope: str
+
+
+def _terms(cls, names):
+    """Return the Terms of a triad; units stand in the settings and in triad_model alone."""
+    keys = {coefficient: (key, si) for key, (coefficient, si) in KEYS[cls].items()}
+    units = {f.name: f.metadata['unit'] for f in fields(cls)}
+    made = []
+    for symbol, coefficient, slope, name in zip('QNBK', ('quantum', 'white', 'flicker', 'walk'),
+                                                ('-1', '-1/2', '0', '+1/2'), names):
+        key, si = keys[coefficient]
+        made.append(Term(symbol, name, units[key], si, slope))
+    return tuple(made)
+
+
+TRIADS = {
+    'gyro': _terms(GyroErrors, ('quantisation', 'angle random walk', 'bias instability',
+                                'rate random walk')),
+    'accelerometer': _terms(AccelerometerErrors, ('quantisation', 'velocity random walk',
+                                                  'bias instability',
+                                                  'acceleration random walk'))}
+
+
+@dataclass(frozen=True)
+class Noise:
+    """
+    The noise found in one triad.
+
+    triad: 'gyro' or 'accelerometer'; axes: those that are not constant; allan: of these, SI;
+    known: mean Allan variance (m,) that was taken for known; by_axis: their Coefficients;
+    together: those of their mean variance; settings: what is to be expected, Q, N, B, K by axis
+    (4, 3) in SI, or None.
+    """
+
+    triad: str
+    axes: tuple
+    allan: allan.Allan
+    known: np.ndarray
+    by_axis: tuple
+    together: allan.Coefficients
+    settings: np.ndarray | None
+
+    def rows(self):
+        """
+        Return for each Term a dict of texts and numbers in its unit.
+
+        None stands for what the record does not show: a constant axis, or a coefficient whose
+        part of the Allan variance is small, or in doubt, at every tau.
+        """
+        found = {**dict(zip(self.axes, self.by_axis)), 'all': self.together}
+        seen = {axis: c.seen(self.allan.channels([k]))
+                for k, (axis, c) in enumerate(zip(self.axes, self.by_axis))}
+        seen['all'] = self.together.seen(self.allan)
+        rows = []
+        for k, term in enumerate(TRIADS[self.triad]):
+            row = {'triad': self.triad, 'symbol': term.symbol, 'name': term.name,
+                   'unit': term.unit}
+            for axis in (*AXES, 'all'):
+                row[axis] = (_values(found[axis])[k] / term.si
+                             if axis in found and seen[axis][k] else None)
+            row['settings'] = (None if self.settings is None
+                               else (self.settings[k] / term.si).tolist())
+            rows.append(row)
+        return rows
+
+
+def _values(coefficients):
+    return tuple(getattr(coefficients, f.name) for f in fields(coefficients))
+
+
+def expected(errors, dt_s, name):
+    """
+    Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
+
+    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); an in-run bias without end
+    counts as the random walk that it is.
+    """
+    model = triad_model(errors, dt_s, name)
+    endless = [s / 60.0 if math.isinf(t) else 0.0
+               for s, t in zip(model.in_run_sigma, model.in_run_time)]
+    return np.array([np.array(model.quantum) / math.sqrt(12.0), model.white, model.flicker,
+                     np.hypot(model.walk, endless)])
+
+
+def analyse(triad, samples, rate_hz, errors=None):
+    """
+    Return the Noise of samples (n, 3) of a triad, SI; None where they are constant.
+
+    errors: GyroErrors or AccelerometerErrors of the settings, where they are known: a Gauss-Markov
+    bias in them is taken for known, as no Allan deviation tells it from B and K.
+    """
+    size = np.abs(samples).max()
+    noisy = [k for k in range(3) if np.ptp(samples[:, k]) > ROUNDING * size]
+    if not noisy:
+        return None
+    found = allan.estimate(samples[:, noisy], rate_hz)
+    known, wanted = np.zeros_like(found.deviation), None
+    if errors is not None:
+        name = f'{triad}.errors'
+        model = triad_model(errors, 1.0 / rate_hz, name)
+        wanted = expected(errors, 1.0 / rate_hz, name)
+        known = np.stack([allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[k],
+                                                      model.in_run_time[k]) for k in noisy], -1)
+    mean = known.mean(axis=-1)
+    try:
+        by_axis = tuple(allan.fit(found.channels([k]), known[:, k]) for k in range(len(noisy)))
+        together = allan.fit(found, mean)
+    except ValueError as error:
+        raise ValueError(f'{triad}: {error}') from None
+    return Noise(triad, tuple(AXES[k] for k in noisy), found, mean, by_axis, together, wanted)
+
+
+def show(noise, title, console):
+    """Print the rows of a Noise."""
+    names = ', '.join(f'{t.symbol} {t.name}' for t in TRIADS[noise.triad])
+    table = Table(title=f'{noise.triad}: {title}',
+                  caption=f'{names}; all: of the mean variance of the axes; -: not to be seen')
+    known = noise.settings is not None
+    table.add_column('')
+    table.add_column('unit')
+    for head in (*AXES, 'all', *(('settings',) if known else ())):
+        table.add_column(head, justify='right')
+    for row in noise.rows():
+        cells = [_number(row[head]) for head in (*AXES, 'all')]
+        if known:
+            alike = len(set(row['settings'])) == 1
+            cells.append(', '.join(map(_number, row['settings'][:1 if alike else None])))
+        table.add_row(row['symbol'], row['unit'], *cells)
+    console.print(table)
+
+
+def _number(value):
+    return '-' if value is None else f'{value:.4g}'

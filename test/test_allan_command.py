@@ -1,0 +1,179 @@
+"""The command allan: from the settings, from a run and from a bag; nothing silently wrong."""
+
+import json
+
+import numpy as np
+import pytest
+
+from ins_sim import parameter_files, resources
+from ins_sim.cli.main import main
+from ins_sim.core.error_settings import AccelerometerErrors, GyroErrors
+from ins_sim.core.records import ImuSamples
+from ins_sim.core.resting_record import resting_record
+from ins_sim.messages import topics
+from ins_sim.report import noise_terms, storage
+
+FOG = ['--params-file', 'imu_tactical_fog', '-p', 'rate_hz:=10.0']
+SIGMA = np.array([0.01, 0.02, 0.03])
+
+
+def rows(folder):
+    """Return {(triad, symbol): row} of a finished folder, whose figures are pictures."""
+    for triad in ('gyro', 'accelerometer'):
+        assert (folder / f'{triad}.png').read_bytes().startswith(b'\x89PNG')
+    return {(row['triad'], row['symbol']): row
+            for row in json.loads((folder / 'allan.json').read_text())}
+
+
+def test_round_trip_from_the_settings(tmp_path, capsys):
+    """Three hours of the FOG at rest: N within 5 %, B within 20 %, K within 30 % of its preset."""
+    out = tmp_path / 'fog'
+    assert main(['allan', *FOG, '-o', str(out)]) == 0
+    shown = capsys.readouterr().out
+    print(shown)
+    for text in ('gyro: imu_tactical_fog, 10 Hz, 10800', 'deg/sqrt(h)', 'deg/h/sqrt(h)', 'arcsec',
+                 'm/s/sqrt(h)', 'ug/sqrt(h)', 'mm/s', 'settings'):
+        assert text in shown
+    found = rows(out)
+    preset = {'gyro': (0.012, 0.075, 0.3), 'accelerometer': (0.02, 20.0, 100.0)}
+    for triad, values in preset.items():
+        for symbol, value, tolerance in zip('NBK', values, (0.05, 0.2, 0.3)):
+            row = found[triad, symbol]
+            assert row['settings'] == pytest.approx([value] * 3)
+            assert row['all'] == pytest.approx(value, rel=tolerance), row
+    assert found['gyro', 'Q']['settings'] == pytest.approx([0.1 / 12 ** 0.5] * 3)
+    assert found['gyro', 'Q']['all'] == pytest.approx(0.1 / 12 ** 0.5, rel=0.2)
+
+
+def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
+    """The record of the folder, the settings beside it, and a word about motion."""
+    run, out = tmp_path / 'run', tmp_path / 'out'
+    arguments = ['simulate', *FOG, '-p', 'duration_s:=300.0', '--no-twin', '-o', str(run)]
+    assert main([*arguments, '-p', 'motion.kind:=static']) == 0
+    assert main(['allan', str(run), '-o', str(out)]) == 0
+    shown = capsys.readouterr().out
+    assert 'gyro: run, 10 Hz, 300.1 s' in shown and 'not static' not in shown
+    n = rows(out)['gyro', 'N']
+    assert n['settings'] == pytest.approx([0.012] * 3)
+    # 3000 samples and three axes: N is known to about 2 %
+    assert n['all'] == pytest.approx(0.012, rel=0.08)
+    assert main([*arguments, '-p', 'motion.kind:=rocking', '--force']) == 0
+    assert main(['allan', str(run), '-o', str(out), '--force']) == 0
+    assert 'the motion is rocking, not static' in capsys.readouterr().out
+
+
+def write_bag(path, t_ns, *names):
+    """Write a bag with white noise of SIGMA rad/s and 10 SIGMA m/s^2 on topics of type Imu."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import get_typestore, Stores
+    rng = np.random.default_rng(3)
+    pack = topics.IMU_RAW.writer().pack
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as bag:
+        store = get_typestore(Stores.ROS2_JAZZY)
+        for name in names:
+            connection = bag.add_connection(name, topics.IMU, typestore=store)
+            for t in t_ns.tolist():
+                values = rng.normal(size=3)
+                # received late and unevenly: the stamp of the header counts
+                bag.write(connection, t + int(rng.integers(9_000_000)),
+                          pack(t, SIGMA * values, 10.0 * SIGMA * rng.normal(size=3)))
+
+
+def test_a_bag_of_imu_messages(tmp_path, capsys):
+    """White noise of known size by axis comes back; its topic is asked for where there are two."""
+    t_ns = 1_700_000_000_000_000_000 + 10_000_000 * np.arange(4000)
+    write_bag(tmp_path / 'one', t_ns, '/imu/data')
+    assert main(['allan', str(tmp_path / 'one'), '-o', str(tmp_path / 'out')]) == 0
+    assert 'settings' not in capsys.readouterr().out
+    found = rows(tmp_path / 'out')
+    for k, axis in enumerate('xyz'):
+        # N = sigma sqrt(dt); 4000 samples give it to 1.5 %
+        n = SIGMA[k] * 0.1 * 57.29578 * 60.0
+        assert found['gyro', 'N'][axis] == pytest.approx(n, rel=0.06)
+        assert found['accelerometer', 'N'][axis] == pytest.approx(SIGMA[k] * 60.0, rel=0.06)
+    assert found['gyro', 'N']['settings'] is None
+    two = str(tmp_path / 'two')
+    write_bag(two, t_ns[:200], '/left/imu', '/right/imu')
+    out = ['-o', str(tmp_path / 'out2')]
+    assert main(['allan', two, *out]) == 2
+    assert 'expected --topic with one of /left/imu, /right/imu' in capsys.readouterr().err
+    assert main(['allan', two, '--topic', 'middle/imu', *out]) == 2
+    assert 'has no topic middle/imu of type sensor_msgs/msg/Imu' in capsys.readouterr().err
+    assert main(['allan', two, '--topic', 'left/imu', *out, *FOG]) == 0
+    assert 'settings' in capsys.readouterr().out
+    write_bag(tmp_path / 'gap', np.delete(t_ns, 1234), '/imu/data')
+    assert main(['allan', str(tmp_path / 'gap'), '-o', str(tmp_path / 'out3')]) == 2
+    assert '0.02 s from sample 1233 to 1234, 12.33 s after its start' in capsys.readouterr().err
+    assert not (tmp_path / 'out3').exists()
+
+
+def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
+    """Exit 2 and the old ones intact; --force replaces what this command wrote, and only that."""
+    out = tmp_path / 'out'
+    arguments = ['allan', *FOG, '--duration', '60', '-o', str(out)]
+    assert main(arguments) == 0
+    before = (out / 'gyro.png').read_bytes()
+    assert main([*arguments, '-p', 'seed:=1']) == 2
+    assert 'exists; expected a new folder (or --force)' in capsys.readouterr().err
+    assert (out / 'gyro.png').read_bytes() == before
+    assert main([*arguments, '-p', 'seed:=1', '--force']) == 0
+    assert (out / 'gyro.png').read_bytes() != before
+    run = tmp_path / 'run'
+    assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(run)]) == 0
+    assert main(['allan', *FOG, '--duration', '60', '-o', str(run), '--force']) == 2
+    assert 'holds no allan.json' in capsys.readouterr().err
+    assert (run / 'run.npz').exists()
+
+
+@pytest.mark.parametrize('arguments, sentence', [
+    ([], 'the instrument of the parameters is perfect; expected noise, such as'),
+    (['absent'], 'absent is neither a run of "ins_sim simulate" (run.npz) nor a rosbag2 bag'),
+    ([*FOG, '--duration', '1'], '--duration is 1 s; expected 4 to'),
+    ([*FOG, '--duration', 'nan'], '--duration is nan s; expected 4 to'),
+    ([*FOG, '--topic', 'imu'], '--topic is imu; expected a bag as SOURCE'),
+    (['absent', '--duration', '5'], '--duration is 5; expected no SOURCE with it'),
+    (['-p', 'gyro.errors.angle_random_walk:=1'], "known one is 'gyro.errors.angle_random_walk_"),
+])
+def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path, capsys,
+                                                   monkeypatch):
+    """Nothing is written, and nothing is a traceback."""
+    monkeypatch.chdir(tmp_path)
+    assert main(['allan', *arguments]) == 2
+    error = capsys.readouterr().err
+    assert sentence in error and error.startswith('ins_sim allan: ') and error.count('\n') == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_is_no_run_is_named(tmp_path):
+    """Arrays of another make, and a file that is no archive."""
+    np.savez(tmp_path / storage.ARRAYS, truth_t_ns=np.arange(3))
+    with pytest.raises(ValueError, match='run.npz holds no IMU record'):
+        storage.read_imu(tmp_path)
+    (tmp_path / storage.ARRAYS).write_bytes(b'nothing')
+    with pytest.raises(ValueError, match='run.npz holds no IMU record'):
+        storage.read_imu(tmp_path)
+
+
+def test_a_perfect_axis_is_left_out():
+    """Noise on one axis of three: its coefficients stand alone; of a perfect triad nothing."""
+    settings = parameter_files.read([resources.config('default')], [
+        'rate_hz:=10.0', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.0, 0.1, 0.0]'])
+    imu = ImuSamples.concatenate(resting_record(settings, 200.0))
+    assert len(imu.t_ns) == 2001
+    errors = settings.imu_sensor.gyro.errors
+    noise = noise_terms.analyse('gyro', imu.omega, 10.0, errors)
+    assert noise.axes == ('y',)
+    n = noise.rows()[1]
+    assert n['x'] is None and n['y'] == n['all'] == pytest.approx(0.1, rel=0.1)
+    assert noise_terms.analyse('accelerometer', imu.f, 10.0, AccelerometerErrors()) is None
+
+
+def test_expected_coefficients_of_the_settings():
+    """Pulses over sqrt(12); an endless in-run bias of 0.3 deg/h adds to a walk of 0.4."""
+    errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, in_run_bias_sigma_deg_h=(0.3,) * 3,
+                        in_run_bias_time_s=(float('inf'), float('inf'), 100.0),
+                        rate_random_walk_deg_h_sqrt_h=(0.4,) * 3)
+    units = [[term.si] for term in noise_terms.TRIADS['gyro']]
+    q, n, b, k = noise_terms.expected(errors, 0.01, 'gyro.errors') / units
+    assert q == pytest.approx([1.0 / 12 ** 0.5] * 3) and not n.any() and not b.any()
+    assert k == pytest.approx([0.5, 0.5, 0.4])
