@@ -70,6 +70,9 @@ def preset_document(preset):
     out += ['# Written by tools/make_config.py from ins_sim/core/presets.py.', '/**/imu_sensor:',
             '  ros__parameters:']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
+    if 'output' in preset.values:
+        out += ['', '/**/strapdown:', '  ros__parameters:',
+                f'    input: {preset.values["output"]}']
     return '\n'.join(out) + '\n'
 
 

@@ -9,6 +9,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from . import settings as chosen_settings
 from .. import parameter_files
 from ..bags.reading import read_imu
+from ..core.gyro_pair import COVARIANCE_FACTORS
 from ..core.imu import period_ns
 from ..core.instrument import with_errors
 from ..core.records import ImuSamples
@@ -29,7 +30,10 @@ def run(chosen):
     found = []
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
-        noise = noise_terms.analyse(triad, samples, rate_hz, sensor and sensor.errors)
+        tuned = settings and triad == 'gyro' and sensor.model == 'dtg'
+        # an axis of tuned gyros is made of one channel, or of two
+        factors = COVARIANCE_FACTORS if tuned else (1.0, 1.0, 1.0)
+        noise = noise_terms.analyse(triad, samples, rate_hz, sensor and sensor.errors, factors)
         if noise is None:
             console.print(f'{triad}: constant throughout, no noise to show')
         else:

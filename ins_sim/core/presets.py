@@ -16,6 +16,7 @@ from .catalogue import nearest
 from .error_settings import AccelerometerErrors, GyroErrors
 
 GYRO, ACCELEROMETER = 'gyro.errors.', 'accelerometer.errors.'
+ROTORS = 'gyro.dtg.errors.'
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Preset:
     values: MappingProxyType
 
 
-def _preset(name, datasheet, figures, gyro, accelerometer):
-    values = {}
+def _preset(name, datasheet, figures, gyro, accelerometer, more=MappingProxyType({})):
+    values = dict(more)
     for prefix, terms in ((GYRO, gyro), (ACCELEROMETER, accelerometer)):
         for key, value in terms.items():
             values[prefix + key] = value if key == 'bandwidth_order' else (value,) * 3
@@ -122,7 +123,9 @@ _DTG = _preset(
     'tactical_dtg', 'tactical dynamically tuned gyros with quartz accelerometers (model of IEEE '
     'Std 813)',
     'judgement within the ranges of the class; gyro: fixed drift 1 deg/h, Gauss-Markov 0.02 deg/h '
-    'over 100 s, floor 0.033 deg/h, mass unbalance 0.5 deg/h/g, anisoelastic 0.02 deg/h/g^2, '
+    'over 100 s, floor 0.033 deg/h, mass unbalance 0.5 deg/h/g, quadrature 1 deg/h/g, spin axis '
+    '0.1 deg/h/g, anisoelastic 0.02 deg/h/g^2, pick-off 10 urad, speed and hunting 5 ppm, product '
+    'of rates compensated to 1 %, '
     'torquer 200 ppm, asymmetry 30 ppm, 200 deg/s, axes 0.2 mrad, ARW 0.005 deg/sqrt(h), pulses '
     '0.3 arcsec; accelerometer: repeatability 100 ug, in-run 7 ug, VRW 0.01 m/s/sqrt(h), range 20 '
     'g',
@@ -131,15 +134,23 @@ _DTG = _preset(
      'bias_instability_deg_h': 0.05, 'rate_random_walk_deg_h_sqrt_h': 0.25,
      'scale_factor_sigma_ppm': 200.0, 'scale_asymmetry_ppm': 30.0, 'cubic_ppm_s2_deg2': 0.001,
      'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,
-     'g_sensitivity_deg_h_g': 0.5, 'g2_sensitivity_deg_h_g2': 0.02, 'saturation_deg_s': 200.0,
-     'quantisation_arcsec': 0.3, 'temperature_bias_deg_h_c': 0.02,
+     'saturation_deg_s': 200.0, 'quantisation_arcsec': 0.3, 'temperature_bias_deg_h_c': 0.02,
      'temperature_scale_ppm_c': 5.0},
     {'turn_on_bias_sigma_ug': 100.0, 'velocity_random_walk_m_s_sqrt_h': 0.01,
      'bias_instability_ug': 10.0, 'acceleration_random_walk_ug_sqrt_h': 50.0,
      'scale_factor_sigma_ppm': 150.0, 'scale_asymmetry_ppm': 15.0, 'quadratic_ug_g2': 20.0,
      'cubic_ug_g3': 1.0, 'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,
      'bandwidth_hz': 300.0, 'bandwidth_order': 2, 'saturation_g': 20.0,
-     'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 10.0, 'temperature_scale_ppm_c': 3.0})
+     'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 10.0, 'temperature_scale_ppm_c': 3.0},
+    # of a rigid rotor the quadrature is opposite on y and z
+    {ROTORS + 'mass_unbalance_deg_h_g': (0.5,) * 4,
+     ROTORS + 'quadrature_unbalance_deg_h_g': (1.0, -1.0) * 2,
+     ROTORS + 'spin_axis_deg_h_g': (0.1,) * 4, ROTORS + 'anisoelastic_deg_h_g2': (0.02,) * 4,
+     ROTORS + 'pickoff_offset_urad': (10.0,) * 4,
+     ROTORS + 'pickoff_noise_urad_sqrt_s': (0.001,) * 4, ROTORS + 'speed_ppm': (5.0, -5.0),
+     ROTORS + 'hunting_ppm': (5.0,) * 2, ROTORS + 'hunting_hz': 3.0,
+     ROTORS + 'spin_rate_product': 0.01, ROTORS + 'vibration_2n_deg_s': (0.01,) * 2,
+     'gyro.model': 'dtg', 'output': 'integrated'})
 
 PRESETS = MappingProxyType({p.name: p for p in (_MEMS, _FOG, _RLG, _DTG)})
 

@@ -98,26 +98,27 @@ def _values(coefficients):
     return tuple(getattr(coefficients, f.name) for f in fields(coefficients))
 
 
-def expected(errors, dt_s, name):
+def expected(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
     """
     Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
 
     Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); an in-run bias without end
-    counts as the random walk that it is.
+    counts as the random walk that it is.  factors: variance of an axis over that of a channel.
     """
     model = triad_model(errors, dt_s, name)
     endless = [s / 60.0 if math.isinf(t) else 0.0
                for s, t in zip(model.in_run_sigma, model.in_run_time)]
-    return np.array([np.array(model.quantum) / math.sqrt(12.0), model.white, model.flicker,
-                     np.hypot(model.walk, endless)])
+    return np.sqrt(factors) * np.array([np.array(model.quantum) / math.sqrt(12.0), model.white,
+                                        model.flicker, np.hypot(model.walk, endless)])
 
 
-def analyse(triad, samples, rate_hz, errors=None):
+def analyse(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0)):
     """
     Return the Noise of samples (n, 3) of a triad, SI; None where they are constant.
 
     errors: GyroErrors or AccelerometerErrors of the settings, where they are known: a Gauss-Markov
-    bias in them is taken for known, as no Allan deviation tells it from B and K.
+    bias in them is taken for known, as no Allan deviation tells it from B and K.  factors: as in
+    ``expected``.
     """
     size = np.abs(samples).max()
     noisy = [k for k in range(3) if np.ptp(samples[:, k]) > ROUNDING * size]
@@ -128,9 +129,9 @@ def analyse(triad, samples, rate_hz, errors=None):
     if errors is not None:
         name = f'{triad}.errors'
         model = triad_model(errors, 1.0 / rate_hz, name)
-        wanted = expected(errors, 1.0 / rate_hz, name)
-        known = np.stack([allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[k],
-                                                      model.in_run_time[k]) for k in noisy], -1)
+        wanted = expected(errors, 1.0 / rate_hz, name, factors)
+        known = np.stack([factors[k] * allan.gauss_markov_variance(
+            found.tau_s, model.in_run_sigma[k], model.in_run_time[k]) for k in noisy], -1)
     mean = known.mean(axis=-1)
     try:
         by_axis = tuple(allan.fit(found.channels([k]), known[:, k]) for k in range(len(noisy)))
