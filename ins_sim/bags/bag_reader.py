@@ -132,16 +132,28 @@ class BagReader:
         topic, if its type is not type_name (where given) or none with a layout, or for messages
         that cannot be read.
         """
-        channel = self._readable(name, type_name)
-        dtype = columns.column_dtype(channel.type_name, fields)
-        blocks = [np.zeros(0, dtype=dtype)]
-        for piece in self._pieces(channel.name):
-            blocks.append(self._checked(channel, columns.read, piece, dtype))
-            blocks[-1]['log_ns'] = piece.log_ns
-        messages = np.concatenate(blocks)
-        if (np.diff(messages['log_ns']) < 0).any():
-            messages = messages[np.argsort(messages['log_ns'], kind='stable')]
-        return messages
+        name = self._readable(name, type_name).name
+        return self.tables({name: fields})[name]
+
+    def tables(self, wanted):
+        """
+        Return {topic: array} of several topics, read together; wanted: {topic: fields or None}.
+
+        The arrays are those of ``arrays``, and so are the errors.
+        """
+        tables, channels = {}, {}
+        for name, fields in wanted.items():
+            channel = self._readable(name, None)
+            channels[channel.name] = channel
+            count = sum(part.count(_ids(part, [channel.name])) for part in self._parts)
+            tables[channel.name] = _Table(count, columns.column_dtype(channel.type_name, fields))
+        for part in self._parts:
+            for number, piece in part.by_channel(_ids(part, channels)):
+                name = part.channels[number].name
+                out = tables[name].more(len(piece))
+                self._checked(channels[name], columns.read, piece, out)
+                out['log_ns'] = piece.log_ns
+        return {name: table.in_order() for name, table in zip(wanted, tables.values())}
 
     def frames(self, name):
         """Return the distinct strings (frame ids) of a topic's messages, a list of tuples."""
@@ -169,7 +181,7 @@ class BagReader:
 
     def _pieces(self, name):
         for part in self._parts:
-            for _, piece in part.pieces(_ids(part, [name])):
+            for _, piece in part.by_channel(_ids(part, [name])):
                 yield piece
 
     def messages(self, names=None):
@@ -184,10 +196,33 @@ class BagReader:
                            key=lambda message: message[1])
 
     def _part_messages(self, part, names):
-        pieces = part.pieces(_ids(part, names), ordered=True)
+        pieces = part.pieces(_ids(part, names))
         of = {number: channel.name for number, channel in part.channels.items()}
         for number, log_ns, data in in_log_order(pieces):
             yield of[number], log_ns, data
+
+
+class _Table:
+    """A structured array that grows."""
+
+    def __init__(self, expected, dtype):
+        self._rows, self._filled = np.empty(expected, dtype=dtype), 0
+
+    def more(self, count):
+        """Return the next rows, to be filled."""
+        first, self._filled = self._filled, self._filled + count
+        if self._filled > len(self._rows):
+            rows = np.empty(max(self._filled, 2 * len(self._rows)), dtype=self._rows.dtype)
+            rows[:first] = self._rows[:first]
+            self._rows = rows
+        return self._rows[first:self._filled]
+
+    def in_order(self):
+        """Return the rows by log time."""
+        rows = self._rows[:self._filled]
+        if (np.diff(rows['log_ns']) < 0).any():
+            rows = rows[np.argsort(rows['log_ns'], kind='stable')]
+        return rows
 
 
 def _ids(part, names):

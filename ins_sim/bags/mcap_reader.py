@@ -15,7 +15,7 @@ import numpy as np
 from . import mcap_format as form
 from .compression import decompress
 from .mcap_format import Fields
-from .piece import Channel, Piece
+from .piece import apart, Channel, joined, Piece
 
 _HEAD = np.dtype([('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'), ('sequence', '<u4'),
                   ('log_ns', '<u8'), ('publish_ns', '<u8')])
@@ -214,6 +214,10 @@ class McapReader:
                     span = int(log_ns.min()), int(log_ns.max())
                 yield count, number, span
 
+    def count(self, wanted):
+        """Return how many messages of channels ``by_channel`` yields, if that is known at once."""
+        return sum(n for n, number, _ in self._counted(times=False) if number in wanted)
+
     def spans(self):
         """Return {channel id: (count, first, last log time)} of the channels with messages."""
         result = {}
@@ -222,30 +226,41 @@ class McapReader:
             result[number] = known[0] + count, min(known[1], first), max(known[2], last)
         return result
 
-    def pieces(self, wanted, ordered=True):
+    def pieces(self, wanted):
         """
         Yield (time before which no later piece has messages, Piece) by the start of the chunks.
 
-        wanted: ids of channels; chunks come by their start, ordered or not.  Raises ValueError
-        for a corrupt chunk.
+        wanted: ids of channels.  Raises ValueError for a corrupt chunk.
         """
-        wanted = np.array(sorted(wanted), dtype=np.int64)
+        for chunk, own in self._by_chunk(wanted):
+            pieces = [piece for _, piece in own]
+            if pieces:
+                piece = joined(pieces)
+                if piece.log_ns.min() < chunk.start_ns:
+                    raise self._corrupt(chunk.position, f'a chunk that begins at '
+                                        f'{chunk.start_ns} ns has a message of '
+                                        f'{piece.log_ns.min()} ns')
+                yield chunk.start_ns, piece[np.argsort(piece.starts, kind='stable')]
+
+    def by_channel(self, wanted):
+        """Yield (channel id, Piece) of the wanted channels, in the order of each of them."""
+        for _, own in self._by_chunk(wanted):
+            yield from own
+
+    def _by_chunk(self, wanted):
+        """Yield (chunk, (channel id, Piece) of those channels that it has)."""
         loose = self._loose_piece()
         if loose is not None:
-            yield 0, loose[np.isin(loose.channel, wanted)]
+            yield _Chunk(0, 0, 0, 0, '', 0, 0), (x for x in apart(loose) if x[0] in wanted)
         for chunk in sorted(self._chunks, key=lambda c: (c.start_ns, c.position)):
-            if chunk.index is not None and not any(n in chunk.index for n in wanted.tolist()):
-                continue
-            raw = self._open(chunk)
             if chunk.index is None:
-                piece = self._scan(chunk, raw)
-                piece = piece[np.isin(piece.channel, wanted)]
-            else:
-                piece = self._indexed(chunk, raw, wanted)
-            if len(piece) and piece.log_ns.min() < chunk.start_ns:
-                raise self._corrupt(chunk.position, f'a chunk that begins at {chunk.start_ns} '
-                                    f'ns has a message of {piece.log_ns.min()} ns')
-            yield chunk.start_ns, piece
+                piece = self._scan(chunk, self._open(chunk))
+                yield chunk, (x for x in apart(piece) if x[0] in wanted)
+                continue
+            own = [number for number in wanted if number in chunk.index]
+            if own:
+                raw = self._open(chunk)
+                yield chunk, ((n, self._indexed(chunk, raw, n)) for n in own)
 
     def _open(self, chunk):
         """Return the bytes of a chunk."""
@@ -254,22 +269,20 @@ class McapReader:
                              chunk.size)
             if chunk.crc and crc32(raw) != chunk.crc:
                 raise ValueError('it has another checksum')
+            if not chunk.compression:
+                chunk.crc = 0  # what is mapped need not be checked twice
         except ValueError as error:
             raise self._corrupt(chunk.position, f'a chunk cannot be read: {error}') from None
         return np.frombuffer(raw, dtype=np.uint8)
 
-    def _indexed(self, chunk, raw, wanted):
-        found = [(number, *chunk.index[number]) for number in wanted.tolist()
-                 if number in chunk.index]
-        entries = np.concatenate([np.frombuffer(self._map, form.INDEX_ENTRY, count, offset)
-                                  for _, offset, count in found])
-        channel = np.repeat([number for number, _, _ in found], [n for _, _, n in found])
-        order = np.argsort(entries['start'], kind='stable')
-        entries, channel = entries[order], channel[order]
-        if len(raw) < _HEAD.itemsize or entries['start'][-1] > len(raw) - _HEAD.itemsize:
+    def _indexed(self, chunk, raw, number):
+        """Return the Piece of a channel by the message index."""
+        offset, count = chunk.index[number]
+        entries = np.frombuffer(self._map, form.INDEX_ENTRY, count, offset)
+        if entries['start'].max() > max(0, len(raw) - _HEAD.itemsize) or len(raw) < _HEAD.itemsize:
             raise self._corrupt(chunk.position, 'a message index points behind its chunk')
         piece, heads = self._piece(chunk.position, raw, entries['start'].astype(np.int64))
-        if (heads['opcode'] != form.MESSAGE).any() or (piece.channel != channel).any() or \
+        if (heads['opcode'] != form.MESSAGE).any() or (piece.channel != number).any() or \
                 (heads['log_ns'] != entries['log_ns']).any():
             raise self._corrupt(chunk.position, 'a message index does not fit its chunk')
         return piece
@@ -325,6 +338,5 @@ class McapReader:
 
 def _spans(piece):
     """Return {channel: (count, first, last log time)} of a Piece."""
-    return {number: (int((own := piece.channel == number).sum()),
-                     int(piece.log_ns[own].min()), int(piece.log_ns[own].max()))
-            for number in np.unique(piece.channel).tolist()}
+    return {number: (len(own), int(own.log_ns.min()), int(own.log_ns.max()))
+            for number, own in apart(piece)}

@@ -80,3 +80,17 @@ def _merged(pieces):
             source[order].tolist(), channel[order].tolist(), log_ns[order].tolist(),
             starts[order].tolist(), (starts + sizes)[order].tolist()):
         yield number, t_ns, bytes(views[k][start:stop])
+
+
+def apart(piece):
+    """Yield (channel id, Piece of its messages) of a Piece."""
+    for number in np.unique(piece.channel).tolist():
+        yield number, piece[piece.channel == number]
+
+
+def joined(pieces):
+    """Return the messages of pieces of the same data as one Piece."""
+    if len(pieces) == 1:
+        return pieces[0]
+    return Piece(pieces[0].data, *(np.concatenate([getattr(p, name) for p in pieces])
+                                   for name in ('channel', 'log_ns', 'starts', 'sizes')))
