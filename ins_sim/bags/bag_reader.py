@@ -159,7 +159,7 @@ class BagReader:
         """Return the distinct strings (frame ids) of a topic's messages, a list of tuples."""
         channel = self._readable(name, None)
         columns.column_dtype(channel.type_name)
-        found = [texts for piece in self._pieces(channel.name)
+        found = [texts for _, piece in self.pieces([channel.name])
                  for texts in self._checked(channel, columns.strings, piece)]
         return list(dict.fromkeys(found))
 
@@ -179,10 +179,19 @@ class BagReader:
         except ValueError as error:
             raise ValueError(f'{self.path}: {channel.name}: {error}') from None
 
-    def _pieces(self, name):
+    def pieces(self, names=None):
+        """
+        Yield (topic, Piece) of topics, by default all, in the order of the files.
+
+        Raises ValueError for an unknown topic and for a file that turns out to be corrupt.
+        """
+        names = self._names(names)
         for part in self._parts:
-            for _, piece in part.by_channel(_ids(part, [name])):
-                yield piece
+            for number, piece in part.by_channel(_ids(part, names)):
+                yield part.channels[number].name, piece
+
+    def _names(self, names):
+        return self.topics if names is None else [self.topic(name).name for name in names]
 
     def messages(self, names=None):
         """
@@ -191,7 +200,7 @@ class BagReader:
         names: of topics, by default all.  Raises ValueError for an unknown topic and for a file
         that turns out to be corrupt.
         """
-        names = self.topics if names is None else [self.topic(name).name for name in names]
+        names = self._names(names)
         return heapq.merge(*(self._part_messages(part, names) for part in self._parts),
                            key=lambda message: message[1])
 

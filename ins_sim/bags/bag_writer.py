@@ -34,16 +34,8 @@ class BagWriter:
 
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
                  split_ns=None):
-        if storage not in WRITERS:
-            raise ValueError(f'the storage is {storage!r}; expected one of {", ".join(WRITERS)}')
-        if compression not in NAMES:
-            raise ValueError(f'the compression is {compression!r}; expected one of '
-                             f'{", ".join(NAMES)}')
-        if storage == 'sqlite3' and compression != 'none':
-            raise ValueError(f'sqlite3 cannot be compressed by {compression}; expected the '
-                             'storage mcap, or the compression none')
+        check(path, storage, compression, replace)
         self.path, self.storage = Path(path), storage
-        check_free(self.path, replace)
         self._compression = '' if compression == 'none' else compression
         self._split_bytes, self._split_ns = split_bytes, split_ns
         self._folder = self.path
@@ -264,8 +256,16 @@ class BagWriter:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
-def check_free(path, replace):
-    """Raise ValueError unless a bag may be written: absent, or a bag and to be replaced."""
+def check(path, storage, compression, replace):
+    """Raise ValueError unless a bag may be written so: a new one, or one to be replaced."""
+    if storage not in WRITERS:
+        raise ValueError(f'the storage is {storage!r}; expected one of {", ".join(WRITERS)}')
+    if compression not in NAMES:
+        raise ValueError(f'the compression is {compression!r}; expected one of '
+                         f'{", ".join(NAMES)}')
+    if storage == 'sqlite3' and compression != 'none':
+        raise ValueError(f'sqlite3 cannot be compressed by {compression}; expected the storage '
+                         'mcap, or the compression none')
     path = Path(path)
     if not path.exists():
         return

@@ -14,6 +14,7 @@ import numpy as np
 
 ENCAPSULATION = b'\x00\x01\x00\x00'
 SECOND = 1_000_000_000
+STAMP_END_NS = 2**31 * SECOND
 
 
 @dataclass(frozen=True)
@@ -99,8 +100,17 @@ class Writer:
         return bytes(buffer)
 
     def block(self, stamps_ns, values=None):
-        """Return the messages of stamps (n,) and values (n, k) as an array of ``dtype``."""
+        """
+        Return the messages of stamps (n,) and values (n, k) as an array of ``dtype``.
+
+        Raises ValueError for a stamp that a ROS message cannot hold.
+        """
         stamps_ns = np.asarray(stamps_ns, dtype=np.int64)
+        if len(stamps_ns) and not -STAMP_END_NS <= stamps_ns.min() <= stamps_ns.max() < \
+                STAMP_END_NS:
+            raise ValueError(f'a stamp is {stamps_ns[np.abs(stamps_ns).argmax()] / SECOND:.9g} s; '
+                             f'expected less than {STAMP_END_NS // SECOND} s, which a ROS stamp '
+                             'can hold')
         row = np.frombuffer(bytes(self._template), dtype=np.uint8)
         messages = np.tile(row, (len(stamps_ns), 1)).view(self.dtype)[:, 0]
         messages['sec'], messages['nanosec'] = np.divmod(stamps_ns, SECOND)
