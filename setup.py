@@ -20,12 +20,15 @@ setup(
         ('share/' + package_name + '/launch', sorted(glob('launch/*.launch.py'))),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags'],
+    install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags',
+                      # the chunks of MCAP; rosbags needs both as well
+                      'lz4', 'backports.zstd; python_version < "3.14"'],
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'allantools'],
+        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'allantools',
+                 'mcap'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

@@ -228,11 +228,11 @@ class McapReader:
 
     def pieces(self, wanted):
         """
-        Yield (time before which no later piece has messages, Piece) by the start of the chunks.
+        Yield (time before which no later piece has messages, place in the file, Piece).
 
         wanted: ids of channels.  Raises ValueError for a corrupt chunk.
         """
-        for chunk, own in self._by_chunk(wanted):
+        for chunk, own in self._by_chunk(wanted, lambda c: (c.start_ns, c.position)):
             pieces = [piece for _, piece in own]
             if pieces:
                 piece = joined(pieces)
@@ -240,19 +240,19 @@ class McapReader:
                     raise self._corrupt(chunk.position, f'a chunk that begins at '
                                         f'{chunk.start_ns} ns has a message of '
                                         f'{piece.log_ns.min()} ns')
-                yield chunk.start_ns, piece[np.argsort(piece.starts, kind='stable')]
+                yield chunk.start_ns, chunk.position, piece[np.argsort(piece.starts, kind='stable')]
 
     def by_channel(self, wanted):
-        """Yield (channel id, Piece) of the wanted channels, in the order of each of them."""
-        for _, own in self._by_chunk(wanted):
+        """Yield (channel id, Piece) of the wanted channels, in the order of the file."""
+        for _, own in self._by_chunk(wanted, lambda c: c.position):
             yield from own
 
-    def _by_chunk(self, wanted):
-        """Yield (chunk, (channel id, Piece) of those channels that it has)."""
+    def _by_chunk(self, wanted, key):
+        """Yield (chunk, (channel id, Piece) of those channels that it has), chunks by a key."""
         loose = self._loose_piece()
         if loose is not None:
             yield _Chunk(0, 0, 0, 0, '', 0, 0), (x for x in apart(loose) if x[0] in wanted)
-        for chunk in sorted(self._chunks, key=lambda c: (c.start_ns, c.position)):
+        for chunk in sorted(self._chunks, key=key):
             if chunk.index is None:
                 piece = self._scan(chunk, self._open(chunk))
                 yield chunk, (x for x in apart(piece) if x[0] in wanted)

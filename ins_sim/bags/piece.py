@@ -52,22 +52,22 @@ def in_log_order(pieces):
     """
     Yield (channel, log_ns, bytes) of pieces in the order of the log times.
 
-    pieces: pairs of a time, before which neither this nor a later piece has a message, and a
-    Piece.  Messages of equal log time keep the order of the pieces.
+    pieces: (time, place, Piece), no message of it or of a later one being before the time.
+    Messages of equal log time keep the order of the places.
     """
     waiting = []
-    for not_before_ns, piece in pieces:
-        if any(len(p) and p.log_ns.min() < not_before_ns for p in waiting):
-            ready = [p[p.log_ns < not_before_ns] for p in waiting]
-            waiting = [p[p.log_ns >= not_before_ns] for p in waiting]
-            yield from _merged(ready)
-            waiting = [p for p in waiting if len(p)]
-        waiting.append(piece)
+    for not_before_ns, place, piece in pieces:
+        if any(p.log_ns.min() < not_before_ns for _, p in waiting):
+            yield from _merged([(k, p[p.log_ns < not_before_ns]) for k, p in waiting])
+            waiting = [(k, p[p.log_ns >= not_before_ns]) for k, p in waiting]
+            waiting = [(k, p) for k, p in waiting if len(p)]
+        if len(piece):
+            waiting.append((place, piece))
     yield from _merged(waiting)
 
 
 def _merged(pieces):
-    pieces = [p for p in pieces if len(p)]
+    pieces = [p for _, p in sorted(pieces, key=lambda pair: pair[0]) if len(p)]
     if not pieces:
         return
     source = np.repeat(np.arange(len(pieces)), [len(p) for p in pieces])

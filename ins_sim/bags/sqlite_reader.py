@@ -120,12 +120,12 @@ class SqliteReader:
 
     def pieces(self, wanted):
         """
-        Yield (time before which no later piece has messages, Piece) by log time.
+        Yield (time before which no later piece has messages, place, Piece) by log time.
 
         wanted: ids of channels.  Raises ValueError for a corrupt file.
         """
-        for piece in self._select(wanted, 'timestamp, id'):
-            yield int(piece.log_ns[0]), piece
+        for place, piece in enumerate(self._select(wanted, 'timestamp, id')):
+            yield int(piece.log_ns[0]), place, piece
 
     def by_channel(self, wanted):
         """Yield (channel id, Piece) of the wanted channels, in the order they were written."""

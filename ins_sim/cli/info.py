@@ -1,7 +1,6 @@
 """Verb info: what is in a bag."""
 
 from rich.console import Console
-from rich.table import Table
 
 from ..bags.bag_reader import open_bag
 from ..messages.cdr import SECOND
@@ -30,16 +29,21 @@ def run(chosen):
                      ('duration', f'{_seconds(last - first)} s')]
         for name, value in rows:
             console.print(f'{name:9} {value}', markup=False, highlight=False, soft_wrap=True)
-        table = Table()
-        for head in ('topic', 'type', 'encoding'):
-            table.add_column(head, overflow='fold')
-        table.add_column('messages', justify='right')
-        table.add_column('rate, Hz', justify='right')
-        for name, channel in bag.topics.items():
-            table.add_row(name, channel.type_name, channel.encoding, str(spans[name].count),
-                          _rate(spans[name]))
-        console.print(table, markup=False)
+        _show_topics(bag, spans, console)
     return 0
+
+
+def _show_topics(bag, spans, console):
+    lines = [('topic', 'type', 'messages', 'rate, Hz')]
+    for name, channel in bag.topics.items():
+        kind = channel.type_name
+        if channel.encoding != 'cdr':
+            kind += f' ({channel.encoding})'
+        lines.append((name, kind, str(spans[name].count), _rate(spans[name])))
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for name, kind, count, rate in lines:
+        console.print(f'{name:{widths[0]}}  {kind:{widths[1]}}  {count:>{widths[2]}}  '
+                      f'{rate:>{widths[3]}}', markup=False, highlight=False, soft_wrap=True)
 
 
 def _seconds(t_ns):

@@ -81,7 +81,8 @@ def main(arguments=None):
         print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f'ins_sim {chosen.verb}: interrupted; nothing was written', file=sys.stderr)
+        print(f'ins_sim {chosen.verb}: interrupted; only what is named above was written',
+              file=sys.stderr)
         return 130
 
 
