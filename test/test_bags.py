@@ -1,6 +1,8 @@
 """Bags: what is written is read back by us, rosbags, mcap and rclpy, and the reverse."""
 
 import hashlib
+import json
+from pathlib import Path
 import sqlite3
 
 from ins_sim.bags import digest, qos
@@ -272,19 +274,15 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
     assert profile['deadline'] == {'sec': 9223372036, 'nsec': 854775807}
 
 
-def test_the_hash_of_a_type_is_that_of_ros():
-    """As the generated messages of ROS carry it."""
-    sensor_msgs = pytest.importorskip('sensor_msgs.msg')
-    if not hasattr(sensor_msgs.Imu, '_TYPE_SUPPORT'):
-        pytest.skip('no type support')
-    import pathlib
-    share = pathlib.Path(sensor_msgs.__file__).parent.parent
-    found = list(share.rglob('share/sensor_msgs/msg/Imu.json'))
-    if not found:
-        pytest.skip('the type descriptions are not installed')
-    hashes = {h['type_name']: h['hash_string'] for h in yaml.safe_load(
-        found[0].read_text())['type_hashes']}
-    assert hashes['sensor_msgs/msg/Imu'] == define('sensor_msgs/msg/Imu')[1]
+@pytest.mark.parametrize('type_name', [*TYPES, *(t for t, _ in strings().values())])
+def test_the_hash_of_a_type_is_that_of_ros(type_name):
+    """As the type descriptions that ROS installs say."""
+    index = pytest.importorskip('ament_index_python.packages')
+    package, kind, name = type_name.split('/')
+    path = Path(index.get_package_share_directory(package)) / kind / f'{name}.json'
+    hashes = {h['type_name']: h['hash_string'] for h in json.loads(path.read_text())[
+        'type_hashes']}
+    assert hashes[type_name] == define(type_name)[1]
 
 
 def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
@@ -432,5 +430,3 @@ def test_a_copy_carries_types_that_are_not_known(tmp_path):
             new.write(*message)
     with open_bag(tmp_path / 'one') as one, open_bag(tmp_path / 'two') as two:
         assert one.topics == two.topics and list(one.messages()) == list(two.messages())
-
-

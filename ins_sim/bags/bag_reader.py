@@ -101,9 +101,8 @@ class BagReader:
 
     def topic(self, name):
         """Return the Channel of a topic; ValueError, naming the nearest one, if there is none."""
-        full = '/' + name.lstrip('/')
-        if full in self.topics or not self.topics:
-            name = full
+        if name not in self.topics:
+            name = '/' + name.lstrip('/')
         if name not in self.topics:
             raise ValueError(f'{self.path} has no topic {name}; ' + (
                 f'the nearest is {nearest(name, self.topics)}' if self.topics else

@@ -215,7 +215,7 @@ class McapReader:
                 yield count, number, span
 
     def count(self, wanted):
-        """Return how many messages of channels ``by_channel`` yields, if that is known at once."""
+        """Return how many messages of channels there are, if that is known at once."""
         return sum(n for n, number, _ in self._counted(times=False) if number in wanted)
 
     def spans(self):
@@ -240,7 +240,8 @@ class McapReader:
                     raise self._corrupt(chunk.position, f'a chunk that begins at '
                                         f'{chunk.start_ns} ns has a message of '
                                         f'{piece.log_ns.min()} ns')
-                yield chunk.start_ns, chunk.position, piece[np.argsort(piece.starts, kind='stable')]
+                order = np.argsort(piece.starts, kind='stable')
+                yield chunk.start_ns, chunk.position, piece[order]
 
     def by_channel(self, wanted):
         """Yield (channel id, Piece) of the wanted channels, in the order of the file."""
@@ -248,7 +249,7 @@ class McapReader:
             yield from own
 
     def _by_chunk(self, wanted, key):
-        """Yield (chunk, (channel id, Piece) of those channels that it has), chunks by a key."""
+        """Yield (chunk, pairs of channel id and Piece) of the chunks, sorted by a key."""
         loose = self._loose_piece()
         if loose is not None:
             yield _Chunk(0, 0, 0, 0, '', 0, 0), (x for x in apart(loose) if x[0] in wanted)
@@ -279,7 +280,7 @@ class McapReader:
         """Return the Piece of a channel by the message index."""
         offset, count = chunk.index[number]
         entries = np.frombuffer(self._map, form.INDEX_ENTRY, count, offset)
-        if entries['start'].max() > max(0, len(raw) - _HEAD.itemsize) or len(raw) < _HEAD.itemsize:
+        if entries['start'].max() + _HEAD.itemsize > len(raw):
             raise self._corrupt(chunk.position, 'a message index points behind its chunk')
         piece, heads = self._piece(chunk.position, raw, entries['start'].astype(np.int64))
         if (heads['opcode'] != form.MESSAGE).any() or (piece.channel != number).any() or \
