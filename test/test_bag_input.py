@@ -1,7 +1,10 @@
 """Bags that are cut, corrupt, foreign or in the way: one sentence each, and exit code 2."""
 
 import os
+from pathlib import Path
+import shutil
 import sqlite3
+import tempfile
 
 from ins_sim.bags import mcap_format as form
 from ins_sim.bags.bag_reader import open_bag
@@ -314,15 +317,30 @@ def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
         BagWriter(tmp_path / 'other', replace=True)
 
 
-@pytest.mark.skipif(os.getuid() == 0, reason='root may write and read everything')
-def test_no_permission(tmp_path, capsys):
-    """To write into a folder, and to read a file."""
-    path = write(tmp_path / 'bag') / 'bag_0.mcap'
-    path.chmod(0)
-    refused(path, 'Permission denied', capsys)
-    tmp_path.chmod(0o500)
-    try:
-        with pytest.raises(OSError, match='Permission denied'):
-            BagWriter(tmp_path / 'new')
-    finally:
-        tmp_path.chmod(0o700)
+@pytest.fixture
+def nobody():
+    """Run the test as a user that owns nothing, if as root; give a folder that it may enter."""
+    folder = Path(tempfile.mkdtemp())
+    folder.chmod(0o755)
+    yield folder, lambda: os.getuid() or os.seteuid(65534)
+    os.getuid() or os.seteuid(0)
+    folder.chmod(0o755)
+    shutil.rmtree(folder)
+
+
+def test_no_permission(nobody, capsys):
+    """To read a file, and to write into a folder; by both verbs."""
+    folder, become = nobody
+    write(folder / 'bag')
+    (folder / 'bag' / 'bag_0.mcap').chmod(0)
+    write(folder / 'db', 'sqlite3')
+    (folder / 'db' / 'db_0.db3').chmod(0)
+    folder.chmod(0o555)
+    become()
+    refused(folder / 'bag', 'Permission denied', capsys)
+    refused(folder / 'db', 'Permission denied', capsys)
+    with pytest.raises(OSError, match='Permission denied'):
+        BagWriter(folder / 'new')
+    assert main(['simulate', '-p', 'duration_s:=1.0', '--no-twin', '-o', str(folder / 'run'),
+                 '--bag', str(folder / 'new')]) == 2
+    assert capsys.readouterr().err.count('\n') == 1

@@ -1,5 +1,6 @@
 """Writing MCAP files: whole chunks and their indices from arrays."""
 
+from contextlib import suppress
 import os
 import struct
 from zlib import crc32
@@ -33,7 +34,7 @@ class McapWriter:
     def _put(self, *parts):
         """Write all parts, or raise OSError with the file as it was."""
         parts = [memoryview(part) for part in parts]
-        left = sum(part.nbytes for part in parts)
+        start, left = self.size, sum(part.nbytes for part in parts)
         try:
             while left:
                 written = os.writev(self._file.fileno(), parts)
@@ -44,7 +45,9 @@ class McapWriter:
                 if written:
                     parts[0] = parts[0][written:]
         except OSError:
-            self.size -= self._file.tell() - self.size
+            self.size = start
+            with suppress(OSError):
+                self._file.truncate(start)
             raise
 
     def add_topic(self, channel):

@@ -1,5 +1,7 @@
 """Verb info: what is in a bag."""
 
+from pathlib import Path
+
 from rich.console import Console
 
 from ..bags.bag_reader import open_bag
@@ -12,7 +14,9 @@ def run(chosen):
     with open_bag(chosen.bag) as bag:
         spans = bag.spans()
         counted = [span for span in spans.values() if span.count]
-        size = sum(file.stat().st_size for file in bag.files)
+        # a database that was not closed has most of its messages in the log beside it
+        logs = (file.with_name(file.name + '-wal') for file in bag.files)
+        size = sum(file.stat().st_size for file in (*bag.files, *filter(Path.exists, logs)))
         rows = [
             ('bag', str(bag.path)),
             ('state', f'cut: {bag.cut}' if bag.cut else 'whole'),
