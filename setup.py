@@ -21,12 +21,14 @@ setup(
     ],
     python_requires='>=3.10',
     install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags',
-                      'allantools'],
+                      'allantools',
+                      # the chunks of MCAP; rosbags needs both as well
+                      'lz4', 'backports.zstd; python_version < "3.14"'],
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5'],
+        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'mcap'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

@@ -1,8 +1,17 @@
+<<<<<<< HEAD
 """Reading what nodes publish back from a rosbag2 bag, without ROS."""
 
 import numpy as np
 
 from ..core.records import ImuSamples, NavErrors
+=======
+"""Reading what the nodes publish back from a bag, without ROS."""
+
+import numpy as np
+
+from .bag_reader import open_bag
+from ..core.records import NavErrors
+>>>>>>> 524d3af352e8622d90d90e01c1c03ee06c3b3d14
 from ..messages import topics
 
 
@@ -12,29 +21,18 @@ def read_errors(path, namespace=''):
 
     Raises ValueError if a topic is missing, or the four do not have the same stamps.
     """
-    from rosbags.rosbag2 import Reader
-    from rosbags.rosbag2.errors import ReaderError
     prefix = f'/{namespace.strip("/")}/' if namespace else '/'
-    wanted = {prefix + topic.name: topic for topic in topics.ERRORS}
-    readers = {name: topic.reader().read for name, topic in wanted.items()}
-    samples = {name: [] for name in wanted}
-    try:
-        with Reader(path) as bag:
-            connections = [c for c in bag.connections if c.topic in wanted]
-            for connection, _, data in bag.messages(connections=connections):
-                samples[connection.topic].append(readers[connection.topic](data))
-    except ReaderError as error:
-        raise ValueError(f'{path} is no readable bag: {error}') from None
-    columns = []
-    for name, history in samples.items():
-        if not history:
+    names = [prefix + topic.name for topic in topics.ERRORS]
+    with open_bag(path) as bag:
+        tables = bag.tables(dict.fromkeys(names))
+    for name, table in tables.items():
+        if not len(table):
             raise ValueError(f'{path} has no message on {name}')
-        stamps, vectors = zip(*history)
-        columns.append((np.array(stamps, dtype=np.int64), np.array(vectors)))
-    t_ns = columns[0][0]
-    if any(not np.array_equal(t_ns, stamps) for stamps, _ in columns[1:]):
+    t_ns = tables[names[0]]['stamp_ns']
+    if any(not np.array_equal(t_ns, table['stamp_ns']) for table in tables.values()):
         raise ValueError(f'{path}: the topics under {prefix}ins/error have different stamps; '
                          'expected all four of every output')
+<<<<<<< HEAD
     return NavErrors(t_ns, *(vectors for _, vectors in columns))
 
 
@@ -74,3 +72,6 @@ def _choose(path, topic, known):
         raise ValueError(f'{path} has no topic {topic} of type {topics.IMU}; expected one of '
                          f'{", ".join(known)}')
     return known[0] if topic is None else f'/{topic.lstrip("/")}'
+=======
+    return NavErrors(t_ns, *(table['vector'] for table in tables.values()))
+>>>>>>> 524d3af352e8622d90d90e01c1c03ee06c3b3d14

@@ -23,6 +23,18 @@ def parser():
                           help='folder of the run (default: %(default)s)')
     simulate.add_argument('--force', action='store_true', help='replace the run in DIR')
     simulate.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
+    simulate.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
+                          'the nodes would publish into a rosbag2 bag')
+    simulate.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                          help='storage of the bag (default: %(default)s)')
+    simulate.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
+                          help='compression of its chunks, of mcap (default: %(default)s)')
+    simulate.add_argument('--topics', nargs='+', metavar='TOPIC', default=None,
+                          help='topics of the bag (default: all)')
+
+    info = verbs.add_parser('info', help='what is in a bag', description='Show storage, topics, '
+                            'counts, rates and times of a bag, and whether it is whole.')
+    info.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
 
     predict = verbs.add_parser('predict', help='predict drift and position error',
                                description='Predict the mean drift and the position error by the '
@@ -101,7 +113,8 @@ def main(arguments=None):
         print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f'ins_sim {chosen.verb}: interrupted; nothing was written', file=sys.stderr)
+        print(f'ins_sim {chosen.verb}: interrupted; only what is named above was written',
+              file=sys.stderr)
         return 130
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 ENCAPSULATION = b'\x00\x01\x00\x00'
 SECOND = 1_000_000_000
+STAMP_END_NS = 2**31 * SECOND
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,12 @@ LAYOUTS = {
     'sensor_msgs/msg/NavSatFix': Layout(1, 12, ((0, 3),), True, b'\x00'),
     'geometry_msgs/msg/Vector3Stamped': Layout(1, 3, ((0, 3),)),
     'geometry_msgs/msg/QuaternionStamped': Layout(1, 4, ((0, 4),)),
+    'geometry_msgs/msg/TwistStamped': Layout(1, 6, ((0, 6),)),
 }
 
 
-def _aligned(offset, size):
+def aligned(offset, size):
+    """Return the first multiple of size at or behind an offset."""
     return (offset + size - 1) // size * size
 
 
@@ -65,12 +68,12 @@ class Writer:
         self.runs = layout.runs if runs is None else tuple(runs)
         body = bytearray(8)
         for text in strings:
-            body += bytes(_aligned(len(body), 4) - len(body))
+            body += bytes(aligned(len(body), 4) - len(body))
             data = text.encode() + b'\x00'
             body += struct.pack('<I', len(data)) + data
         body += bytes(_middle(len(body), layout) - len(body))
         if layout.doubles:
-            body += bytes(_aligned(len(body), 8) - len(body))
+            body += bytes(aligned(len(body), 8) - len(body))
         first = len(ENCAPSULATION) + len(body)
         doubles = [0.0] * layout.doubles
         for index, value in (constants or {}).items():
@@ -97,8 +100,17 @@ class Writer:
         return bytes(buffer)
 
     def block(self, stamps_ns, values=None):
-        """Return the messages of stamps (n,) and values (n, k) as an array of ``dtype``."""
+        """
+        Return the messages of stamps (n,) and values (n, k) as an array of ``dtype``.
+
+        Raises ValueError for a stamp that a ROS message cannot hold.
+        """
         stamps_ns = np.asarray(stamps_ns, dtype=np.int64)
+        if len(stamps_ns) and not -STAMP_END_NS <= stamps_ns.min() <= stamps_ns.max() < \
+                STAMP_END_NS:
+            raise ValueError(f'a stamp is {stamps_ns[np.abs(stamps_ns).argmax()] / SECOND:.9g} s; '
+                             f'expected less than {STAMP_END_NS // SECOND} s, which a ROS stamp '
+                             'can hold')
         row = np.frombuffer(bytes(self._template), dtype=np.uint8)
         messages = np.tile(row, (len(stamps_ns), 1)).view(self.dtype)[:, 0]
         messages['sec'], messages['nanosec'] = np.divmod(stamps_ns, SECOND)
@@ -115,7 +127,7 @@ class Writer:
 
 def _middle(offset, layout):
     """Return the offset behind the small integers, a byte and a 16-bit number, all zero."""
-    return _aligned(offset + 1, 2) + 2 if layout.status else offset
+    return aligned(offset + 1, 2) + 2 if layout.status else offset
 
 
 class Reader:
@@ -152,7 +164,7 @@ class Reader:
         texts, offset = [], 12
         self.read(buffer)
         for _ in range(self._layout.strings):
-            offset = _aligned(offset, 4)
+            offset = aligned(offset, 4)
             length, = _LENGTH(buffer, offset)
             texts.append(bytes(buffer[offset + 4:offset + 3 + length]).decode(errors='replace'))
             offset += 4 + length
@@ -164,16 +176,16 @@ class Reader:
         first, = _LENGTH(buffer, 12)
         if self._layout.strings == 1:
             return first
-        return first, _LENGTH(buffer, _aligned(16 + first, 4))[0]
+        return first, _LENGTH(buffer, aligned(16 + first, 4))[0]
 
     def _find(self, key):
         """Return the slots of the doubles for these string lengths and remember them."""
         offset = 8
         if self._layout.strings:
             for length in key if isinstance(key, tuple) else (key,):
-                offset = _aligned(offset, 4) + 4 + length
+                offset = aligned(offset, 4) + 4 + length
         offset = _middle(offset, self._layout)
-        first = 4 + (_aligned(offset, 8) if self._layout.doubles else offset)
+        first = 4 + (aligned(offset, 8) if self._layout.doubles else offset)
         slots = []
         for start, stop in self._runs:
             # the skipped rest is unpacked too, so that a message cut anywhere is found short

@@ -1,0 +1,254 @@
+"""Reading bags: topics into arrays, or messages in the order of their log times."""
+
+from dataclasses import dataclass
+import heapq
+from pathlib import Path
+import re
+
+import numpy as np
+
+from . import metadata
+from .mcap_reader import McapReader
+from .piece import in_log_order
+from .sqlite_reader import SqliteReader
+from ..core.catalogue import nearest
+from ..messages import columns
+
+READERS = {'mcap': McapReader, 'sqlite3': SqliteReader}
+SUFFIXES = {'.mcap': 'mcap', '.db3': 'sqlite3'}
+
+
+def open_bag(path):
+    """
+    Return the BagReader of a bag: a folder with or without metadata.yaml, or one of its files.
+
+    Raises ValueError, in one sentence, if it is no bag, or one that cannot be read; OSError if
+    it does not exist or may not be read.
+    """
+    return BagReader(path)
+
+
+@dataclass(frozen=True)
+class Span:
+    """How many messages there are, and the first and last log time, ns (None if no message)."""
+
+    count: int = 0
+    first_ns: int | None = None
+    last_ns: int | None = None
+
+
+class BagReader:
+    """
+    A bag.  Use as a context manager, or close it.
+
+    topics {name: Channel} as they are declared, in order; files: paths; storage: 'mcap' or
+    'sqlite3'; compression: names of those of the chunks; cut: '' or a sentence that says why the
+    bag is not whole.  Names of topics that are given may leave out the first slash.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.cut = ''
+        if self.path.is_dir():
+            self.storage, self.files = self._find_files()
+        else:
+            self.storage, self.files = _storage(self.path), [self.path]
+        self._parts = []
+        try:
+            for file in self.files:
+                self._parts.append(READERS[self.storage](file))
+        except BaseException:
+            self.close()
+            raise
+        self.cut = '; '.join(filter(None, [self.cut, *(part.cut for part in self._parts)]))
+        self.compression = sorted({name for part in self._parts for name in part.compression})
+        self.topics = {}
+        for part in self._parts:
+            for channel in part.channels.values():
+                known = self.topics.setdefault(channel.name, channel)
+                if known.type_name != channel.type_name:
+                    raise ValueError(f'{self.path} has {channel.name} with two types, '
+                                     f'{known.type_name} and {channel.type_name}')
+
+    def _find_files(self):
+        info = metadata.read(self.path)
+        if info is not None:
+            files = [self.path / name for name in info.files]
+            for file in files:
+                if not file.exists():
+                    raise ValueError(f'{self.path} lacks {file.name}, which its {metadata.NAME} '
+                                     'names')
+            return info.storage, files
+        files = sorted((f for f in self.path.iterdir() if f.suffix in SUFFIXES), key=_number)
+        storages = {_storage(f) for f in files}
+        if len(storages) != 1:
+            raise ValueError(f'{self.path} is no bag; expected {metadata.NAME}, or files of '
+                             f'{" or ".join(SUFFIXES)}')
+        self.cut = f'it was not closed: there is no {metadata.NAME}'
+        return storages.pop(), files
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    def close(self):
+        """Close the files; arrays that were read stay."""
+        for part in self._parts:
+            part.close()
+        self._parts = []
+
+    def topic(self, name):
+        """Return the Channel of a topic; ValueError, naming the nearest one, if there is none."""
+        if name not in self.topics:
+            name = '/' + name.lstrip('/')
+        if name not in self.topics:
+            raise ValueError(f'{self.path} has no topic {name}; ' + (
+                f'the nearest is {nearest(name, self.topics)}' if self.topics else
+                'it has none at all'))
+        return self.topics[name]
+
+    def spans(self):
+        """Return {topic: Span} of all topics."""
+        result = dict.fromkeys(self.topics, Span())
+        for part in self._parts:
+            for number, (count, first, last) in part.spans().items():
+                name = part.channels[number].name
+                known = result[name]
+                if known.count:
+                    first, last = min(first, known.first_ns), max(last, known.last_ns)
+                result[name] = Span(count + known.count, first, last)
+        return result
+
+    def arrays(self, name, fields=None, type_name=None):
+        """
+        Return the messages of a topic as a structured array in the order of the log times.
+
+        It has 'log_ns' and 'stamp_ns' (int64) and the fields of the message by their ROS names
+        (``messages.columns``), by default all: of an Imu 'orientation' (4,),
+        'angular_velocity' (3,)...; fields selects some.  Raises ValueError if there is no such
+        topic, if its type is not type_name (where given) or none with a layout, or for messages
+        that cannot be read.
+        """
+        name = self._readable(name, type_name).name
+        return self.tables({name: fields})[name]
+
+    def tables(self, wanted):
+        """
+        Return {topic: array} of several topics, read together; wanted: {topic: fields or None}.
+
+        The arrays are those of ``arrays``, and so are the errors.
+        """
+        tables, channels = {}, {}
+        for name, fields in wanted.items():
+            channel = self._readable(name, None)
+            channels[channel.name] = channel
+            count = sum(part.count(_ids(part, [channel.name])) for part in self._parts)
+            tables[channel.name] = _Table(count, columns.column_dtype(channel.type_name, fields))
+        for part in self._parts:
+            for number, piece in part.by_channel(_ids(part, channels)):
+                name = part.channels[number].name
+                out = tables[name].more(len(piece))
+                self._checked(channels[name], columns.read, piece, out)
+                out['log_ns'] = piece.log_ns
+        return {name: table.in_order() for name, table in zip(wanted, tables.values())}
+
+    def frames(self, name):
+        """Return the distinct strings (frame ids) of a topic's messages, a list of tuples."""
+        channel = self._readable(name, None)
+        columns.column_dtype(channel.type_name)
+        found = [texts for _, piece in self.pieces([channel.name])
+                 for texts in self._checked(channel, columns.strings, piece)]
+        return list(dict.fromkeys(found))
+
+    def _readable(self, name, type_name):
+        channel = self.topic(name)
+        if type_name is not None and channel.type_name != type_name:
+            raise ValueError(f'{self.path}: {channel.name} has the type {channel.type_name}; '
+                             f'expected {type_name}')
+        if channel.encoding != 'cdr':
+            raise ValueError(f'{self.path}: {channel.name} is serialized as '
+                             f'{channel.encoding!r}; expected cdr')
+        return channel
+
+    def _checked(self, channel, function, piece, *more):
+        try:
+            return function(channel.type_name, piece.data, piece.starts, piece.sizes, *more)
+        except ValueError as error:
+            raise ValueError(f'{self.path}: {channel.name}: {error}') from None
+
+    def pieces(self, names=None):
+        """
+        Yield (topic, Piece) of topics, by default all, in the order of the files.
+
+        Raises ValueError for an unknown topic and for a file that turns out to be corrupt.
+        """
+        names = self._names(names)
+        for part in self._parts:
+            for number, piece in part.by_channel(_ids(part, names)):
+                yield part.channels[number].name, piece
+
+    def _names(self, names):
+        return self.topics if names is None else [self.topic(name).name for name in names]
+
+    def messages(self, names=None):
+        """
+        Yield (topic, log_ns, data) in the order of the log times, data as bytes.
+
+        names: of topics, by default all.  Raises ValueError for an unknown topic and for a file
+        that turns out to be corrupt.
+        """
+        names = self._names(names)
+        return heapq.merge(*(self._part_messages(part, names) for part in self._parts),
+                           key=lambda message: message[1])
+
+    def _part_messages(self, part, names):
+        pieces = part.pieces(_ids(part, names))
+        of = {number: channel.name for number, channel in part.channels.items()}
+        for number, log_ns, data in in_log_order(pieces):
+            yield of[number], log_ns, data
+
+
+class _Table:
+    """A structured array that grows."""
+
+    def __init__(self, expected, dtype):
+        self._rows, self._filled = np.empty(expected, dtype=dtype), 0
+
+    def more(self, count):
+        """Return the next rows, to be filled."""
+        first, self._filled = self._filled, self._filled + count
+        if self._filled > len(self._rows):
+            rows = np.empty(max(self._filled, 2 * len(self._rows)), dtype=self._rows.dtype)
+            rows[:first] = self._rows[:first]
+            self._rows = rows
+        return self._rows[first:self._filled]
+
+    def in_order(self):
+        """Return the rows by log time."""
+        rows = self._rows[:self._filled]
+        if (np.diff(rows['log_ns']) < 0).any():
+            rows = rows[np.argsort(rows['log_ns'], kind='stable')]
+        return rows
+
+
+def _ids(part, names):
+    return [number for number, channel in part.channels.items() if channel.name in names]
+
+
+def _storage(path):
+    storage = SUFFIXES.get(path.suffix)
+    if storage is None:
+        if path.suffix == '.zstd':
+            raise ValueError(f'{path} is compressed as a file; expected one of '
+                             f'{", ".join(SUFFIXES)} ("zstd -d" makes it)')
+        if not path.exists():
+            raise FileNotFoundError(f'{path} does not exist; expected a bag')
+        raise ValueError(f'{path} is no bag; expected a folder or one of {", ".join(SUFFIXES)}')
+    return storage
+
+
+def _number(path):
+    """Return the key that sorts splits: bag_2 before bag_10."""
+    return [int(word) if word.isdigit() else word for word in re.split(r'(\d+)', path.name)]

@@ -1,0 +1,277 @@
+"""Writing bags: single messages of a recorder, or whole blocks of simulated ones."""
+
+from contextlib import contextmanager
+from pathlib import Path
+import shutil
+
+import numpy as np
+
+from . import mcap_format as form, mcap_writer, metadata, qos, sqlite_writer
+from .compression import NAMES
+from .definitions import define
+from .piece import Channel
+from .records import arrange, fill, Records
+
+WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
+           'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
+CHUNK_BYTES = 1 << 20
+# of a recorder that is killed, what is older than this in log time is in the bag
+CHUNK_NS = 1_000_000_000
+LATEST_NS = 2**63 - 1
+
+
+class BagWriter:
+    """
+    A bag in writing.  Use as a context manager, or close it.
+
+    path: the folder; storage: 'mcap' or 'sqlite3'; compression of MCAP chunks: 'none', 'lz4' or
+    'zstd'; split_bytes, split_ns: begin another file where one is as large, or its messages span
+    as much.  The bag grows in place and gets its metadata.yaml last: without one it is not whole,
+    but what was written can be read.  A bag that is there is refused, or, with replace, stays
+    until the new one is whole.  Raises ValueError for such, and OSError where it cannot be
+    written.
+    """
+
+    def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
+                 split_ns=None):
+        check(path, storage, compression, replace)
+        self.path, self.storage = Path(path), storage
+        self._compression = '' if compression == 'none' else compression
+        self._split_bytes, self._split_ns = split_bytes, split_ns
+        self._folder = self.path
+        if self.path.exists():
+            self._folder = self.path.with_name(f'.{self.path.name}.part')
+            shutil.rmtree(self._folder, ignore_errors=True)
+        self._folder.mkdir(parents=True)
+        self.topics, self._files, self._file = {}, [], None
+        self._written = 0
+        self._empty()
+
+    def _empty(self):
+        self._data, self._columns, self._single = bytearray(), [], ([], [], [])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *error):
+        if kind is None:
+            self.close()
+        else:
+            self.abort()
+
+    def add_topic(self, name, type_name, profile=qos.RELIABLE, definition=None, type_hash='',
+                  definition_encoding='ros2msg', encoding='cdr'):
+        """
+        Declare a topic; a name without its first slash gets one.
+
+        profile: its offered quality of service (``bags.qos``); definition and type_hash: those of
+        its type, by default as ROS 2 Jazzy has them.  Raises ValueError if the topic is declared
+        already or its type is unknown.
+        """
+        name = '/' + name.lstrip('/')
+        if name in self.topics:
+            raise ValueError(f'{name} is declared twice in {self.path}')
+        qos.profiles(profile)
+        if definition is None:
+            definition, type_hash = define(type_name)
+        channel = Channel(len(self.topics) + 1, name, type_name, encoding, definition,
+                          definition_encoding, type_hash, profile)
+        self.topics[name] = channel
+        if self._file is not None:
+            with self._disk():
+                self._file.add_topic(channel)
+
+    def _channel(self, name):
+        channel = self.topics.get(name) or self.topics.get('/' + name)
+        if channel is None:
+            raise ValueError(f'{name} is not declared in {self.path}; expected one of '
+                             f'{", ".join(self.topics) or "add_topic first"}')
+        return channel
+
+    def write(self, name, log_ns, data):
+        """
+        Write one message (bytes).
+
+        It is on disk when its chunk is: after CHUNK_BYTES, after CHUNK_NS of log time, or after
+        ``flush``.
+        """
+        channels, times, starts = self._single
+        if not 0 <= log_ns <= LATEST_NS:
+            raise ValueError(f'{name}: the log time is {log_ns} ns; expected 0 or later')
+        number = self._channel(name).id
+        buffer = self._data
+        if times and abs(log_ns - times[0]) >= CHUNK_NS:
+            self.flush()
+            buffer, (channels, times, starts) = self._data, self._single
+        starts.append(len(buffer))
+        channels.append(number)
+        times.append(log_ns)
+        buffer += form.MESSAGE_HEAD.pack(form.MESSAGE, len(data) + 22, number, 0, log_ns, log_ns)
+        buffer += data
+        if len(buffer) >= CHUNK_BYTES:
+            self.flush()
+
+    def write_blocks(self, blocks):
+        """
+        Write blocks of messages, in the order of their log times, ties as the blocks stand.
+
+        blocks: {name: (log_ns (n,), messages (n,))}, messages a NumPy array of one element a
+        message (``messages.cdr.Writer.block``).
+        """
+        ready = []
+        for name, (log_ns, messages) in blocks.items():
+            log_ns = np.asarray(log_ns, dtype=np.int64)
+            if len(log_ns) != len(messages):
+                raise ValueError(f'{name} has {len(log_ns)} log times for {len(messages)} '
+                                 'messages')
+            if len(log_ns) and log_ns.min() < 0:
+                raise ValueError(f'{name}: the log time is {log_ns.min()} ns; expected 0 or '
+                                 'later')
+            # as opaque elements they are copied whole, and not field by field
+            ready.append((self._channel(name).id, log_ns, np.ascontiguousarray(
+                messages.view(f'V{messages.dtype.itemsize}'))))
+        ready = [block for block in ready if len(block[1])]
+        if not ready:
+            return
+        self._seal()
+        order = arrange(ready)
+        ends = np.cumsum(order.sizes)
+        first = 0
+        while first < len(ends):
+            before = int(ends[first - 1]) if first else 0
+            room = max(1, CHUNK_BYTES - len(self._data))
+            stop = min(len(ends), int(np.searchsorted(ends, before + room)) + 1)
+            start, size = len(self._data), int(ends[stop - 1]) - before
+            self._data += bytes(size)
+            starts = ends[first:stop] - order.sizes[first:stop] - before + start
+            fill(order, first, stop, np.frombuffer(self._data, dtype=np.uint8), starts)
+            self._columns.append((order.channel[first:stop], order.log_ns[first:stop], starts))
+            if len(self._data) >= CHUNK_BYTES:
+                self.flush()
+            first = stop
+
+    def _seal(self):
+        """Turn the lists of single messages into columns."""
+        if self._single[0]:
+            self._columns.append(tuple(np.array(x, dtype=np.int64) for x in self._single))
+            self._single = ([], [], [])
+
+    def flush(self):
+        """Hand what is waiting to the operating system, as one chunk or transaction."""
+        self._seal()
+        if not self._columns:
+            return
+        records = Records(self._data, *(np.concatenate(x) for x in zip(*self._columns)))
+        self._empty()
+        for part in self._split(records):
+            self._append(part)
+
+    def _split(self, records):
+        """Yield Records cut where the span of a file in log time ends."""
+        if self._split_ns is None:
+            yield records
+            return
+        origin = self._first_ns
+        if self._file is None or origin is None:
+            origin = int(records.log_ns[0])
+        number = np.maximum.accumulate((records.log_ns - origin) // self._split_ns)
+        edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(number)]
+        for a, b in zip(edges, edges[1:]):
+            start = int(records.starts[a])
+            stop = int(records.starts[b]) if b < len(number) else len(records.data)
+            yield Records(records.data[start:stop], records.channel[a:b], records.log_ns[a:b],
+                          records.starts[a:b] - start)
+
+    def _append(self, records):
+        first, last = int(records.log_ns.min()), int(records.log_ns.max())
+        with self._disk():
+            if self._file is not None and self._first_ns is not None and (
+                    (self._split_bytes is not None and self._file.size >= self._split_bytes)
+                    or (self._split_ns is not None
+                        and last - self._first_ns >= self._split_ns)):
+                self._close_file()
+            if self._file is None:
+                self._open_file()
+            self._file.append(records)
+        self._written += len(records.log_ns)
+        counts = np.bincount(records.channel, minlength=len(self.topics) + 1).tolist()
+        for topic in self.topics.values():
+            self._counts[topic.name] = self._counts.get(topic.name, 0) + counts[topic.id]
+        self._first_ns = first if self._first_ns is None else min(first, self._first_ns)
+        self._last_ns = last if self._last_ns is None else max(last, self._last_ns)
+
+    _first_ns = _last_ns = None
+
+    def _open_file(self):
+        make, suffix = WRITERS[self.storage]
+        self._name = f'{self.path.name}_{len(self._files)}{suffix}'
+        self._file = make(self._folder / self._name, self._compression)
+        self._counts, self._first_ns, self._last_ns = {}, None, None
+        for channel in self.topics.values():
+            self._file.add_topic(channel)
+
+    def _close_file(self):
+        self._files.append(metadata.FileCounts(self._name, self._counts, self._first_ns,
+                                               self._last_ns))
+        self._file.close(metadata.inner_text(self.storage, self.topics.values(), self._files))
+        self._file = None
+
+    def close(self):
+        """Complete the bag."""
+        self.flush()
+        with self._disk():
+            if self._file is None:
+                self._open_file()
+            self._close_file()
+            target = self._folder / metadata.NAME
+            part = target.with_name(target.name + '.part')
+            part.write_text(metadata.text(self.storage, self.topics.values(), self._files),
+                            encoding='utf-8')
+            part.rename(target)
+            if self._folder != self.path:
+                shutil.rmtree(self.path)
+                self._folder.rename(self.path)
+
+    @contextmanager
+    def _disk(self):
+        """On an error of the disk close the file as it is, and say what is kept."""
+        try:
+            yield
+        except OSError as error:
+            self.abort()
+            raise OSError(f'{self._folder}: {error.strerror or error}; the {self._written} '
+                          'messages written before are kept, in a bag that is not closed'
+                          ) from None
+
+    def abort(self):
+        """Leave the bag as it is on disk, not closed."""
+        if self._file is not None:
+            self._file.abort()
+            self._file = None
+        self._empty()
+
+    def discard(self):
+        """Close and delete what was written."""
+        self.abort()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def check(path, storage, compression, replace):
+    """Raise ValueError unless a bag may be written so: a new one, or one to be replaced."""
+    if storage not in WRITERS:
+        raise ValueError(f'the storage is {storage!r}; expected one of {", ".join(WRITERS)}')
+    if compression not in NAMES:
+        raise ValueError(f'the compression is {compression!r}; expected one of '
+                         f'{", ".join(NAMES)}')
+    if storage == 'sqlite3' and compression != 'none':
+        raise ValueError(f'sqlite3 cannot be compressed by {compression}; expected the storage '
+                         'mcap, or the compression none')
+    path = Path(path)
+    if not path.exists():
+        return
+    if not replace:
+        raise ValueError(f'{path} exists; expected a new path for the bag')
+    suffixes = {suffix for _, suffix in WRITERS.values()}
+    if not path.is_dir() or not all(f.name == metadata.NAME or f.suffix in suffixes
+                                    for f in path.iterdir()):
+        raise ValueError(f'{path} is no bag; only a bag is replaced')

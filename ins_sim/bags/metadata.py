@@ -1,0 +1,120 @@
+"""metadata.yaml of rosbag2, and the quality of service it has of each topic."""
+
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+import yaml
+
+from .qos import dump, profiles
+
+NAME = 'metadata.yaml'
+TOP = 'rosbag2_bagfile_information'
+NEWEST = 9
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """What a reader needs of metadata.yaml: storage and the names of the files in order."""
+
+    storage: str
+    files: tuple
+
+
+def read(folder):
+    """
+    Return the Metadata of a bag, or None where it has none.
+
+    Raises ValueError if it cannot be read, is too new, or says that the files are compressed.
+    """
+    path = Path(folder) / NAME
+    try:
+        content = path.read_text(encoding='utf-8')
+    except FileNotFoundError:
+        return None
+    except UnicodeDecodeError:
+        raise ValueError(f'{path} is no UTF-8') from None
+    try:
+        tree = yaml.safe_load(content)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise ValueError(f'{path} is no YAML: {" ".join(str(error).split())}') from None
+    info = tree.get(TOP) if isinstance(tree, dict) else None
+    if not isinstance(info, dict):
+        raise ValueError(f'{path} has no {TOP}; expected the metadata of a rosbag2 bag')
+    version, storage = info.get('version'), info.get('storage_identifier')
+    if not isinstance(version, int) or version > NEWEST:
+        raise ValueError(f'{path} has the version {version!r}; expected at most {NEWEST}')
+    mode = str(info.get('compression_mode') or 'none').lower()
+    if mode != 'none':
+        raise ValueError(f'{folder} is compressed by {mode} ({info.get("compression_format")}); '
+                         'expected a bag without it, or with compressed MCAP chunks '
+                         '("ros2 bag convert" makes one)')
+    if storage not in ('mcap', 'sqlite3'):
+        raise ValueError(f'{path} has the storage {storage!r}; expected mcap or sqlite3')
+    files = info.get('relative_file_paths')
+    if not isinstance(files, list) or not files or not all(isinstance(f, str) for f in files):
+        raise ValueError(f'{path} has the relative_file_paths {files!r}; expected names of files')
+    # rosbag2 once wrote paths from where it was started; the files are beside their metadata
+    return Metadata(storage, tuple(PurePosixPath(f).name for f in files))
+
+
+@dataclass(frozen=True)
+class FileCounts:
+    """A file of a bag: its name, how many messages it has by topic, first and last log time."""
+
+    name: str
+    counts: dict
+    first_ns: int | None
+    last_ns: int | None
+
+
+def text(storage, topics, files):
+    """
+    Return metadata.yaml as rosbag2 of ROS 2 Jazzy writes it (version 9).
+
+    topics: Channels; files: FileCounts in order.
+    """
+    return dump({TOP: tree(storage, topics, files)})
+
+
+def inner_text(storage, topics, files):
+    """Return what rosbag2 keeps of it within a file of the bag."""
+    return dump(tree(storage, topics, files)).rstrip('\n')
+
+
+def tree(storage, topics, files):
+    """Return metadata.yaml as dicts and lists."""
+    firsts = [f.first_ns for f in files if f.first_ns is not None]
+    lasts = [f.last_ns for f in files if f.last_ns is not None]
+    first, last = min(firsts, default=0), max(lasts, default=0)
+    return {
+        'version': NEWEST,
+        'storage_identifier': storage,
+        **_duration(first, last),
+        'message_count': sum(sum(f.counts.values()) for f in files),
+        'topics_with_message_count': [
+            {'topic_metadata': {
+                'name': topic.name,
+                'type': topic.type_name,
+                'serialization_format': topic.encoding,
+                'offered_qos_profiles': profiles(topic.qos),
+                'type_description_hash': topic.type_hash},
+             'message_count': sum(f.counts.get(topic.name, 0) for f in files)}
+            for topic in topics],
+        'compression_format': '',
+        'compression_mode': '',
+        'relative_file_paths': [f.name for f in files],
+        'files': [{'path': f.name, **_start(f), 'message_count': sum(f.counts.values())}
+                  for f in files],
+        'custom_data': None,
+        'ros_distro': 'jazzy',
+    }
+
+
+def _duration(first_ns, last_ns):
+    return {'duration': {'nanoseconds': last_ns - first_ns},
+            'starting_time': {'nanoseconds_since_epoch': first_ns}}
+
+
+def _start(file):
+    spans = _duration(file.first_ns or 0, file.last_ns or 0)
+    return {'starting_time': spans['starting_time'], 'duration': spans['duration']}

@@ -1,0 +1,96 @@
+"""Messages of a bag as they lie in memory: bytes in one buffer, columns for the rest."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Channel:
+    """
+    A topic as a file declares it.
+
+    id: its number in the file; name and type_name as in ROS; encoding of the messages ('cdr');
+    definition of the type in the language definition_encoding ('ros2msg'), type_hash (RIHS01)
+    and qos (the offered profiles as YAML) as far as the file has them.
+    """
+
+    id: int
+    name: str
+    type_name: str
+    encoding: str = 'cdr'
+    definition: str = ''
+    definition_encoding: str = 'ros2msg'
+    type_hash: str = ''
+    qos: str = ''
+
+
+@dataclass(frozen=True)
+class Piece:
+    """
+    Some messages in the order of the file.
+
+    data: uint8; channel, log_ns, starts and sizes (n,) int64: of which channel each is, when it
+    was logged, and where in data it is.
+    """
+
+    data: np.ndarray
+    channel: np.ndarray
+    log_ns: np.ndarray
+    starts: np.ndarray
+    sizes: np.ndarray
+
+    def __len__(self):
+        return len(self.log_ns)
+
+    def __getitem__(self, rows):
+        return Piece(self.data, self.channel[rows], self.log_ns[rows], self.starts[rows],
+                     self.sizes[rows])
+
+
+def in_log_order(pieces):
+    """
+    Yield (channel, log_ns, bytes) of pieces in the order of the log times.
+
+    pieces: (time, place, Piece), no message of it or of a later one being before the time.
+    Messages of equal log time keep the order of the places.
+    """
+    waiting = []
+    for not_before_ns, place, piece in pieces:
+        if any(p.log_ns.min() < not_before_ns for _, p in waiting):
+            yield from _merged([(k, p[p.log_ns < not_before_ns]) for k, p in waiting])
+            waiting = [(k, p[p.log_ns >= not_before_ns]) for k, p in waiting]
+            waiting = [(k, p) for k, p in waiting if len(p)]
+        if len(piece):
+            waiting.append((place, piece))
+    yield from _merged(waiting)
+
+
+def _merged(pieces):
+    pieces = [p for _, p in sorted(pieces, key=lambda pair: pair[0]) if len(p)]
+    if not pieces:
+        return
+    source = np.repeat(np.arange(len(pieces)), [len(p) for p in pieces])
+    channel, log_ns, starts, sizes = (
+        np.concatenate([getattr(p, name) for p in pieces])
+        for name in ('channel', 'log_ns', 'starts', 'sizes'))
+    order = np.argsort(log_ns, kind='stable')
+    views = [memoryview(p.data) for p in pieces]
+    for k, number, t_ns, start, stop in zip(
+            source[order].tolist(), channel[order].tolist(), log_ns[order].tolist(),
+            starts[order].tolist(), (starts + sizes)[order].tolist()):
+        yield number, t_ns, bytes(views[k][start:stop])
+
+
+def apart(piece):
+    """Yield (channel id, Piece of its messages) of a Piece."""
+    for number in np.unique(piece.channel).tolist():
+        yield number, piece[piece.channel == number]
+
+
+def joined(pieces):
+    """Return the messages of pieces of the same data as one Piece."""
+    if len(pieces) == 1:
+        return pieces[0]
+    return Piece(pieces[0].data, *(np.concatenate([getattr(p, name) for p in pieces])
+                                   for name in ('channel', 'log_ns', 'starts', 'sizes')))

@@ -1,0 +1,148 @@
+"""Reading the SQLite files of rosbag2 (.db3), schema versions 1 to 4."""
+
+from pathlib import Path
+import sqlite3
+
+import numpy as np
+
+from .piece import apart, Channel, Piece
+
+ROWS = 1000
+# what a sound file needs at most: some thirty operations for a message of twenty bytes
+_OPERATIONS_PER_BYTE = 4
+_TICK = 100_000
+
+
+class SqliteReader:
+    """
+    The messages of one .db3 file, with the attributes of ``McapReader``.
+
+    A file that was not closed is read with its write-ahead log.  Raises ValueError if the file
+    is empty, no SQLite bag, or corrupt.
+    """
+
+    STORAGE = 'sqlite3'
+    compression = ['none']
+
+    def __init__(self, path):
+        self.path = Path(path)
+        size = self.path.stat().st_size
+        log = self.path.with_name(self.path.name + '-wal')
+        logged = log.stat().st_size if log.exists() else 0
+        if not size:
+            raise ValueError(f'{self.path} is empty; expected an SQLite file')
+        with open(self.path, 'rb') as stream:
+            if (magic := stream.read(16)) != b'SQLite format 3\x00':
+                raise ValueError(f'{self.path} is no SQLite file; it begins with {magic!r}')
+        # immutable: no lock and no other file is needed, so that a folder may be read-only
+        mode = 'mode=ro' if logged else 'immutable=1'
+        self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 100 * _TICK
+        self._ticks = 0
+        try:
+            self._database = sqlite3.connect(f'{self.path.absolute().as_uri()}?{mode}', uri=True)
+            if hasattr(self._database, 'setlimit'):
+                # no value can be longer than the file (Python 3.11)
+                self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, size + logged)
+            self._database.set_progress_handler(self._on_tick, _TICK)
+        except sqlite3.Error as error:
+            raise self._corrupt(error) from None
+        self.channels = {c.id: c for c in self._read_channels()}
+        self.cut = ''
+        if logged:
+            self.cut = f'{self.path.name} was not closed: it has a write-ahead log'
+        elif self._columns('metadata') and not self._rows('SELECT 1 FROM metadata LIMIT 1'):
+            self.cut = f'{self.path.name} was not closed: it has no metadata'
+
+    def _on_tick(self):
+        self._ticks += 1
+        return self._ticks * _TICK > self._largest
+
+    def _corrupt(self, error):
+        why = str(error)
+        if why == 'interrupted':
+            why = 'its tables go round in circles'
+        return ValueError(f'{self.path} is corrupt: {why}')
+
+    def _rows(self, query, *values):
+        return [row for block in self._blocks(query, *values) for row in block]
+
+    def _blocks(self, query, *values):
+        """Yield the rows of a query in lists."""
+        self._ticks = 0
+        try:
+            cursor = self._database.execute(query, values)
+            while rows := cursor.fetchmany(ROWS):
+                yield rows
+        except (sqlite3.Error, UnicodeDecodeError, OverflowError) as error:
+            raise self._corrupt(error) from None
+
+    def _columns(self, table):
+        return {row[1] for row in self._rows(f'PRAGMA table_info({table})')}
+
+    def _read_channels(self):
+        have = self._columns('topics')
+        if not {'id', 'name', 'type', 'serialization_format'} <= have or not {
+                'topic_id', 'timestamp', 'data'} <= self._columns('messages'):
+            raise ValueError(f'{self.path} is no bag; expected the tables topics and messages of '
+                             'rosbag2')
+        definitions = {}
+        if self._columns('message_definitions'):
+            definitions = {row[0]: row[1:] for row in self._rows(
+                'SELECT topic_type, encoded_message_definition, encoding FROM '
+                'message_definitions ORDER BY id')}
+        optional = [name if name in have else "''" for name in
+                    ('type_description_hash', 'offered_qos_profiles')]
+        for row in self._rows('SELECT id, name, type, serialization_format, '
+                              f'{", ".join(optional)} FROM topics ORDER BY id'):
+            definition = definitions.get(row[2], ('', 'ros2msg'))
+            if [type(x) for x in (*row, *definition)] != [int] + 7 * [str]:
+                raise self._corrupt(f'its topic {row[0]!r} is no number with texts')
+            number, name, type_name, encoding, type_hash, qos = row
+            yield Channel(number, name, type_name, encoding, *definition, type_hash, qos)
+
+    def spans(self):
+        """Return {channel id: (count, first, last log time)} of the channels with messages."""
+        result = {}
+        for number, *span in self._rows('SELECT topic_id, COUNT(*), MIN(timestamp), '
+                                        'MAX(timestamp) FROM messages GROUP BY topic_id'):
+            if [type(x) for x in (number, *span)] != 4 * [int]:
+                raise self._corrupt(f'the messages of topic {number!r} have times that are no '
+                                    'numbers')
+            if number not in self.channels:
+                raise self._corrupt(f'it has messages of topic {number}, which it does not '
+                                    'declare')
+            result[number] = tuple(span)
+        return result
+
+    def count(self, wanted):
+        """Return 0: to count takes SQLite about as long as to read."""
+        return 0
+
+    def pieces(self, wanted):
+        """
+        Yield (time before which no later piece has messages, place, Piece) by log time.
+
+        wanted: ids of channels.  Raises ValueError for a corrupt file.
+        """
+        for place, piece in enumerate(self._select(wanted, 'timestamp, id')):
+            yield int(piece.log_ns[0]), place, piece
+
+    def by_channel(self, wanted):
+        """Yield (channel id, Piece) of the wanted channels, in the order they were written."""
+        for piece in self._select(wanted, 'id'):
+            yield from apart(piece)
+
+    def _select(self, wanted, order):
+        marks = ', '.join('?' * len(wanted))
+        for rows in self._blocks('SELECT topic_id, timestamp, data FROM messages WHERE topic_id '
+                                 f'IN ({marks}) ORDER BY {order}', *wanted):
+            channel, log_ns, blobs = zip(*rows)
+            if set(map(type, log_ns)) != {int} or set(map(type, blobs)) != {bytes}:
+                raise self._corrupt('a message is no time with bytes')
+            sizes = np.fromiter(map(len, blobs), np.int64, len(blobs))
+            yield Piece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
+                        np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)
+
+    def close(self):
+        """Close the file."""
+        self._database.close()

@@ -1,0 +1,62 @@
+"""Verb info: what is in a bag."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from ..bags.bag_reader import open_bag
+from ..messages.cdr import SECOND
+
+
+def run(chosen):
+    """Show a bag; return the exit code."""
+    console = Console()
+    with open_bag(chosen.bag) as bag:
+        spans = bag.spans()
+        counted = [span for span in spans.values() if span.count]
+        # a database that was not closed has most of its messages in the log beside it
+        logs = (file.with_name(file.name + '-wal') for file in bag.files)
+        size = sum(file.stat().st_size for file in (*bag.files, *filter(Path.exists, logs)))
+        rows = [
+            ('bag', str(bag.path)),
+            ('state', f'cut: {bag.cut}' if bag.cut else 'whole'),
+            ('storage', f'{bag.storage}, chunks compressed by {", ".join(bag.compression)}'
+             if bag.compression != ['none'] else f'{bag.storage}, not compressed'),
+            ('files', ', '.join(file.name for file in bag.files)),
+            ('size', f'{size / 1e6:.3f} MB'),
+            ('messages', str(sum(span.count for span in counted))),
+        ]
+        if counted:
+            first = min(span.first_ns for span in counted)
+            last = max(span.last_ns for span in counted)
+            rows += [('start', f'{_seconds(first)} s'), ('end', f'{_seconds(last)} s'),
+                     ('duration', f'{_seconds(last - first)} s')]
+        for name, value in rows:
+            console.print(f'{name:9} {value}', markup=False, highlight=False, soft_wrap=True)
+        _show_topics(bag, spans, console)
+    return 0
+
+
+def _show_topics(bag, spans, console):
+    lines = [('topic', 'type', 'messages', 'rate, Hz')]
+    for name, channel in bag.topics.items():
+        kind = channel.type_name
+        if channel.encoding != 'cdr':
+            kind += f' ({channel.encoding})'
+        lines.append((name, kind, str(spans[name].count), _rate(spans[name])))
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for name, kind, count, rate in lines:
+        console.print(f'{name:{widths[0]}}  {kind:{widths[1]}}  {count:>{widths[2]}}  '
+                      f'{rate:>{widths[3]}}', markup=False, highlight=False, soft_wrap=True)
+
+
+def _seconds(t_ns):
+    whole, rest = divmod(t_ns, SECOND)
+    return f'{whole}.{rest:09d}'
+
+
+def _rate(span):
+    """Return the mean rate between the first and the last message, or a dash."""
+    if span.count < 2 or span.last_ns == span.first_ns:
+        return '-'
+    return f'{(span.count - 1) * SECOND / (span.last_ns - span.first_ns):.6g}'

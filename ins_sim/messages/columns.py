@@ -1,0 +1,207 @@
+"""
+Messages as columns: the named fields of many messages in one NumPy structured array.
+
+The names are those of the ROS messages.  The counterpart for writing is ``cdr.Writer.block``.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+
+from .cdr import aligned, LAYOUTS, SECOND
+
+_POSE = (('position', 3), ('orientation', 4), ('pose_covariance', 36))
+_TWIST = (('linear', 3), ('angular', 3), ('twist_covariance', 36))
+
+# the doubles of each layout in order, with how many of them a field has
+DOUBLES = {
+    'std_msgs/msg/Header': (),
+    'rosgraph_msgs/msg/Clock': (),
+    'sensor_msgs/msg/Imu': (
+        ('orientation', 4), ('orientation_covariance', 9), ('angular_velocity', 3),
+        ('angular_velocity_covariance', 9), ('linear_acceleration', 3),
+        ('linear_acceleration_covariance', 9)),
+    'nav_msgs/msg/Odometry': _POSE + _TWIST,
+    'sensor_msgs/msg/NavSatFix': (
+        ('latitude', 1), ('longitude', 1), ('altitude', 1), ('position_covariance', 9)),
+    'geometry_msgs/msg/Vector3Stamped': (('vector', 3),),
+    'geometry_msgs/msg/QuaternionStamped': (('quaternion', 4),),
+    'geometry_msgs/msg/TwistStamped': _TWIST[:2],
+}
+TIMES = [('log_ns', '<i8'), ('stamp_ns', '<i8')]
+
+
+_HEAD = np.dtype([('encapsulation', '<u2'), ('options', '<u2'), ('sec', '<i4'),
+                  ('nanosec', '<u4')])
+_LITTLE_ENDIAN = 0x0100
+
+
+@lru_cache(maxsize=1000)
+def message_dtype(type_name, lengths=None):
+    """
+    Return the dtype of a whole message whose strings take these bytes, with their last zero.
+
+    It has the doubles by name and, in NavSatFix, 'status', 'service' and
+    'position_covariance_type'.
+    """
+    layout = LAYOUTS[type_name]
+    offset = _HEAD.itemsize
+    for length in (1,) * layout.strings if lengths is None else lengths:
+        offset = aligned(offset, 4) + 4 + length
+    columns, small = [], []
+    if layout.status:
+        small = [('status', '<i1', offset), ('service', '<u2', aligned(offset + 1, 2))]
+        offset = aligned(offset + 1, 2) + 2
+    if layout.doubles:
+        # CDR counts from behind the encapsulation, of four bytes
+        offset = 4 + aligned(offset - 4, 8)
+    for name, width in DOUBLES[type_name]:
+        columns.append((name, '<f8' if width == 1 else ('<f8', (width,)), offset))
+        offset += 8 * width
+    if layout.end:
+        small.append(('position_covariance_type', '<u1', offset))
+    columns += small
+    return np.dtype({'names': [name for name, _, _ in columns],
+                     'formats': [form for _, form, _ in columns],
+                     'offsets': [at for _, _, at in columns],
+                     'itemsize': offset + len(layout.end)})
+
+
+def column_dtype(type_name, fields=None):
+    """
+    Return the dtype of ``read``: 'log_ns', 'stamp_ns' and the fields, by default all.
+
+    Raises ValueError for a type without a layout and for an unknown field.
+    """
+    if type_name not in LAYOUTS:
+        raise ValueError(f'messages of type {type_name} cannot be read into arrays; expected '
+                         f'one of {", ".join(sorted(LAYOUTS))}')
+    whole = message_dtype(type_name)
+    for name in fields or ():
+        if name not in whole.names:
+            raise ValueError(f'{type_name} has no field {name!r}; expected one of '
+                             f'{", ".join(whole.names)}')
+    return np.dtype(TIMES + [(name, whole[name].base, whole[name].shape)
+                             for name in (whole.names if fields is None else fields)])
+
+
+def read(type_name, data, starts, sizes, out):
+    """
+    Read messages into an array of ``column_dtype``, but for its 'log_ns'.
+
+    data: bytes as uint8; starts and sizes (n,) int64: where in data the messages are; out (n,).
+    Raises ValueError for a message that is too short or no little-endian CDR.
+    """
+    if not len(starts):
+        return
+    for rows, lengths in _by_lengths(type_name, data, starts, sizes):
+        whole = message_dtype(type_name, lengths)
+        _check_sizes(type_name, sizes[rows], whole.itemsize)
+        messages = _Messages(data, starts[rows])
+        part = out if isinstance(rows, slice) else np.empty(len(rows), dtype=out.dtype)
+        head = messages.take(0, _HEAD.itemsize).view(_HEAD)
+        part['stamp_ns'] = head['sec'].astype(np.int64) * SECOND + head['nanosec']
+        for at, target, size in _runs(whole, out.dtype):
+            part.view(target)['run'] = messages.look(at, size)
+        if part is not out:
+            out[rows] = part
+
+
+def strings(type_name, data, starts, sizes):
+    """Return the distinct strings (frame ids) of messages: a list of tuples as they appear."""
+    found = {}
+    if not len(starts):
+        return []
+    if not LAYOUTS[type_name].strings:
+        return [()]
+    for rows, lengths in _by_lengths(type_name, data, starts, sizes):
+        offset, parts = _HEAD.itemsize, []
+        for length in lengths:
+            offset = aligned(offset, 4) + 4
+            parts.append((offset, max(0, length - 1)))
+            offset += length
+        texts = _Messages(data, starts[rows]).take(_HEAD.itemsize, offset - _HEAD.itemsize)
+        numbers = np.arange(len(starts))[rows]
+        for k in np.unique(texts, return_index=True)[1].tolist():
+            number = int(numbers[k])
+            found[number] = tuple(
+                data[starts[number] + a:starts[number] + a + n].tobytes().decode(errors='replace')
+                for a, n in parts)
+    return list(dict.fromkeys(found[k] for k in sorted(found)))
+
+
+class _Messages:
+    """The same bytes of many messages as opaque elements: (n,) of some V type."""
+
+    def __init__(self, data, starts):
+        self._data, self._starts = data, starts
+        self._step = int(starts[1] - starts[0]) if len(starts) > 1 else 0
+        self._regular = bool((np.diff(starts) == self._step).all())
+
+    def look(self, offset, size):
+        """Return size bytes of each message, as a view where they lie at regular steps."""
+        if self._regular:
+            return np.ndarray(len(self._starts), f'V{size}', self._data,
+                              int(self._starts[0]) + offset, (self._step,))
+        windows = np.ndarray(len(self._data) - size + 1, f'V{size}', self._data, strides=(1,))
+        return windows[self._starts + offset]
+
+    def take(self, offset, size):
+        """Return a copy that may be viewed as another dtype of this size."""
+        return np.ascontiguousarray(self.look(offset, size))
+
+
+@lru_cache(maxsize=1000)
+def _runs(whole, target):
+    """Return (offset in the message, dtype of the same bytes in target, size) of each run."""
+    runs = []
+    for name in target.names[2:]:
+        dtype, at = whole.fields[name]
+        to = target.fields[name][1]
+        if runs and (at, to) == (runs[-1][0] + runs[-1][2], runs[-1][1] + runs[-1][2]):
+            runs[-1][2] += dtype.itemsize
+        else:
+            runs.append([at, to, dtype.itemsize])
+    return [(at, np.dtype({'names': ['run'], 'formats': [f'V{size}'], 'offsets': [to],
+                           'itemsize': target.itemsize}), size) for at, to, size in runs]
+
+
+def _by_lengths(type_name, data, starts, sizes):
+    """Yield (rows, lengths of the strings) of the messages whose strings are equally long."""
+    layout = LAYOUTS[type_name]
+    everything = slice(None)
+    _check_sizes(type_name, sizes, _HEAD.itemsize)
+    messages = _Messages(data, starts)
+    heads = messages.take(0, 2).view('<u2')
+    if (bad := heads != _LITTLE_ENDIAN).any():
+        head = int(heads[bad][0]).to_bytes(2, 'little')
+        raise ValueError(f'{type_name} begins with {head!r}; expected the encapsulation of '
+                         'little-endian CDR')
+    offset, lengths = _HEAD.itemsize, []
+    for _ in range(layout.strings):
+        offset = aligned(offset, 4)
+        _check_sizes(type_name, sizes, offset + 4)
+        if isinstance(offset, int):
+            length = messages.take(offset, 4).view('<u4').astype(np.int64)
+        else:
+            length = _Messages(data, starts + offset).take(0, 4).view('<u4').astype(np.int64)
+        same = isinstance(offset, int) and bool((length == length[0]).all())
+        offset = offset + 4 + (int(length[0]) if same else length)
+        _check_sizes(type_name, sizes, offset)
+        lengths.append(length)
+    if isinstance(offset, int):
+        yield everything, tuple(int(length[0]) for length in lengths)
+        return
+    keys, group = np.unique(np.stack(lengths, axis=1), axis=0, return_inverse=True)
+    group = group.ravel()
+    order = np.argsort(group, kind='stable')
+    cuts = np.flatnonzero(np.diff(group[order])) + 1
+    for key, rows in zip(keys.tolist(), np.split(order, cuts)):
+        yield rows, tuple(key)
+
+
+def _check_sizes(type_name, sizes, needed):
+    if (short := sizes < needed).any():
+        size = int(sizes[short][0])
+        raise ValueError(f'{type_name} of {size} bytes ends too early; expected '
+                         f'{LAYOUTS[type_name].doubles} doubles behind its header')
