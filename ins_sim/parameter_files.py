@@ -10,7 +10,7 @@ import re
 
 import yaml
 
-from .core.catalogue import ALL_NAMES, build, flatten, nearest, unknown, values_of
+from .core.catalogue import build, flatten, nearest, unknown, values_of
 from .core.settings import NODES
 from .core.simulation import Settings
 
@@ -23,23 +23,28 @@ def read(paths, assignments=()):
 
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
     """
-    values = {node: {} for node in NODES}
+    return Settings(**read_sections(paths, assignments, NODES))
+
+
+def read_sections(paths, assignments, nodes):
+    """Return {name: settings} as ``read`` does, of nodes: {section name: settings class}."""
+    values = {node: {} for node in nodes}
     for path in paths:
-        for section, parameters in _sections(path):
+        for section, parameters in _sections(path, nodes):
             for name, value in _flat(parameters).items():
-                _assign(values, section, name, value, path)
+                _assign(values, section, name, value, path, nodes)
     for assignment in assignments:
         name, separator, text = assignment.partition(':=')
         if not separator:
             raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
-        _assign(values, '/**', name, _parse(text, f'-p {assignment}'), '-p')
+        _assign(values, '/**', name, _parse(text, f'-p {assignment}'), '-p', nodes)
     built = {}
-    for node, cls in NODES.items():
+    for node, cls in nodes.items():
         try:
             built[node] = build(cls, values[node])
         except ValueError as error:
             raise ValueError(f'{node}: {error}') from None
-    return Settings(**built)
+    return built
 
 
 def _parse(text, where):
@@ -50,7 +55,7 @@ def _parse(text, where):
         raise ValueError(f'{where} is not YAML: {problem}') from None
 
 
-def _sections(path):
+def _sections(path, nodes):
     try:
         with open(path, encoding='utf-8') as stream:
             text = stream.read()
@@ -61,10 +66,10 @@ def _sections(path):
         raise ValueError(f'{path} holds no parameters; expected sections such as '
                          '"/**: ros__parameters: ..."')
     for section, body in document.items():
-        node = _node_of(section)
+        node = _node_of(section, nodes)
         if node is None:
             raise ValueError(f'{path}: unknown section {section!r}; the nearest known one is '
-                             f'{nearest(section, ["/**", *NODES])!r}')
+                             f'{nearest(section, ["/**", *nodes])!r}')
         if not isinstance(body, Mapping) or list(body) != ['ros__parameters'] or not isinstance(
                 body['ros__parameters'], Mapping):
             raise ValueError(f'{path}: section {section!r} expects exactly one mapping, '
@@ -72,13 +77,13 @@ def _sections(path):
         yield node, body['ros__parameters']
 
 
-def _node_of(section):
+def _node_of(section, nodes):
     """Return the node of a section name ('strapdown', '/ns/strapdown', '/**'), or None."""
     text = str(section)
     if text == '/**':
         return text
     node = text.rsplit('/', 1)[-1]
-    return node if node in NODES else None
+    return node if node in nodes else None
 
 
 def _flat(parameters, prefix=''):
@@ -92,16 +97,16 @@ def _flat(parameters, prefix=''):
     return values
 
 
-def _assign(values, section, name, value, where):
+def _assign(values, section, name, value, where, nodes):
     if name in ROS_OWN or name.startswith('qos_overrides.'):
         return
-    nodes = NODES if section == '/**' else (section,)
-    takers = [node for node in nodes if name in flatten(NODES[node])]
+    asked = nodes if section == '/**' else (section,)
+    takers = [node for node in asked if name in flatten(nodes[node])]
     if not takers:
-        known = ALL_NAMES if section == '/**' else flatten(NODES[section])
+        known = {name for node in asked for name in flatten(nodes[node])}
         raise ValueError(f'{where}: {unknown(name, known)}')
     for node in takers:
-        kind = flatten(NODES[node])[name].type
+        kind = flatten(nodes[node])[name].type
         values[node][name] = _number(value) if kind is float else value
 
 
@@ -114,10 +119,15 @@ def _number(value):
 
 def dump(settings):
     """Return the text of a parameter file with every key of simulation.Settings."""
+    return dump_sections({node: getattr(settings, node) for node in NODES})
+
+
+def dump_sections(built):
+    """Return the text of a parameter file with every key of {section name: settings}."""
     document = {}
-    for node in NODES:
+    for node, settings in built.items():
         tree = {}
-        for name, value in values_of(getattr(settings, node)).items():
+        for name, value in values_of(settings).items():
             *parents, leaf = name.split('.')
             branch = tree
             for parent in parents:

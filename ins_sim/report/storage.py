@@ -1,5 +1,6 @@
 """A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
 
+from contextlib import contextmanager
 from dataclasses import asdict, fields
 import json
 import os
@@ -34,17 +35,31 @@ def check_free(folder, force, mark=MARK):
         raise ValueError(f'{folder} is no run of ins_sim; --force replaces only runs')
 
 
+@contextmanager
+def new_folder(folder, force):
+    """Give a folder to write into, which becomes ``folder`` when all went well, or vanishes."""
+    folder = Path(folder)
+    check_free(folder, force)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
+    try:
+        yield work
+        work.chmod(0o755)
+        if folder.exists():
+            shutil.rmtree(folder)
+        work.rename(folder)
+    except BaseException:
+        shutil.rmtree(work, ignore_errors=True)
+        raise
+
+
 def write(folder, settings, run, rows, prediction, title, force=False):
     """
     Write a Run and what was predicted of it into a folder that appears only when complete.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).
     """
-    folder = Path(folder)
-    check_free(folder, force)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
-    try:
+    with new_folder(folder, force) as work:
         arrays = {}
         for name in ('truth', 'imu', 'states', 'errors', 'twin'):
             record = getattr(run, name)
@@ -58,10 +73,3 @@ def write(folder, settings, run, rows, prediction, title, force=False):
         figure.save(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
-        work.chmod(0o755)
-        if folder.exists():
-            shutil.rmtree(folder)
-        work.rename(folder)
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
-        raise

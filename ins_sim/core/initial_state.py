@@ -1,0 +1,303 @@
+"""Where a navigation begins: a sample, the state there, the bias taken off the gyros, and why."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from . import attitude, earth, self_alignment
+from .angles import from_compass, to_compass
+from .faults import seconds
+from .free_navigation import FreeNavigation
+from .reference import LONGEST_STEP_S
+
+DEG_PER_HOUR = math.degrees(3600.0)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """
+    What was recorded.
+
+    name; imu: RecordedImu in the frame of the sensor; frame: its name; reference: Reference or
+    None; odometry: Odometry or None; transforms: {(parent, child): q} of /tf_static; notes: what
+    the reading found, in sentences.
+    """
+
+    name: str
+    imu: object
+    frame: str
+    reference: object = None
+    odometry: object = None
+    transforms: object = None
+    notes: tuple = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """
+    The sample to start at, the state there, and how it was found.
+
+    index: into the record; state: (lat, lon, height, v_n, q_nb); bias (3,): rad/s, to be taken
+    off the gyros, or None; still: Standstill or None; notes: sentences; figures: {name: value}.
+    """
+
+    index: int
+    state: tuple
+    bias: object
+    still: object
+    notes: list
+    figures: dict
+
+
+class Starter:
+    """
+    Finds Beginnings in a record that is in b.
+
+    settings: NavigateSettings; broken: indices of the samples before a gap.
+    """
+
+    def __init__(self, settings, sources, imu, broken):
+        self._s, self._imu, self._broken = settings, imu, broken
+        self._reference, self._odometry = sources.reference, sources.odometry
+        self._spin = earth.ROTATION_RATE if settings.earth.rotation else 0.0
+
+    def begin(self, first, last, again=False):
+        """
+        Return the Beginning in the samples first to last (not included).
+
+        again: behind a gap, where given values no longer hold.  Raises ValueError where there is
+        none, in one sentence.
+        """
+        source = self._s.initial.attitude
+        if again:
+            known = self._reference is not None and self._reference.attitude is not None
+            source = 'reference' if known else 'align'
+        if source == 'align':
+            return self._aligned(first, last, again)
+        return self._moving(first, last, source, again)
+
+    def speed_at(self, t_ns):
+        """Return the speed of a reference that measures velocity, (n,) m/s, NaN where unknown."""
+        if self._reference is not None and self._reference.velocity is not None:
+            return np.linalg.norm(self._reference.velocity_at(t_ns), axis=1)
+        if self._odometry is not None:
+            return self._odometry.speed().at(t_ns)[:, 0]
+        return np.full(len(t_ns), np.nan)
+
+    def _moving(self, first, last, source, again):
+        """Begin at the first sample where all that is to come from the reference is known."""
+        reason = None
+        for k in range(first, last):
+            try:
+                q_nb = self._attitude(k, source)
+                where = self._position(k, again)
+                v = self._velocity(k, q_nb, again)
+                break
+            except LookupError as error:
+                reason = reason or str(error)
+        else:
+            raise ValueError(reason)
+        notes = [f'start at {seconds(self._imu.t_ns[k])}, attitude: {source}']
+        figures, bias, still = {}, None, None
+        if self._s.alignment.gyro_bias == 'subtract':
+            still = self_alignment.find_standstill(self._imu, self._s.alignment, self.speed_at)
+            q_still = None
+            if self._reference is not None:
+                q_still = self._reference.attitude_at(still.end_ns)
+            bias = self._bias(still, q_still or self_alignment.level(still.force, 0.0), where[0],
+                              notes, figures)
+        return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
+
+    def _attitude(self, k, source):
+        given = self._s.initial
+        if source == 'given':
+            return tuple(from_compass(*(math.radians(a) for a in (
+                given.roll_deg, given.pitch_deg, given.heading_deg)))[0].tolist())
+        if source == 'imu':
+            q = self._imu.q_ns[k]
+            if np.isnan(q).any():
+                raise LookupError('the IMU messages hold no orientation (REP-145); expected '
+                                  'another initial.attitude than imu')
+            return tuple(q.tolist())
+        q = None if self._reference is None else \
+            self._reference.attitude_at(int(self._imu.t_ns[k]))
+        if q is None and self._odometry is not None and self._reference is None:
+            q = self._odometry.as_enu().attitude_at(int(self._imu.t_ns[k]))
+        if q is None:
+            raise LookupError('no reference has an attitude at the start; expected another '
+                              'initial.attitude than reference')
+        return q
+
+    def _position(self, k, again, near=False):
+        given, t_ns = self._s.initial, int(self._imu.t_ns[k])
+        if given.position == 'given' and not again:
+            return (math.radians(given.latitude_deg), math.radians(given.longitude_deg),
+                    given.height_m)
+        track = None if self._reference is None else self._reference.position
+        if track is None:
+            raise LookupError('the latitude is unknown, for there is no NavSatFix and no '
+                              'reference.path; expected initial.position given with '
+                              'initial.latitude_deg, longitude_deg and height_m')
+        p = track.at([t_ns])[0]
+        if np.isnan(p).any() and near:
+            j = int(np.argmin(np.abs(track.t_ns - t_ns)))
+            if abs(int(track.t_ns[j]) - t_ns) <= LONGEST_STEP_S * 1e9:
+                p = track.values[j]
+        if np.isnan(p).any():
+            raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has it '
+                              f'from {seconds(track.t_ns[0])} to {seconds(track.t_ns[-1])}; '
+                              'expected initial.position given, or another start_s')
+        return tuple(p.tolist())
+
+    def _velocity(self, k, q_nb, again):
+        given, t_ns = self._s.initial, int(self._imu.t_ns[k])
+        if given.velocity == 'given' and not again:
+            return given.velocity_m_s
+        v = np.full(3, np.nan)
+        if self._reference is not None:
+            v = self._reference.velocity_at([t_ns])[0]
+        if np.isnan(v).any() and self._odometry is not None:
+            track = self._odometry.speed()
+            v_b = type(track)(track.t_ns, self._odometry.v_b).at([t_ns])[0]
+            v = np.array(attitude.rotate(q_nb, tuple(v_b.tolist())))
+        if np.isnan(v).any():
+            raise LookupError(f'no reference has a velocity at {seconds(t_ns)}; expected '
+                              'initial.velocity given with initial.velocity_m_s')
+        return tuple(v.tolist())
+
+    def _aligned(self, first, last, again):
+        limits = self._s.alignment
+        still = self_alignment.find_standstill(self._imu[first:last], limits, self.speed_at)
+        k = first + still.last - 1
+        notes = [f'stationary from {seconds(still.start_ns)} for '
+                 f'{(still.end_ns - still.start_ns) * 1e-9:.3f} s: standard deviation '
+                 f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} '
+                 'windows']
+        try:
+            where = self._position(k, again, near=True)
+            lat = where[0]
+            figures = {'stationary_s': (still.end_ns - still.start_ns) * 1e-9,
+                       'force_sd_m_s2': still.force_sd, 'rate_sd_rad_s': still.rate_sd,
+                       'gravity_excess_m_s2': float(np.linalg.norm(still.force)
+                                                    - earth.gravity(math.sin(lat), where[2]))}
+            q_nb, compassed = self._headed(still, k, where, again, notes, figures)
+            v = (0.0, 0.0, 0.0) if self._s.initial.velocity == 'auto' else \
+                self._velocity(k, q_nb, again)
+        except LookupError as error:
+            raise ValueError(str(error)) from None
+        bias, wanted = None, limits.gyro_bias
+        if not again and (wanted == 'subtract' or wanted == 'auto' and not compassed):
+            bias = self._bias(still, q_nb, lat, notes, figures)
+        roll, pitch, heading = (math.degrees(float(a)) for a in to_compass(np.array(q_nb)))
+        figures.update(roll_deg=roll, pitch_deg=pitch, heading_deg=heading)
+        notes.append(f'start at {seconds(still.end_ns)}: roll {roll:.3f}, pitch {pitch:.3f}, '
+                     f'heading {heading:.3f} deg')
+        return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
+
+    def _headed(self, still, k, where, again, notes, figures):
+        """Return q_nb of a standstill and whether its heading is gyrocompassed."""
+        wanted = self._s.initial.heading
+        if wanted == 'given' and not again:
+            return self_alignment.level(
+                still.force, math.radians(self._s.initial.heading_deg)), False
+        refused = 'the Earth does not turn (earth.rotation)'
+        if wanted in ('auto', 'gyrocompass', 'given') and self._spin:
+            compass = self_alignment.gyrocompass(still, where[0])
+            worst = math.radians(self._s.alignment.heading_sigma_deg)
+            seen = (f'standard error {math.degrees(compass.sigma):.3g} deg, mean rate '
+                    f'{compass.excess * DEG_PER_HOUR:+.3g} deg/h from that of the Earth')
+            if self_alignment.trusted(compass, still, where[0], worst):
+                notes.append(f'heading by gyrocompassing: {seen}')
+                figures.update(heading_source='gyrocompass',
+                               heading_sigma_deg=math.degrees(compass.sigma))
+                return compass.q_nb, True
+            refused = (f'the gyros are too coarse to see the Earth turn ({seen}; expected '
+                       f'{self._s.alignment.heading_sigma_deg:g} deg)')
+        if wanted == 'gyrocompass':
+            raise ValueError(f'{refused}; expected another initial.heading than gyrocompass')
+        heading, source = self._reference_heading(still, k, where, wanted, refused)
+        notes.append(f'heading from {source}' + ('' if wanted == 'course' or wanted == 'reference'
+                                                 else f', because {refused}'))
+        figures.update(heading_source=source)
+        return self_alignment.level(still.force, heading), False
+
+    def _reference_heading(self, still, k, where, wanted, refused):
+        """Return a heading and the text of its source; ValueError where there is none."""
+        t_ns = int(self._imu.t_ns[k])
+        if wanted != 'course' and self._reference is not None:
+            q = self._reference.attitude_at(t_ns)
+            if q is not None:
+                return float(to_compass(np.array(q))[2]), self._reference.name
+        why = 'there is no reference with a position or a velocity'
+        if wanted != 'reference' and self._reference is not None:
+            found = self._course(still, k, where)
+            if not isinstance(found, str):
+                return found
+            why = found
+        if wanted != 'course' and self._odometry is not None:
+            q = self._odometry.as_enu().attitude_at(t_ns)
+            if q is not None:
+                return float(to_compass(np.array(q))[2]), \
+                    f'{self._odometry.name} (frame {self._odometry.frame} taken for East, North)'
+        if wanted in ('auto', 'given'):
+            why = f'{refused}, and {why}'
+        elif wanted == 'reference':
+            why = 'no reference has an attitude at the start'
+        raise ValueError(f'the heading is unknown: {why}; expected initial.heading given with '
+                         'initial.heading_deg')
+
+    def _course(self, still, k, where):
+        """
+        Return the heading at sample k and how it was found, or the reason why not.
+
+        The way of the reference, from stamp to stamp, is turned back by what the heading has
+        changed since the start by the gyros; the sum points along the heading at the start, for
+        a vehicle that moves forward.  Noise of positions cancels in the sum but for its ends.
+        """
+        displacements = self._reference.displacements()
+        if displacements is None:
+            return 'the reference has one stamp only'
+        q_nb = self_alignment.level(still.force, 0.0)
+        bias = self_alignment.gyro_bias(still, q_nb, where[0], self._spin)
+        imu, limits = self._imu, self._s.alignment
+        later = self._broken[self._broken >= k]
+        last = int(later[0]) + 1 if len(later) else len(imu)
+        nav = FreeNavigation(self._s.input, self._spin, int(imu.t_ns[k]),
+                             tuple((imu.omega[k] - bias).tolist()), tuple(imu.f[k].tolist()),
+                             (*where, (0.0, 0.0, 0.0), q_nb))
+        middles, ways = displacements
+        j = int(np.searchsorted(middles, imu.t_ns[k]))
+        end_ns = imu.t_ns[k] + round(limits.course_search_s * 1e9)
+        way, parts = 0j, []
+        for t_ns, omega, f in zip(imu.t_ns[k + 1:last].tolist(),
+                                  (imu.omega[k + 1:last] - bias).tolist(),
+                                  imu.f[k + 1:last].tolist()):
+            if t_ns > end_ns:
+                break
+            nav.step(t_ns, tuple(omega), tuple(f))
+            if j >= len(middles) or t_ns < middles[j]:
+                continue
+            turned = float(to_compass(np.array(nav.solution()[4]))[2])
+            while j < len(middles) and middles[j] <= t_ns:
+                east, north = ways[j]
+                parts.append(complex(north, east) * complex(math.cos(turned), -math.sin(turned)))
+                way += parts[-1]
+                j += 1
+            if abs(way) >= limits.course_distance_m:
+                across = np.imag(np.array(parts) * (way.conjugate() / abs(way)))
+                sigma = math.degrees(float(np.sqrt((across ** 2).sum())) / abs(way))
+                return math.atan2(way.imag, way.real), (
+                    f'the course of {self._reference.name} over {abs(way):.1f} m until '
+                    f'{(t_ns - imu.t_ns[k]) * 1e-9:.1f} s after the start, scatter {sigma:.2g} '
+                    'deg')
+        return (f'the reference moves {abs(way):.3g} m on one course within '
+                f'{limits.course_search_s:g} s (alignment.course_distance_m '
+                f'{limits.course_distance_m:g})')
+
+    def _bias(self, still, q_nb, lat, notes, figures):
+        bias = self_alignment.gyro_bias(still, q_nb, lat, self._spin)
+        text = ', '.join(f'{b * DEG_PER_HOUR:.4g}' for b in bias)
+        notes.append(f'gyro bias of the standstill taken off: {text} deg/h in base_link')
+        figures['gyro_bias_rad_s'] = bias.tolist()
+        return bias
