@@ -1,5 +1,5 @@
 """
-ROS parameter files (YAML) as the settings of the three nodes, without ROS.
+ROS parameter files (YAML) as the settings of the nodes, or of a study, without ROS.
 
 The offline command line reads the same files as ``ros2 run --ros-args --params-file``: sections
 ``/**`` and node names, each with ``ros__parameters``; later files and assignments win.
@@ -23,21 +23,25 @@ def read(paths, assignments=()):
 
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
     """
-    return Settings(**read_sections(paths, assignments, NODES))
+    return Settings(**read_nodes(paths, assignments, NODES))
 
 
-def read_sections(paths, assignments, nodes):
-    """Return {name: settings} as ``read`` does, of nodes: {section name: settings class}."""
+def read_nodes(paths, assignments, nodes):
+    """
+    Return {node: its settings} as ``read`` does, for any nodes {name: settings class}.
+
+    A node is here whatever has a section of its own in the files.
+    """
     values = {node: {} for node in nodes}
     for path in paths:
         for section, parameters in _sections(path, nodes):
             for name, value in _flat(parameters).items():
-                _assign(values, section, name, value, path, nodes)
+                _assign(values, nodes, section, name, value, path)
     for assignment in assignments:
         name, separator, text = assignment.partition(':=')
         if not separator:
             raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
-        _assign(values, '/**', name, _parse(text, f'-p {assignment}'), '-p', nodes)
+        _assign(values, nodes, '/**', name, _parse(text, f'-p {assignment}'), '-p')
     built = {}
     for node, cls in nodes.items():
         try:
@@ -97,16 +101,15 @@ def _flat(parameters, prefix=''):
     return values
 
 
-def _assign(values, section, name, value, where, nodes):
+def _assign(values, nodes, section, name, value, where):
     if name in ROS_OWN or name.startswith('qos_overrides.'):
         return
-    asked = nodes if section == '/**' else (section,)
-    takers = [node for node in asked if name in flatten(nodes[node])]
+    known = {node: flatten(cls) for node, cls in nodes.items() if section in ('/**', node)}
+    takers = [node for node, names in known.items() if name in names]
     if not takers:
-        known = {name for node in asked for name in flatten(nodes[node])}
-        raise ValueError(f'{where}: {unknown(name, known)}')
+        raise ValueError(f'{where}: {unknown(name, set().union(*known.values()))}')
     for node in takers:
-        kind = flatten(nodes[node])[name].type
+        kind = known[node][name].type
         values[node][name] = _number(value) if kind is float else value
 
 
@@ -119,11 +122,11 @@ def _number(value):
 
 def dump(settings):
     """Return the text of a parameter file with every key of simulation.Settings."""
-    return dump_sections({node: getattr(settings, node) for node in NODES})
+    return dump_nodes({node: getattr(settings, node) for node in NODES})
 
 
-def dump_sections(built):
-    """Return the text of a parameter file with every key of {section name: settings}."""
+def dump_nodes(built):
+    """Return the text of a parameter file with every key of {node: its settings}."""
     document = {}
     for node, settings in built.items():
         tree = {}

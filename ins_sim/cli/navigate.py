@@ -14,8 +14,8 @@ from ..report import navigation, storage
 def run(chosen):
     """Read, navigate, write and show; return the exit code."""
     paths = [chosen_settings.locate(name) for name in chosen.params_file]
-    settings = parameter_files.read_sections(paths, chosen.param, NAVIGATE)['navigate']
-    storage.check_free(chosen.output, chosen.force)
+    settings = parameter_files.read_nodes(paths, chosen.param, NAVIGATE)['navigate']
+    storage.check_free(chosen.output, chosen.force, navigation.MARK)
     sources = imu_source.read(chosen.recording, settings)
     console = Console()
     with Progress(TextColumn('navigating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),

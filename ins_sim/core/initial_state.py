@@ -101,13 +101,22 @@ class Starter:
         notes = [f'start at {seconds(self._imu.t_ns[k])}, attitude: {source}']
         figures, bias, still = {}, None, None
         if self._s.alignment.gyro_bias == 'subtract':
-            still = self_alignment.find_standstill(self._imu, self._s.alignment, self.speed_at)
+            still = self._standstill(0, k, 'a standstill before the start, or '
+                                     'alignment.gyro_bias keep', longest=True)
+            notes.append(_described(still))
             q_still = None
             if self._reference is not None:
                 q_still = self._reference.attitude_at(still.end_ns)
             bias = self._bias(still, q_still or self_alignment.level(still.force, 0.0), where[0],
                               notes, figures)
         return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
+
+    def _standstill(self, first, last, expected, longest=False):
+        try:
+            return self_alignment.find_standstill(self._imu[first:last], self._s.alignment,
+                                                  self.speed_at, longest)
+        except ValueError as error:
+            raise ValueError(f'{error}; expected {expected}') from None
 
     def _attitude(self, k, source):
         given = self._s.initial
@@ -168,12 +177,10 @@ class Starter:
 
     def _aligned(self, first, last, again):
         limits = self._s.alignment
-        still = self_alignment.find_standstill(self._imu[first:last], limits, self.speed_at)
+        still = self._standstill(first, last, 'a standstill, other alignment.* limits, or '
+                                 'initial.attitude given, reference or imu')
         k = first + still.last - 1
-        notes = [f'stationary from {seconds(still.start_ns)} for '
-                 f'{(still.end_ns - still.start_ns) * 1e-9:.3f} s: standard deviation '
-                 f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} '
-                 'windows']
+        notes = [_described(still)]
         try:
             where = self._position(k, again, near=True)
             lat = where[0]
@@ -301,3 +308,9 @@ class Starter:
         notes.append(f'gyro bias of the standstill taken off: {text} deg/h in base_link')
         figures['gyro_bias_rad_s'] = bias.tolist()
         return bias
+
+
+def _described(still):
+    return (f'stationary from {seconds(still.start_ns)} for '
+            f'{(still.end_ns - still.start_ns) * 1e-9:.3f} s: standard deviation '
+            f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} windows')

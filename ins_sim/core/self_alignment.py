@@ -65,14 +65,16 @@ class _Windows:
         return mean, np.sqrt(variance.mean(axis=1))
 
 
-def find_standstill(imu, limits, speed_at=None):
+def find_standstill(imu, limits, speed_at=None, longest=False):
     """
-    Return the first Standstill of a RecordedImu.
+    Return the first (or the longest) Standstill of a RecordedImu.
 
     limits: navigate_settings.Alignment; speed_at: function of stamps (n,) that returns the speed
     of a reference, m/s, NaN where unknown.  Raises ValueError, saying what was found, where no
     run of quiet windows is long enough.
     """
+    if len(imu) < 2 * FEWEST:
+        raise ValueError(f'{len(imu)} samples are too few to find a standstill in')
     windows = _Windows(imu, limits.window_s)
     quiet = (windows.full & (windows.force_sd <= limits.force_sd_m_s2)
              & (windows.rate_sd <= limits.rate_sd_rad_s)
@@ -82,17 +84,22 @@ def find_standstill(imu, limits, speed_at=None):
         moving = np.nan_to_num(speed_at(windows.middle_ns)) > limits.speed_m_s
     needed = math.ceil(limits.shortest_s / windows.length_s - 1e-9)
     used = max(needed, math.floor(limits.longest_s / windows.length_s + 1e-9))
-    best, start = 0, None
+    best, start, found = 0, None, None
     # one round more than windows, which ends a run at the end of the record
     for k in range(len(quiet) + 1):
         if start is not None and (k == len(quiet) or k - start == used
                                   or not _joins(windows, quiet & ~moving, start, k, limits)):
             if k - start >= needed:
-                return _standstill(imu, windows, start, k)
+                if not longest:
+                    return _standstill(imu, windows, start, k)
+                if k - start >= best:
+                    found = start, k
             best = max(best, k - start)
             start = None
         if k < len(quiet) and start is None and quiet[k] and not moving[k]:
             start = k
+    if found is not None:
+        return _standstill(imu, windows, *found)
     raise ValueError(_nothing(windows, quiet, moving, best, limits))
 
 
@@ -120,17 +127,17 @@ def _standstill(imu, windows, start, stop):
 
 
 def _nothing(windows, quiet, moving, best, limits):
-    k = int(np.argmin(windows.force_sd))
-    what = (f'no stationary interval of {limits.shortest_s:g} s in '
-            f'{len(quiet) * windows.length_s:g} s: the longest has {best * windows.length_s:g} s, '
-            f'the quietest window, at {seconds(windows.middle_ns[k])}, a standard deviation of '
+    k = int(np.argmin(np.where(windows.full, windows.force_sd, np.inf)))
+    full_s = int(windows.full.sum()) * windows.length_s
+    what = (f'no stationary interval of {limits.shortest_s:g} s in {full_s:g} s: the longest has '
+            f'{best * windows.length_s:g} s, the quietest window, at '
+            f'{seconds(windows.middle_ns[k])}, a standard deviation of '
             f'{windows.force_sd[k]:.3g} m/s^2 (limit {limits.force_sd_m_s2:g}) and '
             f'{windows.rate_sd[k]:.3g} rad/s (limit {limits.rate_sd_rad_s:g})')
     if (quiet & moving).any():
         what += (f', and in {int((quiet & moving).sum())} quiet windows the reference moves '
                  f'faster than {limits.speed_m_s:g} m/s')
-    return (what + '; expected a standstill, other alignment.* limits, or '
-            'initial.attitude given, reference or imu')
+    return what
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ from ..core.comparison import rows  # noqa: E402
 from ..core.errors import position_error  # noqa: E402
 from ..core.reference import Track  # noqa: E402
 
+MARK = 'nav.npz'
+OTHERS = ('tab:orange', 'tab:purple')
 COLUMNS = (('after_s', 'after [s]'), ('horizontal_m', 'horizontal [m]'),
            ('vertical_m', 'up [m]'), ('speed_m_s', 'velocity [m/s]'), ('tilt_deg', 'tilt [deg]'),
            ('heading_deg', 'heading [deg]'))
@@ -56,7 +58,7 @@ def write(folder, settings, title, result, force=False):
     error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables.
     """
     start_ns, end_ns = _span(result)
-    with storage.new_folder(folder, force) as work:
+    with storage.whole(folder, force, MARK) as work:
         arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
                   for f in fields(result.states[0])}
         arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])
@@ -66,14 +68,14 @@ def write(folder, settings, title, result, force=False):
                 if track is not None:
                     arrays[f'error_{k}_{kind}_t_ns'] = track.t_ns
                     arrays[f'error_{k}_{kind}'] = track.values
-        np.savez(work / 'nav.npz', **arrays)
+        np.savez(work / MARK, **arrays)
         summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
                    'figures': result.figures, 'notes': result.notes,
                    'errors': {c.name: [asdict(r) for r in rows(c, start_ns, end_ns)]
                               for c in result.comparisons}}
-        (work / storage.MARK).write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
+        (work / 'summary.json').write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
         (work / 'parameters.yaml').write_text(
-            parameter_files.dump_sections({'navigate': settings}), encoding='utf-8')
+            parameter_files.dump_nodes({'navigate': settings}), encoding='utf-8')
         save_figure(work / 'navigation.png', title, result)
 
 
@@ -95,9 +97,9 @@ def save_figure(path, title, result):
     for k, (name, track) in enumerate(tracks):
         place = np.array([position_error(*p, *origin) for p in _thin(track.values).tolist()])
         if len(place):
-            way.plot(place[:, 0], place[:, 1], lw=1.2,
-                     label=name if k == 0 or name != 'solution' else None,
-                     color='tab:blue' if name == 'solution' else None)
+            own = k < len(result.states)
+            way.plot(place[:, 0], place[:, 1], lw=1.2, label=None if own and k else name,
+                     color='tab:blue' if own else OTHERS[k - len(result.states)])
     way.plot(0.0, 0.0, 'ko', ms=5, label='start')
     way.set(xlabel='east [m]', ylabel='north [m]')
     way.axis('equal')

@@ -36,10 +36,14 @@ def check_free(folder, force, mark=MARK):
 
 
 @contextmanager
-def new_folder(folder, force):
-    """Give a folder to write into, which becomes ``folder`` when all went well, or vanishes."""
+def whole(folder, force=False, mark=MARK):
+    """
+    Give a folder to write into that takes the place of ``folder`` once the block is through.
+
+    Whatever breaks in the block leaves what was there before.  Raises as check_free does.
+    """
     folder = Path(folder)
-    check_free(folder, force)
+    check_free(folder, force, mark)
     folder.parent.mkdir(parents=True, exist_ok=True)
     work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
     try:
@@ -59,7 +63,7 @@ def write(folder, settings, run, rows, prediction, title, force=False):
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).
     """
-    with new_folder(folder, force) as work:
+    with whole(folder, force) as work:
         arrays = {}
         for name in ('truth', 'imu', 'states', 'errors', 'twin'):
             record = getattr(run, name)
