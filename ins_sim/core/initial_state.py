@@ -7,8 +7,8 @@ import numpy as np
 
 from . import attitude, earth, self_alignment
 from .angles import from_compass, to_compass
+from .course import course, headings
 from .faults import seconds
-from .free_navigation import FreeNavigation
 from .reference import LONGEST_STEP_S
 
 DEG_PER_HOUR = math.degrees(3600.0)
@@ -82,7 +82,7 @@ class Starter:
         if self._reference is not None and self._reference.velocity is not None:
             return np.linalg.norm(self._reference.velocity_at(t_ns), axis=1)
         if self._odometry is not None:
-            return self._odometry.speed().at(t_ns)[:, 0]
+            return np.linalg.norm(self._odometry.velocity_b().at(t_ns), axis=1)
         return np.full(len(t_ns), np.nan)
 
     def _moving(self, first, last, source, again):
@@ -167,8 +167,7 @@ class Starter:
         if self._reference is not None:
             v = self._reference.velocity_at([t_ns])[0]
         if np.isnan(v).any() and self._odometry is not None:
-            track = self._odometry.speed()
-            v_b = type(track)(track.t_ns, self._odometry.v_b).at([t_ns])[0]
+            v_b = self._odometry.velocity_b().at([t_ns])[0]
             v = np.array(attitude.rotate(q_nb, tuple(v_b.tolist())))
         if np.isnan(v).any():
             raise LookupError(f'no reference has a velocity at {seconds(t_ns)}; expected '
@@ -238,10 +237,10 @@ class Starter:
                 return float(to_compass(np.array(q))[2]), self._reference.name
         why = 'there is no reference with a position or a velocity'
         if wanted != 'reference' and self._reference is not None:
-            found = self._course(still, k, where)
-            if not isinstance(found, str):
-                return found
-            why = found
+            found, text = self._course(still, k, where)
+            if found is not None:
+                return found, f'the course of {self._reference.name} {text}'
+            why = f'{self._reference.name} {text}'
         if wanted != 'course' and self._odometry is not None:
             q = self._odometry.as_enu().attitude_at(t_ns)
             if q is not None:
@@ -255,52 +254,16 @@ class Starter:
                          'initial.heading_deg')
 
     def _course(self, still, k, where):
-        """
-        Return the heading at sample k and how it was found, or the reason why not.
-
-        The way of the reference, from stamp to stamp, is turned back by what the heading has
-        changed since the start by the gyros; the sum points along the heading at the start, for
-        a vehicle that moves forward.  Noise of positions cancels in the sum but for its ends.
-        """
-        displacements = self._reference.displacements()
-        if displacements is None:
-            return 'the reference has one stamp only'
+        """Return the heading at sample k, or None, and a text about it."""
+        later = self._broken[self._broken >= k]
+        last = int(later[0]) + 1 if len(later) else len(self._imu)
         q_nb = self_alignment.level(still.force, 0.0)
         bias = self_alignment.gyro_bias(still, q_nb, where[0], self._spin)
-        imu, limits = self._imu, self._s.alignment
-        later = self._broken[self._broken >= k]
-        last = int(later[0]) + 1 if len(later) else len(imu)
-        nav = FreeNavigation(self._s.input, self._spin, int(imu.t_ns[k]),
-                             tuple((imu.omega[k] - bias).tolist()), tuple(imu.f[k].tolist()),
-                             (*where, (0.0, 0.0, 0.0), q_nb))
-        middles, ways = displacements
-        j = int(np.searchsorted(middles, imu.t_ns[k]))
-        end_ns = imu.t_ns[k] + round(limits.course_search_s * 1e9)
-        way, parts = 0j, []
-        for t_ns, omega, f in zip(imu.t_ns[k + 1:last].tolist(),
-                                  (imu.omega[k + 1:last] - bias).tolist(),
-                                  imu.f[k + 1:last].tolist()):
-            if t_ns > end_ns:
-                break
-            nav.step(t_ns, tuple(omega), tuple(f))
-            if j >= len(middles) or t_ns < middles[j]:
-                continue
-            turned = float(to_compass(np.array(nav.solution()[4]))[2])
-            while j < len(middles) and middles[j] <= t_ns:
-                east, north = ways[j]
-                parts.append(complex(north, east) * complex(math.cos(turned), -math.sin(turned)))
-                way += parts[-1]
-                j += 1
-            if abs(way) >= limits.course_distance_m:
-                across = np.imag(np.array(parts) * (way.conjugate() / abs(way)))
-                sigma = math.degrees(float(np.sqrt((across ** 2).sum())) / abs(way))
-                return math.atan2(way.imag, way.real), (
-                    f'the course of {self._reference.name} over {abs(way):.1f} m until '
-                    f'{(t_ns - imu.t_ns[k]) * 1e-9:.1f} s after the start, scatter {sigma:.2g} '
-                    'deg')
-        return (f'the reference moves {abs(way):.3g} m on one course within '
-                f'{limits.course_search_s:g} s (alignment.course_distance_m '
-                f'{limits.course_distance_m:g})')
+        turning = headings(self._imu[k:last].less_bias(bias), (*where, (0.0, 0.0, 0.0), q_nb),
+                           self._s.input, self._spin)
+        limits = self._s.alignment
+        return course(turning, self._reference.displacements(), int(self._imu.t_ns[k]),
+                      limits.course_distance_m, limits.course_search_s)
 
     def _bias(self, still, q_nb, lat, notes, figures):
         bias = self_alignment.gyro_bias(still, q_nb, lat, self._spin)

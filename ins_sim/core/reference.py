@@ -103,9 +103,9 @@ class Odometry:
     q: np.ndarray
     v_b: np.ndarray
 
-    def speed(self):
-        """Return the Track of the speed, m/s."""
-        return Track(self.t_ns, np.linalg.norm(self.v_b, axis=1, keepdims=True))
+    def velocity_b(self):
+        """Return the Track of v_b."""
+        return Track(self.t_ns, self.v_b)
 
     def as_enu(self):
         """Return the Reference without position whose frame is taken for East, North, Up."""
