@@ -62,7 +62,7 @@ def _bag(path, settings):
                 f'{path.name} {topic}', imu, frame,
                 _reference(bag, fix, velocity), _odometry(bag, odometry),
                 _static_transforms(bag, topics), tuple(notes))
-    except AnyReaderError as error:
+    except (AnyReaderError, FileNotFoundError) as error:
         raise ValueError(f'{path} is no readable bag: {error}') from None
 
 

@@ -145,9 +145,10 @@ class Compass:
     """
     A gyrocompassing.
 
-    q_nb; sigma: standard error of the heading from the noise of the rate, rad; excess: length of
-    the mean rate less that of the Earth, rad/s; excess_up: the same of its part along up; both
-    are the bias of the gyros, as far as it can be seen.
+    q_nb, None where the mean rate is parallel to up; sigma: standard error of the heading from
+    the noise of the rate, rad; excess: length of the mean rate less that of the Earth, rad/s;
+    excess_up: the same of its part along up; both are the bias of the gyros, as far as it can
+    be seen.
     """
 
     q_nb: tuple
@@ -157,22 +158,17 @@ class Compass:
 
 
 def gyrocompass(still, lat):
-    """
-    Return the Compass of a Standstill at a latitude, rad.
-
-    Raises ValueError where the mean rate is parallel to up.
-    """
+    """Return the Compass of a Standstill at a latitude, rad."""
     up = still.force / np.linalg.norm(still.force)
     east = np.cross(still.rate, up)
     level = float(np.linalg.norm(east))
-    if level == 0.0:
-        raise ValueError('the mean rate is parallel to the specific force; expected the rate of '
-                         'the Earth, which is not')
-    east /= level
-    sigma = math.sqrt(float(((still.rate_error * east) ** 2).sum())) \
-        / (earth.ROTATION_RATE * math.cos(lat))
-    return Compass(_attitude(east, up), sigma,
-                   float(np.linalg.norm(still.rate)) - earth.ROTATION_RATE,
+    q_nb, sigma = None, math.inf
+    if level > 0.0:
+        east /= level
+        q_nb = _attitude(east, up)
+        sigma = math.sqrt(float(((still.rate_error * east) ** 2).sum())) \
+            / (earth.ROTATION_RATE * math.cos(lat))
+    return Compass(q_nb, sigma, float(np.linalg.norm(still.rate)) - earth.ROTATION_RATE,
                    float(still.rate @ up) - earth.ROTATION_RATE * math.sin(lat))
 
 
