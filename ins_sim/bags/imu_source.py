@@ -13,6 +13,7 @@ from ..core import csv_columns
 from ..core.catalogue import nearest
 from ..core.initial_state import Sources
 from ..core.recorded_imu import RecordedImu
+from ..core.recording import continuous
 from ..core.reference import Odometry, Reference, rising, Track
 
 IMU = ('sensor_msgs/msg/Imu',)
@@ -182,7 +183,8 @@ def _odometry(bag, topic):
         return None
     v = track.values
     return Odometry(topic, frame, track.t_ns, v[:, :3],
-                    v[:, 3:7] / np.linalg.norm(v[:, 3:7], axis=1, keepdims=True), v[:, 7:])
+                    continuous(v[:, 3:7] / np.linalg.norm(v[:, 3:7], axis=1, keepdims=True)),
+                    v[:, 7:])
 
 
 def _static_transforms(bag, topics):

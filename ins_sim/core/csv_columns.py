@@ -6,6 +6,7 @@ from . import recording_file
 from .angles import from_compass
 from .catalogue import nearest
 from .recorded_imu import RecordedImu
+from .recording import continuous
 from .reference import Reference, rising, Track
 
 IMU = ('gx_rps', 'gy_rps', 'gz_rps', 'ax_mps2', 'ay_mps2', 'az_mps2')
@@ -72,7 +73,8 @@ def read_reference(path):
         tracks['velocity'] = _track(t_ns, np.stack([east, north, -down], axis=-1))
     if all(name in columns for name in ATTITUDE):
         angles = (np.radians(columns[name]) for name in ATTITUDE)
-        tracks['attitude'] = _track(t_ns, from_compass(*angles))
+        track = _track(t_ns, from_compass(*angles))
+        tracks['attitude'] = track and Track(track.t_ns, continuous(track.values))
     if tracks['position'] is None:
         raise ValueError(f'{path} has no row with {", ".join(POSITION)}; expected a reference')
     return Reference(str(path).rpartition('/')[2], **tracks)

@@ -60,6 +60,7 @@ class Starter:
     def __init__(self, settings, sources, imu, broken):
         self._s, self._imu, self._broken = settings, imu, broken
         self._reference, self._odometry = sources.reference, sources.odometry
+        self._wheels = None if self._odometry is None else self._odometry.as_enu()
         self._spin = earth.ROTATION_RATE if settings.earth.rotation else 0.0
 
     def begin(self, first, last, again=False):
@@ -125,14 +126,17 @@ class Starter:
                 given.roll_deg, given.pitch_deg, given.heading_deg)))[0].tolist())
         if source == 'imu':
             q = self._imu.q_ns[k]
+            if np.isnan(self._imu.q_ns).all():
+                raise ValueError('the IMU messages hold no orientation (REP-145); expected '
+                                 'another initial.attitude than imu')
             if np.isnan(q).any():
-                raise LookupError('the IMU messages hold no orientation (REP-145); expected '
-                                  'another initial.attitude than imu')
+                raise LookupError(f'the IMU message of {seconds(self._imu.t_ns[k])} holds no '
+                                  'orientation; expected one at the start')
             return tuple(q.tolist())
         q = None if self._reference is None else \
             self._reference.attitude_at(int(self._imu.t_ns[k]))
-        if q is None and self._odometry is not None and self._reference is None:
-            q = self._odometry.as_enu().attitude_at(int(self._imu.t_ns[k]))
+        if q is None and self._wheels is not None and self._reference is None:
+            q = self._wheels.attitude_at(int(self._imu.t_ns[k]))
         if q is None:
             raise LookupError('no reference has an attitude at the start; expected another '
                               'initial.attitude than reference')
@@ -145,9 +149,9 @@ class Starter:
                     given.height_m)
         track = None if self._reference is None else self._reference.position
         if track is None:
-            raise LookupError('the latitude is unknown, for there is no NavSatFix and no '
-                              'reference.path; expected initial.position given with '
-                              'initial.latitude_deg, longitude_deg and height_m')
+            raise ValueError('the latitude is unknown, for there is no NavSatFix and no '
+                             'reference.path; expected initial.position given with '
+                             'initial.latitude_deg, longitude_deg and height_m')
         p = track.at([t_ns])[0]
         if np.isnan(p).any() and near:
             j = int(np.argmin(np.abs(track.t_ns - t_ns)))
@@ -241,8 +245,8 @@ class Starter:
             if found is not None:
                 return found, f'the course of {self._reference.name} {text}'
             why = f'{self._reference.name} {text}'
-        if wanted != 'course' and self._odometry is not None:
-            q = self._odometry.as_enu().attitude_at(t_ns)
+        if wanted != 'course' and self._wheels is not None:
+            q = self._wheels.attitude_at(t_ns)
             if q is not None:
                 return float(to_compass(np.array(q))[2]), \
                     f'{self._odometry.name} (frame {self._odometry.frame} taken for East, North)'

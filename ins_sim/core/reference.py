@@ -8,7 +8,6 @@ import numpy as np
 from . import attitude, earth
 from .angles import to_compass
 from .errors import position_error
-from .recording import continuous
 
 # A value is drawn between two stamps no further apart than this.
 LONGEST_STEP_S = 5.0
@@ -47,7 +46,7 @@ class Reference:
     A reference in n.
 
     name; position: Track of lat, lon (rad, continuous), height (m); velocity: Track of v_n, m/s;
-    attitude: Track of q_nb; each may be None.
+    attitude: Track of q_nb, its signs continuous; each may be None.
     """
 
     name: str
@@ -65,7 +64,7 @@ class Reference:
         """Return q_nb at one stamp as a tuple, or None."""
         if self.attitude is None:
             return None
-        q = Track(self.attitude.t_ns, continuous(self.attitude.values)).at([t_ns])[0]
+        q = self.attitude.at([t_ns])[0]
         return None if np.isnan(q).any() else tuple((q / np.linalg.norm(q)).tolist())
 
     def displacements(self):
@@ -93,7 +92,8 @@ class Odometry:
     """
     Poses in a frame of unknown place and heading, whose z is up.
 
-    name, frame; t_ns (n,); r (n, 3) m; q (n, 4) from b to the frame; v_b (n, 3) m/s in b.
+    name, frame; t_ns (n,); r (n, 3) m; q (n, 4) from b to the frame, its signs continuous; v_b
+    (n, 3) m/s in b.
     """
 
     name: str
