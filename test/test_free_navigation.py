@@ -181,6 +181,25 @@ def test_a_gap_without_a_restart_says_why():
     assert any('no restart: no stationary interval' in n for n in got.notes)
 
 
+def test_a_gap_restarts_from_a_standstill_behind_it():
+    """A fix and no attitude: the IMU aligns itself again behind the gap, by gyrocompassing."""
+    lat = 0.7
+    t_ns = stamps(50.0, 60.0, 0.0)
+    t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
+    n = len(t_ns)
+    rate = (0.0, earth.ROTATION_RATE * math.cos(lat), earth.ROTATION_RATE * math.sin(lat))
+    imu = RecordedImu(t_ns, np.tile(rate, (n, 1)),
+                      np.tile([0.0, 0.0, earth.gravity(math.sin(lat), 0.0)], (n, 1)),
+                      np.full((n, 4), np.nan))
+    reference = Reference('fix', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
+    got = run(imu, reference, on_gap='restart', initial__attitude='align',
+              alignment__longest_s=8.0)
+    assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
+    assert sum('heading by gyrocompassing' in note for note in got.notes) == 2
+    # east is forward: q_nb is the identity
+    assert np.abs(got.states[1].q_nb[-1] - [0.0, 0.0, 0.0, 1.0]).max() < 1e-11
+
+
 def _degrees(q_nb):
     from ins_sim.core.angles import to_compass
     return [math.degrees(float(a)) for a in to_compass(q_nb)]

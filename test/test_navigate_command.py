@@ -10,12 +10,14 @@ from recordings import FIX, fix_messages, IMU, imu_messages, ODOMETRY, odometry_
 from rosbags.rosbag2 import StoragePlugin, Writer
 from scipy.spatial.transform import Rotation
 
-from ins_sim import parameter_files
+from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
 from ins_sim.core import attitude, earth
 from ins_sim.core.angles import from_compass
+from ins_sim.core.catalogue import flatten
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
+from ins_sim.core.navigate_settings import NAVIGATE, NavigateSettings
 from ins_sim.core.simulation import sense
 from ins_sim.messages import convert, topics
 
@@ -259,9 +261,13 @@ BAD = [
     ({('/imu', IMU): resting()}, ['initial.attitude:=reference'], 'no reference has an attitude'),
     ({('/imu', IMU): resting()}, ['initial.attitude:=given', 'initial.position:=given'],
      'no reference has a velocity'),
-    ({('/imu', IMU): resting()}, ['mounting.source:=tf'], "no /tf_static"),
+    ({('/imu', IMU): resting()}, ['mounting.source:=tf'], 'no /tf_static'),
     ({('/imu', IMU): resting()}, ['initial.position:=given', 'initial.heading:=given',
                                   'vertical.channel:=damped'], 'no reference has a height'),
+    ({('/imu', IMU): resting()}, ['initial.heading_deg:=88.0'],
+     'initial.heading_deg is 88.0 and would not be used; expected initial.heading'),
+    ({('/imu', IMU): resting()}, ['mounting.source:=level', 'mounting.rpy_deg:=[90.0, 0.0, 0.0]'],
+     'would not be used with mounting.source level; expected a yaw alone'),
     ({('/imu', IMU): resting()}, ['inital.heading:=given'],
      "the nearest known one is 'initial.heading'"),
     ({('/imu', IMU): resting()}, ['reference.path:=absent.csv'], 'absent.csv'),
@@ -330,3 +336,16 @@ def test_a_solution_is_not_overwritten_without_force(tmp_path, capsys):
     assert main(arguments) == 2
     assert 'expected a new folder' in capsys.readouterr().err
     assert main([*arguments, '--force']) == 0
+
+
+def test_the_shipped_file_holds_the_defaults(tmp_path, capsys):
+    """config/navigate.yaml names every key, and an unknown section is refused."""
+    read = parameter_files.read_nodes([resources.config('navigate')], [], NAVIGATE)
+    assert read == {'navigate': NavigateSettings()}
+    text = resources.config('navigate').read_text()
+    for name in flatten(NavigateSettings):
+        assert f' {name.rsplit(".", 1)[-1]}:' in text
+    other = tmp_path / 'other.yaml'
+    other.write_text('/**/navigator: {ros__parameters: {start_s: 1.0}}')
+    assert main(['navigate', str(tmp_path), '--params-file', str(other)]) == 2
+    assert "the nearest known one is 'navigate'" in capsys.readouterr().err

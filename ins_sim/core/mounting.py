@@ -43,7 +43,7 @@ def chain(transforms, base, frame):
     for name in (base, frame):
         if name not in links:
             raise ValueError(f'/tf_static has no frame {name!r}; the nearest is '
-                             f'{nearest(name, links)!r}')
+                             f'{nearest(name, links)!r}; expected it, or mounting.source given')
     known, queue = {base: attitude.IDENTITY}, [base]
     for name in queue:
         for other, q in links[name]:
@@ -52,5 +52,5 @@ def chain(transforms, base, frame):
                 queue.append(other)
     if frame not in known:
         raise ValueError(f'/tf_static does not connect {base!r} with {frame!r}; expected a chain '
-                         'of transforms')
+                         'of transforms, or mounting.source given')
     return known[frame]

@@ -10,6 +10,7 @@ from .comparison import compare
 from .faults import seconds
 from .free_navigation import FreeNavigation, runs_away
 from .initial_state import Starter
+from .navigate_settings import check_used
 from .recorded_imu import gaps, ordered
 from .records import NavStates
 
@@ -39,6 +40,7 @@ def navigate(settings, sources, progress=None):
     progress: called with the fraction done.  Raises ValueError in one sentence where there is
     nothing to begin with.
     """
+    check_used(settings)
     imu, losses = ordered(sources.imu)
     step_ns = imu.step_ns
     broken = gaps(imu.t_ns, settings.gap_factor)
@@ -96,7 +98,7 @@ def _mounting(settings, sources, imu, first, notes):
         still = self_alignment.find_standstill(imu[first:], settings.alignment)
         notes.append('mounting: levelled by the specific force of the standstill')
         return mounting.levelled(still.force, yaw)
-    if wanted.source != 'given':
+    if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):
         base, frame = wanted.base_frame, sources.frame
         q_bs = mounting.chain(sources.transforms, base, frame) if frame != base else None
         if q_bs is not None:

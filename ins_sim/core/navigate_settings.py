@@ -25,8 +25,9 @@ class Mounting(Settings):
 
     source: str = setting('auto', 'tf: /tf_static of the bag; given: rpy_deg; level: the shortest '
                           'turn that brings the mean specific force of the stationary interval '
-                          'up, after it the yaw of rpy_deg; auto: tf where the bag has it, '
-                          'else given', choices=('auto', 'tf', 'given', 'level'))
+                          'up, after it the yaw of rpy_deg; auto: given where rpy_deg is not '
+                          'zero, else tf where the bag has it',
+                          choices=('auto', 'tf', 'given', 'level'))
     rpy_deg: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'roll, pitch, yaw about the fixed axes '
                                          'x, y, z (URDF)', 'deg', -360.0, 360.0, size=3)
     base_frame: str = setting('base_link', 'frame of the vehicle in /tf_static')
@@ -132,3 +133,31 @@ class NavigateSettings(Settings):
 
 
 NAVIGATE = {'navigate': NavigateSettings}
+
+
+def check_used(settings):
+    """
+    Raise ValueError where NavigateSettings hold a value that its source leaves unused.
+
+    A heading that is given and not taken would pass for one that was.
+    """
+    initial, mounting = settings.initial, settings.mounting
+    attitude = initial.attitude == 'given'
+    heading = attitude or (initial.attitude == 'align' and initial.heading == 'given')
+    for key, used, expected in (
+            ('roll_deg', attitude, 'initial.attitude given'),
+            ('pitch_deg', attitude, 'initial.attitude given'),
+            ('heading_deg', heading, 'initial.heading (or initial.attitude) given'),
+            ('velocity_m_s', initial.velocity == 'given', 'initial.velocity given'),
+            *((key, initial.position == 'given', 'initial.position given')
+              for key in ('latitude_deg', 'longitude_deg', 'height_m'))):
+        value = getattr(initial, key)
+        if not used and value != type(initial)().__dict__[key]:
+            raise ValueError(f'initial.{key} is {value} and would not be used; expected '
+                             f'{expected}')
+    roll, pitch, yaw = mounting.rpy_deg
+    if (mounting.source == 'tf' and (roll or pitch or yaw)) or (
+            mounting.source == 'level' and (roll or pitch)):
+        raise ValueError(f'mounting.rpy_deg is {list(mounting.rpy_deg)} and would not be used '
+                         f'with mounting.source {mounting.source}; expected '
+                         + ('zeros' if mounting.source == 'tf' else 'a yaw alone'))
