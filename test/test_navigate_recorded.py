@@ -95,9 +95,9 @@ def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsy
 
 def test_the_uav_on_the_ground(shared_data, tmp_path, capsys):
     """
-    90 s of the circuit flight, still on the ground; the aircraft is carried from 57 s on.
+    90 s of the circuit flight, still on the ground; from 57 s on it moves as if it were carried.
 
-    Its course is therefore not its heading, and the bag cannot tell; only the errors until then
+    Its course is then not its heading, and the bag cannot tell; only the errors until then
     mean something: below those of the gyro's warm-up, 0.2 deg/s, and 0.5 deg of tilt.
     """
     summary = navigated(shared_data / 'rosbags' / 'umn_thor_fl75_first90s_sqlite3',
@@ -140,7 +140,7 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
 @pytest.mark.parametrize('bias', ['keep', 'subtract'])
 def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     """
-    Given initial values at 200 s, airborne, on the tail of a climb; errors until 320 s.
+    Given initial values at 200 s, airborne, after the climb; errors until 320 s.
 
     Bound: gyro bias of 0.3 deg/s, as the standstill on the ground shows it, and 2 deg of tilt
     (the reference is an on-board estimate that is corrected at 1 Hz).
