@@ -122,10 +122,15 @@ def _number(value):
 
 def dump(settings):
     """Return the text of a parameter file with every key of simulation.Settings."""
+    return dump_nodes({node: getattr(settings, node) for node in NODES})
+
+
+def dump_nodes(built):
+    """Return the text of a parameter file with every key of {node: its settings}."""
     document = {}
-    for node in NODES:
+    for node, settings in built.items():
         tree = {}
-        for name, value in values_of(getattr(settings, node)).items():
+        for name, value in values_of(settings).items():
             *parents, leaf = name.split('.')
             branch = tree
             for parent in parents:

@@ -1,9 +1,10 @@
-"""Write config/default.yaml and the overlays of the presets from the catalogue of settings."""
+"""Write config/default.yaml, navigate.yaml and the presets from the catalogues of settings."""
 
 from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
+from ins_sim.core.navigate_settings import NAVIGATE
 from ins_sim.core.presets import PRESETS
 from ins_sim.core.settings import MotionGeneratorSettings, NODES
 
@@ -76,9 +77,18 @@ def preset_document(preset):
     return '\n'.join(out) + '\n'
 
 
+def navigate_document():
+    """Return the file of the command navigate."""
+    out = ['# Every parameter of "ins_sim navigate" with its default.  Written by',
+           '# tools/make_config.py from ins_sim/core/navigate_settings.py.']
+    for name, cls in NAVIGATE.items():
+        out += [f'/**/{name}:', '  ros__parameters:', *lines(cls, 4)]
+    return '\n'.join(out) + '\n'
+
+
 def documents():
     """Return {file name: text} of every written file."""
-    return {'default.yaml': document(),
+    return {'default.yaml': document(), 'navigate.yaml': navigate_document(),
             **{f'imu_{name}.yaml': preset_document(p) for name, p in PRESETS.items()}}
 
 

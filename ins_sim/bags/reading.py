@@ -1,17 +1,9 @@
-<<<<<<< HEAD
-"""Reading what nodes publish back from a rosbag2 bag, without ROS."""
-
-import numpy as np
-
-from ..core.records import ImuSamples, NavErrors
-=======
-"""Reading what the nodes publish back from a bag, without ROS."""
+"""Reading what nodes publish back from a bag, without ROS."""
 
 import numpy as np
 
 from .bag_reader import open_bag
-from ..core.records import NavErrors
->>>>>>> 524d3af352e8622d90d90e01c1c03ee06c3b3d14
+from ..core.records import ImuSamples, NavErrors
 from ..messages import topics
 
 
@@ -32,8 +24,7 @@ def read_errors(path, namespace=''):
     if any(not np.array_equal(t_ns, table['stamp_ns']) for table in tables.values()):
         raise ValueError(f'{path}: the topics under {prefix}ins/error have different stamps; '
                          'expected all four of every output')
-<<<<<<< HEAD
-    return NavErrors(t_ns, *(vectors for _, vectors in columns))
+    return NavErrors(t_ns, *(table['vector'] for table in tables.values()))
 
 
 def read_imu(path, topic=None):
@@ -44,21 +35,13 @@ def read_imu(path, topic=None):
     f angular velocity and linear acceleration.  Raises ValueError where there is no such topic, or
     more than one to choose from.
     """
-    from rosbags.rosbag2 import Reader
-    from rosbags.rosbag2.errors import ReaderError
-    read = topics.IMU_RAW.reader().read
-    try:
-        with Reader(path) as bag:
-            found = [c for c in bag.connections if c.msgtype == topics.IMU]
-            topic = _choose(path, topic, sorted({c.topic for c in found}))
-            samples = [read(data) for _, _, data in bag.messages(
-                connections=[c for c in found if c.topic == topic])]
-    except ReaderError as error:
-        raise ValueError(f'{path} is no readable bag: {error}') from None
-    if not samples:
+    with open_bag(path) as bag:
+        known = sorted(c.name for c in bag.topics.values() if c.type_name == topics.IMU)
+        topic = _choose(path, topic, known)
+        table = bag.arrays(topic, ('angular_velocity', 'linear_acceleration'))
+    if not len(table):
         raise ValueError(f'{path} has no message on {topic}')
-    t_ns, omega, f = zip(*samples)
-    return ImuSamples(np.array(t_ns, dtype=np.int64), np.array(omega), np.array(f))
+    return ImuSamples(table['stamp_ns'], table['angular_velocity'], table['linear_acceleration'])
 
 
 def _choose(path, topic, known):
@@ -72,6 +55,3 @@ def _choose(path, topic, known):
         raise ValueError(f'{path} has no topic {topic} of type {topics.IMU}; expected one of '
                          f'{", ".join(known)}')
     return known[0] if topic is None else f'/{topic.lstrip("/")}'
-=======
-    return NavErrors(t_ns, *(table['vector'] for table in tables.values()))
->>>>>>> 524d3af352e8622d90d90e01c1c03ee06c3b3d14

@@ -41,6 +41,18 @@ def parser():
                                'linear theory, without a simulation.')
     _settings(predict)
 
+    navigate = verbs.add_parser('navigate', help='run the strapdown over a recorded IMU',
+                                description='Run the strapdown over the sensor_msgs/Imu of a '
+                                'rosbag2 bag, or a CSV file of an IMU, from a self-alignment or '
+                                'given values, and compare it with a reference.')
+    navigate.add_argument('recording', metavar='BAG', help='rosbag2 bag (its folder), or CSV file '
+                          'with the columns t_s, gx_rps, gy_rps, gz_rps, ax_mps2, ay_mps2, '
+                          'az_mps2')
+    _settings(navigate)
+    navigate.add_argument('-o', '--output', default='ins_sim_navigation', metavar='DIR',
+                          help='folder of the solution (default: %(default)s)')
+    navigate.add_argument('--force', action='store_true', help='replace the solution in DIR')
+
     demo = verbs.add_parser('demo', help='run the three nodes over DDS and show the result',
                             description='Start the three nodes, run them in lock-step, record '
                             'their topics into a bag and compare with the prediction.')

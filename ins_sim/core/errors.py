@@ -6,6 +6,14 @@ from . import attitude, earth
 from .strapdown import level_frame
 
 
+def position_error(lat, lon, height, lat_t, lon_t, height_t):
+    """Return East, North, Up from the true point (..._t) to another, floats, m."""
+    r_n, r_e = earth.radii(math.sin(lat_t))
+    east = math.remainder(lon - lon_t, 2.0 * math.pi)
+    return (east * (r_e + height_t) * math.cos(lat_t), (lat - lat_t) * (r_n + height_t),
+            height - height_t)
+
+
 class ErrorMeter:
     """
     Attitude, velocity and position errors in East, North, Up, and the drift of the attitude.
@@ -33,10 +41,7 @@ class ErrorMeter:
         turned = self._spin * t_s
         q_nb = attitude.multiply(attitude.conjugate(level_frame(lat_t, lon_t + turned)), q_ib)
         delta = attitude.logarithm(attitude.multiply(q_nb, attitude.conjugate(q_nb_t)))
-        r_n, r_e = earth.radii(math.sin(lat_t))
-        east = math.remainder(lon - lon_t, 2.0 * math.pi)
-        position = (east * (r_e + height_t) * math.cos(lat_t), (lat - lat_t) * (r_n + height_t),
-                    height - height_t)
+        position = position_error(lat, lon, height, lat_t, lon_t, height_t)
         velocity = (v[0] - v_t[0], v[1] - v_t[1], v[2] - v_t[2])
         return delta, velocity, position, self._slope(t_s, lat_t, lon_t + turned, delta)
 

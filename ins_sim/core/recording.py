@@ -193,10 +193,10 @@ def _quaternions(rows):
     """Return q_nb (n, 4) of the rows, signs continuous; the headings are clockwise."""
     angles = (-rows.heading_deg, rows.pitch_deg, rows.roll_deg)
     q = attitude.from_angles(*(taylor.Series(np.radians(a)[None]) for a in angles))
-    return _continuous(np.stack([x.value for x in q], axis=-1))
+    return continuous(np.stack([x.value for x in q], axis=-1))
 
 
-def _continuous(q):
+def continuous(q):
     """Return (n, 4) quaternions with the signs that make neighbours differ least."""
     dot = (q[1:] * q[:-1]).sum(axis=1)
     return q * np.concatenate([[1.0], np.cumprod(np.where(dot < 0.0, -1.0, 1.0))])[:, None]

@@ -59,7 +59,7 @@ def read_rows(path):
     on a file that cannot be read, is no such table, or holds a value that is no such quantity.
     """
     path = str(path)
-    lines, rows = _table(path, _text(path))
+    lines, rows = _lines(path, _text(path))
     table = _Table(path, lines, rows)
     stamps = table.texts('t_s')
     if not stamps:
@@ -69,11 +69,26 @@ def read_rows(path):
     for name in UNUSED:
         table.numbers(name, (-1e5, 1e5), blank=True)
     return RecordedRows(
-        path=path, t_ns=_nanoseconds(stamps, t_s),
+        path=path, t_ns=nanoseconds(stamps, t_s),
         **{name: np.unwrap(x, period=360.0) if name == 'lon_deg' else x
            for name, x in values.items()},
         resolution=tuple(_resolution(table.texts(name), values[name])
                          for name in ('lat_deg', 'lon_deg', 'height_m')))
+
+
+def read_table(path):
+    """
+    Return header, line numbers and rows of texts of any CSV file, every row as long as the header.
+
+    Raises ValueError as read_rows does on a file that cannot be read.
+    """
+    path = str(path)
+    (_, *lines), (header, *rows) = _lines(path, _text(path))
+    for line, row in zip(lines, rows):
+        if len(row) != len(header):
+            raise ValueError(f'{path}, line {line}: {len(row)} fields; expected {len(header)} as '
+                             'in the header')
+    return [name.strip() for name in header], lines, rows
 
 
 def _text(path):
@@ -112,7 +127,7 @@ def _text(path):
     return text
 
 
-def _table(path, text):
+def _lines(path, text):
     """Return line numbers and fields of all lines that are not blank."""
     reader = csv.reader(io.StringIO(text, newline=''))
     lines, rows = [], []
@@ -211,7 +226,7 @@ def _is_number(text):
     return True
 
 
-def _nanoseconds(texts, t_s):
+def nanoseconds(texts, t_s):
     """Return stamps in ns from their decimal text: floats of epoch size resolve only 0.24 us."""
     if len(t_s) and np.abs(t_s).max() < 1e5:
         return np.round(t_s * 1e9).astype(np.int64)

@@ -1,0 +1,343 @@
+"""The strapdown over samples of any rate: orders of truncation, gaps, faults of the record."""
+
+from dataclasses import replace
+import math
+
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+
+from ins_sim.core import attitude, earth, strapdown
+from ins_sim.core.comparison import compare, rows
+from ins_sim.core.free_navigation import FreeNavigation, increments
+from ins_sim.core.initial_state import Sources
+from ins_sim.core.motions import make_motion
+from ins_sim.core.navigate import navigate
+from ins_sim.core.navigate_settings import NavigateSettings, NAVIGATE
+from ins_sim.core.recorded_imu import gaps, ordered, RecordedImu
+from ins_sim.core.reference import Reference, Track
+from ins_sim.core.settings import MotionGeneratorSettings
+from ins_sim.core.catalogue import build
+from ins_sim.core.simulation import sense
+from ins_sim import parameter_files
+
+SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
+MOTION = make_motion(SETTINGS.motion_generator.motion, SETTINGS.motion_generator.datum,
+                     SETTINGS.motion_generator.earth)
+AIR = {'initial.attitude': 'reference'}
+SECOND = 1_000_000_000
+
+
+def stamps(rate_hz, length_s=20.0, start_s=1.0):
+    """Return the stamps of a uniform rate."""
+    count = round(length_s * rate_hz)
+    return round(start_s * SECOND) + np.arange(count + 1, dtype=np.int64) * round(SECOND / rate_hz)
+
+
+def recorded(t_ns, motion=MOTION):
+    """Return RecordedImu and Reference, exact, of the motion at stamps."""
+    truth = motion.at(t_ns)
+    reference = Reference('truth', Track(t_ns, np.stack([truth.lat, truth.lon, truth.height], -1)),
+                          Track(t_ns, truth.v_n), Track(t_ns, truth.q_nb))
+    return RecordedImu(t_ns, truth.omega_ib_b, truth.f_ib_b,
+                       np.full((len(t_ns), 4), np.nan)), reference
+
+
+def run(imu, reference, **values):
+    """Return the Navigation of settings by dotted name, with __ for a dot."""
+    chosen = build(NavigateSettings, {**AIR, **{k.replace('__', '.'): v
+                                                for k, v in values.items()}})
+    return navigate(chosen, Sources('the record', imu, 'base_link', reference))
+
+
+def end_errors(navigation):
+    """Return position error, m, and attitude error, rad, at the end."""
+    comparison = navigation.comparisons[0]
+    return (np.linalg.norm(comparison.position.values[-1]),
+            np.linalg.norm(comparison.attitude.values[-1]))
+
+
+def test_instant_samples_converge_with_the_square_of_the_step(capsys):
+    """
+    The trapezoid is of second order: half the step, a quarter of the error.
+
+    The order is estimated from 50, 100, 200 and 400 Hz over 20 s of six sinusoids; it must be 2
+    within 0.15, for the terms of fourth order at the coarsest step.
+    """
+    position, turn = np.array([end_errors(run(*recorded(stamps(r))))
+                               for r in (50.0, 100.0, 200.0, 400.0)]).T
+    orders = np.log2(position[:-1] / position[1:]), np.log2(turn[:-1] / turn[1:])
+    with capsys.disabled():
+        print(f'\nposition error after 20 s at 50, 100, 200, 400 Hz: '
+              f'{", ".join(f"{p:.3g}" for p in position)} m, orders '
+              f'{", ".join(f"{o:.3f}" for o in orders[0])}; attitude orders '
+              f'{", ".join(f"{o:.3f}" for o in orders[1])}')
+    assert np.abs(np.array(orders) - 2.0).max() < 0.15
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 10000), lost=st.floats(0.0, 0.3))
+def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
+    """
+    Stamps that jitter and samples that are lost, each at its own true value.
+
+    The error of a trapezoid over steps dt_k is bounded by C sum(dt_k^3); C is taken from the
+    uniform 100 Hz run, times ten because signed errors cancel there and need not here.
+    """
+    t_ns = stamps(100.0)
+    uniform, _ = end_errors(run(*recorded(t_ns)))
+    rng = np.random.default_rng(seed)
+    t_ns = t_ns + rng.integers(-4_000_000, 4_000_000, len(t_ns))
+    t_ns = t_ns[np.append(rng.random(len(t_ns) - 1) > lost, True)]
+    got, _ = end_errors(run(*recorded(t_ns), gap_factor=1000.0))
+    cubes = (np.diff(t_ns) * 1e-9) ** 3
+    assert got < 10.0 * uniform * cubes.sum() / (2000 * 0.01 ** 3)
+
+
+def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_instants():
+    """
+    Of w = a + b t, f = c + d t the increments of both kinds are the same cross products.
+
+    The intervals before and now are unequal, so that the scaling of the earlier mean is tested.
+    Both are exact to third order in dt; they differ by rounding.
+    """
+    a, b, c, d = np.random.default_rng(4).standard_normal((4, 3))
+    before, now = 0.013, 0.007
+
+    def mean(x, y, start, end):
+        return tuple((x + y * (0.5 * (start + end))).tolist())
+
+    means = increments('integrated', (mean(a, b, -before, 0.0), mean(c, d, -before, 0.0)),
+                       (mean(a, b, 0.0, now), mean(c, d, 0.0, now)), now, before)
+    ends = increments('instant', (tuple(a.tolist()), tuple(c.tolist())),
+                      (mean(a, b, now, now), mean(c, d, now, now)), now, before)
+    assert np.abs(np.array(means) - np.array(ends)).max() < 1e-16
+    # and the coning of the interval in closed form: b x a dt^3 / 12 with the sign of a x b
+    alpha = np.array(mean(a, b, 0.0, now)) * now
+    assert np.abs(np.array(ends[0]) - alpha - np.cross(a, b) * now ** 3 / 12.0).max() < 1e-16
+
+
+def test_the_loop_closes_on_the_simulated_imu(capsys):
+    """
+    imu_sensor's own output, both modes, navigates back to the truth.
+
+    Bound: the error of the offline strapdown on the same samples, times 1.01 for another start.
+    """
+    from ins_sim.core.simulation import simulate
+    shown = []
+    for mode in ('rotation_vector', 'integrated'):
+        chosen = parameter_files.read([], [
+            'motion.kind:=sinusoids', 'source:=motion', 'duration_s:=60.0', f'output:={mode}',
+            f'input:={mode}', 'vertical.channel:=free'])
+        blocks = list(sense(chosen, MOTION))
+        t_ns, omega, f = (np.concatenate([getattr(x, n) for x in blocks])
+                          for n in ('t_ns', 'omega', 'f'))
+        _, reference = recorded(t_ns)
+        got = run(RecordedImu(t_ns, omega, f, np.full((len(t_ns), 4), np.nan)), reference,
+                  input=mode)
+        ours = got.comparisons[0].position.values
+        theirs = simulate(chosen, twin=False).errors.position
+        shown.append(f'{mode} {np.abs(ours).max():.3g} m (simulate {np.abs(theirs).max():.3g})')
+        assert np.abs(ours - theirs).max() < 0.01 * np.abs(theirs).max() + 1e-8
+    with capsys.disabled():
+        print('\nlargest position error in 60 s: ' + '; '.join(shown))
+
+
+def with_gap(first_s=8.0, length_s=0.5):
+    """Return 20 s of record with a gap."""
+    t_ns = stamps(100.0)
+    start = t_ns[0] + round(first_s * SECOND)
+    return t_ns[(t_ns <= start) | (t_ns >= start + round(length_s * SECOND))]
+
+
+def test_a_gap_ends_the_solution():
+    """on_gap stop: the last state is that before the gap, and a note says so."""
+    t_ns = with_gap()
+    got = run(*recorded(t_ns))
+    assert got.states[-1].t_ns[-1] == 9 * SECOND and len(got.states) == 1
+    assert any('gap of 0.5 s from 9.000000000 s: the solution ends there' in n for n in got.notes)
+    assert got.figures['gaps'] == 1
+
+
+def test_a_gap_restarts_from_the_reference():
+    """on_gap restart: a second segment, exact where it begins."""
+    got = run(*recorded(with_gap()), on_gap='restart')
+    assert [s.t_ns[0] for s in got.states] == [SECOND, 9_500_000_000]
+    errors = got.comparisons[0]
+    k = int(np.searchsorted(errors.position.t_ns, 9_500_000_000))
+    assert np.linalg.norm(errors.position.values[k]) < 1e-8
+    assert np.linalg.norm(errors.attitude.values[k]) < 1e-12
+
+
+def test_a_gap_without_a_restart_says_why():
+    """Without attitude in the reference and without a standstill there is no restart."""
+    imu, reference = recorded(with_gap())
+    truth = MOTION.at(imu.t_ns[:1])
+    roll, pitch, heading = _degrees(truth.q_nb[0])
+    got = run(imu, replace(reference, attitude=None), on_gap='restart',
+              initial__attitude='given', initial__roll_deg=roll, initial__pitch_deg=pitch,
+              initial__heading_deg=heading)
+    assert len(got.states) == 1
+    assert any('no restart: no stationary interval' in n for n in got.notes)
+
+
+def test_a_gap_restarts_from_a_standstill_behind_it():
+    """A fix and no attitude: the IMU aligns itself again behind the gap, by gyrocompassing."""
+    lat = 0.7
+    t_ns = stamps(50.0, 60.0, 0.0)
+    t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
+    n = len(t_ns)
+    rate = (0.0, earth.ROTATION_RATE * math.cos(lat), earth.ROTATION_RATE * math.sin(lat))
+    imu = RecordedImu(t_ns, np.tile(rate, (n, 1)),
+                      np.tile([0.0, 0.0, earth.gravity(math.sin(lat), 0.0)], (n, 1)),
+                      np.full((n, 4), np.nan))
+    reference = Reference('fix', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
+    got = run(imu, reference, on_gap='restart', initial__attitude='align',
+              alignment__longest_s=8.0)
+    assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
+    assert sum('heading by gyrocompassing' in note for note in got.notes) == 2
+    # east is forward: q_nb is the identity
+    assert np.abs(got.states[1].q_nb[-1] - [0.0, 0.0, 0.0, 1.0]).max() < 1e-11
+
+
+def _degrees(q_nb):
+    from ins_sim.core.angles import to_compass
+    return [math.degrees(float(a)) for a in to_compass(q_nb)]
+
+
+def test_a_gap_is_bridged_by_straight_lines(capsys):
+    """
+    on_gap bridge: the error is that of lines across the gap, and it is said.
+
+    Bound on the attitude: the largest second derivative of the rates (their sinusoids at most
+    0.7 Hz) times T^3 / 12, T = 0.05 s, by the error of the trapezoid.
+    """
+    t_ns = with_gap(length_s=0.05)
+    imu, reference = recorded(t_ns)
+    bridged = run(imu, reference, on_gap='bridge')
+    whole = run(*recorded(stamps(100.0)))
+    cost = abs(end_errors(bridged)[1] - end_errors(whole)[1])
+    rate = np.linalg.norm(imu.omega, axis=1).max()
+    bound = rate * (2 * math.pi * 0.7) ** 2 * 0.05 ** 3 / 12.0
+    with capsys.disabled():
+        print(f'\nbridging 0.05 s costs {cost:.3g} rad (bound {bound:.3g})')
+    assert cost < bound
+    assert len(bridged.states) == 1
+    assert any('1 gaps bridged' in n for n in bridged.notes)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.integers(0, 30), min_size=2, max_size=25))
+def test_as_few_stamps_as_possible_are_dropped(values):
+    """Against the quadratic textbook method; what is left rises."""
+    t_ns = np.array(values, dtype=np.int64)
+    longest = [1] * len(values)
+    for k in range(len(values)):
+        for j in range(k):
+            if values[j] < values[k]:
+                longest[k] = max(longest[k], longest[j] + 1)
+    imu = RecordedImu(t_ns, np.zeros((len(t_ns), 3)), np.zeros((len(t_ns), 3)),
+                      np.full((len(t_ns), 4), np.nan))
+    if max(longest) < 2:
+        with pytest.raises(ValueError, match='expected at least two good ones'):
+            ordered(imu)
+        return
+    kept, losses = ordered(imu)
+    assert (np.diff(kept.t_ns) > 0).all()
+    assert len(kept) == max(longest) == len(values) - losses.out_of_order
+
+
+def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
+    """The solution is the one of the record without them."""
+    imu, reference = recorded(stamps(100.0))
+    clean = np.delete(np.arange(len(imu)), [500, 900])
+    omega, t_ns = imu.omega.copy(), imu.t_ns.copy()
+    omega[500, 1] = np.nan
+    # one stamp far ahead must cost itself alone
+    t_ns[900] += 3600 * SECOND
+    got = run(replace(imu, omega=omega, t_ns=t_ns), reference)
+    expected = run(imu[clean], reference)
+    assert (got.figures['not_finite'], got.figures['out_of_order']) == (1, 1)
+    assert np.array_equal(got.states[0].q_nb, expected.states[0].q_nb)
+    assert list(gaps(got.states[0].t_ns, 3.0)) == []
+
+
+def test_the_damped_channel_follows_the_height_of_the_reference():
+    """
+    An accelerometer bias along up, in a record at rest: free g-long fall, damped offset.
+
+    The third-order loop ends with no offset: its integrator takes the bias.  Free: b t^2 / 2
+    within the gradient of gravity, 1 + (2 g / R) t^2 / 12.
+    """
+    lat, b = 0.7, 0.01
+    g = earth.gravity(math.sin(lat), 0.0)
+    t_ns = stamps(20.0, 300.0, 0.0)
+    n = len(t_ns)
+    rate = (0.0, earth.ROTATION_RATE * math.cos(lat), earth.ROTATION_RATE * math.sin(lat))
+    # heading 90 deg in compass terms is q = identity in ENU
+    imu = RecordedImu(t_ns, np.tile(rate, (n, 1)), np.tile([0.0, 0.0, g + b], (n, 1)),
+                      np.full((n, 4), np.nan))
+    reference = Reference('truth', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))),
+                          Track(t_ns, np.zeros((n, 3))),
+                          Track(t_ns, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
+    free = run(imu, reference).comparisons[0].position.values[-1, 2]
+    damped = run(imu, reference, vertical__channel='damped').comparisons[0].position.values[:, 2]
+    growth = 1.0 + 2.0 * g / earth.SEMI_MAJOR * 300.0 ** 2 / 12.0
+    assert abs(free / (0.5 * b * 300.0 ** 2) - growth) < 1e-3
+    # a triple pole at -1/20 s: after 300 s = 15 time constants, e^-15 (15^2 / 2) b 20^2
+    assert abs(damped[-1]) < 4.0 * math.exp(-15.0) * 112.5 * b * 400.0
+    assert np.abs(damped).max() < b * 400.0
+
+
+def test_a_solution_that_runs_away_is_cut_and_said():
+    """Degrees per second for radians: no NaN, no traceback."""
+    imu, reference = recorded(stamps(100.0, 300.0))
+    got = run(replace(imu, omega=imu.omega * 57.3, f=imu.f * 9.8 * 1000.0), reference)
+    assert any('runs away' in n for n in got.notes)
+    assert all(np.isfinite(s.q_nb).all() and np.isfinite(s.lat).all() for s in got.states)
+
+
+def test_the_rows_are_the_errors_at_their_instants():
+    """10 s and the end of a run of 20 s, and no row beyond."""
+    imu, reference = recorded(stamps(100.0))
+    got = run(imu, reference)
+    table = rows(got.comparisons[0], int(imu.t_ns[0]), int(imu.t_ns[-1]))
+    assert [r.after_s for r in table] == [10.0, 20.0]
+    p = got.comparisons[0].position.values[1000]
+    assert table[0].horizontal_m == math.hypot(p[0], p[1]) and table[0].vertical_m == p[2]
+    assert compare(got.states, Reference('empty', Track(np.array([5, 6]), np.zeros((2, 3))))) \
+        is None
+
+
+def test_heading_error_is_clockwise():
+    """A solution turned right by 1 deg shows +1 deg."""
+    imu, reference = recorded(stamps(100.0, 1.0))
+    turned = attitude.multiply(attitude.exponential((0.0, 0.0, math.radians(-1.0))),
+                               reference.attitude.values.T)
+    wrong = replace(reference, attitude=Track(imu.t_ns, np.stack(turned, axis=-1)))
+    got = run(imu, wrong)
+    shown = compare(got.states, reference)
+    assert abs(rows(shown, int(imu.t_ns[0]), int(imu.t_ns[-1]))[-1].heading_deg - 1.0) < 1e-3
+
+
+def test_the_sections_name_the_settings():
+    """One section, and the defaults build."""
+    assert build(NAVIGATE['navigate'], {}) == NavigateSettings()
+    assert MotionGeneratorSettings().earth == NavigateSettings().earth
+
+
+def test_free_navigation_is_the_kernel_of_the_strapdown():
+    """One step is strapdown.step on the increments, bit by bit."""
+    imu, _ = recorded(stamps(100.0, 0.01))
+    truth = MOTION.at(imu.t_ns)
+    state = (float(truth.lat[0]), float(truth.lon[0]), float(truth.height[0]),
+             tuple(truth.v_n[0].tolist()), tuple(truth.q_nb[0].tolist()))
+    samples = [(tuple(w), tuple(f)) for w, f in zip(imu.omega.tolist(), imu.f.tolist())]
+    nav = FreeNavigation('instant', earth.ROTATION_RATE, int(imu.t_ns[0]), *samples[0], state)
+    nav.step(int(imu.t_ns[1]), *samples[1])
+    _, u = increments('instant', *samples, 0.01, 0.01)
+    q_ib = strapdown.inertial_attitude(state[0], state[1], state[4])
+    lat, lon, height, v, _ = strapdown.step(
+        q_ib, *state[:4], u, 0.01, earth.ROTATION_RATE, earth.ROTATION_RATE * 0.005,
+        strapdown.FREE, ())
+    assert nav.solution()[:4] == (lat, lon, height, v)
