@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.stats import chi2
 from studies import settings
 
+from ins_sim.core.faults import StreamFault
 from ins_sim.core.gyro_pair import CHANNELS, COVARIANCE_FACTORS, GyroPair
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
@@ -313,6 +314,19 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
         instrument({'gyro.dtg.preset': 'paper'})
     with pytest.warns(UserWarning, match='unstable: a root grows'):
         instrument({'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn'})
+
+
+def test_rotors_that_run_away_are_a_fault():
+    """Not an infinite reading: one sentence, and a restart settles them anew."""
+    values = {**DTG, 'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn',
+              OUT + 'quantisation_arcsec': [0.3] * 3}
+    with pytest.warns(UserWarning, match='unstable'):
+        s = settings(values, duration_s=200.0, source='motion')
+        motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
+                             s.motion_generator.earth)
+        with pytest.raises(StreamFault, match='the rotors of the gyros have run away at') as fault:
+            list(sense(s, motion))
+    assert fault.value.restart
 
 
 def test_a_custom_gyro():
