@@ -157,8 +157,8 @@ class PairInstrument:
                 more = channels(*three, disturbances.step(*three))
                 total = tuple([a + b for a, b in zip(total, more)])
         if not math.isfinite(sum(total)):
-            raise StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; expected '
-                              'a gyro whose roots decay', restart=True)
+            raise StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; '
+                              'expected a gyro whose roots decay', restart=True)
         if steps > 1:
             total = tuple([a / steps for a in total])
         return self._finish(t_ns, total, self._mean(rates), force)
