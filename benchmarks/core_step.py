@@ -10,7 +10,7 @@ from time import process_time
 import numpy as np
 
 from ins_sim.core.catalogue import build
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
 from ins_sim.core.map_frame import MapFrame

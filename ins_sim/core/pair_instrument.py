@@ -17,7 +17,7 @@ from .dtg_settings import DtgErrors
 from .error_settings import GyroErrors
 from .faults import seconds, StreamFault
 from .gyro_pair import GyroPair
-from .imu import period_ns
+from .instants import period_ns
 from .tuned_gyro import PRESETS, TunedGyroParameters
 from .triad_model import DEG_H, noise_variance, reported_variance, triad_model
 
