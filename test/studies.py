@@ -4,8 +4,11 @@ from concurrent.futures import ProcessPoolExecutor
 import multiprocessing
 
 from ins_sim.core.catalogue import build, flatten
+from ins_sim.core.map_frame import MapFrame
+from ins_sim.core.motions import make_motion
+from ins_sim.core.records import ImuSamples
 from ins_sim.core.settings import NODES
-from ins_sim.core.simulation import Settings, simulate
+from ins_sim.core.simulation import sense, Settings, simulate
 
 DEG_PER_HOUR = 206264.806
 
@@ -25,6 +28,16 @@ def settings(values=None, **more):
     assert not unused, unused
     return Settings(**{node: build(cls, {k: v for k, v in values.items() if k in known[node]})
                        for node, cls in NODES.items()})
+
+
+def streamed(s):
+    """Return the ImuSamples of a run through the stream, and its truth as push takes it."""
+    generator = s.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    expected = ImuSamples.concatenate(sense(s, motion))
+    frame, truth = MapFrame(generator.datum, True), motion.at(expected.t_ns)
+    return expected, list(zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
+                              truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
 
 
 def run(values):

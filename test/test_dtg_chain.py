@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from studies import DEG_PER_HOUR, MOTION_2, settings
+from studies import DEG_PER_HOUR, MOTION_2, settings, streamed
 
 from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
 from ins_sim.core.prediction import predict
 from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import sense, simulate
+from ins_sim.core.simulation import simulate
 
 DTG = {'motion.kind': 'two_axis', 'gyro.model': 'dtg', 'output': 'integrated',
        'input': 'integrated'}
@@ -45,12 +44,7 @@ def test_delays_compose_with_the_rotors():
 def test_live_is_offline_bit_for_bit_and_reset_forgets():
     """Fed sample by sample, and again after reset."""
     s = settings({**DTG, 'gyro.delay_us.x': 30.0}, source='stream', duration_s=3.0)
-    generator = s.motion_generator
-    motion = make_motion(generator.motion, generator.datum, generator.earth)
-    expected = ImuSamples.concatenate(sense(s, motion))
-    frame, truth = MapFrame(generator.datum, True), motion.at(expected.t_ns)
-    samples = list(zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
-                       truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
+    expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
     for _ in range(2):
         got = [r for sample in samples for r in imu.push(*sample)]

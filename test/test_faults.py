@@ -7,7 +7,7 @@ import pytest
 from studies import MOTION_2, settings
 
 from ins_sim.core.faults import seconds, StreamFault
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion

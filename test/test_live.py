@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy')
 import live  # noqa: E402, F401, I100, I202
+from core_step import EVERYTHING  # noqa: E402, I100, I202
 from live_chain import run  # noqa: E402, I100, I202
 
 pytestmark = pytest.mark.live
@@ -39,6 +40,17 @@ def test_real_time_1_khz_for_a_minute(ros_domain):
 @pytest.mark.slow
 def test_real_time_2_khz_for_a_minute(ros_domain):
     assert best(3, lambda r: r.lost == 0, 2000, 60, 1, domain=ros_domain).lost == 0
+
+
+@pytest.mark.slow
+def test_tuned_gyros_with_every_error_1_khz_for_a_minute(ros_domain):
+    """Two tuned gyros, every term of the model but drop-outs: no sample is lost."""
+    values = {key: list(value) if isinstance(value, tuple) else value
+              for key, value in EVERYTHING.items() if 'drop_out' not in key}
+    values.update({'input': 'integrated', 'imu_time': 'nominal', 'imu_latency_us': 50.0,
+                   'on_fault': 'stop'})
+    result = best(3, lambda r: r.lost == 0, 1000, 60, 1, domain=ros_domain, **values)
+    assert result.lost == 0
 
 
 def test_real_time_1_khz_without_loss(ros_domain):

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.stats import chi2
-from studies import settings
+from studies import settings, streamed
 
+from ins_sim.core.faults import StreamFault
 from ins_sim.core.gyro_pair import CHANNELS, COVARIANCE_FACTORS, GyroPair
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
-from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
 from ins_sim.core.pair_instrument import make_pair, PairInstrument, parameters
 from ins_sim.core.records import ImuSamples
@@ -282,12 +282,7 @@ EVERYTHING = {
 def test_everything_on_live_is_offline_and_reset_forgets(more):
     """The same bits sample by sample, and again after a reset."""
     s = settings({**EVERYTHING, **more}, source='stream', duration_s=3.0)
-    generator = s.motion_generator
-    motion = make_motion(generator.motion, generator.datum, generator.earth)
-    expected = ImuSamples.concatenate(sense(s, motion))
-    frame, truth = MapFrame(generator.datum, True), motion.at(expected.t_ns)
-    samples = list(zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
-                       truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
+    expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
     for _ in range(2):
         got = [r for sample in samples for r in imu.push(*sample)]
@@ -313,6 +308,19 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
         instrument({'gyro.dtg.preset': 'paper'})
     with pytest.warns(UserWarning, match='unstable: a root grows'):
         instrument({'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn'})
+
+
+def test_rotors_that_run_away_are_a_fault():
+    """Not an infinite reading: one sentence, and a restart settles them anew."""
+    values = {**DTG, 'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn',
+              OUT + 'quantisation_arcsec': [0.3] * 3}
+    with pytest.warns(UserWarning, match='unstable'):
+        s = settings(values, duration_s=200.0, source='motion')
+        motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
+                             s.motion_generator.earth)
+        with pytest.raises(StreamFault, match='the rotors of the gyros have run away at') as fault:
+            list(sense(s, motion))
+    assert fault.value.restart
 
 
 def test_a_custom_gyro():

@@ -28,6 +28,13 @@ def test_one_step_of_imu_and_strapdown(benchmark, output):
     assert imu + navigator <= 60.0
 
 
+def test_one_step_of_tuned_gyros_with_every_error(benchmark):
+    """At most 120 us of CPU, from the bytes of the truth to those of reading and parity."""
+    us = benchmark.tuned_step_us()
+    print(f'\ntwo tuned gyros and every error: {us:.1f} us (120)')
+    assert us <= 120.0
+
+
 def test_an_hour_offline(benchmark):
     """One hour of motion 2 at 100 Hz in at most 60 s."""
     seconds = benchmark.hour_s()

@@ -5,7 +5,8 @@ import pytest
 from studies import DEG_PER_HOUR, MOTION_2, settings
 
 from ins_sim.core import attitude
-from ins_sim.core.imu import MotionImu, period_ns
+from ins_sim.core.imu import MotionImu
+from ins_sim.core.instants import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion

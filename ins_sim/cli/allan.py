@@ -10,7 +10,7 @@ from . import settings as chosen_settings
 from .. import parameter_files
 from ..bags.reading import read_imu
 from ..core.gyro_pair import COVARIANCE_FACTORS
-from ..core.imu import period_ns
+from ..core.instants import period_ns
 from ..core.instrument import with_errors
 from ..core.records import ImuSamples
 from ..core.resting_record import resting_record

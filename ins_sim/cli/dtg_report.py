@@ -1,6 +1,6 @@
 """Verb dtg-report: what the tuned gyros of the parameters are good for."""
 
-from ..core.imu import period_ns
+from ..core.instants import period_ns
 from ..core.pair_instrument import parameters
 from ..core.tuned_gyro_report import report
 from . import settings as chosen_settings

@@ -4,6 +4,7 @@ import argparse
 from importlib import import_module
 import signal
 import sys
+import warnings
 
 from .. import __version__
 
@@ -117,6 +118,8 @@ def main(arguments=None):
     """Run a verb; return the exit code: 0, 2 bad input, 1 a run that failed, 130 interrupted."""
     chosen = parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, _interrupt)
+    warnings.showwarning = lambda sentence, *_: print(f'ins_sim {chosen.verb}: {sentence}',
+                                                      file=sys.stderr)
     try:
         # the verbs import what they need: "ins_sim --help" stays instant
         verb = import_module(f'ins_sim.cli.{chosen.verb.replace("-", "_")}')

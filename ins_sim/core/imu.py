@@ -12,17 +12,13 @@ import math
 import numpy as np
 
 from . import attitude
+from .instants import period_ns
 from .map_frame import MapFrame
 from .records import ImuSamples
 
 # Gauss-Legendre, three points on [0, 1]
 NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
 WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
-
-
-def period_ns(rate_hz):
-    """Return the sampling period of a rate, rounded to one nanosecond."""
-    return round(1e9 / rate_hz)
 
 
 def delays_ns(delay_us):

@@ -8,7 +8,7 @@ function of seed and instant: the index of a sample is its motion time over the 
 import numpy as np
 
 from .error_settings import AccelerometerErrors, GyroErrors
-from .imu import period_ns
+from .instants import period_ns
 from .records import ImuSamples
 
 

@@ -10,7 +10,7 @@ import math
 from . import attitude, earth, strapdown
 from .errors import ErrorMeter
 from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
-from .imu import period_ns
+from .instants import period_ns
 from .map_frame import MapFrame
 from .orientation import Orientation
 

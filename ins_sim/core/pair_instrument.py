@@ -9,13 +9,15 @@ section 6; the model of IEEE Std 813).
 """
 
 from dataclasses import fields, replace
+import math
 
 import numpy as np
 
 from .dtg_settings import DtgErrors
 from .error_settings import GyroErrors
+from .faults import seconds, StreamFault
 from .gyro_pair import GyroPair
-from .imu import period_ns
+from .instants import period_ns
 from .tuned_gyro import PRESETS, TunedGyroParameters
 from .triad_model import DEG_H, noise_variance, reported_variance, triad_model
 
@@ -82,6 +84,9 @@ class PairInstrument:
             from .rotor_errors import RotorErrors
             self._disturbances = RotorErrors(errors, self.pair, settings.seed, self.dt_s)
         self._read_out = None
+        # by body axis first, as a sentence about an axis names that of the settings
+        self._reported = triad_model(settings.gyro.errors, self.dt_s,
+                                     'gyro.errors').reported_sigma
         self._models = tuple(triad_model(case_errors(settings.gyro.errors, axes), self.dt_s,
                                          'gyro.errors') for axes in CASES)
         if settings.gyro.errors != GyroErrors():
@@ -89,7 +94,6 @@ class PairInstrument:
             self._read_out = tuple(
                 TriadErrors(case_errors(settings.gyro.errors, axes), settings.seed, 0, name,
                             self.dt_s, settings.temperature) for axes, name in zip(CASES, NAMES))
-        self._reported = triad_model(settings.gyro.errors, self.dt_s).reported_sigma
         self._schedule_fault(dtg.fault)
 
     def _schedule_fault(self, fault):
@@ -134,7 +138,8 @@ class PairInstrument:
         """
         Return mean body rates and parity, rad/s, of the interval that ends at t_ns.
 
-        rates: body rates at ``nodes``; force: mean specific force in b, m/s^2.
+        rates: body rates at ``nodes``; force: mean specific force in b, m/s^2.  Raises StreamFault
+        when unstable rotors that were asked for overflow.
         """
         self._keep_schedule(t_ns)
         steps, channels = self._steps, self.pair.channels
@@ -151,6 +156,9 @@ class PairInstrument:
                 three = rates[k:k + 3]
                 more = channels(*three, disturbances.step(*three))
                 total = tuple([a + b for a, b in zip(total, more)])
+        if not math.isfinite(sum(total)):
+            raise StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; '
+                              'expected a gyro whose roots decay', restart=True)
         if steps > 1:
             total = tuple([a / steps for a in total])
         return self._finish(t_ns, total, self._mean(rates), force)

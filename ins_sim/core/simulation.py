@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .faults import check_interval, StreamFault
-from .imu import MotionImu, period_ns
+from .imu import MotionImu
+from .instants import period_ns
 from .imu_stream import StreamImu
 from .instrument import with_errors
 from .map_frame import MapFrame

@@ -2,7 +2,7 @@
 
 import math
 
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
 from ins_sim.core.sampling import Sampler

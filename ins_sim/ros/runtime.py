@@ -9,6 +9,7 @@ deaf to the next ones.  Nothing heavy is imported before they stand.
 import gc
 import signal
 import sys
+import warnings
 
 EXIT_OK = 0
 EXIT_PARAMETERS = 2
@@ -67,6 +68,8 @@ def node_main(load, args=None):
         return EXIT_PARAMETERS
     if stop:
         return stop.code
+    warnings.showwarning = lambda sentence, *_: rclpy.logging.get_logger(
+        node_class.NAME).warning(str(sentence))
     try:
         rclpy.init(args=args, signal_handler_options=rclpy.SignalHandlerOptions.NO)
         node = node_class(stop=stop)

@@ -2,7 +2,7 @@
 
 import time
 
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.navigator import Navigator
 from ins_sim.core.sampling import SampleClock

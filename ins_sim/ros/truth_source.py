@@ -2,7 +2,7 @@
 
 import math
 
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import check_length, make_motion
 from ins_sim.messages import topics
