@@ -47,7 +47,7 @@ class Bags:
 
     def write_ours(self, storage, compression):
         """Write from arrays."""
-        with BagWriter(self._new('ours'), storage, compression) as bag:
+        with BagWriter(self._folder / 'ours', storage, compression) as bag:
             writers = {topic: topic.writer() for topic in TOPICS}
             for topic in TOPICS:
                 bag.add_topic(topic.name, topic.type_name)
@@ -59,7 +59,8 @@ class Bags:
 
     def write_theirs(self, storage, compression):
         """Write message by message: serialize_cdr and Writer.write."""
-        bag = Writer(self._new('theirs'), version=9, storage_plugin=StoragePlugin[storage.upper()])
+        bag = Writer(self._folder / 'rosbags', version=9,
+                     storage_plugin=StoragePlugin[storage.upper()])
         if compression == 'zstd':
             bag.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         serialize = self._store.serialize_cdr
@@ -86,10 +87,6 @@ class Bags:
                 count += 1
         assert count == 2 * self._n
 
-    def _new(self, name):
-        shutil.rmtree(self._folder / name, ignore_errors=True)
-        return self._folder / name
-
     def close(self):
         """Delete the bags."""
         shutil.rmtree(self._folder)
@@ -109,6 +106,8 @@ class Bags:
         times = {name: [] for name in paths}
         for _ in range(REPEATS):
             for name, path in paths.items():
+                if name.startswith('write'):
+                    shutil.rmtree(self._folder / name.split()[1], ignore_errors=True)
                 gc.collect()
                 start = process_time()
                 path()

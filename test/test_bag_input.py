@@ -335,12 +335,14 @@ def test_no_permission(nobody, capsys):
     (folder / 'bag' / 'bag_0.mcap').chmod(0)
     write(folder / 'db', 'sqlite3')
     (folder / 'db' / 'db_0.db3').chmod(0)
+    # what is imported when it is needed must be there: nobody may not read it
+    arguments = ['simulate', '-p', 'duration_s:=1.0', '--no-twin', '-o']
+    assert main([*arguments, str(folder / 'first'), '--bag', str(folder / 'first_bag')]) == 0
     folder.chmod(0o555)
     become()
     refused(folder / 'bag', 'Permission denied', capsys)
     refused(folder / 'db', 'Permission denied', capsys)
     with pytest.raises(OSError, match='Permission denied'):
         BagWriter(folder / 'new')
-    assert main(['simulate', '-p', 'duration_s:=1.0', '--no-twin', '-o', str(folder / 'run'),
-                 '--bag', str(folder / 'new')]) == 2
+    assert main([*arguments, str(folder / 'run'), '--bag', str(folder / 'new')]) == 2
     assert capsys.readouterr().err.count('\n') == 1
