@@ -81,7 +81,7 @@ pack = topics.IMU_RAW.writer().pack
 try:
     with BagWriter(path, storage, compression) as bag:
         bag.add_topic('imu/data_raw', topics.IMU)
-        for k in range(100_000):
+        for k in range(400_000):
             bag.write('imu/data_raw', 10**7 * k, pack(10**7 * k, (k ** 0.5,) * 3, (k * 1.1,) * 3))
 except OSError as error:
     print(error)

@@ -21,7 +21,6 @@ class SqliteReader:
     is empty, no SQLite bag, or corrupt.
     """
 
-    STORAGE = 'sqlite3'
     compression = ['none']
 
     def __init__(self, path):
@@ -36,7 +35,7 @@ class SqliteReader:
                 raise ValueError(f'{self.path} is no SQLite file; it begins with {magic!r}')
         # immutable: no lock and no other file is needed, so that a folder may be read-only
         mode = 'mode=ro' if logged else 'immutable=1'
-        self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 100 * _TICK
+        self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 20 * _TICK
         self._ticks = 0
         try:
             self._database = sqlite3.connect(f'{self.path.absolute().as_uri()}?{mode}', uri=True)
