@@ -172,7 +172,7 @@ def _by_lengths(type_name, data, starts, sizes):
     everything = slice(None)
     _check_sizes(type_name, sizes, _HEAD.itemsize)
     messages = _Messages(data, starts)
-    heads = messages.take(0, 2).view('<u2')
+    heads = messages.take(0, _HEAD.itemsize).view(_HEAD)['encapsulation']
     if (bad := heads != _LITTLE_ENDIAN).any():
         head = int(heads[bad][0]).to_bytes(2, 'little')
         raise ValueError(f'{type_name} begins with {head!r}; expected the encapsulation of '
