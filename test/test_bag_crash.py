@@ -75,13 +75,13 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 path, storage, compression = sys.argv[1:]
 # a file cannot grow beyond this, as if there were no room for more
-resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
+resource.setrlimit(resource.RLIMIT_FSIZE, (5_000_000, 5_000_000))
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 pack = topics.IMU_RAW.writer().pack
 try:
     with BagWriter(path, storage, compression) as bag:
         bag.add_topic('imu/data_raw', topics.IMU)
-        for k in range(100_000):
+        for k in range(400_000):
             bag.write('imu/data_raw', 10**7 * k, pack(10**7 * k, (k ** 0.5,) * 3, (k * 1.1,) * 3))
 except OSError as error:
     print(error)
@@ -107,7 +107,7 @@ def test_no_room_is_left(storage, compression, tmp_path):
 
 def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
     """Exit code 2, a sentence, and a bag that is not closed but can be read."""
-    writev, left = os.writev, [2_000_000]
+    writev, left = os.writev, [5_000_000]
 
     def full(descriptor, parts):
         left[0] -= sum(part.nbytes for part in parts)

@@ -139,6 +139,22 @@ def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
     assert 'state     cut: cut.mcap' in capsys.readouterr().out
 
 
+def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
+    """As a crash of the machine may leave it: the length is there, the data are not."""
+    path = write(tmp_path / 'bag') / 'bag_0.mcap'
+    data, position, chunks = path.read_bytes(), len(form.MAGIC), []
+    while data[position] != form.DATA_END:
+        if data[position] == form.CHUNK:
+            chunks.append(position)
+        position += form.RECORD.size + form.RECORD.unpack_from(data, position)[1]
+    stop = chunks[-1] + form.RECORD.size + form.RECORD.unpack_from(data, chunks[-1])[1]
+    path.write_bytes(data[:stop - 5000] + bytes(5000))
+    with open_bag(path) as bag:
+        stamps = bag.arrays('imu/data_raw')['stamp_ns']
+        assert np.array_equal(stamps, STAMPS[:len(stamps)]) and N / 2 < len(stamps) < N
+        assert 'its last chunk is left out' in bag.cut and 'another checksum' in bag.cut
+
+
 def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
     """Its files are found in the order of their numbers, and info says that it was not closed."""
     write(tmp_path / 'bag', split_bytes=500_000)
@@ -335,12 +351,14 @@ def test_no_permission(nobody, capsys):
     (folder / 'bag' / 'bag_0.mcap').chmod(0)
     write(folder / 'db', 'sqlite3')
     (folder / 'db' / 'db_0.db3').chmod(0)
+    # what is imported when it is needed must be there: nobody may not read it
+    arguments = ['simulate', '-p', 'duration_s:=1.0', '--no-twin', '-o']
+    assert main([*arguments, str(folder / 'first'), '--bag', str(folder / 'first_bag')]) == 0
     folder.chmod(0o555)
     become()
     refused(folder / 'bag', 'Permission denied', capsys)
     refused(folder / 'db', 'Permission denied', capsys)
     with pytest.raises(OSError, match='Permission denied'):
         BagWriter(folder / 'new')
-    assert main(['simulate', '-p', 'duration_s:=1.0', '--no-twin', '-o', str(folder / 'run'),
-                 '--bag', str(folder / 'new')]) == 2
+    assert main([*arguments, str(folder / 'run'), '--bag', str(folder / 'new')]) == 2
     assert capsys.readouterr().err.count('\n') == 1

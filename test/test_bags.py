@@ -2,8 +2,10 @@
 
 import hashlib
 import json
+import os
 from pathlib import Path
 import sqlite3
+import sys
 
 from ins_sim.bags import digest, qos
 from ins_sim.bags.bag_reader import open_bag
@@ -142,7 +144,7 @@ def test_the_mcap_library_agrees(compression, tmp_path):
         assert statistics.message_count == N * len(TYPES) + 7
         assert statistics.message_start_time == STAMPS[0]
         assert statistics.message_end_time == STAMPS[-1] + 3
-        assert statistics.chunk_count == len(summary.chunk_indexes) > 5
+        assert statistics.chunk_count == len(summary.chunk_indexes) > 2
         assert {summary.channels[k].topic: n for k, n in
                 statistics.channel_message_counts.items()} == {
                     name: len(m) for name, m in expected.items()}
@@ -277,9 +279,12 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
 @pytest.mark.parametrize('type_name', [*TYPES, *(t for t, _ in strings().values())])
 def test_the_hash_of_a_type_is_that_of_ros(type_name):
     """As the type descriptions that ROS installs say."""
-    index = pytest.importorskip('ament_index_python.packages')
     package, kind, name = type_name.split('/')
-    path = Path(index.get_package_share_directory(package)) / kind / f'{name}.json'
+    prefixes = [*filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(':')), sys.prefix]
+    paths = [Path(p) / 'share' / package / kind / f'{name}.json' for p in prefixes]
+    path = next((p for p in paths if p.exists()), None)
+    if path is None:
+        pytest.skip('no ROS here that describes its types')
     hashes = {h['type_name']: h['hash_string'] for h in json.loads(path.read_text())[
         'type_hashes']}
     assert hashes[type_name] == define(type_name)[1]

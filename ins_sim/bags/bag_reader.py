@@ -149,9 +149,8 @@ class BagReader:
         for part in self._parts:
             for number, piece in part.by_channel(_ids(part, channels)):
                 name = part.channels[number].name
-                out = tables[name].more(len(piece))
+                out = tables[name].more(piece.log_ns)
                 self._checked(channels[name], columns.read, piece, out)
-                out['log_ns'] = piece.log_ns
         return {name: table.in_order() for name, table in zip(wanted, tables.values())}
 
     def frames(self, name):
@@ -211,24 +210,31 @@ class BagReader:
 
 
 class _Table:
-    """A structured array that grows."""
+    """A structured array that grows, and knows whether its log times ascend."""
 
     def __init__(self, expected, dtype):
         self._rows, self._filled = np.empty(expected, dtype=dtype), 0
+        self._ascends, self._last_ns = True, None
 
-    def more(self, count):
-        """Return the next rows, to be filled."""
-        first, self._filled = self._filled, self._filled + count
+    def more(self, log_ns):
+        """Return the next rows, for messages of these log times, to be filled."""
+        first, self._filled = self._filled, self._filled + len(log_ns)
         if self._filled > len(self._rows):
             rows = np.empty(max(self._filled, 2 * len(self._rows)), dtype=self._rows.dtype)
             rows[:first] = self._rows[:first]
             self._rows = rows
-        return self._rows[first:self._filled]
+        if len(log_ns):
+            self._ascends &= bool((np.diff(log_ns) >= 0).all()) and (
+                self._last_ns is None or self._last_ns <= log_ns[0])
+            self._last_ns = log_ns[-1]
+        out = self._rows[first:self._filled]
+        out['log_ns'] = log_ns
+        return out
 
     def in_order(self):
         """Return the rows by log time."""
         rows = self._rows[:self._filled]
-        if (np.diff(rows['log_ns']) < 0).any():
+        if not self._ascends:
             rows = rows[np.argsort(rows['log_ns'], kind='stable')]
         return rows
 

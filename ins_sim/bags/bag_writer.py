@@ -14,7 +14,7 @@ from .records import arrange, fill, Records
 
 WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
            'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
-CHUNK_BYTES = 1 << 20
+CHUNK_BYTES = 1 << 21
 # of a recorder that is killed, what is older than this in log time is in the bag
 CHUNK_NS = 1_000_000_000
 LATEST_NS = 2**63 - 1
@@ -45,10 +45,19 @@ class BagWriter:
         self._folder.mkdir(parents=True)
         self.topics, self._files, self._file = {}, [], None
         self._written = 0
+        # one buffer for every chunk: fresh memory costs more than what is put into it
+        self._buffer = bytearray(CHUNK_BYTES)
         self._empty()
 
     def _empty(self):
-        self._data, self._columns, self._single = bytearray(), [], ([], [], [])
+        self._used, self._columns, self._single = 0, [], ([], [], [])
+
+    def _take(self, size):
+        """Return where the next size bytes of the buffer begin."""
+        start, self._used = self._used, self._used + size
+        if self._used > len(self._buffer):
+            self._buffer += bytes(self._used - len(self._buffer))
+        return start
 
     def __enter__(self):
         return self
@@ -95,20 +104,21 @@ class BagWriter:
         It is on disk when its chunk is: after CHUNK_BYTES, after CHUNK_NS of log time, or after
         ``flush``.
         """
-        channels, times, starts = self._single
         if not 0 <= log_ns <= LATEST_NS:
             raise ValueError(f'{name}: the log time is {log_ns} ns; expected 0 or later')
         number = self._channel(name).id
-        buffer = self._data
-        if times and abs(log_ns - times[0]) >= CHUNK_NS:
+        if self._single[1] and abs(log_ns - self._single[1][0]) >= CHUNK_NS:
             self.flush()
-            buffer, (channels, times, starts) = self._data, self._single
-        starts.append(len(buffer))
+        channels, times, starts = self._single
+        head, size = form.MESSAGE_HEAD, len(data)
+        start = self._take(head.size + size)
+        head.pack_into(self._buffer, start, form.MESSAGE,
+                       head.size - form.RECORD.size + size, number, 0, log_ns, log_ns)
+        self._buffer[start + head.size:self._used] = data
+        starts.append(start)
         channels.append(number)
         times.append(log_ns)
-        buffer += form.MESSAGE_HEAD.pack(form.MESSAGE, len(data) + 22, number, 0, log_ns, log_ns)
-        buffer += data
-        if len(buffer) >= CHUNK_BYTES:
+        if self._used >= CHUNK_BYTES:
             self.flush()
 
     def write_blocks(self, blocks):
@@ -139,14 +149,13 @@ class BagWriter:
         first = 0
         while first < len(ends):
             before = int(ends[first - 1]) if first else 0
-            room = max(1, CHUNK_BYTES - len(self._data))
+            room = max(1, CHUNK_BYTES - self._used)
             stop = min(len(ends), int(np.searchsorted(ends, before + room)) + 1)
-            start, size = len(self._data), int(ends[stop - 1]) - before
-            self._data += bytes(size)
+            start = self._take(int(ends[stop - 1]) - before)
             starts = ends[first:stop] - order.sizes[first:stop] - before + start
-            fill(order, first, stop, np.frombuffer(self._data, dtype=np.uint8), starts)
+            fill(order, first, stop, np.frombuffer(self._buffer, dtype=np.uint8), starts)
             self._columns.append((order.channel[first:stop], order.log_ns[first:stop], starts))
-            if len(self._data) >= CHUNK_BYTES:
+            if self._used >= CHUNK_BYTES:
                 self.flush()
             first = stop
 
@@ -161,7 +170,8 @@ class BagWriter:
         self._seal()
         if not self._columns:
             return
-        records = Records(self._data, *(np.concatenate(x) for x in zip(*self._columns)))
+        records = Records(memoryview(self._buffer)[:self._used],
+                          *(np.concatenate(x) for x in zip(*self._columns)))
         self._empty()
         for part in self._split(records):
             self._append(part)

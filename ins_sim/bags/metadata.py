@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-import yaml
-
-from .qos import dump, profiles
+from .bag_yaml import dump, load
+from .qos import profiles
 
 NAME = 'metadata.yaml'
 TOP = 'rosbag2_bagfile_information'
@@ -34,9 +33,9 @@ def read(folder):
     except UnicodeDecodeError:
         raise ValueError(f'{path} is no UTF-8') from None
     try:
-        tree = yaml.safe_load(content)
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise ValueError(f'{path} is no YAML: {" ".join(str(error).split())}') from None
+        tree = load(content)
+    except ValueError as error:
+        raise ValueError(f'{path} is no YAML: {error}') from None
     info = tree.get(TOP) if isinstance(tree, dict) else None
     if not isinstance(info, dict):
         raise ValueError(f'{path} has no {TOP}; expected the metadata of a rosbag2 bag')
@@ -73,12 +72,12 @@ def text(storage, topics, files):
 
     topics: Channels; files: FileCounts in order.
     """
-    return dump({TOP: tree(storage, topics, files)})
+    return dump({TOP: tree(storage, topics, files)}) + '\n'
 
 
 def inner_text(storage, topics, files):
     """Return what rosbag2 keeps of it within a file of the bag."""
-    return dump(tree(storage, topics, files)).rstrip('\n')
+    return dump(tree(storage, topics, files))
 
 
 def tree(storage, topics, files):

@@ -18,7 +18,7 @@ class Records:
     data: their bytes; channel, log_ns, starts (n,) int64: channel, log time and first byte.
     """
 
-    data: bytes
+    data: memoryview
     channel: np.ndarray
     log_ns: np.ndarray
     starts: np.ndarray

@@ -21,7 +21,6 @@ class SqliteReader:
     is empty, no SQLite bag, or corrupt.
     """
 
-    STORAGE = 'sqlite3'
     compression = ['none']
 
     def __init__(self, path):
@@ -36,7 +35,7 @@ class SqliteReader:
                 raise ValueError(f'{self.path} is no SQLite file; it begins with {magic!r}')
         # immutable: no lock and no other file is needed, so that a folder may be read-only
         mode = 'mode=ro' if logged else 'immutable=1'
-        self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 100 * _TICK
+        self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 20 * _TICK
         self._ticks = 0
         try:
             self._database = sqlite3.connect(f'{self.path.absolute().as_uri()}?{mode}', uri=True)
@@ -58,9 +57,12 @@ class SqliteReader:
         return self._ticks * _TICK > self._largest
 
     def _corrupt(self, error):
-        why = str(error)
+        why = ' '.join(str(error).split())
         if why == 'interrupted':
             why = 'its tables go round in circles'
+        elif why.startswith('Could not decode'):
+            # the rest of it is the text
+            why = 'it holds a text that is no UTF-8'
         return ValueError(f'{self.path} is corrupt: {why}')
 
     def _rows(self, query, *values):
@@ -124,25 +126,54 @@ class SqliteReader:
 
         wanted: ids of channels.  Raises ValueError for a corrupt file.
         """
-        for place, piece in enumerate(self._select(wanted, 'timestamp, id')):
+        ids, times = self._times(wanted)
+        if (np.diff(times) >= 0).all():
+            ordered = self._select(wanted)
+        else:
+            # not by the index of the file, which need not agree with its table
+            order = np.argsort(times, kind='stable')
+            ordered = self._one_by_one(ids[order].tolist())
+        for place, piece in enumerate(ordered):
             yield int(piece.log_ns[0]), place, piece
 
     def by_channel(self, wanted):
         """Yield (channel id, Piece) of the wanted channels, in the order they were written."""
-        for piece in self._select(wanted, 'id'):
+        for piece in self._select(wanted):
             yield from apart(piece)
 
-    def _select(self, wanted, order):
-        marks = ', '.join('?' * len(wanted))
-        for rows in self._blocks('SELECT topic_id, timestamp, data FROM messages WHERE topic_id '
-                                 f'IN ({marks}) ORDER BY {order}', *wanted):
-            channel, log_ns, blobs = zip(*rows)
-            if set(map(type, log_ns)) != {int} or set(map(type, blobs)) != {bytes}:
+    def _times(self, wanted):
+        """Return number and time of the messages of channels, as written."""
+        blocks = [np.zeros((0, 2), dtype=np.int64)]
+        for rows in self._blocks('SELECT id, timestamp FROM messages NOT INDEXED WHERE topic_id '
+                                 f'IN ({_marks(wanted)}) ORDER BY id', *wanted):
+            if {type(x) for row in rows for x in row} != {int}:
                 raise self._corrupt('a message is no time with bytes')
-            sizes = np.fromiter(map(len, blobs), np.int64, len(blobs))
-            yield Piece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
-                        np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)
+            blocks.append(np.array(rows, dtype=np.int64))
+        return np.concatenate(blocks).T
+
+    def _select(self, wanted):
+        for rows in self._blocks('SELECT topic_id, timestamp, data FROM messages NOT INDEXED '
+                                 f'WHERE topic_id IN ({_marks(wanted)}) ORDER BY id', *wanted):
+            yield self._piece(rows)
+
+    def _one_by_one(self, ids):
+        for first in range(0, len(ids), ROWS):
+            rows = [row for number in ids[first:first + ROWS] for row in self._rows(
+                'SELECT topic_id, timestamp, data FROM messages WHERE id = ?', number)]
+            yield self._piece(rows)
+
+    def _piece(self, rows):
+        channel, log_ns, blobs = zip(*rows)
+        if set(map(type, log_ns)) != {int} or set(map(type, blobs)) != {bytes}:
+            raise self._corrupt('a message is no time with bytes')
+        sizes = np.fromiter(map(len, blobs), np.int64, len(blobs))
+        return Piece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
+                     np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)
 
     def close(self):
         """Close the file."""
         self._database.close()
+
+
+def _marks(values):
+    return ', '.join('?' * len(values))

@@ -66,7 +66,7 @@ class SqliteWriter:
 
     def append(self, records):
         """Write Records in one transaction."""
-        view, head = memoryview(records.data), form.MESSAGE_HEAD.size
+        view, head = records.data, form.MESSAGE_HEAD.size
         starts = records.starts.tolist()
         stops = [*starts[1:], len(records.data)]
         blobs = [view[a + head:b] for a, b in zip(starts, stops)]
@@ -78,9 +78,6 @@ class SqliteWriter:
             self._database.execute('COMMIT')
         except sqlite3.Error as error:
             raise _disk_error(error) from None
-        finally:
-            blobs.clear()
-            view.release()
         self.size += len(records.data)
 
     def close(self, metadata):

@@ -112,7 +112,9 @@ class Writer:
                              f'expected less than {STAMP_END_NS // SECOND} s, which a ROS stamp '
                              'can hold')
         row = np.frombuffer(bytes(self._template), dtype=np.uint8)
-        messages = np.tile(row, (len(stamps_ns), 1)).view(self.dtype)[:, 0]
+        rows = np.empty((len(stamps_ns), len(row)), dtype=np.uint8)
+        rows[:] = row
+        messages = rows.view(self.dtype)[:, 0]
         messages['sec'], messages['nanosec'] = np.divmod(stamps_ns, SECOND)
         for k, (a, b) in enumerate(zip(self._ends, self._ends[1:])):
             messages[f'values{k}'] = values[:, a:b]

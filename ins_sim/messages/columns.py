@@ -98,12 +98,12 @@ def read(type_name, data, starts, sizes, out):
         whole = message_dtype(type_name, lengths)
         _check_sizes(type_name, sizes[rows], whole.itemsize)
         messages = _Messages(data, starts[rows])
-        part = out if isinstance(rows, slice) else np.empty(len(rows), dtype=out.dtype)
+        part = out[rows]
         head = messages.take(0, _HEAD.itemsize).view(_HEAD)
         part['stamp_ns'] = head['sec'].astype(np.int64) * SECOND + head['nanosec']
         for at, target, size in _runs(whole, out.dtype):
             part.view(target)['run'] = messages.look(at, size)
-        if part is not out:
+        if not isinstance(rows, slice):
             out[rows] = part
 
 
@@ -172,7 +172,7 @@ def _by_lengths(type_name, data, starts, sizes):
     everything = slice(None)
     _check_sizes(type_name, sizes, _HEAD.itemsize)
     messages = _Messages(data, starts)
-    heads = messages.take(0, 2).view('<u2')
+    heads = messages.take(0, _HEAD.itemsize).view(_HEAD)['encapsulation']
     if (bad := heads != _LITTLE_ENDIAN).any():
         head = int(heads[bad][0]).to_bytes(2, 'little')
         raise ValueError(f'{type_name} begins with {head!r}; expected the encapsulation of '
