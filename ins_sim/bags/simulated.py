@@ -4,10 +4,13 @@ import numpy as np
 
 from .bag_writer import BagWriter
 from ..core.catalogue import nearest
-from ..core.imu import period_ns
-from ..core.instrument import with_errors
+from ..core.instants import period_ns
+from ..core.instrument import reported_variances
 from ..core.map_frame import MapFrame
 from ..core.motions import make_motion
+from ..core.pair_instrument import PairInstrument
+from ..core.parity import rows
+from ..core.sampling import SampleClock
 from ..messages import convert, topics
 from ..messages.cdr import SECOND
 
@@ -19,7 +22,8 @@ CLOCK_HZ = 100.0
 def published(settings):
     """Return the Topics that the nodes of Settings publish, in the order of equal stamps."""
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
-    return (*clock, *topics.DATA)
+    parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
+    return (*clock, *topics.DATA, *parity)
 
 
 def select(settings, names):
@@ -59,7 +63,9 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
             messages = {}
             for topic in chosen:
                 stamps_ns, values = blocks[topic]
-                messages[topic.name] = stamps_ns, writers[topic].block(stamps_ns, values)
+                # the first stamp may jitter to before the epoch, a time of logging can not
+                messages[topic.name] = (np.maximum(stamps_ns, 0),
+                                        writers[topic].block(stamps_ns, values))
                 counts[topic.name] += len(stamps_ns)
             bag.write_blocks(messages)
             if progress is not None:
@@ -76,8 +82,7 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
 def _as_published(topic, settings):
     if topic is not topics.IMU_RAW:
         return topic
-    errors = with_errors(settings.imu_sensor)
-    return topic if errors is None else topics.imu_raw(*errors.variances)
+    return topics.imu_raw(*reported_variances(settings.imu_sensor))
 
 
 class _Source:
@@ -94,7 +99,12 @@ class _Source:
             generator.rate_hz)
         self.count = round(generator.duration_s * SECOND) // self._dt_ns + 1
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
-        self._run, self._omega = run, _rates_at(run.states.t_ns, run.imu)
+        clock = SampleClock(strapdown, period_ns(strapdown.rate_hz))
+        self._run = run
+        self._omega = _rates_at(run.states.t_ns, clock.instant(run.imu.t_ns), run.imu.omega)
+        self._parity = None
+        if run.imu.parity is not None:
+            self._parity = rows(settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu)
 
     def window(self, first, stop):
         """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""
@@ -105,16 +115,18 @@ class _Source:
         begin = truth.t_ns[0] if first else -np.inf
         end = np.inf if last else self._first_ns + stop * self._dt_ns
         run = self._run
-        imu = run.imu[_between(run.imu.t_ns, begin, end)]
-        rows = _between(run.states.t_ns, begin, end)
-        states, errors = run.states[rows], run.errors[rows]
+        sensed = _between(run.imu.t_ns, begin, end)
+        solved = _between(run.states.t_ns, begin, end)
+        imu, states, errors = run.imu[sensed], run.states[solved], run.errors[solved]
         blocks = {topics.CLOCK_TOPIC: (truth.t_ns[k % self._clock_every == 0], None)}
         for record, values in (
                 (truth, convert.truth_blocks(self._truth_frame, truth)),
                 (imu, convert.imu_block(imu)),
-                (states, convert.state_blocks(self._frame, states, self._omega[rows])),
+                (states, convert.state_blocks(self._frame, states, self._omega[solved])),
                 (errors, convert.error_blocks(errors))):
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
+        if self._parity is not None:
+            blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
 
 
@@ -122,7 +134,7 @@ def _between(t_ns, begin, end):
     return slice(*np.searchsorted(t_ns, (begin, end)).tolist())
 
 
-def _rates_at(t_ns, imu):
+def _rates_at(t_ns, instants_ns, omega):
     """Return the readings of the gyros (n, 3) at instants t_ns, zero where there is none."""
-    k = np.minimum(np.searchsorted(imu.t_ns, t_ns), len(imu.t_ns) - 1)
-    return np.where((imu.t_ns[k] == t_ns)[:, np.newaxis], imu.omega[k], 0.0)
+    k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)
+    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], omega[k], 0.0)

@@ -112,6 +112,19 @@ class ParityTest:
             self.threshold = ROUNDING + SIGMAS * spread + moved
         self.exceeded = abs(self.mean) > self.threshold
 
+    def row(self, parity):
+        """Return what a reading is published with: parity, mean, threshold (0 = none yet)."""
+        return parity, self.mean, self.threshold if math.isfinite(self.threshold) else 0.0
+
+
+def rows(settings, instrument, imu):
+    """Return ``ParityTest.row`` of each reading of a run, (n, 3); imu: ImuSamples with parity."""
+    test, found = ParityTest(settings, instrument), []
+    for sample in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), imu.parity.tolist()):
+        test.push(*sample)
+        found.append(test.row(sample[3]))
+    return np.array(found)
+
 
 def windows(settings, instrument, imu):
     """

@@ -1,7 +1,5 @@
 """Node imu_sensor: streamed truth in, readings of the IMU out."""
 
-import math
-
 from ins_sim.core.instants import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
@@ -62,12 +60,10 @@ class ImuSensorNode(StageNode):
         self.seen(sample[0])
 
     def _test_parity(self, stamp_ns, t_ns, omega, force, parity):
-        test = self._parity
-        test.push(t_ns, omega, force, parity)
+        self._parity.push(t_ns, omega, force, parity)
         if self._parity_publisher.get_subscription_count():
-            threshold = test.threshold if math.isfinite(test.threshold) else 0.0
             self._parity_publisher.publish(
-                self._parity_writer.pack(stamp_ns, (parity, test.mean, threshold)))
+                self._parity_writer.pack(stamp_ns, self._parity.row(parity)))
 
     def _describe_parity(self):
         """Return what is wrong with the channels, or '', and the values for /diagnostics."""
