@@ -290,8 +290,8 @@ def test_bad_input_is_one_sentence_and_exit_code_2(recorded, assignments, senten
 
 @pytest.mark.parametrize('make, sentence', [
     (lambda p: None, 'does not exist; expected a rosbag2 bag or a CSV file'),
-    (lambda p: p.mkdir(), 'is no readable bag'),
-    (lambda p: p.write_text('x'), 'is no readable bag')])
+    (lambda p: p.mkdir(), 'is no bag'),
+    (lambda p: p.write_text('x'), 'is no bag')])
 def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
     """A path that is missing, an empty folder, another file."""
     make(tmp_path / 'bag')
