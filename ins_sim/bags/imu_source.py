@@ -11,7 +11,7 @@ from .definitions import typestore
 from .finding import choose
 from ..core import csv_columns
 from ..core.initial_state import Sources
-from ..core.recording import continuous
+from ..core.recorded_poses import continuous
 from ..core.reference import Odometry, Reference, rising, Track
 from ..messages import topics
 

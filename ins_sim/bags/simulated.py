@@ -3,11 +3,11 @@
 import numpy as np
 
 from .bag_writer import BagWriter
+from .motions import make_motion
 from ..core.catalogue import nearest
 from ..core.imu import period_ns
 from ..core.instrument import with_errors
 from ..core.map_frame import MapFrame
-from ..core.motions import make_motion
 from ..messages import convert, topics
 from ..messages.cdr import SECOND
 
@@ -85,7 +85,7 @@ class _Source:
 
     def __init__(self, settings, run):
         generator = settings.motion_generator
-        self._motion = make_motion(generator.motion, generator.datum, generator.earth)
+        self._motion = make_motion(generator)
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
         strapdown = settings.strapdown
         self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)

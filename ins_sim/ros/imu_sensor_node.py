@@ -2,6 +2,7 @@
 
 import math
 
+from ins_sim.bags.motions import make_motion
 from ins_sim.core.imu import period_ns
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instrument import reported_variances
@@ -22,7 +23,8 @@ class ImuSensorNode(StageNode):
 
     def make_stage(self):
         """Return the IMU."""
-        return make_imu(self.settings)
+        settings = self.settings
+        return make_imu(settings, make_motion(settings) if settings.source == 'motion' else None)
 
     def make_outputs(self):
         """Make publishers, reader and writers."""
