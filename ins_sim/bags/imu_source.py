@@ -12,13 +12,13 @@ from .finding import choose
 from ..core import csv_columns
 from ..core.initial_state import Sources
 from ..core.recorded_poses import continuous
+from ..core.recording_file import SUFFIXES
 from ..core.reference import Odometry, Reference, rising, Track
 from ..messages import topics
 
 TWIST = 'geometry_msgs/msg/TwistStamped'
 TWIST_WITH_COVARIANCE = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 TF = 'tf2_msgs/msg/TFMessage'
-CSV = ('.csv', '.csv.gz')
 
 
 def read(path, settings):
@@ -31,7 +31,7 @@ def read(path, settings):
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f'{path} does not exist; expected a rosbag2 bag or a CSV file')
-    if path.name.endswith(CSV):
+    if path.name.endswith(SUFFIXES):
         sources = Sources(path.name, csv_columns.read_imu(path), 'imu')
     else:
         sources = _bag(path, settings)

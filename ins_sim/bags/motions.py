@@ -1,10 +1,7 @@
 """The motion that settings name, whether a closed form, a CSV file or a bag."""
 
-from pathlib import Path
-
+from .storages import is_bag
 from ..core import motions
-
-SUFFIXES = ('.mcap', '.db3')
 
 
 def make_motion(settings):
@@ -23,8 +20,3 @@ def make_motion(settings):
     recording = motion.recording
     return RecordedMotion(recording, settings.earth,
                           read_poses(recording.path, recording.topic, settings.datum))
-
-
-def is_bag(path):
-    """Return whether a path is a folder, or named as a file of a bag."""
-    return Path(path).suffix in SUFFIXES or (bool(str(path)) and Path(path).is_dir())

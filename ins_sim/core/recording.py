@@ -51,8 +51,9 @@ class RecordedMotion:
 
     Motion time 0 is recorder time start_s after the first row; the recording must reach 3 s
     further on both sides (end effects of the splines; history of delayed channels).  end_s: last
-    motion time to be used, s.  warnings: what was cut, smoothed or found noisy, in sentences.
-    period_s: None, for the callers that treat all motions alike.
+    motion time to be used, s; zero_ns: the recorder's stamp of motion time 0.  warnings: what was
+    cut, smoothed or found noisy, in sentences.  period_s: None, for the callers that treat all
+    motions alike.
     """
 
     period_s = None
@@ -73,8 +74,8 @@ class RecordedMotion:
         rows = read_poses(recording.path) if poses is None else poses
         q, rate = rows.q_nb, rows.omega_nb_b
         part, self.warnings = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
-        start_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
-        self._knots = rows.t_ns[part] - start_ns
+        self.zero_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
+        self._knots = rows.t_ns[part] - self.zero_ns
         self._check_extent(recording, int(rows.t_ns[0]))
         pad_ns = round(PAD_S * 1e9)
         self._span = (-pad_ns, int(self._knots[-1]))
@@ -102,7 +103,7 @@ class RecordedMotion:
         self._terms = _terms(self._rotation, np.diff(t))
         lat, lon, height = position + self._origin[:, None]
         self.warnings += recording_quality.describe(
-            rows.path, int(self._knots[0]) + start_ns, t, lat, lon, height, _turns(q),
+            rows.path, int(self._knots[0]) + self.zero_ns, t, lat, lon, height, _turns(q),
             rows.resolution, recording.smoothing_s)
 
     def _check_extent(self, recording, zero_ns):
