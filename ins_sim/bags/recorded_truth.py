@@ -55,8 +55,8 @@ def _check(where, t_ns, what, values, good, expected='finite numbers'):
     """Raise ValueError for the first value that is not good."""
     if not good.all():
         k = int(np.argmin(good))
-        raise ValueError(f'{where} at {seconds(t_ns[k])}: {what} is {values[k]}; expected '
-                         f'{expected}')
+        raise ValueError(f'{where} at {seconds(t_ns[k])}: {what} is {values[k].tolist()}; '
+                         f'expected {expected}')
 
 
 def _beside(bag, name):
