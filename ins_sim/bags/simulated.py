@@ -6,7 +6,7 @@ from .motions import make_motion
 from .windows import write_windows
 from ..core.catalogue import nearest
 from ..core.imu import period_ns
-from ..core.instrument import with_errors
+from ..core.instrument import reported_variances
 from ..core.map_frame import MapFrame
 from ..messages import convert, topics
 from ..messages.cdr import SECOND
@@ -62,8 +62,7 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
 def _as_published(topic, settings):
     if topic is not topics.IMU_RAW:
         return topic
-    errors = with_errors(settings.imu_sensor)
-    return topic if errors is None else topics.imu_raw(*errors.variances)
+    return topics.imu_raw(*reported_variances(settings.imu_sensor))
 
 
 class _Source:
