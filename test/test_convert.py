@@ -242,6 +242,8 @@ def early(path):
     (lambda p: empty_bag(p / 'x'), ['x', 'y.csv', '--topic', 'odom'], 'x: /odom, which is '
      '--topic, has type geometry_msgs/Vector3Stamped; expected nav_msgs/Odometry or sensor_msgs'),
     (lambda p: empty_bag(p / 'x', 'imu', topics.IMU), ['x', 'y.csv'], '/imu is empty'),
+    (lambda p: empty_bag(p / 'x', 'imu', topics.IMU), ['x', 'y.csv', '--topic', 'none'],
+     "x has no topic 'none', which is --topic; the nearest is '/imu'"),
     (lambda p: empty_bag(p / 'x', 'truth/odometry', topics.ODOMETRY), ['x', 'y.csv'],
      '/truth/odometry is empty'),
 ])

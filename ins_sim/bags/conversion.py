@@ -67,7 +67,7 @@ def _to_csv(source, target, datum, topic):
         types = [topics.ODOMETRY, topics.IMU]
         wanted = 'auto' if topic is None else topic
         name = choose(bag, types[:1] if topic is None else types, wanted, '--topic',
-                      topics.TRUTH_ODOMETRY.name)
+                      topics.TRUTH_ODOMETRY.name, needed=topic is not None)
         if name is None:
             if not any(c.type_name == topics.IMU for c in bag.topics.values()):
                 raise ValueError(f'{source} has neither a {short(types[:1])} whose name ends in '

@@ -8,10 +8,11 @@ def choose(bag, types, wanted, key, ending='', needed=False):
     Return the name of the topic of one of the types that is meant, or None.
 
     bag: BagReader; wanted: the name of one, 'auto' for the only one whose name ends as given, or
-    'none'; key: what wanted is the value of.  Raises ValueError where 'auto' finds more than one,
-    or none though one is needed, and for a name of no topic, or of one of another type.
+    'none' where none is needed; key: what wanted is the value of.  Raises ValueError where 'auto'
+    finds more than one, or none though one is needed, and for a name of no topic, or of one of
+    another type.
     """
-    if wanted == 'none':
+    if wanted == 'none' and not needed:
         return None
     known = sorted(c.name for c in bag.topics.values() if c.type_name in types)
     if wanted == 'auto':
