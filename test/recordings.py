@@ -65,6 +65,18 @@ def twist_messages(t_ns, v_n):
         for t, v in zip(t_ns, v_n)]
 
 
+def covariance_twist_messages(t_ns, v_n):
+    """Return [(log time, TwistWithCovarianceStamped)]."""
+    out = []
+    for t, v in zip(t_ns, v_n):
+        twist = message('geometry_msgs/msg/Twist', linear=vector(v), angular=vector((0, 0, 0)))
+        out.append((int(t), message(
+            'geometry_msgs/msg/TwistWithCovarianceStamped', header=header(t, 'enu'),
+            twist=message('geometry_msgs/msg/TwistWithCovariance', twist=twist,
+                          covariance=np.zeros(36)))))
+    return out
+
+
 def odometry_messages(t_ns, r, q, v_b):
     """Return [(log time, Odometry)]."""
     out = []
@@ -102,4 +114,5 @@ def write_bag(path, topics, storage='mcap'):
 
 IMU, FIX, TWIST = 'sensor_msgs/msg/Imu', 'sensor_msgs/msg/NavSatFix', \
     'geometry_msgs/msg/TwistStamped'
+COVARIANCE_TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 ODOMETRY, TF = 'nav_msgs/msg/Odometry', 'tf2_msgs/msg/TFMessage'

@@ -96,9 +96,9 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
     write_bag(two, t_ns[:200], '/left/imu', '/right/imu')
     out = ['-o', str(tmp_path / 'out2')]
     assert main(['allan', two, *out]) == 2
-    assert 'expected --topic with one of /left/imu, /right/imu' in capsys.readouterr().err
+    assert '/left/imu, /right/imu; expected --topic to name one' in capsys.readouterr().err
     assert main(['allan', two, '--topic', 'middle/imu', *out]) == 2
-    assert 'has no topic middle/imu of type sensor_msgs/msg/Imu' in capsys.readouterr().err
+    assert "has no topic 'middle/imu', which is --topic; the nearest is" in capsys.readouterr().err
     assert main(['allan', two, '--topic', 'left/imu', *out, *FOG]) == 0
     assert 'settings' in capsys.readouterr().out
     write_bag(tmp_path / 'gap', np.delete(t_ns, 1234), '/imu/data')

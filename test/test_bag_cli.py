@@ -6,7 +6,7 @@ from ins_sim import parameter_files, resources
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.reading import read_errors
 from ins_sim.cli.main import main
-from ins_sim.core.imu import period_ns
+from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
 from ins_sim.core.simulation import simulate
@@ -134,12 +134,12 @@ def test_a_bag_is_replaced_with_force_alone(tmp_path, capsys):
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch, capsys):
     """Ctrl-C while it is written: no bag, exit code 130."""
-    from ins_sim.bags import simulated
+    from ins_sim.bags import windows
 
     def interrupt(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(simulated.BagWriter, 'write_blocks', interrupt)
+    monkeypatch.setattr(windows.BagWriter, 'write_blocks', interrupt)
     assert main(['simulate', *MOTION, '-o', str(tmp_path / 'run'), '--bag',
                  str(tmp_path / 'bag')]) == 130
     assert not (tmp_path / 'bag').exists()

@@ -70,7 +70,7 @@ def test_what_is_no_bag(tmp_path, capsys):
 @pytest.mark.parametrize('text, sentence', [
     ('', 'has no rosbag2_bagfile_information'), ('[1, 2]', 'has no rosbag2_bagfile_information'),
     ('a: [', 'is no YAML'), ('\x00', 'is no YAML'), ('[' * 3000, 'is no YAML'),
-    ('rosbag2_bagfile_information: {version: 10}', "has the version 10; expected at most 9"),
+    ('rosbag2_bagfile_information: {version: 10}', 'has the version 10; expected at most 9'),
     ('rosbag2_bagfile_information: {version: 9, storage_identifier: rocks}', "storage 'rocks'"),
     ('rosbag2_bagfile_information: {version: 9, storage_identifier: mcap}',
      'expected names of files'),
@@ -224,7 +224,7 @@ def test_values_of_the_wrong_kind_in_a_database(tmp_path, capsys):
     for k, (statement, sentence) in enumerate((
             ("UPDATE messages SET data = 'some text' WHERE id = 5", 'is no time with bytes'),
             ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'is no time with bytes'),
-            ("UPDATE messages SET timestamp = 1.5 WHERE id = 5", 'is no time with bytes'))):
+            ('UPDATE messages SET timestamp = 1.5 WHERE id = 5', 'is no time with bytes'))):
         path = next(write(tmp_path / str(k), 'sqlite3').glob('*.db3'))
         _change(path, statement)
         refused(path, sentence, capsys, read=True)
@@ -248,7 +248,7 @@ def test_a_database_that_never_ends(tmp_path, capsys):
     path = next(write(tmp_path / 'bag', 'sqlite3').glob('*.db3'))
     database = sqlite3.connect(path)
     database.execute('DROP TABLE messages')
-    database.execute("CREATE VIEW messages AS WITH RECURSIVE c(id) AS (SELECT 1 UNION ALL SELECT "
+    database.execute('CREATE VIEW messages AS WITH RECURSIVE c(id) AS (SELECT 1 UNION ALL SELECT '
                      "id FROM c) SELECT id, 1 AS topic_id, 1 AS timestamp, x'00' AS data FROM c")
     database.commit()
     database.close()

@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from recordings import FIX, fix_messages, IMU, imu_messages, ODOMETRY, odometry_messages, STORE, \
-    TF, tf_messages, TWIST, twist_messages, write_bag
+from recordings import COVARIANCE_TWIST, covariance_twist_messages, FIX, fix_messages, IMU, \
+    imu_messages, ODOMETRY, odometry_messages, STORE, TF, tf_messages, TWIST, twist_messages, \
+    write_bag
 from rosbags.rosbag2 import StoragePlugin, Writer
 from scipy.spatial.transform import Rotation
 
@@ -217,6 +218,44 @@ def test_the_odometry_is_laid_on_the_start(tmp_path):
     assert end['tilt_deg'] < 1e-4 and abs(end['heading_deg']) < 1e-4
 
 
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_twist_with_covariance_is_the_same_velocity(storage, tmp_path, capsys):
+    """Either type of message gives the same numbers; the other is read through rosbags."""
+    _, motion = motion_of('motion.kind:=sinusoids')
+    ends = []
+    for name in (TWIST, COVARIANCE_TWIST):
+        truth, recorded = truth_topics(motion, 10.0)
+        if name == COVARIANCE_TWIST:
+            del recorded['/vel', TWIST]
+            recorded['/vel', name] = covariance_twist_messages(truth.t_ns[::20],
+                                                               truth.v_n[::20])
+        bag, out = tmp_path / name[-9:], tmp_path / f'out{name[-9:]}'
+        write_bag(bag, recorded, storage)
+        assert main(['navigate', str(bag), '-p', 'initial.attitude:=imu', '-o', str(out)]) == 0
+        ends.append(summary_of(out)['errors'])
+    capsys.readouterr()
+    assert ends[0] == ends[1] and '/fix, /vel' in ends[0]
+
+
+@pytest.mark.parametrize('data', [b'', b'\0\1\0\0', b'\0\1\0\0\xff\xff\xff\x7f',
+                                  b'\0\1\0\0' * 9])
+def test_transforms_that_are_none_are_one_sentence(data, tmp_path, capsys):
+    """Bytes that rosbags cannot decode are named by topic and time, whatever it raises."""
+    bag = tmp_path / 'bag'
+    with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for name, type_name in (('/imu', IMU), ('/tf_static', TF)):
+            connection = writer.add_connection(name, type_name, typestore=STORE)
+            if type_name == TF:
+                writer.write(connection, 5, data)
+            else:
+                for log_ns, content in resting():
+                    writer.write(connection, log_ns, STORE.serialize_cdr(content, type_name))
+    assert main(['navigate', str(bag), '-o', str(tmp_path / 'out')]) == 2
+    error = capsys.readouterr().err
+    assert '/tf_static has a message at 5 ns that is no tf2_msgs/msg/TFMessage' in error
+    assert error.count('\n') == 1
+
+
 IMU_ONLY = dict(t_ns=np.arange(1000) * 20_000_000, omega=np.zeros((1000, 3)),
                 f=np.tile([0.0, 0.0, 9.8], (1000, 1)))
 
@@ -290,8 +329,8 @@ def test_bad_input_is_one_sentence_and_exit_code_2(recorded, assignments, senten
 
 @pytest.mark.parametrize('make, sentence', [
     (lambda p: None, 'does not exist; expected a rosbag2 bag or a CSV file'),
-    (lambda p: p.mkdir(), 'is no readable bag'),
-    (lambda p: p.write_text('x'), 'is no readable bag')])
+    (lambda p: p.mkdir(), 'is no bag'),
+    (lambda p: p.write_text('x'), 'is no bag')])
 def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
     """A path that is missing, an empty folder, another file."""
     make(tmp_path / 'bag')

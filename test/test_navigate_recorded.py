@@ -1,8 +1,8 @@
 """
 The command navigate on data that no one here recorded; what it prints is what such sensors give.
 
-Nothing is tuned: the parameters are mounting and frames, as the makers of the data state them,
-and where to begin.  There is no truth to hold the errors to, so the bounds are those of free
+Nothing is tuned: the parameters are mounting and frames, as those who published the data state
+them, and where to begin.  There is no truth to hold the errors to, so the bounds are those of free
 inertial navigation with the biases that the record itself shows, and the rest is printed.
 """
 
@@ -16,8 +16,11 @@ from ins_sim.cli.main import main
 from ins_sim.core import csv_columns
 from ins_sim.core.angles import to_compass
 
-# robot_localization, test_ekf_localization_node_bag1: "intentionally rotated +90 degrees about
-# the X axis, then rotated (extrinsically) -90 degrees about the Z axis"
+# From the public launch file that plays this bag, robot_localization's
+# test/test_ekf_localization_node_bag1.test: the IMU "was intentionally rotated +90 degrees about
+# the X axis, then rotated (extrinsically) -90 degrees about the Z axis", and a static transform
+# from base_link to imu_link with roll 90, pitch 0, yaw -90 deg.  The data agree as far as they
+# tell: gravity is on +y.
 HUSKY = ['mounting.rpy_deg:=[90.0, 0.0, -90.0]']
 # forward, right, down: half a turn about forward
 FRD = ['mounting.rpy_deg:=[180.0, 0.0, 0.0]']

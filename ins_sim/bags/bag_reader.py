@@ -11,11 +11,11 @@ from . import metadata
 from .mcap_reader import McapReader
 from .piece import in_log_order
 from .sqlite_reader import SqliteReader
+from .storages import SUFFIXES
 from ..core.catalogue import nearest
 from ..messages import columns
 
 READERS = {'mcap': McapReader, 'sqlite3': SqliteReader}
-SUFFIXES = {'.mcap': 'mcap', '.db3': 'sqlite3'}
 
 
 def open_bag(path):

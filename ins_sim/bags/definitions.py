@@ -10,7 +10,7 @@ def define(type_name):
 
     Raises ValueError for a type that is not among its common interfaces.
     """
-    store = _store()
+    store = typestore()
     if type_name not in store.types:
         raise ValueError(f'the type {type_name!r} is not known; expected one of the common '
                          'interfaces of ROS 2 Jazzy, or its definition')
@@ -19,6 +19,7 @@ def define(type_name):
 
 
 @lru_cache(maxsize=None)
-def _store():
+def typestore():
+    """Return the types of ROS 2 Jazzy as rosbags has them."""
     from rosbags.typesys import get_typestore, Stores
     return get_typestore(Stores.ROS2_JAZZY)

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from . import imu_messages
 from .bag_reader import open_bag
+from .finding import choose
 from ..core.records import ImuSamples, NavErrors
 from ..messages import topics
 
@@ -36,22 +38,7 @@ def read_imu(path, topic=None):
     more than one to choose from.
     """
     with open_bag(path) as bag:
-        known = sorted(c.name for c in bag.topics.values() if c.type_name == topics.IMU)
-        topic = _choose(path, topic, known)
-        table = bag.arrays(topic, ('angular_velocity', 'linear_acceleration'))
-    if not len(table):
-        raise ValueError(f'{path} has no message on {topic}')
-    return ImuSamples(table['stamp_ns'], table['angular_velocity'], table['linear_acceleration'])
-
-
-def _choose(path, topic, known):
-    """Return the topic that is meant, of those that there are."""
-    if not known:
-        raise ValueError(f'{path} has no topic of type {topics.IMU}')
-    if topic is None and len(known) > 1:
-        raise ValueError(f'{path} has {len(known)} topics of type {topics.IMU}; expected '
-                         f'--topic with one of {", ".join(known)}')
-    if topic is not None and f'/{topic.lstrip("/")}' not in known:
-        raise ValueError(f'{path} has no topic {topic} of type {topics.IMU}; expected one of '
-                         f'{", ".join(known)}')
-    return known[0] if topic is None else f'/{topic.lstrip("/")}'
+        topic = choose(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',
+                       needed=True)
+        imu, _, _ = imu_messages.read(bag, topic)
+    return ImuSamples(imu.t_ns, imu.omega, imu.f)

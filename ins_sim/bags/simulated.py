@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from .bag_writer import BagWriter
+from .motions import make_motion
+from .windows import write_windows
 from ..core.catalogue import nearest
 from ..core.instants import period_ns
 from ..core.instrument import reported_variances
 from ..core.map_frame import MapFrame
-from ..core.motions import make_motion
 from ..core.pair_instrument import PairInstrument
 from ..core.parity import rows
 from ..core.sampling import SampleClock
@@ -51,32 +51,16 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
     settings: simulation.Settings; chosen: Topics of ``select``; the rest as of BagWriter;
     progress: called with the fraction done.  A message is logged at its own stamp.
     """
-    bag = BagWriter(path, storage, compression, replace)
-    try:
-        source = _Source(settings, run)
-        writers = {topic: _as_published(topic, settings).writer() for topic in chosen}
-        counts = dict.fromkeys((topic.name for topic in chosen), 0)
-        for topic in chosen:
-            bag.add_topic(topic.name, topic.type_name)
+    source = _Source(settings, run)
+
+    def windows():
         for first in range(0, source.count, WINDOW):
-            blocks = source.window(first, min(first + WINDOW, source.count))
-            messages = {}
-            for topic in chosen:
-                stamps_ns, values = blocks[topic]
-                # the first stamp may jitter to before the epoch, a time of logging can not
-                messages[topic.name] = (np.maximum(stamps_ns, 0),
-                                        writers[topic].block(stamps_ns, values))
-                counts[topic.name] += len(stamps_ns)
-            bag.write_blocks(messages)
+            yield source.window(first, min(first + WINDOW, source.count))
             if progress is not None:
                 progress(min(1.0, (first + WINDOW) / source.count))
-        bag.close()
-    except OSError:
-        raise  # a full disk: what is written is kept, and the error says so
-    except BaseException:
-        bag.discard()
-        raise
-    return counts
+
+    return write_windows(path, {topic: _as_published(topic, settings) for topic in chosen},
+                         windows(), storage, compression, replace)
 
 
 def _as_published(topic, settings):
@@ -90,7 +74,7 @@ class _Source:
 
     def __init__(self, settings, run):
         generator = settings.motion_generator
-        self._motion = make_motion(generator.motion, generator.datum, generator.earth)
+        self._motion = make_motion(generator)
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
         strapdown = settings.strapdown
         self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)

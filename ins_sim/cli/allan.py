@@ -9,6 +9,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from . import settings as chosen_settings
 from .. import parameter_files
 from ..bags.reading import read_imu
+from ..bags.storages import is_bag
 from ..core.gyro_pair import COVARIANCE_FACTORS
 from ..core.instants import period_ns
 from ..core.instrument import with_errors
@@ -77,9 +78,9 @@ def _record(chosen, console):
             console.print(f'{source}: the motion is {kind}, not static: its own Allan deviation '
                           'is in the record', soft_wrap=True)
         return storage.read_imu(source), settings, source.name
-    if not (source / 'metadata.yaml').is_file():
+    if not source.exists() or not is_bag(source):
         raise ValueError(f'{source} is neither a run of "ins_sim simulate" ({storage.ARRAYS}) nor '
-                         'a rosbag2 bag (metadata.yaml)')
+                         'a rosbag2 bag')
     known = given or chosen.param
     settings = parameter_files.read(given, chosen.param) if known else None
     return read_imu(source, chosen.topic), settings, source.name

@@ -7,6 +7,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from . import settings as chosen_settings
+from ..bags.motions import make_motion
 from ..core.orientation import KINDS
 from ..core.orientation_study import compare
 from ..report.summary import DEG_PER_HOUR
@@ -21,7 +22,8 @@ def run(chosen):
                   TextColumn('{task.completed:.0f} of {task.total:.0f} algorithms'),
                   console=console, transient=True) as progress:
         task = progress.add_task('', total=len(KINDS))
-        results = compare(settings, lambda done: progress.update(task, completed=done))
+        results = compare(settings, lambda done: progress.update(task, completed=done),
+                          make_motion(settings.motion_generator))
     table = Table(title=chosen_settings.title(settings))
     table.add_column('figure')
     table.add_column('unit')

@@ -26,16 +26,26 @@ def parser():
     simulate.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
     simulate.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
                           'the nodes would publish into a rosbag2 bag')
-    simulate.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
-                          help='storage of the bag (default: %(default)s)')
-    simulate.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
-                          help='compression of its chunks, of mcap (default: %(default)s)')
+    _storage(simulate)
     simulate.add_argument('--topics', nargs='+', metavar='TOPIC', default=None,
                           help='topics of the bag (default: all)')
 
     info = verbs.add_parser('info', help='what is in a bag', description='Show storage, topics, '
                             'counts, rates and times of a bag, and whether it is whole.')
     info.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
+
+    convert = verbs.add_parser('convert', help='a flight or an IMU from CSV to a bag, or back',
+                               description='Write a bag of truth from a recorded flight (CSV) at '
+                               'rate_hz, or of sensor_msgs/Imu from the CSV file of an IMU; or '
+                               'such a CSV file, plain or gzip, from a bag.')
+    convert.add_argument('source', metavar='SOURCE', help='CSV file (.csv, .csv.gz), or bag')
+    convert.add_argument('target', metavar='TARGET', help='folder of the bag, or CSV file')
+    _settings(convert)
+    convert.add_argument('--topic', default=None, metavar='NAME', help='topic of the bag: an Imu, '
+                         'or the Odometry of a truth (default: truth/odometry if there is one, '
+                         'else the only Imu; to a bag: imu/data_raw)')
+    _storage(convert)
+    convert.add_argument('--force', action='store_true', help='replace TARGET')
 
     predict = verbs.add_parser('predict', help='predict drift and position error',
                                description='Predict the mean drift and the position error by the '
@@ -46,8 +56,8 @@ def parser():
                                 description='Run the strapdown over the sensor_msgs/Imu of a '
                                 'rosbag2 bag, or a CSV file of an IMU, from a self-alignment or '
                                 'given values, and compare it with a reference.')
-    navigate.add_argument('recording', metavar='BAG', help='rosbag2 bag (its folder), or CSV file '
-                          'with the columns t_s, gx_rps, gy_rps, gz_rps, ax_mps2, ay_mps2, '
+    navigate.add_argument('recording', metavar='BAG', help='rosbag2 bag (folder or file), or CSV '
+                          'file with the columns t_s, gx_rps, gy_rps, gz_rps, ax_mps2, ay_mps2, '
                           'az_mps2')
     _settings(navigate)
     navigate.add_argument('-o', '--output', default='ins_sim_navigation', metavar='DIR',
@@ -112,6 +122,13 @@ def _settings(verb):
                       'may be repeated, later ones win')
     verb.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                       help='one parameter, for every node that knows it')
+
+
+def _storage(verb):
+    verb.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                      help='storage of the bag (default: %(default)s)')
+    verb.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
+                      help='compression of its chunks, of mcap (default: %(default)s)')
 
 
 def main(arguments=None):

@@ -5,6 +5,7 @@ from rich.console import Console
 from rich.table import Table
 
 from . import settings as chosen_settings
+from ..bags.motions import make_motion
 from ..core.prediction import predict
 from ..report import summary, table
 
@@ -12,7 +13,7 @@ from ..report import summary, table
 def run(chosen):
     """Predict and show; return the exit code."""
     settings = chosen_settings.read(chosen)
-    prediction = predict(settings)
+    prediction = predict(settings, make_motion(settings.motion_generator))
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
     shown = Table(title=chosen_settings.title(settings))

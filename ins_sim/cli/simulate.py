@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.progress import Progress, TextColumn, BarColumn, TimeRemainingColumn
 
 from . import settings as chosen_settings
+from ..bags.motions import make_motion
 from ..core.prediction import NoPrediction, predict
 from ..core.simulation import simulate
 from ..report import storage, summary, table
@@ -18,16 +19,17 @@ def run(chosen):
     write_bag = _bag_writer(chosen, settings)
     title = chosen_settings.title(settings)
     console = Console()
+    motion = make_motion(settings.motion_generator)
     try:
-        prediction = predict(settings)
+        prediction = predict(settings, motion)
     except NoPrediction as reason:
         prediction = None
         console.print(str(reason))
     with Progress(TextColumn('simulating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
                   TimeRemainingColumn(), console=console, transient=True) as progress:
         task = progress.add_task('', total=1.0)
-        result = simulate(settings, twin=not chosen.no_twin,
-                          progress=lambda done: progress.update(task, completed=done))
+        result = simulate(settings, not chosen.no_twin,
+                          lambda done: progress.update(task, completed=done), motion)
     rows = summary.rows(settings, result.errors, result.twin, prediction)
     storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force)
     table.show(title, rows, console)

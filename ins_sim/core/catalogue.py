@@ -133,4 +133,4 @@ def _check_together(settings):
                          'expected imu_time nominal, which alone takes it off')
     if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
         raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
-                         'file')
+                         'file or a bag')

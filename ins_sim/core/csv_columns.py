@@ -6,7 +6,7 @@ from . import recording_file
 from .angles import from_compass
 from .catalogue import nearest
 from .recorded_imu import RecordedImu
-from .recording import continuous
+from .recorded_poses import continuous
 from .reference import Reference, rising, Track
 
 IMU = ('gx_rps', 'gy_rps', 'gz_rps', 'ax_mps2', 'ay_mps2', 'az_mps2')

@@ -10,9 +10,13 @@ from .truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 BLOCK = 256
 
 
-def make_imu(settings):
-    """Return the IMU that ImuSensorSettings name; every kind has push(...) and reset()."""
-    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings)
+def make_imu(settings, motion=None):
+    """
+    Return the IMU that ImuSensorSettings name; every kind has push(...) and reset().
+
+    motion: that of the settings with source motion, where ``make_motion`` cannot make it (a bag).
+    """
+    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings, motion)
     errors = with_errors(settings)
     return imu if errors is None else ErringImu(imu, errors)
 
@@ -89,10 +93,10 @@ class StreamImu:
 class PacedImu:
     """The IMU that evaluates the motion of its own parameters; the stream only paces it."""
 
-    def __init__(self, settings):
+    def __init__(self, settings, motion=None):
         self._settings = settings
         from .motions import make_motion
-        self._motion = make_motion(settings.motion, settings.datum, settings.earth)
+        self._motion = motion or make_motion(settings.motion, settings.datum, settings.earth)
         self._triads = Triads(settings)
         self.pair = self._triads.pair
         self.reset()

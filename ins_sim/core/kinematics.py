@@ -45,3 +45,17 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
     return Truth(t_ns=t_ns, lat=lat.value, lon=lon.value, height=height.value,
                  v_n=stack(v_value), q_nb=stack(q), omega_ib_b=stack(omega_ib_b),
                  f_ib_b=stack(attitude.rotate_back(q, f_n)))
+
+
+def rate_of_n(lat, height, v_n, earth_rotation):
+    """
+    Return omega_in_n (n, 3), rad/s, of lat (n,) rad, height (n,) m, v_n (n, 3) m/s.
+
+    Groves 5.44, in ENU; without rotation of the Earth it is omega_en_n.
+    """
+    s, c = np.sin(lat), np.cos(lat)
+    r_n, r_e = earth.radii(s)
+    spin = earth.ROTATION_RATE if earth_rotation else 0.0
+    lon_rate = v_n[:, 0] / ((r_e + height) * c)
+    return np.stack((-v_n[:, 1] / (r_n + height), (spin + lon_rate) * c, (spin + lon_rate) * s),
+                    axis=-1)

@@ -31,15 +31,16 @@ class OrientationResult:
     step_s: float
 
 
-def compare(settings, progress=None):
+def compare(settings, progress=None, motion=None):
     """
     Return an OrientationResult for each of orientation.KINDS, the quaternion first.
 
     settings: simulation.Settings, whose strapdown.orientation does not matter.  progress: called
-    with the number of algorithms done.  Raises ValueError where the settings name no run.
+    with the number of algorithms done.  motion: that of the settings, where ``make_motion`` cannot
+    make it (a bag).  Raises ValueError where the settings name no run.
     """
     generator = settings.motion_generator
-    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     blocks = list(sense(settings, motion))
     results, reference = [], None

@@ -10,9 +10,10 @@ import math
 
 import numpy as np
 
-from . import attitude, earth
+from . import attitude
 from .error_model import propagate
 from .imu import delays_ns
+from .kinematics import rate_of_n
 from .motions import check_length, make_motion
 from .pair_instrument import make_pair
 
@@ -31,16 +32,6 @@ def _columns(vectors):
 
 def _to_n(truth, vectors_b):
     return np.stack(attitude.rotate(_columns(truth.q_nb), _columns(vectors_b)), axis=-1)
-
-
-def rate_of_n(truth, earth_rotation):
-    """Return omega_in_n (n, 3), rad/s, of a Truth record (Groves 5.44, in ENU)."""
-    s, c = np.sin(truth.lat), np.cos(truth.lat)
-    r_n, r_e = earth.radii(s)
-    spin = earth.ROTATION_RATE if earth_rotation else 0.0
-    lon_rate = truth.v_n[:, 0] / ((r_e + truth.height) * c)
-    return np.stack((-truth.v_n[:, 1] / (r_n + truth.height), (spin + lon_rate) * c,
-                     (spin + lon_rate) * s), axis=-1)
 
 
 def drift_density(truth, omega_in_n, tau):
@@ -68,7 +59,8 @@ def mean_drift(motion, tau, earth_rotation, start_s, span_s):
     length = motion.period_s or span_s
     count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
     truth = motion.at(_nanoseconds(start_s + length * np.arange(count) / count))
-    density, _ = drift_density(truth, rate_of_n(truth, earth_rotation), tau)
+    omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, earth_rotation)
+    density, _ = drift_density(truth, omega_in, tau)
     return density.mean(axis=0)
 
 
@@ -167,14 +159,15 @@ class Prediction:
     resonances: list
 
 
-def predict(settings):
+def predict(settings, motion=None):
     """
     Return the Prediction of simulation.Settings.
 
-    Raises ValueError where no such run exists, NoPrediction for rotors that only RK4 damps.
+    motion: that of the settings, where ``make_motion`` cannot make it (a bag).  Raises ValueError
+    where no such run exists, NoPrediction for rotors that only RK4 damps.
     """
     generator, sensor, nav = (settings.motion_generator, settings.imu_sensor, settings.strapdown)
-    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     rotation = generator.earth.rotation
     tau = np.array(delays_ns(sensor.gyro.delay_us)) * 1e-9
@@ -187,7 +180,7 @@ def predict(settings):
     fine_s = STEP_S / SUBSAMPLES
     t = start_s + fine_s * np.arange(steps * SUBSAMPLES + 1)
     truth = motion.at(_nanoseconds(t))
-    omega_in = rate_of_n(truth, rotation)
+    omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, rotation)
     # attitude error in n without the turning of n
     if sensor.gyro.model == 'ideal':
         beta = late_attitude_error(truth, omega_in, tau, fine_s)

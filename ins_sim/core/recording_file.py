@@ -27,6 +27,9 @@ UNUSED = ('vn_mps', 've_mps', 'vd_mps')
 REQUIRED = ('t_s', *USED, *UNUSED)
 OPTIONAL = ('att_gap',)
 
+# What a file is named where bags may be meant too.
+SUFFIXES = ('.csv', '.csv.gz')
+
 # int64 nanoseconds end at 9.22e9 s.
 LONGEST_STAMP_S = 9.2e9
 
@@ -89,6 +92,13 @@ def read_table(path):
             raise ValueError(f'{path}, line {line}: {len(row)} fields; expected {len(header)} as '
                              'in the header')
     return [name.strip() for name in header], lines, rows
+
+
+def read_header(path):
+    """Return the column names of any CSV file; ValueError as read_rows on no readable file."""
+    text = _text(str(path))
+    line = next(line for line in text.splitlines() if line.strip())
+    return [name.strip() for name in line.split(',')]
 
 
 def _text(path):

@@ -110,9 +110,10 @@ class Harmonics(Settings):
 
 @settings_class
 class Recording(Settings):
-    """A recorded flight."""
+    """A recorded flight, or the truth of a bag."""
 
-    path: str = setting('', 'CSV file, plain or gzip')
+    path: str = setting('', 'CSV file, plain or gzip, or rosbag2 bag (folder or file)')
+    topic: str = setting('auto', 'odometry in the bag; auto: the one that ends in truth/odometry')
     start_s: float = setting(3.0, 'recorder time of motion time zero, from the first row', 's',
                              3.0, 1e7)
     smoothing_s: float = setting(0.0, 'window of the boxcar smoothing; 0 = none', 's', 0.0, 60.0)

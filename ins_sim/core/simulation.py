@@ -154,15 +154,16 @@ def _gap(now_ns, last_ns, dt_ns):
     return None
 
 
-def simulate(settings, twin=True, progress=None):
+def simulate(settings, twin=True, progress=None, motion=None):
     """
     Return the Run of Settings.
 
-    twin: also run with all delays zero.  progress: called with the fraction done.  Raises
-    ValueError where the settings name no run of finite length.
+    twin: also run with all delays zero.  progress: called with the fraction done.  motion: that
+    of the settings, where ``make_motion`` cannot make it (a bag).  Raises ValueError where the
+    settings name no run of finite length.
     """
     generator = settings.motion_generator
-    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     twin = twin and settings.delayed
     total = 1.0 + _steps(generator)

@@ -16,14 +16,14 @@ TURN_LIMIT = 2.0
 ZERO = (0.0, 0.0, 0.0)
 
 
-def hermite(h, q_start, q_end, w_start, w_end):
+def hermite(h, d, w_start, w_end):
     """
     Return the vectors c1, c2, c3 of r(s) = c1 s + c2 s^2 + c3 s^3, q(s) = q_start exp(r(s)).
 
-    h: interval, s; w: rate of b relative to the frame of q, resolved in b, rad/s.  The end rate
-    passes through the inverse right Jacobian of the rotation vector to second order.
+    h: interval, s; d: rotation vector from q_start to q_end, rad; w: rate of b relative to the
+    frame of q, resolved in b, rad/s.  The end rate passes through the inverse right Jacobian of
+    the rotation vector to second order.  Components may be floats or arrays.
     """
-    d = attitude.logarithm(attitude.multiply(attitude.conjugate(q_start), q_end))
     dw = attitude.cross(d, w_end)
     ddw = attitude.cross(d, dw)
     a = (h * w_start[0], h * w_start[1], h * w_start[2])
@@ -120,7 +120,8 @@ class TruthBuffer:
                         for k, cubic in self._cubics.items()}
         self._last.appendleft(sample)
         times = tuple(other[0] for other in self._last)
-        curve = hermite(h, start[1], q_mb, start[2], omega_mb_b)
+        turned = attitude.logarithm(attitude.multiply(attitude.conjugate(start[1]), q_mb))
+        curve = hermite(h, turned, start[2], omega_mb_b)
         self._pieces.append((start[0], t_ns, start[1], 1.0 / step_ns, curve, self._cubics,
                              times + (t_ns,) * (3 - len(times))))
         while self._pieces[0][1] < t_ns - self._reach_ns:

@@ -1,7 +1,8 @@
 """Node imu_sensor: streamed truth in, readings of the IMU out."""
 
-from ins_sim.core.instants import period_ns
+from ins_sim.bags.motions import make_motion
 from ins_sim.core.imu_stream import make_imu
+from ins_sim.core.instants import period_ns
 from ins_sim.core.instrument import reported_variances
 from ins_sim.core.sampling import Sampler
 from ins_sim.core.triad_model import DEG_H
@@ -20,7 +21,8 @@ class ImuSensorNode(StageNode):
 
     def make_stage(self):
         """Return the IMU."""
-        return make_imu(self.settings)
+        settings = self.settings
+        return make_imu(settings, make_motion(settings) if settings.source == 'motion' else None)
 
     def make_outputs(self):
         """Make publishers, reader and writers."""

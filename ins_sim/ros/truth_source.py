@@ -2,9 +2,10 @@
 
 import math
 
+from ins_sim.bags.motions import make_motion
 from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import check_length, make_motion
+from ins_sim.core.motions import check_length
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.convert import truth_blocks
@@ -23,7 +24,7 @@ class TruthSource:
     """
 
     def __init__(self, settings):
-        self._motion = make_motion(settings.motion, settings.datum, settings.earth)
+        self._motion = make_motion(settings)
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._writers = [(topic, topic.writer()) for topic in topics.TRUTH]
         self._epoch_ns = settings.time.epoch_s * SECOND
