@@ -78,7 +78,7 @@ def test_sample_clock():
 def test_bad_clocks_are_refused(values, says):
     """One sentence each."""
     with pytest.raises(ValueError, match=says):
-        settings(values)
+        SampleClock(settings(values).strapdown, 10_000_000)
 
 
 def test_orientation_algorithms_agree_to_their_truncation():

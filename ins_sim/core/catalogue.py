@@ -128,9 +128,6 @@ def _check_together(settings):
     if values.get('gyro.model') == 'dtg' and values['output'] != 'integrated':
         raise ValueError(f'output is {values["output"]} with gyro.model dtg; expected integrated: '
                          'a tuned gyro reads the integral of its rate')
-    if values.get('imu_latency_us') and values['imu_time'] == 'stamp':
-        raise ValueError(f'imu_latency_us is {values["imu_latency_us"]:g} us with imu_time stamp; '
-                         'expected imu_time nominal, which alone takes it off')
     if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
         raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
                          'file or a bag')
