@@ -69,7 +69,8 @@ def test_command_passes_names_files_and_values():
 
 def test_scripts_exist():
     """Each console script names a module that is there."""
-    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'ins_sim'}
+    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'recorder',
+                            'ins_sim'}
     for module in SCRIPTS.values():
         assert (ROOT / (module.replace('.', '/') + '.py')).is_file()
 

@@ -27,10 +27,10 @@ def dump(tree):
                      default_flow_style=False)
 
 
-def profile(durability='volatile'):
-    """Return one offered profile: reliable, as a recorder finds it by discovery."""
+def profile(durability='volatile', reliability='reliable'):
+    """Return one offered profile, as a recorder finds it by discovery."""
     return dump([{
-        'history': 'unknown', 'depth': 0, 'reliability': 'reliable', 'durability': durability,
+        'history': 'unknown', 'depth': 0, 'reliability': reliability, 'durability': durability,
         'deadline': _FOREVER, 'lifespan': _FOREVER, 'liveliness': 'automatic',
         'liveliness_lease_duration': _FOREVER, 'avoid_ros_namespace_conventions': False}]).rstrip()
 

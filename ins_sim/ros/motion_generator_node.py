@@ -85,11 +85,8 @@ class MotionGeneratorNode(Node):
             allowed = min(allowed, lock.allowed())
             late = lock.overdue(self._next)
             if late and not self._paused:
-                self.monitor.fault(f'no acknowledgement on {topics.ACK.name} from '
-                                   f'{", ".join(late)} for {self.settings.pacing.timeout_s:g} s; '
-                                   'expected the consumers of pacing.required to run'
-                                   + (f' (heard: {", ".join(sorted(lock.strangers))})'
-                                      if lock.strangers else ''), fatal=True)
+                self.monitor.fault(lock.complaint(late, 'the consumers of pacing.required'),
+                                   fatal=True)
                 stop.request(EXIT_CONSUMER)
             if lock.repeat_due(self._next):
                 self._send(0)
