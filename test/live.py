@@ -29,10 +29,18 @@ class Chain:
         command = [sys.executable, '-m', f'ins_sim.ros.{node}', '--ros-args', *arguments]
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
-        key = f'{node}_{len(self.processes)}'
+        return self._run(node, command)
+
+    def start_verb(self, *words, **options):
+        """Start a verb of ``ins_sim``; options: of Popen."""
+        words = [str(word) for word in words]
+        return self._run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words], **options)
+
+    def _run(self, name, command, **options):
+        key = f'{name}_{len(self.processes)}'
         with open(self._folder / key, 'wb') as log:
             self.processes[key] = subprocess.Popen(command, env=self.environment, stdout=log,
-                                                   stderr=log)
+                                                   stderr=log, **options)
         return self.processes[key]
 
     def text(self, process):

@@ -149,8 +149,8 @@ def _play(verbs):
     play.add_argument('--duration', type=float, default=None, metavar='S',
                       help='play this much of the bag')
     play.add_argument('--loop', action='store_true', help='begin again at the end')
-    play.add_argument('--delay', type=float, default=1.0, metavar='S', help='wait for readers '
-                      'before the first message, not in lock-step (default: %(default)s)')
+    play.add_argument('--wait', type=float, default=1.0, metavar='S', help='wait at most this '
+                      'long for a reader of every topic, not in lock-step (default: %(default)s)')
     play.add_argument('--clock', nargs='?', type=float, const=100.0, default=None, metavar='HZ',
                       help='publish the time of the bag on /clock, by default 100 times a second')
     play.add_argument('--lock-step', nargs='+', default=(), metavar='NODE', help='go no further '

@@ -8,6 +8,6 @@ def run(chosen):
     """Play; return the exit code of the node."""
     options = Options(
         None if chosen.topics is None else tuple(chosen.topics), chosen.rate, chosen.start,
-        chosen.duration, chosen.loop, chosen.delay, chosen.clock, tuple(chosen.lock_step),
+        chosen.duration, chosen.loop, chosen.wait, chosen.clock, tuple(chosen.lock_step),
         chosen.window, chosen.timeout)
     return play(chosen.bag, options, chosen.ros_args)

@@ -19,6 +19,7 @@ from .run_clock import JUMP_NS
 from .runtime import EXIT_CONSUMER, EXIT_FAULT
 
 SERVE_S = 0.01
+SETTLE_S = 0.2
 POLL_S = 2e-4
 DEPTH = 2000
 # a late joiner gets at most so many of the messages of a latched topic
@@ -41,15 +42,18 @@ class PlayerNode(Node):
             log.warning(f'{path} is cut: {playing.bag.cut}')
         for name in playing.left_out:
             log.info(f'{name} is left out: it is published or heard by the player itself')
-        self._publish = {}
+        self._data_publishers, self._publish = [], {}
         for name, channel in list(playing.channels.items()):
             try:
-                self._publish[name] = self._make_publisher(channel).publish
+                publisher = self._make_publisher(channel)
             except (ValueError, ImportError, AttributeError) as error:
                 if options.topics is not None or name == playing.driver:
                     raise ValueError(f'{name} cannot be played: {error}') from None
                 log.warning(f'{name} is not played: {error}')
                 del playing.channels[name]
+            else:
+                self._data_publishers.append(publisher)
+                self._publish[name] = publisher.publish
         if not self._publish:
             raise ValueError(f'nothing of {path} can be played')
         self._lock = None
@@ -81,9 +85,7 @@ class PlayerNode(Node):
         """Play until the end or until stop is set."""
         self._executor, self._stop, self._served = executor, stop, 0.0
         if not self._lock:
-            end = time.monotonic() + self._options.delay_s
-            while not stop and (left_s := end - time.monotonic()) > 0.0:
-                self._serve(left_s)
+            self._wait_readers()
         try:
             self._play()
             while self._options.loop and not stop:
@@ -94,12 +96,21 @@ class PlayerNode(Node):
             stop.request(EXIT_FAULT)
         if not stop:
             # what has left this process only counts once the readers have it
-            for publisher in self.publishers:
+            for publisher in self._data_publishers:
                 publisher.wait_for_all_acked(Duration(seconds=0.3))
             stop.request()
         self._playing.close()
         self.get_logger().info(f'played {self.monitor.sent} messages on {len(self._publish)} '
                                'topics')
+
+    def _wait_readers(self):
+        """Wait until every topic has a reader, and a little for the readers to know it too."""
+        end = time.monotonic() + self._options.wait_s
+        heard = False
+        while not self._stop and (left_s := end - time.monotonic()) > 0.0:
+            if not heard and all(p.get_subscription_count() for p in self._data_publishers):
+                heard, end = True, min(end, time.monotonic() + SETTLE_S)
+            self._serve(left_s)
 
     def _play(self):
         first_ns = self._playing.first_ns

@@ -22,8 +22,9 @@ class Options:
     How a bag is played (``ins_sim play``).
 
     topics: names, or None for all; rate: bag time per time, 0 = as fast as lock-step allows;
-    start_s, duration_s (None: to the end); loop; delay_s before the first message; clock_hz of
-    /clock, or None; required: consumers of lock-step, window and timeout_s as in pacing.*.
+    start_s, duration_s (None: to the end); loop; wait_s at most for a reader of every topic;
+    clock_hz of /clock, or None; required: consumers of lock-step, window and timeout_s as in
+    pacing.*.
     """
 
     topics: tuple | None = None
@@ -31,7 +32,7 @@ class Options:
     start_s: float = 0.0
     duration_s: float | None = None
     loop: bool = False
-    delay_s: float = 1.0
+    wait_s: float = 1.0
     clock_hz: float | None = None
     required: tuple = ()
     window: int = 200
@@ -46,7 +47,7 @@ class Options:
                              'with --lock-step')
         for name, value, low, high in (
                 ('start', self.start_s, 0.0, 1e10), ('duration', self.duration_s, 0.0, 1e10),
-                ('delay', self.delay_s, 0.0, 1e5), ('clock', self.clock_hz, 1e-3, 1e4),
+                ('wait', self.wait_s, 0.0, 1e5), ('clock', self.clock_hz, 1e-3, 1e4),
                 ('window', self.window, 1, 2000), ('timeout', self.timeout_s, 0.1, 1e5)):
             if value is not None and not low <= value <= high:
                 raise ValueError(f'--{name} is {value:g}; expected {low:g} to {high:g}')
