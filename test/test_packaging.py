@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
 SCRIPTS = dict(re.findall(r"'(\w+) = (ins_sim[\w.]+):main'", SETUP))
 FIND = ('from ins_sim import resources, __file__ as f; '
-        'print(f); print(resources.config("default")); print(resources.launch("simulation"))')
+        'print(f); print(resources.config("default")); print(resources.launch("replay"))')
 
 
 def run(command, **options):

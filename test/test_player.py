@@ -207,8 +207,7 @@ def test_what_is_refused(chain, tmp_path):
     for words, sentence in (
             ((tmp_path / 'none',), 'none does not exist; expected a bag'),
             ((path, '--topics', 'imuu'), 'has no topic /imuu; the nearest is /imu'),
-            ((path, '--topics', 'unknown'), "/unknown cannot be played: No module named "
-                                            "'other_msgs'"),
+            ((path, '--topics', 'unknown'), "/unknown cannot be played: No module named 'other"),
             ((path, '--rate', '0'), '--rate is 0; expected more than 0')):
         player = chain.start_verb('play', *words)
         assert player.wait(20.0) == 2, chain.text(player)

@@ -144,6 +144,21 @@ def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
     assert offers['/chatter']['reliability'] == 'reliable'
 
 
+def test_our_names_in_other_hands(talker, chain, tmp_path):
+    """A driver with best effort on imu/data_raw is recorded; another type is said to be one."""
+    from sensor_msgs.msg import Imu
+    from std_msgs.msg import String
+    imu = talker.publisher(Imu, 'imu/data_raw', reliability='best_effort')
+    words = talker.publisher(String, 'truth/imu')
+    recorder = chain.start_verb('record', 'imu/data_raw', 'truth/imu', '-o', tmp_path / 'bag')
+    chain.wait_text(recorder, '/truth/imu: its type is std_msgs/msg/String; expected sensor_msgs')
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**7) for k in range(100)])
+    send(words, [String(data='not an Imu')])
+    said = end(chain, recorder)
+    assert said['/imu/data_raw'][1:] == (100, '0 lost') and said['/truth/imu'][1] == 0
+
+
 def test_all_topics_namespace_and_times(talker, chain, tmp_path):
     """
     With --all hidden topics stay out; what has no stamp is logged at the stamps around it.

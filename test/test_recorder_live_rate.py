@@ -19,6 +19,9 @@ RATE_HZ = 1000
 DT_NS = 1_000_000
 TOPICS = [topic.name for topic in (*topics.DATA, topics.CLOCK_TOPIC)]
 DRAIN_S = 1.0
+# A publisher repairs what its transport drops at its next heartbeat, which DDS sends every 3 s:
+# what it keeps must last longer.
+DEPTH = 10_000
 
 
 def cpu_s(process):
@@ -37,7 +40,8 @@ def test_nothing_is_lost_at_1_khz(duration_s, ros_domain, tmp_path):
     one recorded of a topic on, every one is there, to the last.
     """
     chain, path = Chain(ros_domain, tmp_path), tmp_path / 'bag'
-    parameters = {'rate_hz': float(RATE_HZ), 'duration_s': float(duration_s)}
+    parameters = {'rate_hz': float(RATE_HZ), 'duration_s': float(duration_s),
+                  'topics.depth': DEPTH}
     try:
         recorder = chain.start('recorder', {'record.topics': f'[{", ".join(TOPICS)}]',
                                             'storage.path': path})
@@ -56,13 +60,16 @@ def test_nothing_is_lost_at_1_khz(duration_s, ros_domain, tmp_path):
     print(f'\n{duration_s} s, {used_s:.1f} s CPU = {used_s / duration_s:.0%} of a core')
     with open_bag(path) as bag:
         assert not bag.cut
-        tables = bag.tables({name: () for name, _, _ in said})
+        whole, tables = 0, bag.tables({name: () for name, _, _ in said})
         for name, count, lost in said:
             table = tables[name]
             stamps = table['stamp_ns']
             period = DT_NS * (10 if name == 'clock' else 1)
-            print(f'{name}: {count} recorded, {lost} lost, from {stamps[0] / 1e9:.3f} s')
-            assert len(stamps) == int(count) and lost == '0'
-            assert (np.diff(stamps) == period).all() and stamps[-1] == duration_s * 10**9
+            gaps = stamps[:-1][np.diff(stamps) != period] / 1e9
+            print(f'{name}: {count} recorded, {lost} lost, from {stamps[0] / 1e9:.3f} s, gaps '
+                  f'behind {gaps[:9]}')
+            assert len(stamps) == int(count) and stamps[-1] == duration_s * 10**9
             assert np.array_equal(table['log_ns'], stamps)
+            whole += lost == '0' and not len(gaps)
+    assert whole == len(TOPICS)
     assert {name for name, _, _ in said} == {name.lstrip('/') for name in TOPICS}

@@ -3,12 +3,10 @@
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, stamp_of
+from ins_sim.ros.gaps import Gaps
+from ins_sim.ros.playing import Beginning, Options, Playing
+from ins_sim.ros.run_clock import RunClock
 import pytest
-
-pytest.importorskip('rclpy')
-from ins_sim.ros.gaps import Gaps  # noqa: E402, I100, I202
-from ins_sim.ros.playing import Beginning, Options, Playing  # noqa: E402
-from ins_sim.ros.run_clock import RunClock  # noqa: E402
 
 PACK = topics.IMU_RAW.writer().pack
 

@@ -5,7 +5,7 @@ import numpy as np
 from .bag_writer import BagWriter
 from ..core.catalogue import nearest
 from ..core.imu import period_ns
-from ..core.instrument import with_errors
+from ..core.instrument import reported_variances
 from ..core.map_frame import MapFrame
 from ..core.motions import make_motion
 from ..messages import convert, topics
@@ -76,8 +76,7 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
 def _as_published(topic, settings):
     if topic is not topics.IMU_RAW:
         return topic
-    errors = with_errors(settings.imu_sensor)
-    return topic if errors is None else topics.imu_raw(*errors.variances)
+    return topics.imu_raw(*reported_variances(settings.imu_sensor))
 
 
 class _Source:

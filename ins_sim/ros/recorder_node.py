@@ -19,6 +19,8 @@ from .parameters import declare_settings
 from .runtime import EXIT_FAULT
 
 SCAN_S = 0.2
+# to ask for the publishers of a topic costs 0.1 ms
+WATCH_S = 2.0
 SERVE_S = 0.02
 NAP_S = 0.002
 ABSENT_S = 2.0
@@ -46,7 +48,7 @@ class RecorderNode(Node):
                                     self.monitor.fault)
         self.monitor.add(self._describe)
         self._lost, self._refused, self._weak, self._gids = 0, set(), set(), {}
-        self._started = self._appeared = time.monotonic()
+        self._started = self._appeared = self._watched = time.monotonic()
         self._told_absent = False
         self.recorder.settled = not record.all_topics
         ours = {self.resolve_topic_name(topic.name): topic for topic in OURS}
@@ -88,8 +90,12 @@ class RecorderNode(Node):
         wanted = [n for n in self._named if n in here]
         if self.settings.record.all_topics:
             wanted += [n for n in here if n not in self._named and not _hidden(n)]
+        now = time.monotonic()
+        watch = now - self._watched > WATCH_S
+        if watch:
+            self._watched = now
         for name in wanted:
-            if name in self._refused:
+            if name in self._refused or (name in self._gids and not watch):
                 continue
             infos = self.get_publishers_info_by_topic(name)
             if not infos:
@@ -103,9 +109,9 @@ class RecorderNode(Node):
             if name in recorder.tracks:
                 recorder.tracks[name].gaps.publishers = len(gids)
         if self.settings.record.all_topics:
-            recorder.settled = time.monotonic() - self._appeared > SETTLE_S
+            recorder.settled = now - self._appeared > SETTLE_S
         absent = [n for n in self._named if n not in self._gids and n not in self._refused]
-        if absent and not self._told_absent and time.monotonic() - self._started > ABSENT_S:
+        if absent and not self._told_absent and now - self._started > ABSENT_S:
             self._told_absent = True
             self.get_logger().warning(f'waiting for {", ".join(absent)}: no publisher yet')
 

@@ -11,7 +11,6 @@ from ins_sim.messages import topics
 
 RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
-RECORDER = 'recorder'
 END_S = 10.0
 NAP_S = 0.002
 LOOK_S = 0.1
@@ -21,7 +20,7 @@ class Session:
     """
     The processes of ``graph.PROCESSES`` in a namespace of their own, and a recorder here.
 
-    settings: simulation.Settings, whose pacing must require RECORDER; folder: where parameters
+    settings: simulation.Settings, whose pacing must require the recorder; folder: where parameters
     and logs go; bag: path of the bag.  Use as a context manager: leaving it ends every process,
     and drops the bag unless ``run`` came to its end.
     """
@@ -42,7 +41,7 @@ class Session:
         rclpy.init(context=self._context, signal_handler_options=rclpy.SignalHandlerOptions.NO)
         try:
             self._writer = BagWriter(self._bag, 'sqlite3')
-            self._node = rclpy.create_node(RECORDER, namespace=self.namespace,
+            self._node = rclpy.create_node(graph.RECORDER.name, namespace=self.namespace,
                                            context=self._context)
             self._recorder = BagRecorder(self._node, self._writer)
             for topic in RECORDED:
