@@ -55,6 +55,7 @@ def mixed_bag(path, count=200):
         bag.add_topic('words', topics.STRING, bag_qos.profile(reliability='best_effort'))
         bag.add_topic('latched', topics.STRING, bag_qos.LATCHED)
         bag.add_topic('unknown', 'other_msgs/msg/Thing', definition='int32 x\n')
+        bag.add_topic('no name', topics.STRING)
         for word in (b'first\x00\x00\x00', b'second\x00\x00'):
             bag.write('latched', 50 * SECOND,
                       b'\x00\x01\x00\x00' + len(word.rstrip(b'\x00') + b'\x00').to_bytes(
@@ -78,6 +79,7 @@ def test_played_and_recorded_again(chain, tmp_path):
                               '--ros-args', '-r', '__ns:=/robot')
     assert player.wait(30.0) == 0, chain.text(player)
     text = chain.text(player)
+    assert '/no name is not played: Invalid topic name' in text
     assert '/unknown is not played: ' in text and 'played 222 messages on 3 topics' in text
     time.sleep(0.3)
     end(chain, recorder)

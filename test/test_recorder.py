@@ -258,6 +258,38 @@ def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, 
     assert rest == '0 lost' and count > 500
 
 
+@pytest.mark.parametrize('numbers', [(signal.SIGINT,), (signal.SIGTERM,),
+                                     (signal.SIGINT, signal.SIGINT)])
+def test_signals_whenever_they_come(numbers, chain, tmp_path):
+    """While it imports, starts, records or ends: code 0, and no bag or a whole one."""
+    for k in range(6):
+        path = tmp_path / f'bag_{k}'
+        recorder = chain.start_verb('record', '--all', '-o', path)
+        # before that the handlers are not those of a node, and the code is that of a verb
+        wait_started(chain, recorder, k)
+        for number in numbers:
+            recorder.send_signal(number)
+            time.sleep(0.02)
+        assert recorder.wait(30.0) == 0, chain.text(recorder)
+        assert 'Traceback' not in chain.text(recorder)
+        if path.exists():
+            with open_bag(path) as bag:
+                assert not bag.cut
+
+
+def wait_started(chain, recorder, k):
+    """Wait for the handlers of a node, and the more the larger k."""
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        with open(f'/proc/{recorder.pid}/maps') as maps:
+            if 'rclpy' in maps.read():
+                break
+        time.sleep(0.005)
+    if k > 3:
+        chain.wait_text(recorder, 'recording into')
+    time.sleep(0.1 * k)
+
+
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, talker, chain, tmp_path, capsys):
     """SIGKILL: all but the last second is there, and info says that the bag was cut."""

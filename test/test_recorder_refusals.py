@@ -73,6 +73,8 @@ def test_what_is_refused(ros_domain, tmp_path):
             (['imu', '-o', old], 'old exists; expected a new path for the bag'),
             (['imu', '-o', old, '--force'], 'old is no bag; only a bag is replaced'),
             (['imu', '-o', '/sys/bag'], "Operation not permitted: '/sys/bag'"),
+            (['imu raw', '-o', tmp_path / 'new'], 'record.topics: Invalid topic name: topic name '
+                                                  'must not contain characters other than'),
             ([], 'record.topics is empty and record.all_topics false; expected topics'),
             (['imu', '--storage', 'sqlite3', '--compression', 'zstd', '-o', tmp_path / 'new'],
              'sqlite3 cannot be compressed'),

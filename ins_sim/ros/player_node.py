@@ -8,6 +8,7 @@ from ins_sim.bags import qos as bag_qos
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader, SECOND, stamp_of
 from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
 from . import qos
@@ -46,10 +47,11 @@ class PlayerNode(Node):
         for name, channel in list(playing.channels.items()):
             try:
                 publisher = self._make_publisher(channel)
-            except (ValueError, ImportError, AttributeError) as error:
+            except (ValueError, ImportError, AttributeError, NameValidationException) as error:
+                why = ' '.join(str(error).split())
                 if options.topics is not None or name == playing.driver:
-                    raise ValueError(f'{name} cannot be played: {error}') from None
-                log.warning(f'{name} is not played: {error}')
+                    raise ValueError(f'{name} cannot be played: {why}') from None
+                log.warning(f'{name} is not played: {why}')
                 del playing.channels[name]
             else:
                 self._data_publishers.append(publisher)

@@ -8,8 +8,10 @@ from ins_sim.bags.definitions import define
 from ins_sim.core.settings import RecorderSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from rclpy.validate_topic_name import validate_topic_name
 
 from . import qos
 from .bag_recorder import BagRecorder
@@ -39,7 +41,7 @@ class RecorderNode(Node):
         super().__init__(self.NAME, **kwargs)
         self.settings = declare_settings(self, RecorderSettings)
         record, storage = self.settings.record, self.settings.storage
-        self._named = dict.fromkeys(self.resolve_topic_name(n) for n in record.topics)
+        self._named = self._resolved(record.topics)
         self._bag = bag_writer.BagWriter(
             storage.path, storage.format, storage.compression, storage.replace,
             round(storage.split_mb * 1e6) or None, round(storage.split_s * SECOND) or None)
@@ -55,6 +57,13 @@ class RecorderNode(Node):
         for name in self._named:
             if name in ours:
                 self.recorder.add(ours[name])
+
+    def _resolved(self, names):
+        try:
+            return dict.fromkeys(self.resolve_topic_name(name) for name in names
+                                 if validate_topic_name(name))
+        except NameValidationException as error:
+            raise ValueError(f'record.topics: {" ".join(str(error).split())}') from None
 
     def run(self, executor, stop):
         """Record until stop is set or the disk is full; then complete the bag."""
@@ -86,10 +95,10 @@ class RecorderNode(Node):
     def _scan(self):
         """Subscribe to what has appeared."""
         recorder = self.recorder
-        here = {name: types for name, types in self.get_topic_names_and_types()}
+        here = {name for name, _ in self.get_topic_names_and_types()}
         wanted = [n for n in self._named if n in here]
         if self.settings.record.all_topics:
-            wanted += [n for n in here if n not in self._named and not _hidden(n)]
+            wanted += sorted(n for n in here - set(self._named) if not _hidden(n))
         now = time.monotonic()
         watch = now - self._watched > WATCH_S
         if watch:
