@@ -29,18 +29,19 @@ class Chain:
         command = [sys.executable, '-m', f'ins_sim.ros.{node}', '--ros-args', *arguments]
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
-        return self._run(node, command)
+        return self.run(node, command)
 
-    def start_verb(self, *words, **options):
-        """Start a verb of ``ins_sim``; options: of Popen."""
+    def start_verb(self, *words):
+        """Start a verb of ``ins_sim``."""
         words = [str(word) for word in words]
-        return self._run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words], **options)
+        return self.run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words])
 
-    def _run(self, name, command, **options):
+    def run(self, name, command):
+        """Start any command."""
         key = f'{name}_{len(self.processes)}'
         with open(self._folder / key, 'wb') as log:
             self.processes[key] = subprocess.Popen(command, env=self.environment, stdout=log,
-                                                   stderr=log, **options)
+                                                   stderr=log)
         return self.processes[key]
 
     def text(self, process):

@@ -4,6 +4,7 @@ import re
 import signal
 import time
 
+from ins_sim import graph
 from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
@@ -20,7 +21,6 @@ SECOND = 1_000_000_000
 PARAMETERS = {'rate_hz': 100.0, 'duration_s': 5.0, 'gyro.delay_us.y': 1.0}
 LOCK_STEP = {'pacing.real_time_factor': 0.0, 'pacing.required': '[strapdown, recorder]'}
 OUTPUTS = [topic.name for topic in (topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)]
-FROM_TRUTH = ('truth/odometry', 'truth/imu')
 FROM_IMU = ('truth/odometry', 'imu/data_raw')
 
 
@@ -137,7 +137,7 @@ def test_signals(number, chain, tmp_path):
 def original(chain, tmp_path):
     """Run the chain in lock-step, record it, and return the path of the bag."""
     path = tmp_path / 'original'
-    recorder = chain.start_verb('record', *FROM_TRUTH, 'imu/data_raw', *OUTPUTS, '-o', path)
+    recorder = chain.start_verb('record', *FROM_IMU, 'truth/imu', *OUTPUTS, '-o', path)
     nodes = [chain.start(n, {**PARAMETERS, **LOCK_STEP})
              for n in ('motion_generator', 'imu_sensor', 'strapdown')]
     assert nodes[0].wait(60.0) == 0, chain.text(nodes[0])
@@ -147,22 +147,28 @@ def original(chain, tmp_path):
 
 
 def test_lock_step_gives_the_original_run(chain, tmp_path):
-    """From the truth through imu_sensor, or from its readings: the same bytes of odometry."""
+    """
+    From the truth through imu_sensor, or from its readings: the same bytes of odometry.
+
+    The processes are those of replay.launch.py, in a namespace.
+    """
     path = original(chain, tmp_path)
     before = contents(path)
-    for played, nodes in ((FROM_TRUTH, ('imu_sensor', 'strapdown')), (FROM_IMU, ('strapdown',))):
-        again = tmp_path / nodes[0]
-        recorder = chain.start_verb('record', *OUTPUTS, '-o', again)
-        started = [chain.start(n, PARAMETERS) for n in nodes]
-        player = chain.start_verb('play', path, '--lock-step', 'strapdown', 'recorder',
-                                  '--topics', *played)
+    for source, replay in graph.REPLAYS.items():
+        again = tmp_path / source
+        recorder = chain.start_verb('record', *OUTPUTS, '-o', again, '--ros-args', '-r',
+                                    '__ns:=/left')
+        started = [chain.run(p.name, graph.command(p, (), PARAMETERS.items(), 'left'))
+                   for p in replay.processes]
+        player = chain.run('player', graph.play_command(
+            path, replay, ['--lock-step', 'strapdown', 'recorder'], 'left'))
         assert player.wait(60.0) == 0, chain.text(player)
         time.sleep(0.3)
         end(chain, recorder, *started)
         after = contents(again)
         for name in OUTPUTS:
-            assert len(after['/' + name]) == 501
-            assert after['/' + name] == before['/' + name]
+            assert len(after['/left/' + name]) == 501
+            assert after['/left/' + name] == before['/' + name]
         assert not any('WARN' in chain.text(p) for p in started)
 
 
