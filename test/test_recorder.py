@@ -89,6 +89,24 @@ def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path)
             assert said['/' + topic.name][2].startswith('0 lost')
 
 
+def test_all_topics_in_lock_step(chain, tmp_path):
+    """Sample 0 is answered once no new topic has appeared for a second: not one is missed."""
+    parameters = {'rate_hz': 100.0, 'duration_s': 2.0, 'pacing.real_time_factor': 0.0,
+                  'pacing.required': '[strapdown, recorder]'}
+    recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
+    started = [chain.start(n, parameters) for n in ('strapdown', 'imu_sensor', 'motion_generator')]
+    assert started[-1].wait(60.0) == 0, chain.text(started[-1])
+    time.sleep(0.3)
+    said = end(chain, recorder)
+    for topic in topics.DATA:
+        assert said['/' + topic.name][1] == 201, said
+    assert {'/sim/status', '/sim/ack', '/rosout', '/diagnostics'} <= set(said)
+    with open_bag(tmp_path / 'bag') as bag:
+        spans = bag.spans()
+        # what has no stamp lies within the run, give or take its wall time
+        assert all(0 <= s.first_ns and s.last_ns < 60 * SECOND for s in spans.values() if s.count)
+
+
 def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
     """
     Types of others, one unknown to the bags too; best effort; latched; a topic that comes late.
