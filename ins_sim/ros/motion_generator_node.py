@@ -47,7 +47,7 @@ class MotionGeneratorNode(Node):
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
-            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, 10)
+            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, depth)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
         self._status = self.create_publisher(String, topics.STATUS.name, qos.latched())
         self.monitor = Monitor(self)

@@ -65,7 +65,7 @@ class PlayerNode(Node):
                 topics.HEADER)
         self._clock_publisher = None
         if options.clock_hz is not None:
-            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, 10)
+            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, DEPTH)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
             self._tick_ns = max(1, round(SECOND / options.clock_hz * (options.rate or 1.0)))
         # nanoseconds of the bag are what the pace counts
