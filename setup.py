@@ -40,6 +40,7 @@ setup(
             'motion_generator = ins_sim.ros.motion_generator:main',
             'imu_sensor = ins_sim.ros.imu_sensor:main',
             'strapdown = ins_sim.ros.strapdown:main',
+            'recorder = ins_sim.ros.recorder:main',
             'ins_sim = ins_sim.cli.main:main',
         ],
     },

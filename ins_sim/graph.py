@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 import sys
 
+from .messages import topics
+
 
 @dataclass(frozen=True)
 class Process:
@@ -23,6 +25,23 @@ PROCESSES = (
 # The end of this one ends the simulation.
 MASTER = 'motion_generator'
 
+RECORDER = Process('recorder', 'recorder')
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Topics of a bag, and the processes that run over them instead of live ones."""
+
+    topics: tuple[str, ...]
+    processes: tuple[Process, ...]
+
+
+# by what is taken from the bag beside the true motion, with which the strapdown is compared
+REPLAYS = {
+    'truth': Replay((topics.TRUTH_ODOMETRY.name, topics.TRUTH_IMU.name), PROCESSES[:2]),
+    'imu': Replay((topics.TRUTH_ODOMETRY.name, topics.IMU_RAW.name), PROCESSES[:1]),
+}
+
 
 def command(process, params_files=(), parameters=(), namespace=''):
     """
@@ -33,10 +52,24 @@ def command(process, params_files=(), parameters=(), namespace=''):
     # The module, and not the script, for where the script is depends on the kind of installation.
     words = [sys.executable, '-m', f'ins_sim.ros.{process.executable}', '--ros-args',
              '-r', f'__node:={process.name}']
-    if namespace:
-        words += ['-r', '__ns:=/' + namespace.strip('/')]
+    words += _in_namespace(namespace)
     for path in params_files:
         words += ['--params-file', str(path)]
     for name, value in parameters:
         words += ['-p', f'{name}:={value}']
     return words
+
+
+def play_command(bag, replay, options=(), namespace=''):
+    """
+    Return the argument list that plays what a Replay needs of a bag.
+
+    options: further ones of ``ins_sim play``.
+    """
+    words = [sys.executable, '-m', 'ins_sim.cli.main', 'play', str(bag), *options, '--topics',
+             *replay.topics]
+    return words + (['--ros-args', *_in_namespace(namespace)] if namespace else [])
+
+
+def _in_namespace(namespace):
+    return ['-r', '__ns:=/' + namespace.strip('/')] if namespace else []

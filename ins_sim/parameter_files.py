@@ -11,7 +11,7 @@ import re
 import yaml
 
 from .core.catalogue import build, flatten, nearest, unknown, values_of
-from .core.settings import NODES
+from .core.settings import ALL_NODES, NODES
 from .core.simulation import Settings
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')
@@ -21,27 +21,31 @@ def read(paths, assignments=()):
     """
     Return simulation.Settings of parameter files, in order, and of NAME:=VALUE assignments.
 
+    A file may serve the recorder as well; its section is checked name by name.
+
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
     """
-    return Settings(**read_nodes(paths, assignments, NODES))
+    return Settings(**read_nodes(paths, assignments, NODES, ALL_NODES))
 
 
-def read_nodes(paths, assignments, nodes):
+def read_nodes(paths, assignments, nodes, known=None):
     """
     Return {node: its settings} as ``read`` does, for any nodes {name: settings class}.
 
-    A node is here whatever has a section of its own in the files.
+    A node is here whatever has a section of its own in the files.  known: nodes that may be
+    named, by default nodes.
     """
-    values = {node: {} for node in nodes}
+    known = nodes if known is None else known
+    values = {node: {} for node in known}
     for path in paths:
-        for section, parameters in _sections(path, nodes):
+        for section, parameters in _sections(path, known):
             for name, value in _flat(parameters).items():
-                _assign(values, nodes, section, name, value, path)
+                _assign(values, known, section, name, value, path)
     for assignment in assignments:
         name, separator, text = assignment.partition(':=')
         if not separator:
             raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
-        _assign(values, nodes, '/**', name, _parse(text, f'-p {assignment}'), '-p')
+        _assign(values, known, '/**', name, _parse(text, f'-p {assignment}'), '-p')
     built = {}
     for node, cls in nodes.items():
         try:

@@ -2,11 +2,13 @@
 Start the motion generator, the IMU and the strapdown; end when the generator ends.
 
 Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_time_factor:=10.0
+With record:=DIR a recorder writes their topics into a bag, and lock-step waits for it as well.
 """
 
 from pathlib import Path
 
 from ins_sim import graph, resources
+from ins_sim.messages import topics
 from launch import LaunchDescription
 from launch.actions import (DeclareLaunchArgument, GroupAction, OpaqueFunction,
                             RegisterEventHandler, Shutdown)
@@ -22,6 +24,7 @@ ARGUMENTS = (
     ('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; empty = as '
                              'the parameter files say'),
     ('lock_step', '', 'true or false: wait for the consumers; empty = as the parameter files say'),
+    ('record', '', 'folder of a new bag for the topics of the nodes; empty = none'),
     ('use_sim_time', 'false', 'true or false: the nodes take their time from /clock'),
 )
 
@@ -44,6 +47,11 @@ def _overrides(process, value):
     if process.name == graph.MASTER:
         parameters.update({'pacing.' + name: typed[name]
                            for name in ('real_time_factor', 'lock_step') if value[name]})
+        if value['record']:
+            parameters['pacing.required'] = ['strapdown', graph.RECORDER.name]
+    elif process is graph.RECORDER:
+        parameters['record.topics'] = [topic.name for topic in topics.DATA]
+        parameters['storage.path'] = value['record']
     return parameters
 
 
@@ -51,10 +59,11 @@ def _simulation(context):
     """Return the actions, now that the values of the arguments are known."""
     value = {name: LaunchConfiguration(name).perform(context) for name, _, _ in ARGUMENTS}
     overlay = [_config(value['params_file'])] if value['params_file'] else []
+    processes = (*([graph.RECORDER] if value['record'] else []), *graph.PROCESSES)
     nodes = {process.name: Node(
         package='ins_sim', executable=process.executable, name=process.name, output='screen',
         parameters=[*(str(resources.config(name)) for name in process.config), *overlay,
-                    _overrides(process, value)]) for process in graph.PROCESSES}
+                    _overrides(process, value)]) for process in processes}
     end = OnProcessExit(target_action=nodes[graph.MASTER],
                         on_exit=[Shutdown(reason='the motion generator has ended')])
     return [RegisterEventHandler(end),

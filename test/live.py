@@ -29,7 +29,16 @@ class Chain:
         command = [sys.executable, '-m', f'ins_sim.ros.{node}', '--ros-args', *arguments]
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
-        key = f'{node}_{len(self.processes)}'
+        return self.run(node, command)
+
+    def start_verb(self, *words):
+        """Start a verb of ``ins_sim``."""
+        words = [str(word) for word in words]
+        return self.run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words])
+
+    def run(self, name, command):
+        """Start any command."""
+        key = f'{name}_{len(self.processes)}'
         with open(self._folder / key, 'wb') as log:
             self.processes[key] = subprocess.Popen(command, env=self.environment, stdout=log,
                                                    stderr=log)

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
 SCRIPTS = dict(re.findall(r"'(\w+) = (ins_sim[\w.]+):main'", SETUP))
 FIND = ('from ins_sim import resources, __file__ as f; '
-        'print(f); print(resources.config("default")); print(resources.launch("simulation"))')
+        'print(f); print(resources.config("default")); print(resources.launch("replay"))')
 
 
 def run(command, **options):
@@ -69,7 +69,8 @@ def test_command_passes_names_files_and_values():
 
 def test_scripts_exist():
     """Each console script names a module that is there."""
-    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'ins_sim'}
+    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'recorder',
+                            'ins_sim'}
     for module in SCRIPTS.values():
         assert (ROOT / (module.replace('.', '/') + '.py')).is_file()
 

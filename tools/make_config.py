@@ -6,11 +6,11 @@ import textwrap
 
 from ins_sim.core.navigate_settings import NAVIGATE
 from ins_sim.core.presets import PRESETS
-from ins_sim.core.settings import MotionGeneratorSettings, NODES
+from ins_sim.core.settings import ALL_NODES, MotionGeneratorSettings
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
 HEAD = """\
-# Every parameter of the three nodes with its default.  Written by tools/make_config.py from
+# Every parameter of the nodes with its default.  Written by tools/make_config.py from
 # ins_sim/core/settings.py; a test keeps it in step.  Overlays beside this file hold the studies:
 #   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
 """
@@ -59,7 +59,7 @@ def document():
     out = [HEAD.rstrip(), '', '/**:', '  ros__parameters:']
     own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
     out += lines(MotionGeneratorSettings, 4, skip=own)
-    for node, cls in NODES.items():
+    for node, cls in ALL_NODES.items():
         out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED)]
     return '\n'.join(out) + '\n'
 

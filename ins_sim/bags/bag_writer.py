@@ -28,8 +28,8 @@ class BagWriter:
     'zstd'; split_bytes, split_ns: begin another file where one is as large, or its messages span
     as much.  The bag grows in place and gets its metadata.yaml last: without one it is not whole,
     but what was written can be read.  A bag that is there is refused, or, with replace, stays
-    until the new one is whole.  Raises ValueError for such, and OSError where it cannot be
-    written.
+    until the new one is whole, which grows in ``folder`` beside it.  Raises ValueError for such,
+    and OSError where it cannot be written.
     """
 
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
@@ -38,11 +38,11 @@ class BagWriter:
         self.path, self.storage = Path(path), storage
         self._compression = '' if compression == 'none' else compression
         self._split_bytes, self._split_ns = split_bytes, split_ns
-        self._folder = self.path
+        self.folder = self.path
         if self.path.exists():
-            self._folder = self.path.with_name(f'.{self.path.name}.part')
-            shutil.rmtree(self._folder, ignore_errors=True)
-        self._folder.mkdir(parents=True)
+            self.folder = self.path.with_name(f'.{self.path.name}.part')
+            shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
         self.topics, self._files, self._file = {}, [], None
         self._written = 0
         # one buffer for every chunk: fresh memory costs more than what is put into it
@@ -215,7 +215,7 @@ class BagWriter:
     def _open_file(self):
         make, suffix = WRITERS[self.storage]
         self._name = f'{self.path.name}_{len(self._files)}{suffix}'
-        self._file = make(self._folder / self._name, self._compression)
+        self._file = make(self.folder / self._name, self._compression)
         self._counts, self._first_ns, self._last_ns = {}, None, None
         for channel in self.topics.values():
             self._file.add_topic(channel)
@@ -233,14 +233,15 @@ class BagWriter:
             if self._file is None:
                 self._open_file()
             self._close_file()
-            target = self._folder / metadata.NAME
+            target = self.folder / metadata.NAME
             part = target.with_name(target.name + '.part')
             part.write_text(metadata.text(self.storage, self.topics.values(), self._files),
                             encoding='utf-8')
             part.rename(target)
-            if self._folder != self.path:
+            if self.folder != self.path:
                 shutil.rmtree(self.path)
-                self._folder.rename(self.path)
+                self.folder.rename(self.path)
+                self.folder = self.path
 
     @contextmanager
     def _disk(self):
@@ -249,7 +250,7 @@ class BagWriter:
             yield
         except OSError as error:
             self.abort()
-            raise OSError(f'{self._folder}: {error.strerror or error}; the {self._written} '
+            raise OSError(f'{self.folder}: {error.strerror or error}; the {self._written} '
                           'messages written before are kept, in a bag that is not closed'
                           ) from None
 
@@ -263,7 +264,7 @@ class BagWriter:
     def discard(self):
         """Close and delete what was written."""
         self.abort()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 def check(path, storage, compression, replace):

@@ -7,10 +7,10 @@ from .bag_yaml import dump, load
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
-def profile(durability='volatile'):
-    """Return one offered profile as YAML: reliable, as a recorder finds it by discovery."""
+def profile(durability='volatile', reliability='reliable'):
+    """Return one offered profile as YAML, as a recorder finds it by discovery."""
     return dump([{
-        'history': 'unknown', 'depth': 0, 'reliability': 'reliable', 'durability': durability,
+        'history': 'unknown', 'depth': 0, 'reliability': reliability, 'durability': durability,
         'deadline': _FOREVER, 'lifespan': _FOREVER, 'liveliness': 'automatic',
         'liveliness_lease_duration': _FOREVER, 'avoid_ros_namespace_conventions': False}])
 

@@ -8,6 +8,9 @@ import warnings
 
 from .. import __version__
 
+ROS_ARGS = '--ros-args'
+NODE_VERBS = ('record', 'play')
+
 
 def parser():
     """Return the parser of all verbs."""
@@ -46,6 +49,9 @@ def parser():
                          'else the only Imu; to a bag: imu/data_raw)')
     _storage(convert)
     convert.add_argument('--force', action='store_true', help='replace TARGET')
+
+    _record(verbs)
+    _play(verbs)
 
     predict = verbs.add_parser('predict', help='predict drift and position error',
                                description='Predict the mean drift and the position error by the '
@@ -116,6 +122,57 @@ def parser():
     return top
 
 
+def _record(verbs):
+    record = verbs.add_parser('record', help='record live topics into a bag',
+                              description='Record live topics into a rosbag2 bag, until Ctrl-C. '
+                              'Behind --ros-args stand remappings and the namespace.')
+    record.add_argument('topics', nargs='*', metavar='TOPIC', help='topic to record; one that is '
+                        'not there yet is waited for')
+    record.add_argument('--all', action='store_true', help='record every topic')
+    record.add_argument('-o', '--output', default='ins_sim_bag', metavar='DIR',
+                        help='folder of the bag (default: %(default)s)')
+    record.add_argument('--force', action='store_true', help='replace the bag in DIR')
+    record.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                        help='storage of the bag (default: %(default)s)')
+    record.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
+                        help='compression of its chunks, of mcap (default: %(default)s)')
+    record.add_argument('--max-size', type=float, default=0.0, metavar='MB',
+                        help='begin another file where one is as large')
+    record.add_argument('--max-duration', type=float, default=0.0, metavar='S',
+                        help='begin another file where one spans as much')
+    record.add_argument('--log-time', choices=('stamp', 'received'), default='stamp',
+                        help='log a message at the stamp of its header, or when it came '
+                        '(default: %(default)s)')
+
+
+def _play(verbs):
+    play = verbs.add_parser('play', help='publish the topics of a bag',
+                            description='Publish the messages of a rosbag2 bag as they were '
+                            'recorded. Behind --ros-args stand remappings and the namespace.')
+    play.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
+    play.add_argument('--topics', nargs='+', metavar='TOPIC', default=None,
+                      help='topics to publish (default: all)')
+    play.add_argument('--rate', type=float, default=None, metavar='FACTOR', help='bag time per '
+                      'time; 0 = as fast as the consumers of --lock-step (default: 1, and 0 in '
+                      'lock-step)')
+    play.add_argument('--start', type=float, default=0.0, metavar='S', help='start this long '
+                      'after the first message')
+    play.add_argument('--duration', type=float, default=None, metavar='S',
+                      help='play this much of the bag')
+    play.add_argument('--loop', action='store_true', help='begin again at the end')
+    play.add_argument('--wait', type=float, default=1.0, metavar='S', help='wait at most this '
+                      'long for a reader of every topic, not in lock-step (default: %(default)s)')
+    play.add_argument('--clock', nargs='?', type=float, const=100.0, default=None, metavar='HZ',
+                      help='publish the time of the bag on /clock, by default 100 times a second')
+    play.add_argument('--lock-step', nargs='+', default=(), metavar='NODE', help='go no further '
+                      'than these nodes acknowledge, such as strapdown')
+    play.add_argument('--window', type=int, default=200, metavar='N', help='unanswered samples '
+                      'allowed in lock-step (default: %(default)s)')
+    play.add_argument('--timeout', type=float, default=30.0, metavar='S', help='wall time without '
+                      'an acknowledgement before the missing node is named (default: '
+                      '%(default)s)')
+
+
 def _settings(verb):
     verb.add_argument('--params-file', action='append', default=[], metavar='FILE',
                       help='ROS parameter file, or the name of a shipped one such as motion_2; '
@@ -132,8 +189,18 @@ def _storage(verb):
 
 
 def main(arguments=None):
-    """Run a verb; return the exit code: 0, 2 bad input, 1 a run that failed, 130 interrupted."""
-    chosen = parser().parse_args(arguments)
+    """
+    Run a verb; return the exit code: 0, 2 bad input, 1 a run that failed, 130 interrupted.
+
+    The verbs that are nodes, record and play, have the exit codes of nodes.
+    """
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    cut = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
+    top = parser()
+    chosen = top.parse_args(words[:cut])
+    chosen.ros_args = words[cut:]
+    if chosen.ros_args and chosen.verb not in NODE_VERBS:
+        top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')
     signal.signal(signal.SIGTERM, _interrupt)
     warnings.showwarning = lambda sentence, *_: print(f'ins_sim {chosen.verb}: {sentence}',
                                                       file=sys.stderr)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 import math
 
-from .settings import NODES
+from .settings import ALL_NODES
 
 
 def flatten(cls, prefix=''):
@@ -30,7 +30,7 @@ def values_of(settings, prefix=''):
     return values
 
 
-ALL_NAMES = frozenset(name for cls in NODES.values() for name in flatten(cls))
+ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))
 
 
 def nearest(name, known):
@@ -128,6 +128,9 @@ def _check_together(settings):
     if values.get('gyro.model') == 'dtg' and values['output'] != 'integrated':
         raise ValueError(f'output is {values["output"]} with gyro.model dtg; expected integrated: '
                          'a tuned gyro reads the integral of its rate')
+    if values.get('record.topics') == () and not values['record.all_topics']:
+        raise ValueError('record.topics is empty and record.all_topics false; expected topics to '
+                         'record')
     if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
         raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
                          'file or a bag')

@@ -1,10 +1,11 @@
 """
-Settings of the three nodes as frozen dataclasses: default, unit, bounds and doc of every key.
+Settings of the nodes as frozen dataclasses: default, unit, bounds and doc of every key.
 
 This catalogue is the only place a parameter is described.  ROS parameters, the YAML reader and
 the configuration reference are derived from it.
 """
 
+from .bag_settings import RecorderSettings
 from .dtg_settings import Dtg
 from .error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .setting import group, setting, Settings, settings_class
@@ -165,7 +166,7 @@ class Pacing(Settings):
 class Topics(Settings):
     """Quality of service of the data topics (reliable, volatile)."""
 
-    depth: int = setting(2000, 'queue depth of publishers and subscriptions', 'messages', 1,
+    depth: int = setting(10000, 'queue depth of publishers and subscriptions', 'messages', 1,
                          100000)
 
 
@@ -298,3 +299,5 @@ class StrapdownSettings(Settings):
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
          'strapdown': StrapdownSettings}
+# those of a simulation, and the one that watches it
+ALL_NODES = {**NODES, 'recorder': RecorderSettings}

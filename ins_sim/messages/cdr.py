@@ -127,6 +127,14 @@ class Writer:
         return [data[k:k + size] for k in range(0, len(data), size)]
 
 
+def stamp_of(data):
+    """Return the stamp at the head of a message, ns; None if it is too short or big-endian."""
+    if len(data) < 12 or data[1] != 1:
+        return None
+    sec, nanosec = _STAMP(data, 4)
+    return sec * SECOND + nanosec
+
+
 def _middle(offset, layout):
     """Return the offset behind the small integers, a byte and a 16-bit number, all zero."""
     return aligned(offset + 1, 2) + 2 if layout.status else offset

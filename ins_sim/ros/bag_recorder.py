@@ -1,87 +1,185 @@
-"""A node that writes topics into a bag, byte for byte."""
+"""Topics into a bag, byte for byte: what came, what was repeated, what was lost."""
 
-from pathlib import Path
-import shutil
+from dataclasses import dataclass
+import time
 
+from ins_sim.bags import qos as bag_qos
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import Reader, SECOND, Writer
-from rclpy.node import Node
+from ins_sim.messages.cdr import SECOND, Writer
 
 from . import qos
-from .queue import DrivingQueue
+from .gaps import Gaps
+from .queue import HandQueue
+from .run_clock import RunClock, stamped
+
+BATCH = 200
+FLUSH_S = 1.0
+# publishers that go on may not hold up the end
+FINISH_S = 2.0
+# messages without a stamp that wait for the first stamp of the run
+WAITING = 1000
+# by which of them a recorder answers in lock-step: the first that it records
+ANSWERED = (topics.TRUTH_IMU, *topics.DATA)
 
 
-class BagRecorder(Node):
+@dataclass
+class Track:
+    """One topic in recording: its messages in the bag, and the repeated ones that are not."""
+
+    name: str
+    type_name: str
+    queue: HandQueue
+    gaps: Gaps
+    stamped: bool
+    count: int = 0
+    repeated: int = 0
+    last: bytes = None
+    last_ns: int = 0
+    jumped: bool = False
+
+
+class BagRecorder:
     """
-    Writes the messages of Topics into a bag (storage 'sqlite3' or 'mcap').
+    Writes what a node hears into a bag.
 
-    A message is logged at its own stamp, and a sample that lock-step repeats is written once.
-    The bag appears at path only when ``close`` has completed it.  acknowledge: name of the
-    topic whose stamps are acknowledged as 'recorder', or None; the first acknowledgement comes
-    when every topic has been heard.
+    bag: BagWriter; log_time: 'stamp' or 'received' (docs/design/bags.md); report(sentence) is
+    told what is wrong.  The owner calls ``poll`` until nothing more is to come, and closes the
+    bag.  A stamped message equal to the one before it is a repeated sample of lock-step and is
+    written once.  The stamps of the first topic of ANSWERED are acknowledged, from when every
+    stamped topic has been heard and ``settled`` is true: until then lock-step repeats sample 0.
     """
 
-    def __init__(self, path, wanted=topics.DATA, storage='sqlite3', depth=2000,
-                 acknowledge=topics.TRUTH_IMU.name, name='recorder', **kwargs):
-        super().__init__(name, **kwargs)
-        from rosbags.rosbag2 import StoragePlugin, Writer as BagWriter
-        from rosbags.typesys import get_typestore, Stores
-        self.path = Path(path)
-        if self.path.exists():
-            raise ValueError(f'{self.path} exists; expected a new path for the bag')
-        # a bag that is cut short must not look whole, so it grows under another name
-        self._folder = self.path.with_name(self.path.name + '.part')
-        shutil.rmtree(self._folder, ignore_errors=True)
-        self._folder.mkdir(parents=True)
-        self._bag = BagWriter(self._folder / self.path.name, version=9,
-                              storage_plugin=StoragePlugin[storage.upper()])
-        self._bag.open()
-        store = get_typestore(Stores.ROS2_JAZZY)
-        self.counts = {topic.name: 0 for topic in wanted}
-        self._stamp_reader, self._ack = Reader(topics.CLOCK).read, Writer(topics.HEADER, name)
-        self._ack_publisher = qos.ack_publisher(self)
-        self._unacknowledged = None
-        self.last_stamp_ns = 0
-        self._queues = [self._queue(topic, store, depth, topic.name == acknowledge)
-                        for topic in wanted]
+    def __init__(self, node, bag, log_time='stamp', depth=10000, report=None):
+        self._node, self._bag, self._depth, self._report = node, bag, depth, report
+        self._by_stamp = log_time == 'stamp'
+        self._clock, self._waiting = RunClock(), []
+        self.tracks = {}
+        self._ack = Writer(topics.HEADER, node.get_name())
+        self._ack_publisher = qos.ack_publisher(node)
+        self._ack_name = node.resolve_topic_name(topics.ACK.name)
+        self._answered, self._silent, self.settled = None, [], True
+        self._answered_ns, self._unanswered = None, False
+        self._flushed = time.monotonic()
 
-    def _queue(self, topic, store, depth, acknowledged):
-        name = self.resolve_topic_name(topic.name)
-        connection = self._bag.add_connection(name, topic.type_name, typestore=store)
-        write, read_stamp, counts = self._bag.write, self._stamp_reader, self.counts
-        last = None
+    def add(self, topic, profile=None, offered=bag_qos.RELIABLE, definition=None, type_hash=''):
+        """
+        Subscribe to a Topic and declare it in the bag; return its Track.
 
-        def on_data(data):
-            nonlocal last
-            stamp_ns, _ = read_stamp(data)
-            if acknowledged:
-                # a repeated sample is acknowledged too: the first answer may have been lost
-                self._unacknowledged = self.last_stamp_ns = stamp_ns
-            if data != last:
-                last = data
-                write(connection, stamp_ns, data)
-                counts[topic.name] += 1
+        profile: QoS of the subscription, by default that of our own data; offered: that of the
+        publishers as the bag keeps it; definition and type_hash as BagWriter.add_topic takes
+        them.  Raises ValueError if the type is unknown, ImportError if it is not installed.
+        """
+        name = self._node.resolve_topic_name(topic.name)
+        queue = HandQueue(self._node, topic, self._depth, profile)
+        try:
+            self._bag.add_topic(name, topic.type_name, offered, definition, type_hash)
+        except BaseException:
+            self._node.destroy_subscription(queue.subscription)
+            raise
+        track = Track(name, topic.type_name, queue, Gaps(), stamped(topic.type_name))
+        self.tracks[name] = track
+        if track.stamped and name != self._ack_name:
+            self._silent.append(track)
+        order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
+        known = [n for n in order if n in self.tracks]
+        self._answered = self.tracks[known[0]] if known else None
+        return track
 
-        return DrivingQueue(self, topic, depth, on_data, self._on_drained)
+    def subscribe_anew(self, track, profile):
+        """Replace the subscription of a topic, of which nothing has been heard."""
+        self._node.destroy_subscription(track.queue.subscription)
+        track.queue = HandQueue(self._node, topics.Topic(track.name, track.type_name),
+                                self._depth, profile)
 
-    def _on_drained(self):
-        # until every topic is heard nothing is acknowledged, so that lock-step repeats sample 0
-        if self._unacknowledged is not None and all(self.counts.values()):
-            self._ack_publisher.publish(self._ack.pack(self._unacknowledged))
-            self._unacknowledged = None
+    @property
+    def counts(self):
+        """Return {topic name: messages in the bag}."""
+        return {name: track.count for name, track in self.tracks.items()}
 
     @property
     def last_s(self):
-        """Return the stamp of the last acknowledged message, s."""
-        return self.last_stamp_ns / SECOND
+        """Return the stamp of the last answered message, s."""
+        return (self._answered_ns or 0) / SECOND
 
-    def close(self):
-        """Complete the bag and move it to its path."""
-        self._bag.close()
-        (self._folder / self.path.name).rename(self.path)
-        self._folder.rmdir()
+    def poll(self):
+        """Take what has come; return how many messages."""
+        taken = 0
+        for track in self.tracks.values():
+            take = track.queue.take_with_info
+            for _ in range(BATCH):
+                message = take()
+                if message is None:
+                    break
+                self._on_message(track, *message)
+                taken += 1
+        self._acknowledge()
+        if time.monotonic() - self._flushed > FLUSH_S:
+            self._bag.flush()
+            self._flushed = time.monotonic()
+        return taken
 
-    def discard(self):
-        """Close and delete an incomplete bag."""
-        self._bag.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
+    def _on_message(self, track, data, info):
+        track.gaps.take(info['publication_sequence_number'])
+        received_ns = info['received_timestamp'] or time.time_ns()
+        if not track.stamped:
+            self._write_unstamped(track, data, received_ns)
+            return
+        stamp_ns = self._clock.hear(data, received_ns)
+        if track is self._answered and stamp_ns is not None:
+            # a repeated sample is answered too: the first answer may have been lost
+            self._answered_ns, self._unanswered = stamp_ns, True
+        if data == track.last:
+            track.repeated += 1
+            return
+        track.last = data
+        if self._by_stamp and stamp_ns is not None:
+            if stamp_ns < track.last_ns and not track.jumped:
+                self._on_jump(track, stamp_ns)
+            track.last_ns = stamp_ns
+            self._write(track, stamp_ns, data)
+            if self._waiting:
+                self._write_waiting()
+        else:
+            self._write_unstamped(track, data, received_ns)
+
+    def _on_jump(self, track, stamp_ns):
+        track.jumped = True
+        if self._report is not None:
+            self._report(f'{track.name} jumps back from {track.last_ns / SECOND:.9f} s to '
+                         f'{stamp_ns / SECOND:.9f} s; by its stamps it lies among the earlier '
+                         'messages of the bag (record.log_time: received keeps the order)')
+
+    def _write(self, track, log_ns, data):
+        self._bag.write(track.name, log_ns, data)
+        track.count += 1
+
+    def _write_unstamped(self, track, data, received_ns):
+        log_ns = received_ns
+        if self._by_stamp:
+            log_ns = self._clock.now(received_ns)
+            if log_ns is None and len(self._waiting) < WAITING and any(
+                    t.stamped for t in self.tracks.values()):
+                self._waiting.append((track, received_ns, data))
+                return
+        self._write(track, received_ns if log_ns is None else log_ns, data)
+
+    def _write_waiting(self):
+        """Log what came before the first stamp at that stamp; at the end, when it came."""
+        for track, received_ns, data in self._waiting:
+            log_ns = self._clock.now(received_ns)
+            self._write(track, received_ns if log_ns is None else log_ns, data)
+        self._waiting.clear()
+
+    def _acknowledge(self):
+        if self._silent:
+            self._silent = [t for t in self._silent if t.last is None]
+        if self._unanswered and self.settled and not self._silent:
+            self._ack_publisher.publish(self._ack.pack(self._answered_ns))
+            self._unanswered = False
+
+    def finish(self):
+        """Take what is left in the queues and write all there is, but leave the bag open."""
+        end = time.monotonic() + FINISH_S
+        while self.poll() and time.monotonic() < end:
+            pass
+        self._write_waiting()

@@ -47,7 +47,7 @@ class MotionGeneratorNode(Node):
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
-            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, 10)
+            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, depth)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
         self._status = self.create_publisher(String, topics.STATUS.name, qos.latched())
         self.monitor = Monitor(self)
@@ -85,11 +85,8 @@ class MotionGeneratorNode(Node):
             allowed = min(allowed, lock.allowed())
             late = lock.overdue(self._next)
             if late and not self._paused:
-                self.monitor.fault(f'no acknowledgement on {topics.ACK.name} from '
-                                   f'{", ".join(late)} for {self.settings.pacing.timeout_s:g} s; '
-                                   'expected the consumers of pacing.required to run'
-                                   + (f' (heard: {", ".join(sorted(lock.strangers))})'
-                                      if lock.strangers else ''), fatal=True)
+                self.monitor.fault(lock.complaint(late, 'the consumers of pacing.required'),
+                                   fatal=True)
                 stop.request(EXIT_CONSUMER)
             if lock.repeat_due(self._next):
                 self._send(0)

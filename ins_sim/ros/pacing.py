@@ -3,6 +3,8 @@
 import math
 import time
 
+from ins_sim.messages import topics
+
 REPEAT_S = 0.1
 SILENCE_S = 0.5
 STARTING = -1
@@ -92,3 +94,9 @@ class LockStep:
         if sent - 1 <= self.slowest or time.monotonic() - self.moved < self._timeout_s:
             return ()
         return tuple(n for n, k in self._acked.items() if k == self.slowest)
+
+    def complaint(self, late, expected):
+        """Return the sentence about consumers that are late; expected: who was to run."""
+        heard = f' (heard: {", ".join(sorted(self.strangers))})' if self.strangers else ''
+        return (f'no acknowledgement on {topics.ACK.name} from {", ".join(late)} for '
+                f'{self._timeout_s:g} s; expected {expected} to run{heard}')

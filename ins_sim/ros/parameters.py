@@ -20,7 +20,7 @@ def declare_settings(node, cls):
         # a parameter file may serve all nodes: a key of another node is not a mistake
         if name not in ALL_NAMES and not name.startswith(OF_ROS):
             raise ValueError(unknown(name))
-    settings = build(cls, {name: _plain(value) for name, value in given.items()
+    settings = build(cls, {name: _plain(value, fields[name]) for name, value in given.items()
                            if name in fields})
     node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,
                                   _descriptor(fields[name], value))
@@ -29,7 +29,10 @@ def declare_settings(node, cls):
     return settings
 
 
-def _plain(value):
+def _plain(value, field):
+    if value is None and field.default == ():
+        # what ROS makes of an empty list in a file
+        return ()
     return value.tolist() if hasattr(value, 'tolist') else value
 
 

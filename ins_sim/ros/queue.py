@@ -28,13 +28,13 @@ class NeverReady(CallbackGroup):
 
 
 class HandQueue:
-    """A raw subscription out of the wait set."""
+    """A raw subscription out of the wait set; profile: its QoS, by default that of data."""
 
-    def __init__(self, node, topic, depth):
+    def __init__(self, node, topic, depth, profile=None):
         self._group = NeverReady()
         self._class = qos.message_class(topic)
         self.subscription = node.create_subscription(
-            self._class, topic.name, lambda data: None, qos.data(depth), raw=True,
+            self._class, topic.name, lambda data: None, profile or qos.data(depth), raw=True,
             callback_group=self._group)
         self._take = self.subscription.handle.take_message
 
@@ -42,6 +42,10 @@ class HandQueue:
         """Return the oldest message as bytes, or None."""
         taken = self._take(self._class, True)
         return None if taken is None else taken[0]
+
+    def take_with_info(self):
+        """Return the oldest message as bytes and what DDS notes of it, or None."""
+        return self._take(self._class, True)
 
 
 class DrivingQueue:

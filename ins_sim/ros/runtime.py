@@ -49,12 +49,12 @@ def deafen():
         signal.signal(number, signal.SIG_IGN)
 
 
-def node_main(load, args=None):
+def node_main(load, args=None, **more):
     """
     Run a node process and return its exit code.
 
-    load: function that imports and returns the node class.  The class is called with ``stop``,
-    and has ``run(executor)`` if it brings its own loop.
+    load: function that imports and returns the node class.  The class is called with ``stop``
+    and what else is given, and has ``run(executor, stop)`` if it brings its own loop.
     """
     stop = Stop()
     stop.install()
@@ -72,8 +72,8 @@ def node_main(load, args=None):
         node_class.NAME).warning(str(sentence))
     try:
         rclpy.init(args=args, signal_handler_options=rclpy.SignalHandlerOptions.NO)
-        node = node_class(stop=stop)
-    except ValueError as error:
+        node = node_class(stop=stop, **more)
+    except (ValueError, OSError) as error:
         _fatal(rclpy, node_class, error)
         stop.request(EXIT_PARAMETERS)
     except RuntimeError as error:

@@ -3,21 +3,24 @@
 import os
 import signal
 import subprocess
+import time
 
 from ins_sim import graph, parameter_files
+from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 
 RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
-RECORDER = 'recorder'
 END_S = 10.0
+NAP_S = 0.002
+LOOK_S = 0.1
 
 
 class Session:
     """
     The processes of ``graph.PROCESSES`` in a namespace of their own, and a recorder here.
 
-    settings: simulation.Settings, whose pacing must require RECORDER; folder: where parameters
+    settings: simulation.Settings, whose pacing must require the recorder; folder: where parameters
     and logs go; bag: path of the bag.  Use as a context manager: leaving it ends every process,
     and drops the bag unless ``run`` came to its end.
     """
@@ -26,11 +29,10 @@ class Session:
         self._settings, self._folder, self._bag = settings, folder, bag
         self.namespace = namespace
         self._processes = {}
-        self._recorder = None
+        self._writer = self._node = None
 
     def __enter__(self):
         import rclpy
-        from rclpy.executors import SingleThreadedExecutor
 
         from .bag_recorder import BagRecorder
         os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
@@ -38,11 +40,12 @@ class Session:
         # Ctrl-C belongs to the caller, as KeyboardInterrupt
         rclpy.init(context=self._context, signal_handler_options=rclpy.SignalHandlerOptions.NO)
         try:
-            self._recorder = BagRecorder(self._bag, RECORDED, namespace=self.namespace,
-                                         acknowledge=topics.ERROR_DRIFT.name,
-                                         context=self._context)
-            self._executor = SingleThreadedExecutor(context=self._context)
-            self._executor.add_node(self._recorder)
+            self._writer = BagWriter(self._bag, 'sqlite3')
+            self._node = rclpy.create_node(graph.RECORDER.name, namespace=self.namespace,
+                                           context=self._context)
+            self._recorder = BagRecorder(self._node, self._writer)
+            for topic in RECORDED:
+                self._recorder.add(topic)
             parameters = self._folder / 'parameters.yaml'
             parameters.write_text(parameter_files.dump(self._settings), encoding='utf-8')
             for process in graph.PROCESSES:
@@ -66,17 +69,22 @@ class Session:
         if one ends with an exit code.
         """
         master = self._processes[graph.MASTER]
-        while master.poll() is None:
-            self._executor.spin_once(timeout_sec=0.1)
+        looked = 0.0
+        while master.returncode is None:
+            if not self._recorder.poll():
+                time.sleep(NAP_S)
+            if time.monotonic() - looked < LOOK_S:
+                continue
+            looked = time.monotonic()
             progress(self._recorder.last_s)
             for name, process in self._processes.items():
                 if process.poll():
                     raise RuntimeError(self._obituary(name, process.returncode))
-        if master.returncode:
-            raise RuntimeError(self._obituary(graph.MASTER, master.returncode))
-        self._recorder.close()
-        self._bag = None
-        return dict(self._recorder.counts)
+        self._recorder.finish()
+        self._writer.close()
+        self._writer = None
+        return {topic.name: count for topic, count in zip(RECORDED,
+                                                          self._recorder.counts.values())}
 
     def _obituary(self, name, code):
         lines = self._log(name).read_text(errors='replace').strip().splitlines()
@@ -92,8 +100,8 @@ class Session:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
-        if self._recorder is not None:
-            if self._bag is not None:
-                self._recorder.discard()
-            self._recorder.destroy_node()
+        if self._writer is not None:
+            self._writer.discard()
+        if self._node is not None:
+            self._node.destroy_node()
         self._context.try_shutdown()

@@ -1,0 +1,96 @@
+"""The launch files, read with stand-ins for launch: what they start is what the table says."""
+
+import runpy
+import sys
+from types import ModuleType, SimpleNamespace
+
+from ins_sim import graph, resources
+from ins_sim.messages import topics
+import pytest
+
+MODULES = {
+    'launch': ['LaunchDescription'],
+    'launch.actions': ['DeclareLaunchArgument', 'ExecuteProcess', 'GroupAction', 'OpaqueFunction',
+                       'RegisterEventHandler', 'Shutdown'],
+    'launch.event_handlers': ['OnProcessExit'],
+    'launch.substitutions': [],
+    'launch_ros': [], 'launch_ros.actions': ['Node', 'PushRosNamespace'],
+    'launch_ros.parameter_descriptions': ['ParameterValue']}
+
+
+class Call(SimpleNamespace):
+    """What a constructor of launch was called with."""
+
+
+def stand_in(name):
+    """Return a constructor that keeps its arguments."""
+    return lambda *words, **named: Call(what=name, words=words, **named)
+
+
+class Configuration:
+    """The value of a launch argument."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def perform(self, context):
+        """Return it."""
+        return context[self.name]
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """Return the function that gives the actions of a launch file for some arguments."""
+    for module, names in MODULES.items():
+        stub = ModuleType(module)
+        for name in names:
+            setattr(stub, name, stand_in(name))
+        monkeypatch.setitem(sys.modules, module, stub)
+    sys.modules['launch.substitutions'].LaunchConfiguration = Configuration
+
+    def actions(file, **given):
+        content = runpy.run_path(str(resources.launch(file)))
+        described = content['generate_launch_description']().words[0]
+        values = {a.words[0]: getattr(a, 'default_value', None) for a in described
+                  if a.what == 'DeclareLaunchArgument'}
+        assert set(given) <= set(values)
+        assert all(a.description for a in described if a.what == 'DeclareLaunchArgument')
+        return flat(described[-1].function({**values, **given}))
+
+    return actions
+
+
+def flat(actions):
+    """Return the nodes and processes among actions by name."""
+    found = {}
+    for action in actions:
+        if action.what in ('Node', 'ExecuteProcess'):
+            found[action.name] = action
+        elif action.what == 'GroupAction':
+            found.update(flat(action.words[0]))
+    return found
+
+
+def test_simulation_with_and_without_a_recorder(started):
+    """The recorder is one of the consumers, and records what the nodes publish."""
+    plain = started('simulation')
+    assert set(plain) == {process.name for process in graph.PROCESSES}
+    assert 'pacing.required' not in plain[graph.MASTER].parameters[-1]
+    nodes = started('simulation', record='bag', lock_step='true')
+    assert set(nodes) == {*plain, 'recorder'}
+    assert nodes[graph.MASTER].parameters[-1]['pacing.required'] == ['strapdown', 'recorder']
+    own = nodes['recorder'].parameters[-1]
+    assert own['record.topics'] == [topic.name for topic in topics.DATA]
+    assert own['storage.path'] == 'bag' and nodes['recorder'].executable == 'recorder'
+
+
+def test_replay(started):
+    """The nodes behind the source, and the verb that plays into them."""
+    for source, names in (('imu', {'strapdown'}), ('truth', {'strapdown', 'imu_sensor'})):
+        nodes = started('replay', bag='old', source=source, namespace='left', loop='true')
+        assert set(nodes) == {*names, 'player'}
+        words = nodes['player'].cmd
+        assert words[3:9] == ['play', 'old', '--lock-step', 'strapdown', '--loop', '--topics']
+        assert words[9:] == [*graph.REPLAYS[source].topics, '--ros-args', '-r', '__ns:=/left']
+    with pytest.raises(ValueError, match="source is 'ins'; expected one of truth, imu"):
+        started('replay', bag='old', source='ins')

@@ -1,0 +1,325 @@
+"""The recorder: any topic, whatever its type and quality of service, and how it ends."""
+
+import re
+import signal
+import time
+
+from ins_sim.bags import qos as bag_qos
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.bags.definitions import define
+from ins_sim.cli.main import main
+from live import Chain, Listener
+import pytest
+from talker import Talker
+
+from ins_sim.messages import topics
+
+pytest.importorskip('rclpy')
+pytestmark = pytest.mark.live
+
+SECOND = 1_000_000_000
+KINDS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none')]
+
+
+@pytest.fixture
+def talker(ros_domain):
+    talker = Talker(ros_domain)
+    yield talker
+    talker.close()
+
+
+@pytest.fixture
+def chain(ros_domain, tmp_path):
+    chain = Chain(ros_domain, tmp_path)
+    yield chain
+    chain.end()
+
+
+def end(chain, recorder, number=signal.SIGINT, code=0):
+    """End a recorder; return {topic: (type, recorded, what was lost)} of what it said."""
+    recorder.send_signal(number)
+    assert recorder.wait(30.0) == code, chain.text(recorder)
+    return summary(chain.text(recorder))
+
+
+def summary(text):
+    """Return {topic: (type, recorded, rest)} of the lines at the end."""
+    assert 'Traceback' not in text, text
+    return {name: (kind, int(count), rest) for name, kind, count, rest in re.findall(
+        r'\]: (/\S+) \((\S+)\): (\d+) recorded, (.*)', text)}
+
+
+def send(publisher, messages, wait_s=0.2):
+    """Publish, not faster than DDS takes it, and leave time to arrive."""
+    for message in messages:
+        publisher.publish(message)
+        time.sleep(1e-4)
+    time.sleep(wait_s)
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path):
+    """Every message of every topic once, at its own stamp, its bytes those that others hear."""
+    from ins_sim.ros.queue import HandQueue
+    heard = {topic.name: {} for topic in topics.DATA}
+    listener = Listener(ros_domain, ())
+    queues = [(HandQueue(listener.node, topic, 10000), topic) for topic in topics.DATA]
+    path = tmp_path / 'bag'
+    recorder = chain.start_verb('record', *heard, '-o', path, '--storage', storage)
+    parameters = {'rate_hz': 100.0, 'duration_s': 5.0, 'pacing.real_time_factor': 0.0,
+                  'pacing.required': '[strapdown, recorder]'}
+    started = [chain.start(n, parameters) for n in ('motion_generator', 'imu_sensor', 'strapdown')]
+    try:
+        assert started[0].wait(60.0) == 0, chain.text(started[0])
+        time.sleep(0.3)
+        for queue, topic in queues:
+            while (data := queue.take()) is not None:
+                heard[topic.name][topic.reader().read(data)[0]] = data
+    finally:
+        listener.close()
+    said = end(chain, recorder)
+    with open_bag(path) as bag:
+        assert not bag.cut and bag.storage == storage
+        for topic in topics.DATA:
+            messages = list(bag.messages([topic.name]))
+            assert [t for _, t, _ in messages] == [10**7 * k for k in range(501)]
+            assert {t: d for _, t, d in messages if t in heard[topic.name]} == heard[topic.name]
+            assert len(heard[topic.name]) > 400
+            assert said['/' + topic.name][:2] == (topic.type_name, 501)
+            assert said['/' + topic.name][2].startswith('0 lost')
+
+
+def test_all_topics_in_lock_step(chain, tmp_path):
+    """Sample 0 is answered once no new topic has appeared for a second: not one is missed."""
+    parameters = {'rate_hz': 100.0, 'duration_s': 2.0, 'pacing.real_time_factor': 0.0,
+                  'pacing.required': '[strapdown, recorder]'}
+    recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
+    started = [chain.start(n, parameters) for n in ('strapdown', 'imu_sensor', 'motion_generator')]
+    assert started[-1].wait(60.0) == 0, chain.text(started[-1])
+    time.sleep(0.3)
+    said = end(chain, recorder)
+    for topic in topics.DATA:
+        assert said['/' + topic.name][1] == 201, said
+    assert {'/sim/status', '/sim/ack', '/rosout', '/diagnostics'} <= set(said)
+    with open_bag(tmp_path / 'bag') as bag:
+        spans = bag.spans()
+        # what has no stamp lies within the run, give or take its wall time
+        assert all(0 <= s.first_ns and s.last_ns < 60 * SECOND for s in spans.values() if s.count)
+
+
+def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
+    """
+    Types of others, one unknown to the bags too; best effort; latched; a topic that comes late.
+
+    Bytes, types, definitions and offered qualities are those of the publishers.
+    """
+    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+    from nav_msgs.msg import Goals
+    from rclpy.serialization import serialize_message
+    from std_msgs.msg import String
+    path = tmp_path / 'bag'
+    text = talker.publisher(String, 'chatter')
+    weak = talker.publisher(String, 'weak', reliability='best_effort')
+    latched = talker.publisher(String, 'latched', durability='transient_local', depth=1)
+    latched.publish(String(data='before anyone listened'))
+    recorder = chain.start_verb('record', 'chatter', 'weak', 'latched', 'late/array', 'goals',
+                                'nowhere', '-o', path)
+    chain.wait_text(recorder, '/late/array, /goals, /nowhere: no publisher yet')
+    array = talker.publisher(DiagnosticArray, 'late/array')
+    goals = talker.publisher(Goals, 'goals')
+    talker.wait_matched(text, weak, latched, array, goals)
+    sent = {'/chatter': [String(data=f'{k}') for k in range(50)],
+            '/weak': [String(data='the same again')] * 20,
+            '/late/array': [DiagnosticArray(status=[DiagnosticStatus(name=f'{k}')] * k)
+                            for k in range(10)],
+            '/goals': [Goals() for _ in range(3)]}
+    # once: the bytes between the fields are whatever lay in memory
+    sent = {name: [serialize_message(m) for m in messages] for name, messages in sent.items()}
+    begin_ns = time.time_ns()
+    for publisher, messages in zip((text, weak, array, goals), sent.values()):
+        send(publisher, messages)
+    end_ns = time.time_ns()
+    said = end(chain, recorder)
+    sent['/latched'] = [serialize_message(String(data='before anyone listened'))]
+    with open_bag(path) as bag:
+        assert set(bag.topics) == set(sent)
+        for name, messages in sent.items():
+            got = list(bag.messages([name]))
+            # DDS fills the last word of a message up
+            for (_, _, data), message in zip(got, messages):
+                assert data[:len(message)] == message and len(data) - len(message) < 4
+            assert said[name][1:] == (len(messages), '0 lost') and len(got) == len(messages)
+            # without any stamp the time of reception is all there is
+            assert name == '/latched' or all(begin_ns <= t <= end_ns for _, t, _ in got)
+        offers = {name: bag_qos.profiles(c.qos)[0] for name, c in bag.topics.items()}
+        assert bag.topics['/chatter'].definition == define('std_msgs/msg/String')[0]
+        definition = bag.topics['/goals'].definition
+        assert 'PoseStamped[] goals' in definition
+        assert 'MSG: geometry_msgs/Quaternion' in definition
+        assert bag.topics['/goals'].type_hash.startswith('RIHS01_')
+    assert offers['/weak']['reliability'] == 'best_effort'
+    assert offers['/latched']['durability'] == 'transient_local'
+    assert offers['/chatter']['reliability'] == 'reliable'
+
+
+def test_our_names_in_other_hands(talker, chain, tmp_path):
+    """A driver with best effort on imu/data_raw is recorded; another type is said to be one."""
+    from sensor_msgs.msg import Imu
+    from std_msgs.msg import String
+    imu = talker.publisher(Imu, 'imu/data_raw', reliability='best_effort')
+    words = talker.publisher(String, 'truth/imu')
+    recorder = chain.start_verb('record', 'imu/data_raw', 'truth/imu', '-o', tmp_path / 'bag')
+    chain.wait_text(recorder, '/truth/imu: its type is std_msgs/msg/String; expected sensor_msgs')
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**7) for k in range(100)])
+    send(words, [String(data='not an Imu')])
+    said = end(chain, recorder)
+    assert said['/imu/data_raw'][1:] == (100, '0 lost') and said['/truth/imu'][1] == 0
+
+
+def test_all_topics_namespace_and_times(talker, chain, tmp_path):
+    """
+    With --all hidden topics stay out; what has no stamp is logged at the stamps around it.
+
+    A relative name lies in the namespace of the recorder.
+    """
+    from std_msgs.msg import String
+    imu, text = talker.imu('/robot/imu'), talker.publisher(String, '/robot/words')
+    hidden = talker.publisher(String, '/robot/_hidden')
+    recorder = chain.start_verb('record', 'imu', '--all', '-o', tmp_path / 'bag', '--ros-args',
+                                '-r', '__ns:=/robot')
+    talker.wait_matched(imu, text)
+    send(text, [String(data='before the first stamp')])
+    send(imu, [talker.imu_bytes(k * 10**7) for k in range(500, 601)])
+    send(text, [String(data='after the last one')])
+    said = end(chain, recorder)
+    assert hidden.get_subscription_count() == 0 and '/robot/_hidden' not in said
+    with open_bag(tmp_path / 'bag') as bag:
+        (_, first, _), (_, last, _) = bag.messages(['/robot/words'])
+        stamps = [t for _, t, _ in bag.messages(['/robot/imu'])]
+    assert stamps == [k * 10**7 for k in range(500, 601)]
+    assert first == stamps[0] and 0 <= last - stamps[-1] < 5 * SECOND
+    assert said['/rosout'][1] > 0
+
+
+def test_received_times_and_repeats(talker, chain, tmp_path):
+    """log_time received: when it came. Equal stamped messages are one, equal texts are many."""
+    from std_msgs.msg import String
+    imu, text = talker.imu(), talker.publisher(String, 'words')
+    recorder = chain.start('recorder', {'record.topics': '[imu, words]', 'storage.path':
+                                        tmp_path / 'bag', 'record.log_time': 'received'})
+    talker.wait_matched(imu, text)
+    begin_ns = time.time_ns()
+    send(imu, [talker.imu_bytes(0)] * 3 + [talker.imu_bytes(10**7)])
+    send(text, [String(data='again')] * 3)
+    said = end(chain, recorder)
+    assert said['/imu'][1:] == (2, '0 lost, 2 repeated') and said['/words'][1:] == (3, '0 lost')
+    with open_bag(tmp_path / 'bag') as bag:
+        assert all(begin_ns <= t <= time.time_ns() for _, t, _ in bag.messages())
+
+
+def test_losses_are_counted(talker, chain, tmp_path):
+    """A queue of ten that is not emptied in time: recorded and lost are what was sent."""
+    imu = talker.imu()
+    recorder = chain.start('recorder', {'record.topics': '[imu]', 'record.depth': 10,
+                                        'storage.path': tmp_path / 'bag'})
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**6) for k in range(10)])
+    recorder.send_signal(signal.SIGSTOP)
+    send(imu, [talker.imu_bytes(k * 10**6) for k in range(10, 500)])
+    recorder.send_signal(signal.SIGCONT)
+    time.sleep(0.5)
+    send(imu, [talker.imu_bytes(k * 10**6) for k in range(500, 510)])
+    count, rest = end(chain, recorder)['/imu'][1:]
+    print(f'\n{count} recorded, {rest}')
+    assert rest == f'{510 - count} lost' and 20 <= count < 510
+    with open_bag(tmp_path / 'bag') as bag:
+        assert len(list(bag.messages())) == count
+
+
+@pytest.mark.parametrize('storage, options', [
+    ('mcap', ('--max-duration', '1.0')), ('sqlite3', ('--max-duration', '1.0')),
+    ('mcap', ('--max-size', '0.05')), ('sqlite3', ('--max-size', '0.05'))])
+def test_splits(storage, options, talker, chain, tmp_path):
+    """By time or by size, whole together and each alone."""
+    imu = talker.imu()
+    recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
+                                *options)
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**7) for k in range(550)])
+    assert end(chain, recorder)['/imu'][1:] == (550, '0 lost')
+    with open_bag(tmp_path / 'bag') as bag:
+        assert [t for _, t, _ in bag.messages()] == [k * 10**7 for k in range(550)]
+        files = bag.files
+    counts = []
+    for file in files:
+        with open_bag(file) as part:
+            counts.append(len(list(part.messages())))
+    print(f'\n{storage} {options}: {counts}')
+    assert sum(counts) == 550 and len(files) >= 3
+    if options[0] == '--max-duration':
+        assert counts == [100, 100, 100, 100, 100, 50]
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('storage, compression', KINDS)
+def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, tmp_path):
+    """While messages come: exit code 0, all that was said to be in it is."""
+    imu = talker.imu()
+    recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
+                                '--compression', compression)
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**6) for k in range(1000)], wait_s=0.0)
+    _, count, rest = end(chain, recorder, number)['/imu']
+    with open_bag(tmp_path / 'bag') as bag:
+        assert not bag.cut and len(list(bag.messages())) == count
+    assert rest == '0 lost' and count > 500
+
+
+@pytest.mark.parametrize('numbers', [(signal.SIGINT,), (signal.SIGTERM,),
+                                     (signal.SIGINT, signal.SIGINT)])
+def test_signals_whenever_they_come(numbers, chain, tmp_path):
+    """While it imports, starts, records or ends: code 0, and no bag or a whole one."""
+    for k in range(6):
+        path = tmp_path / f'bag_{k}'
+        recorder = chain.start_verb('record', '--all', '-o', path)
+        # before that the handlers are not those of a node, and the code is that of a verb
+        wait_started(chain, recorder, k)
+        for number in numbers:
+            recorder.send_signal(number)
+            time.sleep(0.02)
+        assert recorder.wait(30.0) == 0, chain.text(recorder)
+        assert 'Traceback' not in chain.text(recorder)
+        if path.exists():
+            with open_bag(path) as bag:
+                assert not bag.cut
+
+
+def wait_started(chain, recorder, k):
+    """Wait for the handlers of a node, and the more the larger k."""
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
+        with open(f'/proc/{recorder.pid}/maps') as maps:
+            if 'rclpy' in maps.read():
+                break
+        time.sleep(0.005)
+    if k > 3:
+        chain.wait_text(recorder, 'recording into')
+    time.sleep(0.1 * k)
+
+
+@pytest.mark.parametrize('storage, compression', KINDS)
+def test_killed_in_the_middle(storage, compression, talker, chain, tmp_path, capsys):
+    """SIGKILL: all but the last second is there, and info says that the bag was cut."""
+    imu = talker.imu()
+    recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
+                                '--compression', compression)
+    talker.wait_matched(imu)
+    send(imu, [talker.imu_bytes(k * 10**7) for k in range(1000)], wait_s=0.0)
+    recorder.send_signal(signal.SIGKILL)
+    recorder.wait(10.0)
+    with open_bag(tmp_path / 'bag') as bag:
+        stamps = [t for _, t, _ in bag.messages()]
+    assert stamps == [k * 10**7 for k in range(len(stamps))] and len(stamps) >= 800
+    assert main(['info', str(tmp_path / 'bag')]) == 0
+    assert 'state     cut: it was not closed' in capsys.readouterr().out

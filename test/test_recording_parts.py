@@ -1,0 +1,123 @@
+"""The parts of recorder and player that need no ROS: numbers, times, the first sample."""
+
+from ins_sim.bags.bag_writer import BagWriter
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND, stamp_of
+from ins_sim.ros.gaps import Gaps
+from ins_sim.ros.playing import Beginning, Options, Playing
+from ins_sim.ros.run_clock import RunClock
+import pytest
+
+PACK = topics.IMU_RAW.writer().pack
+
+
+def imu(stamp_ns):
+    """Return an Imu message."""
+    return PACK(stamp_ns, (0.0,) * 3, (0.0,) * 3)
+
+
+@pytest.mark.parametrize('numbers, publishers, lost, before', [
+    ([1, 2, 3, 4], 1, 0, 0),
+    ([7, 8, 9], 1, 0, 6),
+    ([1, 2, 5, 6, 10], 1, 5, 0),
+    ([1, 2, 1, 3, 2, 4, 3], 2, 0, 0),
+    ([5, 1, 6, 2, 3, 7], 2, 0, 4),
+    ([1, 1, 2, 2, 5, 3, 6], 2, 2, 0),
+    # a publisher that starts again, before the graph has told of it
+    ([1, 2, 3, 1, 2, 3, 4], 1, 0, 0),
+    # of a topic that is late by one: what was counted as lost and still comes stays counted
+    ([1, 3, 2, 4], 1, 1, 0)])
+def test_gaps(numbers, publishers, lost, before):
+    """Without loss nothing is counted, whatever the interleaving."""
+    gaps = Gaps()
+    gaps.publishers = publishers
+    for number in numbers:
+        gaps.take(number)
+    assert (gaps.lost, gaps.before, gaps.known) == (lost, before, True)
+
+
+def test_without_numbers_losses_are_unknown():
+    """Some middleware numbers nothing."""
+    gaps = Gaps()
+    gaps.take(None)
+    assert not gaps.known and gaps.lost == 0
+
+
+def test_the_time_of_a_run():
+    """The newest stamp, running on; late topics do not turn it back, a run that restarts does."""
+    clock = RunClock()
+    assert clock.now(5) is None
+    assert clock.hear(imu(100 * SECOND), 10) == 100 * SECOND
+    assert clock.now(15) == 100 * SECOND + 5 and clock.now(5) == 100 * SECOND
+    assert clock.hear(imu(100 * SECOND - 10**7), 20) == 100 * SECOND - 10**7
+    assert clock.now(20) == 100 * SECOND + 10
+    clock.hear(imu(0), 30)
+    assert clock.now(31) == 1
+
+
+@pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x00\x00', b'\x00\x00' + imu(5)[2:],
+                                  imu(-SECOND)])
+def test_stamps_that_no_bag_can_hold(data):
+    """Too short, of the other byte order, before 1970: they do not touch the clock."""
+    clock = RunClock()
+    assert clock.hear(data, 1) is None and clock.now(2) is None
+
+
+@pytest.fixture
+def bag(tmp_path):
+    """Return the path of a bag: words, truth from before the first reading on, readings, acks."""
+    path = tmp_path / 'bag'
+    truth = topics.TRUTH_ODOMETRY
+    with BagWriter(path) as writer:
+        for name, kind in (('words', topics.STRING), (truth.name, truth.type_name),
+                           ('imu/data_raw', topics.IMU), ('sim/ack', topics.HEADER)):
+            writer.add_topic(name, kind)
+        writer.write('words', 0, b'\x00\x01\x00\x00\x02\x00\x00\x00a\x00')
+        for k in range(10):
+            stamp_ns = k * SECOND
+            writer.write(truth.name, stamp_ns, truth.writer().pack(
+                stamp_ns, (0.0,) * 7, (0.0,) * 6))
+            if k >= 2:
+                writer.write('imu/data_raw', stamp_ns, imu(stamp_ns))
+            writer.write('sim/ack', stamp_ns, imu(stamp_ns))
+    return path
+
+
+def test_the_first_sample_of_lock_step(bag):
+    """What is older goes first, what is newer or has no stamp afterwards; nothing is missing."""
+    playing = Playing(bag, Options(required=('strapdown',)))
+    assert playing.driver == '/imu/data_raw' and playing.left_out == ['/sim/ack']
+    beginning = Beginning(playing, stamp_of)
+    assert beginning.stamp_ns == 2 * SECOND
+    assert [(n, t // SECOND) for n, t, _ in beginning.early] == [
+        ('/truth/odometry', 0), ('/truth/odometry', 1)]
+    assert [(n, t // SECOND) for n, t, _ in beginning.repeated] == [
+        ('/truth/odometry', 2), ('/imu/data_raw', 2)]
+    assert [(n, t // SECOND) for n, t, _ in beginning.held] == [
+        ('/words', 0), ('/truth/odometry', 3)]
+    assert len(list(beginning.rest)) == 13
+    playing.close()
+
+
+@pytest.mark.parametrize('options, sentence', [
+    ({'rate': 0.0}, '--rate is 0; expected more than 0, up to 1e6, or 0 with --lock-step'),
+    ({'rate': float('nan')}, '--rate is nan'),
+    ({'start_s': -1.0}, '--start is -1; expected 0 to 1e'),
+    ({'start_s': 100.0}, '--start is 100 s; expected at most 9 s, the length of'),
+    ({'clock_hz': 0.0}, '--clock is 0; expected 0.001 to 10000'),
+    ({'topics': ('imu/data',)}, 'has no topic /imu/data; the nearest is /imu/data_raw'),
+    ({'topics': ('words',), 'required': ('strapdown',)}, 'has no topic with stamps'),
+    ({'topics': ('sim/ack',), 'required': ('strapdown',)}, 'has no message on a topic'),
+    ({'required': ('strapdown',), 'window': 0}, '--window is 0; expected 1 to 2000')])
+def test_options_that_are_refused(options, sentence, bag):
+    """One sentence that names option, value and expectation."""
+    with pytest.raises(ValueError) as error:
+        Playing(bag, Options(**options))
+    assert sentence in str(error.value) and '\n' not in str(error.value)
+
+
+def test_start_and_duration(bag):
+    """Both count from the first message of the topics that are played; the ends are in."""
+    playing = Playing(bag, Options(topics=('imu/data_raw',), start_s=1.0, duration_s=3.0))
+    assert [t // SECOND for _, t, _ in playing.messages()] == [3, 4, 5, 6]
+    playing.close()
