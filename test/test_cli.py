@@ -148,3 +148,10 @@ def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
     text = ' '.join(capsys.readouterr().out.split())
     assert 'no prediction: the gyro is unstable' in text and 'at most' in text
     assert 'predicted_t_s' not in np.load(tmp_path / 'b' / 'run.npz')
+
+
+def test_tables_show_their_units(capsys, tmp_path):
+    """No unit is taken for markup."""
+    assert main(['predict', '--params-file', 'motion_2', '-p', 'duration_s:=10.0']) == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert "psi' [rad/s]" in text and 'drift north [deg/h]' in text

@@ -86,6 +86,14 @@ def test_husky_levelled_without_a_word_on_its_mounting(shared_data, tmp_path, ca
     assert np.linalg.norm(off) < math.radians(5.0)
 
 
+def test_husky_as_if_its_imu_lay_flat(shared_data, tmp_path, capsys):
+    """Without its mounting it seems to lie on its side, which is said."""
+    summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out')
+    capsys.readouterr()
+    assert abs(summary['figures']['roll_deg']) > 80.0
+    assert any('is the IMU mounted turned?' in note for note in summary['notes'])
+
+
 def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsys):
     """A start on the move: attitude of the IMU, velocity of the wheels, position of the fix."""
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out', *HUSKY,

@@ -13,6 +13,9 @@ from .reference import LONGEST_STEP_S
 
 DEG_PER_HOUR = math.degrees(3600.0)
 
+# a vehicle that stands is not tilted by more, deg
+UPRIGHT_DEG = 45.0
+
 
 @dataclass(frozen=True)
 class Sources:
@@ -203,6 +206,9 @@ class Starter:
         figures.update(roll_deg=roll, pitch_deg=pitch, heading_deg=heading)
         notes.append(f'start at {seconds(still.end_ns)}: roll {roll:.3f}, pitch {pitch:.3f}, '
                      f'heading {heading:.3f} deg')
+        if max(abs(roll), abs(pitch)) > UPRIGHT_DEG:
+            notes.append('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or '
+                         'mounting.source level)')
         return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):

@@ -10,6 +10,7 @@ matplotlib.use('Agg')
 
 from matplotlib.figure import Figure  # noqa: E402
 from rich.console import Console  # noqa: E402
+from rich.markup import escape  # noqa: E402
 from rich.table import Table  # noqa: E402
 
 from . import storage  # noqa: E402
@@ -44,7 +45,7 @@ def show(title, result, console=None):
     for comparison in result.comparisons:
         table = Table(title=f'{title} less {comparison.name}')
         for _, head in COLUMNS:
-            table.add_column(head, justify='right')
+            table.add_column(escape(head), justify='right')
         for row in rows(comparison, start_ns, end_ns):
             table.add_row(*(number(getattr(row, name)) for name, _ in COLUMNS))
         console.print(table)

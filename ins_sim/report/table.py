@@ -1,6 +1,7 @@
 """Tables for a terminal."""
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from .summary import DEG_PER_HOUR
@@ -32,7 +33,7 @@ def show_resonances(resonances, console=None):
         return
     table = Table(title='resonances of motion 2')
     for head in ('resonance', "psi' [rad/s]", 'drift east [deg/h]', 'drift north [deg/h]'):
-        table.add_column(head, justify='left' if head == 'resonance' else 'right')
+        table.add_column(escape(head), justify='left' if head == 'resonance' else 'right')
     for name, rate, drift in resonances:
         table.add_row(name, number(rate), number(drift[0] * DEG_PER_HOUR),
                       number(drift[1] * DEG_PER_HOUR))
