@@ -81,7 +81,7 @@ def wait_handlers(process, timeout_s=60.0):
 
 class Listener:
     """
-    Hears Topics as {topic name: {stamp_ns: doubles}} in a context of its own.
+    Hears Topics as {topic name: {stamp_ns: doubles}} in a context of its own; raw: their bytes.
 
     It acknowledges as 'listener' what it has heard on all of them.  ``repeats`` counts messages
     whose stamp was heard before.
@@ -97,6 +97,7 @@ class Listener:
         self._queues = [(HandQueue(self.node, topic, 100000), topic.reader(), topic.name)
                         for topic in wanted]
         self.heard = {topic.name: {} for topic in wanted}
+        self.raw = {topic.name: {} for topic in wanted}
         self.repeats = 0
         self._ack, self._publisher = Writer(topics.HEADER, 'listener'), ack_publisher(self.node)
 
@@ -107,6 +108,7 @@ class Listener:
                 stamp_ns, *runs = reader.read(data)
                 self.repeats += stamp_ns in self.heard[name]
                 self.heard[name][stamp_ns] = sum(runs, ())
+                self.raw[name][stamp_ns] = data
         if all(self.heard.values()):
             common = min(next(reversed(stamps)) for stamps in self.heard.values())
             self._publisher.publish(self._ack.pack(common))

@@ -6,7 +6,6 @@ import numpy as np
 
 from .catalogue import check
 from .error_settings import Sampling
-from .noise import stream
 
 # Stamps move by less than half a period, five standard deviations, so that they keep their order.
 SIGMAS = 5.0
@@ -33,9 +32,12 @@ class Sampler:
         self._jitter_ns = 1000.0 * settings.jitter_us
         self._most_ns = (dt_ns - 1) // 2
         self._lost = settings.drop_out_probability
-        self._jitters = stream(seed, run, f'{name}.jitter')
-        self._drop_outs = stream(seed, run, f'{name}.drop_out')
         self.perfect = not (self._latency_ns or self._jitter_ns or self._lost)
+        if not self.perfect:
+            # NumPy's generators cost the start of a node with perfect stamps nothing
+            from .noise import stream
+            self._jitters = stream(seed, run, f'{name}.jitter')
+            self._drop_outs = stream(seed, run, f'{name}.drop_out')
 
     def stamp(self, index, t_ns):
         """Return the stamp of sample index, taken at t_ns, or None where it is lost."""

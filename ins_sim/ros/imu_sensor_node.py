@@ -1,6 +1,5 @@
 """Node imu_sensor: streamed truth in, readings of the IMU out."""
 
-from ins_sim.bags.motions import make_motion
 from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instants import period_ns
 from ins_sim.core.instrument import reported_variances
@@ -22,7 +21,12 @@ class ImuSensorNode(StageNode):
     def make_stage(self):
         """Return the IMU."""
         settings = self.settings
-        return make_imu(settings, make_motion(settings) if settings.source == 'motion' else None)
+        motion = None
+        if settings.source == 'motion':
+            # off the way of a node that hears its motion
+            from ins_sim.bags.motions import make_motion
+            motion = make_motion(settings)
+        return make_imu(settings, motion)
 
     def make_outputs(self):
         """Make publishers, reader and writers."""
