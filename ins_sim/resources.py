@@ -28,6 +28,20 @@ def config(name):
     return _find('config', name, '.yaml')
 
 
+def parameter_file(name):
+    """
+    Return the path of a parameter file given by path or by the name of a shipped one.
+
+    Raises FileNotFoundError where there is none.
+    """
+    path = Path(name)
+    if path.is_file():
+        return path
+    if path.suffix or path.parent != Path('.'):
+        raise FileNotFoundError(f'the parameter file {name} does not exist')
+    return config(name)
+
+
 def launch(name):
     """Return the path of the launch file ``name``, such as 'simulation'."""
     return _find('launch', name, '.launch.py')

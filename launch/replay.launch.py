@@ -4,8 +4,6 @@ Play a bag into the strapdown, or into the IMU and the strapdown; end when the b
 Example: ros2 launch ins_sim replay.launch.py bag:=DIR source:=truth params_file:=motion_2
 """
 
-from pathlib import Path
-
 from ins_sim import graph, resources
 from launch import LaunchDescription
 from launch.actions import (DeclareLaunchArgument, ExecuteProcess, GroupAction, OpaqueFunction,
@@ -31,16 +29,6 @@ ARGUMENTS = (
 )
 
 
-def _config(name):
-    """Return the path of a parameter file given by name or path."""
-    path = Path(name)
-    if not path.is_file() and path.suffix == '' and path.parent == Path('.'):
-        return str(resources.config(name))
-    if not path.is_file():
-        raise FileNotFoundError(f'params_file {name!r} does not exist')
-    return str(path)
-
-
 def _options(value):
     """Return the options of ``ins_sim play``."""
     words = ['--rate', value['rate']] if value['rate'] else []
@@ -60,7 +48,7 @@ def _replay(context):
         raise ValueError(f'source is {value["source"]!r}; expected one of '
                          f'{", ".join(graph.REPLAYS)}')
     replay = graph.REPLAYS[value['source']]
-    overlay = [_config(value['params_file'])] if value['params_file'] else []
+    overlay = [str(resources.parameter_file(value['params_file']))] if value['params_file'] else []
     use_sim_time = ParameterValue(LaunchConfiguration('use_sim_time'), value_type=bool)
     nodes = [Node(
         package='ins_sim', executable=process.executable, name=process.name, output='screen',

@@ -5,8 +5,6 @@ Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_tim
 With record:=DIR a recorder writes their topics into a bag, and lock-step waits for it as well.
 """
 
-from pathlib import Path
-
 from ins_sim import graph, resources
 from ins_sim.messages import topics
 from launch import LaunchDescription
@@ -29,16 +27,6 @@ ARGUMENTS = (
 )
 
 
-def _config(name):
-    """Return the path of a parameter file given by name or path."""
-    path = Path(name)
-    if not path.is_file() and path.suffix == '' and path.parent == Path('.'):
-        return str(resources.config(name))
-    if not path.is_file():
-        raise FileNotFoundError(f'params_file {name!r} does not exist')
-    return str(path)
-
-
 def _overrides(process, value):
     """Return the parameters that the launch arguments set for a process."""
     typed = {name: ParameterValue(LaunchConfiguration(name), value_type=kind) for name, kind in (
@@ -58,7 +46,7 @@ def _overrides(process, value):
 def _simulation(context):
     """Return the actions, now that the values of the arguments are known."""
     value = {name: LaunchConfiguration(name).perform(context) for name, _, _ in ARGUMENTS}
-    overlay = [_config(value['params_file'])] if value['params_file'] else []
+    overlay = [str(resources.parameter_file(value['params_file']))] if value['params_file'] else []
     processes = (*([graph.RECORDER] if value['record'] else []), *graph.PROCESSES)
     nodes = {process.name: Node(
         package='ins_sim', executable=process.executable, name=process.name, output='screen',

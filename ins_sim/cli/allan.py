@@ -6,8 +6,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from . import settings as chosen_settings
-from .. import parameter_files
+from .. import parameter_files, resources
 from ..bags.reading import read_imu
 from ..bags.storages import is_bag
 from ..core.gyro_pair import COVARIANCE_FACTORS
@@ -55,7 +54,7 @@ def run(chosen):
 
 def _record(chosen, console):
     """Return the ImuSamples, the simulation.Settings behind them or None, and a title."""
-    given = [chosen_settings.locate(name) for name in chosen.params_file]
+    given = [resources.parameter_file(name) for name in chosen.params_file]
     if chosen.source is None:
         if chosen.topic is not None:
             raise ValueError(f'--topic is {chosen.topic}; expected a bag as SOURCE with it')

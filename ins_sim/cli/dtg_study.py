@@ -5,7 +5,6 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from . import settings as chosen_settings
 from .. import parameter_files, resources
 from ..core import dtg_study as study
 from ..core.dtg_study_settings import DtgStudySettings
@@ -17,7 +16,7 @@ SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')
 
 def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
-    paths = ([chosen_settings.locate(name) for name in chosen.params_file]
+    paths = ([resources.parameter_file(name) for name in chosen.params_file]
              or [resources.config(name) for name in SHIPPED])
     studies = {}
     for path in paths:

@@ -3,8 +3,7 @@
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from . import settings as chosen_settings
-from .. import parameter_files
+from .. import parameter_files, resources
 from ..bags import imu_source
 from ..core.navigate import navigate
 from ..core.navigate_settings import NAVIGATE
@@ -13,7 +12,7 @@ from ..report import navigation, storage
 
 def run(chosen):
     """Read, navigate, write and show; return the exit code."""
-    paths = [chosen_settings.locate(name) for name in chosen.params_file]
+    paths = [resources.parameter_file(name) for name in chosen.params_file]
     settings = parameter_files.read_nodes(paths, chosen.param, NAVIGATE)['navigate']
     storage.check_free(chosen.output, chosen.force, navigation.MARK)
     sources = imu_source.read(chosen.recording, settings)

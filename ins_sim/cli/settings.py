@@ -5,17 +5,10 @@ from pathlib import Path
 from .. import parameter_files, resources
 
 
-def locate(name):
-    """Return the path of a parameter file given by path or by the name of a shipped one."""
-    path = Path(name)
-    if path.exists() or path.suffix or path.parent != Path('.'):
-        return path
-    return resources.config(name)
-
-
 def read(chosen):
     """Return simulation.Settings of --params-file and -p."""
-    return parameter_files.read([locate(name) for name in chosen.params_file], chosen.param)
+    return parameter_files.read([resources.parameter_file(name) for name in chosen.params_file],
+                                chosen.param)
 
 
 def title(settings):
