@@ -101,6 +101,23 @@ def test_all_topics_in_lock_step(chain, tmp_path):
         assert all(0 <= s.first_ns and s.last_ns < 60 * SECOND for s in spans.values() if s.count)
 
 
+def test_a_stamp_before_the_epoch(talker, chain, tmp_path):
+    """Jitter may put the first stamp before zero; it is logged at zero, as simulate --bag does."""
+    from sensor_msgs.msg import Imu
+    path, writer = tmp_path / 'bag', topics.IMU_RAW.writer()
+    publisher = talker.publisher(Imu, 'imu/data_raw')
+    recorder = chain.start_verb('record', 'imu/data_raw', '-o', path)
+    talker.wait_matched(publisher)
+    send(publisher, [writer.pack(t_ns, (0.0, 0.0, 0.1), (0.0, 0.0, 9.8))
+                     for t_ns in (-20_000, 10_000_000)])
+    assert end(chain, recorder)['/imu/data_raw'][1] == 2
+    with open_bag(path) as bag:
+        found = bag.arrays('imu/data_raw')
+        assert not bag.cut
+    assert found['log_ns'].tolist() == [0, 10_000_000]
+    assert found['stamp_ns'].tolist() == [-20_000, 10_000_000]
+
+
 def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
     """
     Types of others, one unknown to the bags too; best effort; latched; a topic that comes late.
