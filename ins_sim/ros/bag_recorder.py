@@ -150,8 +150,7 @@ class BagRecorder:
                          'messages of the bag (record.log_time: received keeps the order)')
 
     def _write(self, track, log_ns, data):
-        # a stamp may jitter to before the epoch, a time of logging can not
-        self._bag.write(track.name, max(log_ns, 0), data)
+        self._bag.write(track.name, log_ns, data)
         track.count += 1
 
     def _write_unstamped(self, track, data, received_ns):

@@ -21,10 +21,15 @@ class RunClock:
         self._stamp_ns = self._received_ns = None
 
     def hear(self, data, received_ns):
-        """Return the stamp of a message, ns, or None if a bag cannot hold it."""
+        """
+        Return the stamp of a message, ns, or None if a bag cannot hold it.
+
+        The first stamps of a run may jitter to before the epoch: they count as zero.
+        """
         stamp_ns = stamp_of(data)
-        if stamp_ns is None or not 0 <= stamp_ns < STAMP_END_NS:
+        if stamp_ns is None or not -JUMP_NS < stamp_ns < STAMP_END_NS:
             return None
+        stamp_ns = max(stamp_ns, 0)
         newest = self._stamp_ns
         # topics lag behind one another; but a run that starts anew takes the clock along
         if newest is None or stamp_ns > newest or stamp_ns < newest - JUMP_NS:
