@@ -169,7 +169,8 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
         for name in OUTPUTS:
             assert len(after['/left/' + name]) == 501
             assert after['/left/' + name] == before['/' + name]
-        assert not any('WARN' in chain.text(p) for p in started)
+        texts = [chain.text(p) for p in started]
+        assert not any('WARN' in text for text in texts), texts
 
 
 def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):

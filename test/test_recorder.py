@@ -8,7 +8,7 @@ from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import define
 from ins_sim.cli.main import main
-from live import Chain, Listener
+from live import Chain, Listener, REPAIR_S
 import pytest
 from talker import Talker
 
@@ -70,6 +70,7 @@ def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path)
         listener.poll_until(lambda: started[0].poll() is not None)
         assert started[0].returncode == 0, chain.text(started[0])
         listener.poll_until(lambda: all(len(got) == 501 for got in listener.raw.values()))
+        time.sleep(REPAIR_S)
     finally:
         listener.close()
     said = end(chain, recorder)

@@ -20,6 +20,8 @@ FINISH_S = 2.0
 WAITING = 1000
 # by which of them a recorder answers in lock-step: the first that it records
 ANSWERED = (topics.TRUTH_IMU, *topics.DATA)
+# what the generator sends with every sample; it ends when the last one is answered
+PACED = topics.TRUTH
 
 
 @dataclass
@@ -35,6 +37,7 @@ class Track:
     repeated: int = 0
     last: bytes = None
     last_ns: int = 0
+    heard_ns: int = 0
     jumped: bool = False
 
 
@@ -45,8 +48,9 @@ class BagRecorder:
     bag: BagWriter; log_time: 'stamp' or 'received' (docs/design/bags.md); report(sentence) is
     told what is wrong.  The owner calls ``poll`` until nothing more is to come, and closes the
     bag.  A stamped message equal to the one before it is a repeated sample of lock-step and is
-    written once.  The stamps of the first topic of ANSWERED are acknowledged, from when every
-    stamped topic has been heard and ``settled`` is true: until then lock-step repeats sample 0.
+    written once.  The stamps of the first topic of ANSWERED are acknowledged, no further than all
+    of PACED that are recorded have come, and from when every stamped topic has been heard and
+    ``settled`` is true: until then lock-step repeats sample 0.
     """
 
     def __init__(self, node, bag, log_time='stamp', depth=10000, report=None):
@@ -58,7 +62,7 @@ class BagRecorder:
         self._ack_publisher = qos.ack_publisher(node)
         self._ack_name = node.resolve_topic_name(topics.ACK.name)
         self._answered, self._silent, self.settled = None, [], True
-        self._answered_ns, self._unanswered = None, False
+        self._answered_ns, self._sent_ns, self._paced = None, None, []
         self._flushed = time.monotonic()
 
     def add(self, topic, profile=None, offered=bag_qos.RELIABLE, definition=None, type_hash=''):
@@ -83,6 +87,8 @@ class BagRecorder:
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
         known = [n for n in order if n in self.tracks]
         self._answered = self.tracks[known[0]] if known else None
+        paced = {self._node.resolve_topic_name(t.name) for t in PACED}
+        self._paced = [t for n, t in self.tracks.items() if n in paced]
         return track
 
     def subscribe_anew(self, track, profile):
@@ -127,7 +133,9 @@ class BagRecorder:
         stamp_ns = self._clock.hear(data, received_ns)
         if track is self._answered and stamp_ns is not None:
             # a repeated sample is answered too: the first answer may have been lost
-            self._answered_ns, self._unanswered = stamp_ns, True
+            self._answered_ns, self._sent_ns = stamp_ns, None
+        if stamp_ns is not None:
+            track.heard_ns = stamp_ns
         if data == track.last:
             track.repeated += 1
             return
@@ -173,9 +181,13 @@ class BagRecorder:
     def _acknowledge(self):
         if self._silent:
             self._silent = [t for t in self._silent if t.last is None]
-        if self._unanswered and self.settled and not self._silent:
-            self._ack_publisher.publish(self._ack.pack(self._answered_ns))
-            self._unanswered = False
+        if self._answered_ns is None or not self.settled or self._silent:
+            return
+        # another topic of the same sample may still be on its way, or under repair
+        stamp_ns = min([self._answered_ns, *(t.heard_ns for t in self._paced)])
+        if stamp_ns != self._sent_ns:
+            self._ack_publisher.publish(self._ack.pack(stamp_ns))
+            self._sent_ns = stamp_ns
 
     def finish(self):
         """Take what is left in the queues and write all there is, but leave the bag open."""

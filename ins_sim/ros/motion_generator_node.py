@@ -6,7 +6,6 @@ import time
 from ins_sim.core.settings import MotionGeneratorSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
-from rclpy.duration import Duration
 from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
@@ -127,10 +126,14 @@ class MotionGeneratorNode(Node):
         self._announce('finished')
         self.get_logger().info(f'finished after {self._next} samples')
         if self.settings.exit_at_end:
-            # what has left this process only counts once the readers have it; in lock-step
-            # the consumers have said so
-            for publisher in (self._status, *(() if self._lock else self._publishers)):
-                publisher.wait_for_all_acked(Duration(seconds=0.3))
+            # what has left this process only counts once the readers have it; in lock-step the
+            # consumers have said so, unless one of them fell silent before the last sample
+            if not self._lock:
+                qos.drain((self._status, *self._publishers), 1.5)
+            elif self._lock.slowest < self._source.count - 1:
+                qos.drain(self._publishers, qos.REPAIR_S)
+            else:
+                qos.drain((self._status,), 0.3)
             stop.request()
 
     def _on_pause(self, request, response):

@@ -11,6 +11,7 @@ from ins_sim.messages import topics
 
 RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 END_S = 10.0
 NAP_S = 0.002
 LOOK_S = 0.1
@@ -29,9 +30,22 @@ class Session:
         self._settings, self._folder, self._bag = settings, folder, bag
         self.namespace = namespace
         self._processes = {}
-        self._writer = self._node = None
+        self._writer = self._node = self._context = None
 
     def __enter__(self):
+        # a flag: an exception raised wherever the main thread is may be swallowed there
+        self._interrupted = False
+        self._before = {number: signal.signal(number, self._on_signal) for number in SIGNALS}
+        try:
+            return self._start()
+        except BaseException as error:
+            self.__exit__(error)
+            raise
+
+    def _on_signal(self, number, frame):
+        self._interrupted = True
+
+    def _start(self):
         import rclpy
 
         from .bag_recorder import BagRecorder
@@ -39,23 +53,19 @@ class Session:
         self._context = rclpy.Context()
         # Ctrl-C belongs to the caller, as KeyboardInterrupt
         rclpy.init(context=self._context, signal_handler_options=rclpy.SignalHandlerOptions.NO)
-        try:
-            self._writer = BagWriter(self._bag, 'sqlite3')
-            self._node = rclpy.create_node(graph.RECORDER.name, namespace=self.namespace,
-                                           context=self._context)
-            self._recorder = BagRecorder(self._node, self._writer)
-            for topic in RECORDED:
-                self._recorder.add(topic)
-            parameters = self._folder / 'parameters.yaml'
-            parameters.write_text(parameter_files.dump(self._settings), encoding='utf-8')
-            for process in graph.PROCESSES:
-                with open(self._log(process.name), 'wb') as log:
-                    self._processes[process.name] = subprocess.Popen(
-                        graph.command(process, [parameters], namespace=self.namespace),
-                        stdout=log, stderr=log, stdin=subprocess.DEVNULL)
-        except BaseException:
-            self.__exit__()
-            raise
+        self._writer = BagWriter(self._bag, 'sqlite3')
+        self._node = rclpy.create_node(graph.RECORDER.name, namespace=self.namespace,
+                                       context=self._context)
+        self._recorder = BagRecorder(self._node, self._writer)
+        for topic in RECORDED:
+            self._recorder.add(topic)
+        parameters = self._folder / 'parameters.yaml'
+        parameters.write_text(parameter_files.dump(self._settings), encoding='utf-8')
+        for process in graph.PROCESSES:
+            with open(self._log(process.name), 'wb') as log:
+                self._processes[process.name] = subprocess.Popen(
+                    graph.command(process, [parameters], namespace=self.namespace),
+                    stdout=log, stderr=log, stdin=subprocess.DEVNULL)
         return self
 
     def _log(self, name):
@@ -66,11 +76,13 @@ class Session:
         Record until the generator has ended; progress is called with the last stamp, s.
 
         Return the number of messages by topic.  Raises RuntimeError with what a node said last
-        if one ends with an exit code.
+        if one ends with an exit code, KeyboardInterrupt after SIGINT or SIGTERM.
         """
         master = self._processes[graph.MASTER]
         looked = 0.0
         while master.returncode is None:
+            if self._interrupted:
+                raise KeyboardInterrupt
             if not self._recorder.poll():
                 time.sleep(NAP_S)
             if time.monotonic() - looked < LOOK_S:
@@ -104,4 +116,9 @@ class Session:
             self._writer.discard()
         if self._node is not None:
             self._node.destroy_node()
-        self._context.try_shutdown()
+        if self._context is not None:
+            self._context.try_shutdown()
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+        if self._interrupted and not any(exception):
+            raise KeyboardInterrupt
