@@ -5,33 +5,15 @@ This catalogue is the only place a parameter is described.  ROS parameters, the 
 the configuration reference are derived from it.
 """
 
+from .aided_settings import AidedNavigatorSettings
 from .bag_settings import RecorderSettings
 from .dtg_settings import Dtg
 from .error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
+from .gnss_settings import GnssSettings
+from .place_settings import Datum, Earth, Time, Topics
+from .route_settings import RoutePoints
 from .setting import group, setting, Settings, settings_class
-
-
-@settings_class
-class Datum(Settings):
-    """Origin of ``map``; the bench motions stand there."""
-
-    latitude_deg: float = setting(55.75, 'geodetic latitude', 'deg', -89.9, 89.9)
-    longitude_deg: float = setting(37.62, 'longitude', 'deg', -180.0, 180.0)
-    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, 50000.0)
-
-
-@settings_class
-class Earth(Settings):
-    """The Earth of truth and navigation alike."""
-
-    rotation: bool = setting(True, 'the Earth rotates, in the truth and in the navigation')
-
-
-@settings_class
-class Time(Settings):
-    """Zero of motion time."""
-
-    epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 2147483647)
+from .velocity_meter_settings import VelocityMeterSettings
 
 
 @settings_class
@@ -144,6 +126,7 @@ class MotionSettings(Settings):
     sculling: Sculling = group(Sculling)
     sinusoids: Sinusoids = group(Sinusoids)
     harmonics: Harmonics = group(Harmonics)
+    route: RoutePoints = group(RoutePoints)
     recording: Recording = group(Recording)
 
 
@@ -160,14 +143,6 @@ class Pacing(Settings):
                                         'acknowledge')
     timeout_s: float = setting(30.0, 'wall time without an acknowledgement before the missing '
                                'consumer is named and the run ends', 's', 0.1, 1e5)
-
-
-@settings_class
-class Topics(Settings):
-    """Quality of service of the data topics (reliable, volatile)."""
-
-    depth: int = setting(10000, 'queue depth of publishers and subscriptions', 'messages', 1,
-                         100000)
 
 
 @settings_class
@@ -299,5 +274,8 @@ class StrapdownSettings(Settings):
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
          'strapdown': StrapdownSettings}
+# the instruments that aid, and the navigator that they aid
+AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
+          'aided_navigator': AidedNavigatorSettings}
 # those of a simulation, and the one that watches it
-ALL_NODES = {**NODES, 'recorder': RecorderSettings}
+ALL_NODES = {**NODES, **AIDING, 'recorder': RecorderSettings}

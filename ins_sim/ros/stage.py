@@ -1,7 +1,7 @@
 """What the nodes that follow a stream share: parameters, faults, acknowledgements, reset."""
 
 from ins_sim.core.faults import StreamFault
-from ins_sim.core.settings import NODES
+from ins_sim.core.settings import ALL_NODES
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, Writer
 from rclpy.node import Node
@@ -26,7 +26,7 @@ class StageNode(Node):
     def __init__(self, stop=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
         self.stop = Stop() if stop is None else stop
-        self.settings = declare_settings(self, NODES[self.NAME])
+        self.settings = declare_settings(self, ALL_NODES[self.NAME])
         self.epoch_ns = self.settings.time.epoch_s * SECOND
         self.stage = self.make_stage()
         self.depth = self.settings.topics.depth
