@@ -1,0 +1,202 @@
+"""
+Corrections with a fixed gain: none, the conventional one, and the paper's.
+
+A filter is stepped with the strapdown, takes fixes, and begins a window when it is told to.  The
+residual of all is INS less instrument, forward and left in the axes of the antennas.  Source:
+Ivanov, Vestnik Koncerna PVO Almaz-Antey 2, 2015; corrected in spec, velocity_meter sections 3, 4.
+"""
+
+from collections import namedtuple
+import copy
+import math
+
+from . import attitude, earth
+from .velocity_window import BodyMean, Integrals, middle
+
+# What became of a fix: innovation (its components), their normalised square, how many they are
+# (nis None without a covariance), whether it was taken, and why not.
+Result = namedtuple('Result', 'innovation nis freedom taken reason', defaults=(None, 0, True, ''))
+
+# The paper takes the acceleration in body axes for the derivative of the velocity in body axes:
+# a turn whose product rate x velocity adds more than this to its innovation, m/s^2, is refused.
+TURN_LIMIT = 0.01
+
+
+def refused(reason):
+    """Return the Result of a fix that is not taken."""
+    return Result((), taken=False, reason=reason)
+
+
+class FreeFilter:
+    """No correction at all."""
+
+    takes_gnss = False
+    healthy = True
+
+    def __init__(self, settings, ins):
+        self._settings = settings
+        self.mean = BodyMean()
+
+    def copy(self):
+        """Return a snapshot."""
+        twin = copy.copy(self)
+        twin.mean = self.mean.copy()
+        return twin
+
+    def step(self, ins, before, u, dt):
+        """Follow a step of the strapdown; before: its q_nb, v_b, v_n before; u: increment."""
+        self.mean.add(before[1], ins.v_b, dt)
+
+    def velocity(self, ins, fix):
+        """Take a fix of the velocity meter whose window ends now; return the Result."""
+        return refused('the free solution takes no fix')
+
+    def close(self):
+        """Begin a window."""
+        self.mean.clear()
+
+    def sigmas(self):
+        """Return the standard deviations of position, velocity and attitude, or None."""
+        return None
+
+    def _residual(self, fix):
+        x, y = self.mean.value
+        return x - fix.velocity[0], y - fix.velocity[1]
+
+
+class ConventionalFilter(FreeFilter):
+    """The mean taken for the velocity at the end of its window, with a fixed gain."""
+
+    def velocity(self, ins, fix):
+        """Take away a part of the velocity error that the fix shows."""
+        z = ins.v_b[0] - fix.velocity[0], ins.v_b[1] - fix.velocity[1]
+        gain = self._settings.gain
+        e, n, _ = attitude.rotate(ins.q_nb, (gain * z[0], gain * z[1], 0.0))
+        ins.correct(velocity=(e, n, 0.0))
+        return Result(z)
+
+
+class _ChainedFilter(FreeFilter):
+    """A filter that compares each window with the one before it."""
+
+    def __init__(self, settings, ins):
+        super().__init__(settings, ins)
+        self._last, self._fixed = None, False
+
+    def _follow(self, value):
+        """Keep the value of this window and return that of the one before, or None."""
+        last, self._last, self._fixed = self._last, value, True
+        return last
+
+    def close(self):
+        """Begin a window; one without a fix breaks the chain."""
+        super().close()
+        if not self._fixed:
+            self._last = None
+        self._fixed = False
+
+
+FIRST = refused('the first window has none before it')
+
+
+class PaperFilter(_ChainedFilter):
+    """
+    The scheme as printed, equations (13) to (20): for straight legs only.
+
+    J = (2 / T^2) times the double integral of the acceleration in b over a window; innovation
+    (19): J_k + J_{k-1} - 2 (V_k - V_{k-1}) / T, V the means of the instrument; for constant
+    errors e of the acceleration it is e_k + e_{k-1}.  A turn is refused.
+    """
+
+    def __init__(self, settings, ins):
+        super().__init__(settings, ins)
+        self._once = self._twice = self._turn_once = self._turn_twice = (0.0, 0.0)
+
+    def step(self, ins, before, u, dt):
+        """Integrate the acceleration in b twice, and that part of it which is rate x velocity."""
+        super().step(ins, before, u, dt)
+        q_start, b_start, v = before
+        # in a frame that does not turn about the vertical along a great circle
+        _, r_e = earth.radii(math.sin(ins.lat))
+        spin = v[0] * math.tan(ins.lat) / (r_e + ins.height) * dt
+        w = attitude.rotate_back(middle(q_start, ins.q_nb), (
+            ins.v[0] - v[0] - spin * v[1], ins.v[1] - v[1] + spin * v[0], ins.v[2] - v[2]))
+        turn = w[0] - ins.v_b[0] + b_start[0], w[1] - ins.v_b[1] + b_start[1]
+        half = 0.5 * dt
+        for once, twice, x in (('_once', '_twice', w), ('_turn_once', '_turn_twice', turn)):
+            a, b = getattr(self, once), getattr(self, twice)
+            setattr(self, twice, (b[0] + dt * a[0] + half * x[0], b[1] + dt * a[1] + half * x[1]))
+            setattr(self, once, (a[0] + x[0], a[1] + x[1]))
+
+    def velocity(self, ins, fix):
+        """Correct acceleration, velocity and coordinates (20), unless the windows hold a turn."""
+        t = self.mean.time_s
+        scale = 2.0 / (t * t)
+        now = [(scale * self._twice[k], scale * self._turn_twice[k], fix.velocity[k])
+               for k in range(2)]
+        last = self._follow(now)
+        if last is None:
+            return FIRST
+        innovation = tuple(a[0] + b[0] - 2.0 * (a[2] - b[2]) / t for a, b in zip(now, last))
+        turning = math.hypot(*(a[1] + b[1] for a, b in zip(now, last)))
+        if turning > TURN_LIMIT:
+            return Result(innovation, taken=False, reason=(
+                f'filter paper refuses a turn: it would take {turning:.3g} m/s^2 of it for an '
+                'error; expected a straight leg (paper_corrected and eskf fly turns)'))
+        w = tuple(self._settings.gain * x for x in innovation)
+        ins.add_biases(accelerometer=(*w, 0.0))
+        e, n, _ = attitude.rotate(ins.q_nb, (*w, 0.0))
+        half = 0.5 * t * t
+        ins.correct(position=(half * e, half * n, 0.0), velocity=(t * e, t * n, 0.0))
+        return Result(innovation)
+
+    def close(self):
+        """Begin a window."""
+        super().close()
+        self._once = self._twice = self._turn_once = self._turn_twice = (0.0, 0.0)
+
+
+class PaperCorrectedFilter(_ChainedFilter):
+    """
+    The paper's scheme with a residual that is exact under rotation (spec section 4).
+
+    nu = (z_k - z'_{k-1}) / T, dW = K nu in b, V -= A1 dW, position -= T/2 A1 dW, z'_k = z_k - B2
+    dW.  The acceleration stays corrected by the sum of dW.
+    """
+
+    def __init__(self, settings, ins):
+        super().__init__(settings, ins)
+        self._integrals = Integrals()
+
+    def copy(self):
+        """Return a snapshot."""
+        twin = super().copy()
+        twin._integrals = self._integrals.copy()
+        return twin
+
+    def step(self, ins, before, u, dt):
+        """Sum up the window."""
+        super().step(ins, before, u, dt)
+        self._integrals.add(middle(before[0], ins.q_nb), dt)
+
+    def velocity(self, ins, fix):
+        """Correct acceleration, velocity and position."""
+        z, t = self._residual(fix), self.mean.time_s
+        a1, _, _, b2 = self._integrals.matrices
+        last = self._follow(z)
+        if last is None:
+            return FIRST
+        nu = (z[0] - last[0]) / t, (z[1] - last[1]) / t
+        w = tuple(self._settings.gain * x for x in nu)
+        e, n = (a1 @ w).tolist()
+        half = 0.5 * t
+        ins.correct(position=(half * e, half * n, 0.0), velocity=(e, n, 0.0))
+        ins.add_biases(accelerometer=(*w, 0.0))
+        back = (b2 @ w).tolist()
+        self._last = z[0] - back[0], z[1] - back[1]
+        return Result(nu)
+
+    def close(self):
+        """Begin a window."""
+        super().close()
+        self._integrals.clear()
