@@ -7,9 +7,8 @@ Heading is clockwise; psi of ``attitude.from_angles`` is counter-clockwise, henc
 
 import math
 
-from . import attitude, taylor
+from . import attitude, earth, taylor
 
-MEAN_RADIUS = 6371000.0
 TWO_PI = 2.0 * math.pi
 STANDARD_GRAVITY = 9.80665
 
@@ -67,8 +66,8 @@ def _flight(path, trim_deg, wobble):
             q_nb = attitude.from_angles(-(psi + added['psi']),
                                         theta + added['theta'] + math.radians(trim_deg),
                                         gamma + added['gamma'])
-            return (north / MEAN_RADIUS + lat0, east / (MEAN_RADIUS * math.cos(lat0)) + lon0,
-                    height, q_nb)
+            return (north / earth.MEAN_RADIUS + lat0,
+                    east / (earth.MEAN_RADIUS * math.cos(lat0)) + lon0, height, q_nb)
 
         return pose
 

@@ -39,11 +39,14 @@ def make_motion(motion, datum, earth_settings):
     Return the motion that the settings name.
 
     motion: MotionSettings; datum: Datum; earth_settings: Earth.  Raises ValueError on settings
-    that no motion can have, and on a recording that cannot be used.
+    that no motion can have, a route that cannot be flown and a recording that cannot be used.
     """
     if motion.kind == 'recording':
         from .recording import RecordedMotion
         return RecordedMotion(motion.recording, earth_settings)
+    if motion.kind == 'route':
+        from .route import RouteMotion
+        return RouteMotion(motion.route, earth_settings)
     if motion.kind in ('cruise', 'racetrack', 'aggressive'):
         from .flights import FLIGHTS
         return Motion(FLIGHTS[motion.kind](datum), 3, earth_settings.rotation)
@@ -64,7 +67,7 @@ def check_length(generator, motion):
     end_s = generator.start_s + generator.duration_s
     if end_s > motion.end_s:
         raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most {motion.end_s:g}'
-                         ' s, the end of the recording')
+                         f' s, {motion.end_name}')
 
 
 class _Place:

@@ -57,6 +57,7 @@ class RecordedMotion:
     """
 
     period_s = None
+    end_name = 'the end of the recording'
 
     def __init__(self, recording, earth, poses=None):
         """

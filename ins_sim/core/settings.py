@@ -11,7 +11,7 @@ from .dtg_settings import Dtg
 from .error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .gnss_settings import GnssSettings
 from .place_settings import Datum, Earth, Time, Topics
-from .route_settings import RoutePoints
+from .route_settings import FlightRoute
 from .setting import group, setting, Settings, settings_class
 from .velocity_meter_settings import VelocityMeterSettings
 
@@ -106,7 +106,7 @@ class Recording(Settings):
 
 
 MOTION_KINDS = ('static', 'rocking', 'two_axis', 'coning', 'sculling', 'sinusoids', 'harmonics',
-                'cruise', 'racetrack', 'aggressive', 'recording')
+                'cruise', 'racetrack', 'aggressive', 'route', 'recording')
 
 
 @settings_class
@@ -126,7 +126,7 @@ class MotionSettings(Settings):
     sculling: Sculling = group(Sculling)
     sinusoids: Sinusoids = group(Sinusoids)
     harmonics: Harmonics = group(Harmonics)
-    route: RoutePoints = group(RoutePoints)
+    route: FlightRoute = group(FlightRoute)
     recording: Recording = group(Recording)
 
 
