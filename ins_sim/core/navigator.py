@@ -81,13 +81,10 @@ class Strapdown:
         initial = self._settings.initial
         error = attitude.exponential(tuple(map(math.radians, initial.attitude_error_deg)))
         q_ib = strapdown.inertial_attitude(lat, lon, attitude.multiply(error, q_nb))
-        r_n, r_e = earth.radii(math.sin(lat))
-        east, north, up = initial.position_error_m
-        lon += east / ((r_e + height) * math.cos(lat))
-        lat += north / (r_n + height)
+        lat, lon, off_height = earth.displaced(lat, lon, height, initial.position_error_m)
         v = tuple(a + b for a, b in zip(v, initial.velocity_error_m_s))
         if self._channel != strapdown.FROM_TRUTH:
-            height += up
+            height = off_height
         else:
             v = (*v[:2], truth[3][2])
         self._orientation = Orientation(self._settings.orientation, q_ib)
