@@ -38,8 +38,8 @@ class AidedNavigator:
 
     settings: AidedNavigatorSettings; run: of the ensemble, which draws other initial errors.
     Give it samples by ``step`` and fixes, in any order, by ``take``: a fix counts from its
-    arrival_ns on.  ``mu``, ``kx``, ``kz`` are those of the filter.  Raises ValueError on settings
-    that do not go together.
+    arrival_ns on.  ``filter`` has sigmas() and estimates.  Raises ValueError on settings that do
+    not go together.
     """
 
     def __init__(self, settings, run=0):
@@ -68,11 +68,6 @@ class AidedNavigator:
     def solution(self):
         """Return lat, lon, height, v_n, q_nb at the last sample."""
         return self._ins.solution
-
-    @property
-    def sigmas(self):
-        """Return those of position (m), velocity (m/s), attitude (rad), ENU; None: unknown."""
-        return self.filter.sigmas()
 
     def step(self, t_ns, omega, f, truth):
         """

@@ -14,6 +14,20 @@ def position_error(lat, lon, height, lat_t, lon_t, height_t):
             height - height_t)
 
 
+def level_errors(solution, truth):
+    """
+    Return attitude, velocity and position errors of a solution, tuples of three floats.
+
+    solution, truth: (lat, lon, height, v_n, q_nb).  The attitude error is that of q_nb, each in
+    its own n: q_nb = exp(error) q_nb_true (phi-angle), rad.
+    """
+    lat, lon, height, v, q_nb = solution
+    lat_t, lon_t, height_t, v_t, q_nb_t = truth
+    turned = attitude.logarithm(attitude.multiply(q_nb, attitude.conjugate(q_nb_t)))
+    return (turned, (v[0] - v_t[0], v[1] - v_t[1], v[2] - v_t[2]),
+            position_error(lat, lon, height, lat_t, lon_t, height_t))
+
+
 class ErrorMeter:
     """
     Attitude, velocity and position errors in East, North, Up, and the drift of the attitude.

@@ -46,7 +46,6 @@ class ErrorStateFilter(FreeFilter):
                  + [imu.gyro_bias_walk_deg_h_sqrt_h * DEG_H / SQRT_H] * 3 + [0.0] * 5)
         self._density = np.square(walks)
         self._gyro_scale = (1e-6 * imu.gyro_scale_sigma_ppm) ** 2
-        self.mu = self.kx = self.kz = 0.0
         self._spin = ins.spin
         self._begin(ins)
 
@@ -87,8 +86,7 @@ class ErrorStateFilter(FreeFilter):
     def velocity(self, ins, fix):
         """Update with a fix whose window ends now; forget the window's eta."""
         self._propagate(ins)
-        read, h = model.meter_matrix(self.mean.value, self.mu, self.kx, self.kz,
-                                     self.mean.time_s)
+        read, h = model.meter_matrix(self.mean.value, *self.estimates, self.mean.time_s)
         return self._update(ins, read - fix.velocity, h, np.diag(np.square(fix.sigma)))
 
     def gnss(self, ins, fix, rate, lever):
@@ -126,9 +124,7 @@ class ErrorStateFilter(FreeFilter):
         """Take the estimated errors off; what eta was is seen in the mean velocity no more."""
         ins.correct(x[0:3], x[3:6], x[6:9])
         ins.add_biases(gyro=tuple(-b for b in x[12:15]), accelerometer=tuple(-b for b in x[9:12]))
-        self.mu -= x[17]
-        self.kx -= x[18]
-        self.kz -= x[19]
+        self.estimates = tuple(a - b for a, b in zip(self.estimates, x[17:20]))
         self.mean.shift(x[15], x[16])
         self._begin(ins)
 

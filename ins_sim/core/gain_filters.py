@@ -32,6 +32,8 @@ class FreeFilter:
 
     takes_gnss = False
     healthy = True
+    # mounting mu (rad), kx, kz of the velocity meter
+    estimates = (0.0, 0.0, 0.0)
 
     def __init__(self, settings, ins):
         self._settings = settings

@@ -94,3 +94,23 @@ class NavErrors(Record):
     velocity: np.ndarray
     position: np.ndarray
     drift: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class AidedErrors(Record):
+    """
+    Errors of an aided solution, solution less truth, resolved in n, and what the filter thinks.
+
+    t_ns (n,); attitude: rotation vector, q_nb = exp(attitude) q_nb_true, rad; velocity m/s;
+    position m; the three sigmas: standard deviations by the filter, all NaN where it has none;
+    estimates: mounting mu (rad), kx, kz of the velocity meter.  Each (n, 3).
+    """
+
+    t_ns: np.ndarray
+    attitude: np.ndarray
+    velocity: np.ndarray
+    position: np.ndarray
+    attitude_sigma: np.ndarray
+    velocity_sigma: np.ndarray
+    position_sigma: np.ndarray
+    estimates: np.ndarray
