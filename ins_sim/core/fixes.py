@@ -4,6 +4,8 @@ from dataclasses import dataclass
 import math
 
 VALID = 'valid'
+# why GNSS has no fix
+OUTAGE = 'outage'
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,8 @@ import numpy as np
 
 from . import attitude, earth
 from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
-from .fixes import GnssFix, no_gnss_fix
+from .fixes import GnssFix, no_gnss_fix, OUTAGE
 from .instants import period_ns
-
-OUTAGE = 'outage'
 
 
 class Gnss:

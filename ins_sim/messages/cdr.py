@@ -1,8 +1,8 @@
 """
 Messages as bytes: the CDR layouts of the messages used here, packed and read without ROS.
 
-Every layout is a stamp, strings, a few small integers, doubles in one run, and perhaps a last
-byte.  CDR aligns from behind its encapsulation header of four bytes.  The padding is zero, so
+Every layout is a stamp, strings, and doubles in one run, in a NavSatFix between a few small
+integers.  CDR aligns from behind its encapsulation header of four bytes.  The padding is zero, so
 that equal messages are equal bytes.  Source: OMG Data Distribution Service Interoperability Wire
 Protocol 2.2, section 10; the ROS 2 Jazzy message definitions.
 """
@@ -23,16 +23,15 @@ class Layout:
     What a message type holds, in the order of the bytes.
 
     strings: how many follow the stamp; doubles: how many follow; runs: slices of the doubles
-    that a writer takes, the others stay constant; status: whether a byte and a 16-bit number
-    stand before the doubles (NavSatStatus: FIX, service unknown); end: constant bytes behind
-    them (NavSatFix: covariance type unknown).
+    that a writer takes, the others stay constant; fix: whether it is a NavSatFix, with a byte and
+    a 16-bit number (NavSatStatus: status, service) before the doubles and a byte
+    (position_covariance_type) behind them.
     """
 
     strings: int
     doubles: int
     runs: tuple = ()
-    status: bool = False
-    end: bytes = b''
+    fix: bool = False
 
 
 LAYOUTS = {
@@ -40,10 +39,11 @@ LAYOUTS = {
     'rosgraph_msgs/msg/Clock': Layout(0, 0),
     'sensor_msgs/msg/Imu': Layout(1, 37, ((0, 4), (13, 16), (25, 28))),
     'nav_msgs/msg/Odometry': Layout(2, 85, ((0, 7), (43, 49))),
-    'sensor_msgs/msg/NavSatFix': Layout(1, 12, ((0, 3),), True, b'\x00'),
+    'sensor_msgs/msg/NavSatFix': Layout(1, 12, ((0, 3),), True),
     'geometry_msgs/msg/Vector3Stamped': Layout(1, 3, ((0, 3),)),
     'geometry_msgs/msg/QuaternionStamped': Layout(1, 4, ((0, 4),)),
     'geometry_msgs/msg/TwistStamped': Layout(1, 6, ((0, 6),)),
+    'geometry_msgs/msg/TwistWithCovarianceStamped': Layout(1, 42, ((0, 6),)),
 }
 
 
@@ -57,11 +57,13 @@ class Writer:
     Packs messages of one type whose strings and constants are fixed once.
 
     strings: frame ids; runs: slices (start, stop) of the doubles given with each message, by
-    default those of the layout; constants: {index: value} of the other doubles, else zero.
-    ``dtype`` is the NumPy dtype of a whole message: 'sec', 'nanosec' and 'values0', 'values1'...
+    default those of the layout; constants: {index: value} of the other doubles, else zero;
+    numbers: status, service and position_covariance_type of a NavSatFix, by default a fix, unknown
+    and unknown.  ``dtype`` is the NumPy dtype of a whole message: 'sec', 'nanosec' and 'values0',
+    'values1'..., and of a NavSatFix 'status' and 'position_covariance_type'.
     """
 
-    def __init__(self, type_name, *strings, runs=None, constants=None):
+    def __init__(self, type_name, *strings, runs=None, constants=None, numbers=(0, 0, 0)):
         layout = LAYOUTS[type_name]
         if len(strings) != layout.strings:
             raise ValueError(f'{type_name} takes {layout.strings} strings, not {len(strings)}')
@@ -71,25 +73,33 @@ class Writer:
             body += bytes(aligned(len(body), 4) - len(body))
             data = text.encode() + b'\x00'
             body += struct.pack('<I', len(data)) + data
-        body += bytes(_middle(len(body), layout) - len(body))
+        status_at = len(ENCAPSULATION) + len(body)
+        if layout.fix:
+            body += struct.pack('<b', numbers[0])
+            body += bytes(aligned(len(body), 2) - len(body)) + struct.pack('<H', numbers[1])
         if layout.doubles:
             body += bytes(aligned(len(body), 8) - len(body))
         first = len(ENCAPSULATION) + len(body)
         doubles = [0.0] * layout.doubles
         for index, value in (constants or {}).items():
             doubles[index] = value
-        body += struct.pack(f'<{layout.doubles}d', *doubles) + layout.end
+        body += struct.pack(f'<{layout.doubles}d', *doubles)
+        if layout.fix:
+            body += struct.pack('<B', numbers[2])
         self._template = bytearray(ENCAPSULATION + body)
         self._stamp = struct.Struct('<iI').pack_into
         self._slots = [(struct.Struct(f'<{b - a}d').pack_into, first + 8 * a)
                        for a, b in self.runs]
         self._ends = np.cumsum([0] + [b - a for a, b in self.runs]).tolist()
-        names = [f'values{k}' for k in range(len(self.runs))]
-        self.dtype = np.dtype({
-            'names': ['sec', 'nanosec', *names],
-            'formats': ['<i4', '<u4', *(('<f8', (b - a,)) for a, b in self.runs)],
-            'offsets': [4, 8, *(first + 8 * a for a, _ in self.runs)],
-            'itemsize': len(self._template)})
+        columns = [('sec', '<i4', 4), ('nanosec', '<u4', 8),
+                   *((f'values{k}', ('<f8', (b - a,)), first + 8 * a)
+                     for k, (a, b) in enumerate(self.runs))]
+        if layout.fix:
+            columns += [('status', '<i1', status_at),
+                        ('position_covariance_type', '<u1', len(self._template) - 1)]
+        names, formats, offsets = zip(*columns)
+        self.dtype = np.dtype({'names': names, 'formats': formats, 'offsets': offsets,
+                               'itemsize': len(self._template)})
 
     def pack(self, stamp_ns, *values):
         """Return the bytes of one message; values: one sequence of floats for each run."""
@@ -136,8 +146,8 @@ def stamp_of(data):
 
 
 def _middle(offset, layout):
-    """Return the offset behind the small integers, a byte and a 16-bit number, all zero."""
-    return aligned(offset + 1, 2) + 2 if layout.status else offset
+    """Return the offset behind the status of a fix, a byte and a 16-bit number."""
+    return aligned(offset + 1, 2) + 2 if layout.fix else offset
 
 
 class Reader:
@@ -180,6 +190,16 @@ class Reader:
             offset += 4 + length
         return tuple(texts)
 
+    def numbers(self, buffer):
+        """Return status, service and position_covariance_type of a NavSatFix."""
+        self.read(buffer)
+        offset = 16 + _LENGTH(buffer, 12)[0]
+        status, = struct.unpack_from('<b', buffer, offset)
+        offset = aligned(offset + 1, 2)
+        service, = struct.unpack_from('<H', buffer, offset)
+        offset = 4 + aligned(offset - 2, 8) + 8 * self._layout.doubles
+        return status, service, buffer[offset]
+
     def _lengths(self, buffer):
         if not self._layout.strings:
             return 0
@@ -199,7 +219,7 @@ class Reader:
         slots = []
         for start, stop in self._runs:
             # the skipped rest is unpacked too, so that a message cut anywhere is found short
-            skip = 8 * (self._layout.doubles - stop) + len(self._layout.end)
+            skip = 8 * (self._layout.doubles - stop) + self._layout.fix
             unpack = struct.Struct(f'<{stop - start}d{skip}x').unpack_from
             slots.append((unpack, first + 8 * start))
         if len(self._known) > 100:

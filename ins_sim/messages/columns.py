@@ -27,6 +27,7 @@ DOUBLES = {
     'geometry_msgs/msg/Vector3Stamped': (('vector', 3),),
     'geometry_msgs/msg/QuaternionStamped': (('quaternion', 4),),
     'geometry_msgs/msg/TwistStamped': _TWIST[:2],
+    'geometry_msgs/msg/TwistWithCovarianceStamped': _TWIST,
 }
 TIMES = [('log_ns', '<i8'), ('stamp_ns', '<i8')]
 
@@ -49,7 +50,7 @@ def message_dtype(type_name, lengths=None):
     for length in (1,) * layout.strings if lengths is None else lengths:
         offset = aligned(offset, 4) + 4 + length
     columns, small = [], []
-    if layout.status:
+    if layout.fix:
         small = [('status', '<i1', offset), ('service', '<u2', aligned(offset + 1, 2))]
         offset = aligned(offset + 1, 2) + 2
     if layout.doubles:
@@ -58,13 +59,13 @@ def message_dtype(type_name, lengths=None):
     for name, width in DOUBLES[type_name]:
         columns.append((name, '<f8' if width == 1 else ('<f8', (width,)), offset))
         offset += 8 * width
-    if layout.end:
+    if layout.fix:
         small.append(('position_covariance_type', '<u1', offset))
     columns += small
     return np.dtype({'names': [name for name, _, _ in columns],
                      'formats': [form for _, form, _ in columns],
                      'offsets': [at for _, _, at in columns],
-                     'itemsize': offset + len(layout.end)})
+                     'itemsize': offset + layout.fix})
 
 
 def column_dtype(type_name, fields=None):

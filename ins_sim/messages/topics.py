@@ -12,6 +12,11 @@ QUATERNION = 'geometry_msgs/msg/QuaternionStamped'
 HEADER = 'std_msgs/msg/Header'
 CLOCK = 'rosgraph_msgs/msg/Clock'
 STRING = 'std_msgs/msg/String'
+TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
+DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
+
+# the variance, (m/s)^2 or (rad/s)^2, of what is not measured
+UNMEASURED = 1e9
 
 
 @dataclass(frozen=True)
@@ -20,7 +25,7 @@ class Topic:
     A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
 
     constants: {index: value} of the doubles that a writer of it fills once; zero covariances
-    mean unknown, or exact for the truth.
+    mean unknown, or exact for the truth.  numbers: those of a NavSatFix, see Writer.
     """
 
     name: str
@@ -28,11 +33,12 @@ class Topic:
     frames: tuple = ()
     constants: tuple = ()
     runs: tuple | None = None
+    numbers: tuple = (0, 0, 0)
 
     def writer(self):
         """Return the Writer of its messages."""
         return Writer(self.type_name, *self.frames, runs=self.runs,
-                      constants=dict(self.constants))
+                      constants=dict(self.constants), numbers=self.numbers)
 
     def reader(self, runs=None):
         """Return a Reader of its messages, by default of the same runs as the writer."""
@@ -53,6 +59,28 @@ ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))
 ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('enu',))
 ERROR_POSITION = Topic('ins/error/position', VECTOR, ('enu',))
 ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('enu',))
+# the complete fix, see velocity_record, stamped at the end of its window
+METER_RECORD = Topic('velocity_meter/record', DIAGNOSTICS, ('velocity_meter_link',))
+# stamped at the middle of the window; up is no measurement, nor is a rate
+_NO_RATE = ((27, UNMEASURED), (34, UNMEASURED), (41, UNMEASURED))
+METER_VELOCITY = Topic('velocity_meter/velocity', TWIST, ('velocity_meter_link',),
+                       ((20, UNMEASURED), *_NO_RATE), ((0, 3), (6, 7), (13, 14)))
+# service GPS; covariance diagonal, known
+GNSS_FIX = Topic('gnss/fix', FIX, ('gnss_link',), (), ((0, 3), (3, 4), (7, 8), (11, 12)),
+                 (0, 1, 2))
+GNSS_NO_FIX = replace(GNSS_FIX, numbers=(-1, 1, 0))
+GNSS_VELOCITY = Topic('gnss/velocity', TWIST, ('enu',), _NO_RATE,
+                      ((0, 3), (6, 7), (13, 14), (20, 21)))
+AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (),
+                       ((0, 7), (7, 43), (43, 49), (49, 85)))
+AIDED_FIX = Topic('aided/fix', FIX, ('base_link',))
+# solution less truth, and three standard deviations by the filter
+AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('enu',))
+                     for name in ('attitude', 'velocity', 'position'))
+AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('enu',))
+                     for name in ('attitude', 'velocity', 'position'))
+# x: along the leg, y: height, z: right of it; m
+AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
 ACK = Topic('sim/ack', HEADER)
 STATUS = Topic('sim/status', STRING)
 CLOCK_TOPIC = Topic('/clock', CLOCK)
@@ -60,6 +88,9 @@ CLOCK_TOPIC = Topic('/clock', CLOCK)
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)
 DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
+# of velocity_meter, gnss and aided_navigator
+AIDING = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, AIDED_ODOMETRY, AIDED_FIX,
+          *AIDED_ERRORS, *AIDED_SIGMAS, AIDED_ORTHODROME)
 
 
 def imu_raw(rate_variance, force_variance):

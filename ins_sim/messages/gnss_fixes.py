@@ -1,0 +1,96 @@
+"""A GnssFix as two messages, gnss/fix and gnss/velocity, and as one again by their stamp."""
+
+from collections import deque
+import math
+
+from ins_sim.core.fixes import GnssFix, no_gnss_fix, OUTAGE
+
+from . import topics
+
+# fixes or velocities that wait for their other half
+_WAITING = 100
+_NOTHING = (math.nan,) * 3
+
+
+class GnssWriter:
+    """Packs GnssFixes; epoch_ns: stamp of motion time zero."""
+
+    def __init__(self, epoch_ns):
+        self._epoch_ns = epoch_ns
+        self._fix, self._none, self._velocity = (topic.writer().pack for topic in (
+            topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
+
+    def fix(self, fix):
+        """Return gnss/fix: degrees; a fix that is none has status -1 and NaN."""
+        stamp_ns = fix.t_ns + self._epoch_ns
+        if not fix.valid:
+            return self._none(stamp_ns, _NOTHING, (0.0,), (0.0,), (0.0,))
+        return self._fix(stamp_ns, (math.degrees(fix.lat), math.degrees(fix.lon), fix.height),
+                         *((sigma * sigma,) for sigma in fix.position_sigma))
+
+    def velocity(self, fix):
+        """Return gnss/velocity of a fix that is one."""
+        return self._velocity(fix.t_ns + self._epoch_ns, fix.v_n,
+                              *((sigma * sigma,) for sigma in fix.velocity_sigma))
+
+
+class GnssPairs:
+    """
+    GnssFixes from both topics, matched by their stamps.
+
+    latency_ns: a fix is there this long after its instant.  Both push methods return the list of
+    fixes that are complete, in their order, and raise ValueError on a bad message.  A repeated
+    message is passed over, stamps that jump back begin anew, and a fix whose velocity is lost, a
+    later one being there, is passed over and counted in ``lost``.
+    """
+
+    def __init__(self, epoch_ns, latency_ns):
+        self._epoch_ns, self._latency_ns = epoch_ns, latency_ns
+        self._fix_reader = topics.GNSS_FIX.reader()
+        self._velocity_reader = topics.GNSS_VELOCITY.reader()
+        self.lost, self._done_ns = 0, None
+        self._fixes, self._velocities = deque(maxlen=_WAITING), deque(maxlen=_WAITING)
+
+    def push_fix(self, data):
+        """Take a message of gnss/fix."""
+        stamp_ns, place, *variances = self._fix_reader.read(data)
+        valid = self._fix_reader.numbers(data)[0] >= 0
+        return self._push(self._fixes, (stamp_ns, place if valid else None, variances))
+
+    def push_velocity(self, data):
+        """Take a message of gnss/velocity."""
+        return self._push(self._velocities, self._velocity_reader.read(data))
+
+    def _push(self, queue, message):
+        last_ns = queue[-1][0] if queue else self._done_ns
+        if message[0] == last_ns or message[0] == self._done_ns:
+            return []
+        if queue and message[0] < last_ns:
+            queue.clear()
+        queue.append(message)
+        return self._match()
+
+    def _match(self):
+        found, fixes, velocities = [], self._fixes, self._velocities
+        while fixes:
+            stamp_ns, place, variances = fixes[0]
+            if place is not None:
+                while velocities and velocities[0][0] < stamp_ns:
+                    velocities.popleft()
+                if not velocities:
+                    break
+            t_ns = stamp_ns - self._epoch_ns
+            fixes.popleft()
+            self._done_ns = stamp_ns
+            if place is None:
+                found.append(no_gnss_fix(t_ns, OUTAGE, t_ns + self._latency_ns))
+            elif velocities[0][0] > stamp_ns:
+                self.lost += 1
+            else:
+                _, v_n, *slips = velocities.popleft()
+                lat, lon, height = place
+                found.append(GnssFix(
+                    t_ns, math.radians(lat), math.radians(lon), height, v_n,
+                    *(tuple(math.sqrt(v) for v, in runs) for runs in (variances, slips)),
+                    arrival_ns=t_ns + self._latency_ns))
+        return found

@@ -1,0 +1,58 @@
+"""
+A VelocityFix as messages: the complete record, and the velocity for display.
+
+The record is a DiagnosticArray of one status (docs/design/velocity_record.md): stamped at the
+end of the window, its instants stamps in ns, its floats by repr, so that they come back bit for
+bit.
+"""
+
+from ins_sim.core.fixes import VALID, VelocityFix
+
+from . import diagnostic_array, topics
+from .diagnostic_array import Status
+
+NAME = 'velocity_meter'
+_FLOATS = (('velocity', ('velocity_x', 'velocity_y')), ('sigma', ('sigma_x', 'sigma_y')),
+           ('tau', ('tau12', 'tau23')), ('g', ('g12', 'g23')))
+
+
+def pack(fix, epoch_ns):
+    """Return the message velocity_meter/record of a VelocityFix; epoch_ns: stamp of zero."""
+    values = [('window_start_ns', str(fix.start_ns + epoch_ns)),
+              ('window_end_ns', str(fix.end_ns + epoch_ns)), ('cycles', str(fix.cycles)),
+              ('tan_alpha', repr(float(fix.tan_alpha)))]
+    values += [(key, repr(float(value))) for field, keys in _FLOATS
+               for key, value in zip(keys, getattr(fix, field))]
+    values += [('status', fix.status), ('arrival_ns', str(fix.arrival_ns + epoch_ns))]
+    level = diagnostic_array.OK if fix.valid else diagnostic_array.WARN
+    return diagnostic_array.pack(fix.end_ns + epoch_ns, topics.METER_RECORD.frames[0],
+                                 [Status(level, NAME, fix.status, '', tuple(values))])
+
+
+def read(data, epoch_ns):
+    """Return the VelocityFix of a message; ValueError, one sentence, where it holds none."""
+    _, _, statuses = diagnostic_array.read(data)
+    if len(statuses) != 1 or statuses[0].name != NAME:
+        raise ValueError(f'{topics.METER_RECORD.name} holds the statuses '
+                         f'{[status.name for status in statuses]}; expected one of {NAME}')
+    values = dict(statuses[0].values)
+
+    def number(key, kind):
+        try:
+            return kind(values[key])
+        except (KeyError, ValueError):
+            raise ValueError(f'{topics.METER_RECORD.name}: {key} is {values.get(key)!r}; expected '
+                             f'{"a whole number" if kind is int else "a number"}') from None
+
+    pairs = {field: tuple(number(key, float) for key in keys) for field, keys in _FLOATS}
+    return VelocityFix(number('window_start_ns', int) - epoch_ns,
+                       number('window_end_ns', int) - epoch_ns, number('cycles', int),
+                       tan_alpha=number('tan_alpha', float), status=values.get('status', VALID),
+                       arrival_ns=number('arrival_ns', int) - epoch_ns, **pairs)
+
+
+def velocity_one(fix):
+    """Return motion time (the middle of the window) and the runs of velocity_meter/velocity."""
+    (x, y), (sigma_x, sigma_y) = fix.velocity, fix.sigma
+    return (fix.start_ns + fix.end_ns) // 2, (x, y, fix.up), (sigma_x * sigma_x,), (
+        sigma_y * sigma_y,)
