@@ -22,6 +22,13 @@ PROCESSES = (
     Process('motion_generator', 'motion_generator'),
 )
 
+# What aids the strapdown solution, and the navigator that is aided.
+AIDING = (
+    Process('aided_navigator', 'aided_navigator'),
+    Process('velocity_meter', 'velocity_meter'),
+    Process('gnss', 'gnss'),
+)
+
 # The end of this one ends the simulation.
 MASTER = 'motion_generator'
 

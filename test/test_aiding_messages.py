@@ -224,8 +224,8 @@ def test_the_status_of_a_fix_as_ros_reads_it():
     for topic in (topics.TRUTH_FIX, topics.INS_FIX):
         data = topic.writer().pack(3, (1.0, 2.0, 3.0))
         assert data == (b'\x00\x01\x00\x00' + struct.pack('<iI', 0, 3) + b'\x0a\x00\x00\x00'
-                        b'base_link\x00' + bytes(10) + struct.pack('<12d', 1.0, 2.0, 3.0,
-                                                                  *[0.0] * 9) + b'\x00')
+                        b'base_link\x00' + bytes(10)
+                        + struct.pack('<12d', 1.0, 2.0, 3.0, *[0.0] * 9) + b'\x00')
 
 
 @pytest.mark.parametrize('frame', ['', 'm', 'ab', 'map', 'gnss_link'])

@@ -1,7 +1,5 @@
 """Node strapdown: readings of an IMU in, navigation solution and its errors out."""
 
-import time
-
 from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.navigator import Navigator
@@ -10,13 +8,9 @@ from ins_sim.messages import topics
 from ins_sim.messages.convert import fix_one, odometry_one
 
 from . import qos
+from .patience import MISSING_S, Patience
 from .queue import HandQueue
 from .stage import StageNode
-
-RETRY_S = 0.005
-PATIENCE_S = 0.001
-NAP_S = 5e-5
-MISSING_S = 5.0
 
 
 class StrapdownNode(StageNode):
@@ -32,7 +26,7 @@ class StrapdownNode(StageNode):
         self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
         self._sample_clock = SampleClock(settings, self._dt_ns)
         self._rates = {}
-        self._first_ns = self._newest_ns = self._missed_since = None
+        self._first_ns = self._newest_ns = None
         return Navigator(settings)
 
     def make_outputs(self):
@@ -45,8 +39,8 @@ class StrapdownNode(StageNode):
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
-        self._retry = self.create_timer(RETRY_S, self._on_retry)
-        self._retry.cancel()
+        self._patience = Patience(self, lambda: self.stage.waiting_for_truth, self._take_truth,
+                                  self._miss_truth, self._on_matched)
 
     def on_message(self, data):
         """Give one IMU message to the navigator, and the truth that it waits for."""
@@ -59,7 +53,7 @@ class StrapdownNode(StageNode):
         # the truth first: it may have jumped back as the IMU is about to
         self._take_truth()
         self._publish(self.push(self.stage.push_imu, sample))
-        self._await_truth(PATIENCE_S)
+        self._patience.wait()
 
     def _take_truth(self):
         while not self.stop and (data := self._truth.take()) is not None:
@@ -67,31 +61,15 @@ class StrapdownNode(StageNode):
             if sample is not None:
                 self._publish(self.push(self.stage.push_truth, sample))
 
-    def _await_truth(self, patience_s):
-        start = time.monotonic()
-        while self.stage.waiting_for_truth and not self.stop:
-            now = time.monotonic()
-            if self._missed_since is not None and now - self._missed_since > MISSING_S:
-                self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in '
-                           f'{MISSING_S:g} s; expected the truth of every reading')
-                self.stage.reset()
-            elif self._missed_since is not None or now - start >= patience_s:
-                self._missed_since = self._missed_since or start
-                self._retry.reset()
-                return
-            else:
-                time.sleep(NAP_S)
-                self._take_truth()
-        self._missed_since = None
+    def _miss_truth(self):
+        self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected the '
+                   'truth of every reading')
+        self.stage.reset()
+
+    def _on_matched(self):
         self._rates.clear()
         if self._newest_ns is not None:
             self.seen(self._newest_ns)
-
-    def _on_retry(self):
-        self._retry.cancel()
-        self._take_truth()
-        self._await_truth(0.0)
-        self.on_drained()
 
     def _publish(self, outputs):
         for t_ns, solution, errors in outputs:

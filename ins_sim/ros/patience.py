@@ -1,0 +1,48 @@
+"""Waiting for what another topic must bring, for as long as it may reasonably take."""
+
+import time
+
+RETRY_S = 0.005
+PATIENCE_S = 0.001
+NAP_S = 5e-5
+MISSING_S = 5.0
+
+
+class Patience:
+    """
+    Waits while waiting() is true: here for a moment, then from a timer of the node.
+
+    take() takes what has come; done() follows once nothing is waited for; missed() is called when
+    it has not come in MISSING_S of wall time, and must end the waiting.  No number depends on a
+    clock: without missed() the outcome is the same however long it takes.
+    """
+
+    def __init__(self, node, waiting, take, missed, done):
+        self._node, self._waiting, self._take = node, waiting, take
+        self._missed, self._done = missed, done
+        self._since = None
+        self._retry = node.create_timer(RETRY_S, self._on_retry)
+        self._retry.cancel()
+
+    def wait(self, patience_s=PATIENCE_S):
+        """Wait for a moment, and if that is not enough let the timer go on."""
+        start = time.monotonic()
+        while self._waiting() and not self._node.stop:
+            now = time.monotonic()
+            if self._since is not None and now - self._since > MISSING_S:
+                self._missed()
+            elif self._since is not None or now - start >= patience_s:
+                self._since = self._since or start
+                self._retry.reset()
+                return
+            else:
+                time.sleep(NAP_S)
+                self._take()
+        self._since = None
+        self._done()
+
+    def _on_retry(self):
+        self._retry.cancel()
+        self._take()
+        self.wait(0.0)
+        self._node.on_drained()
