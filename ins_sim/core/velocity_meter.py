@@ -12,9 +12,8 @@ from .faults import check_finite, check_interval, seconds, StreamFault
 from .fixes import VALID, VelocityFix
 from .instants import period_ns
 from .velocity_meter_checks import checked
-from .velocity_meter_fit import read, Reading
-from .velocity_meter_signal import geometry, lag_s, SignalCycles
-from .velocity_meter_surrogate import sigmas, SurrogateErrors
+from .velocity_meter_fit import Reading
+from .velocity_meter_surrogate import sigmas, SurrogateWindows
 
 NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
@@ -50,8 +49,11 @@ class VelocityMeter:
         self._waits = settings.attack_angle == 'ins'
         self._calm_ns = [(round(a * 1e9), round(b * 1e9)) for a, b in
                          zip(settings.drop_outs.start_s, settings.drop_outs.end_s)]
-        method = _SignalWindows if settings.mode == 'signal' else _SurrogateWindows
-        self._method = method(settings, run)
+        if settings.mode == 'signal':
+            from .velocity_meter_signal import SignalWindows
+            self._method = SignalWindows(settings, run)
+        else:
+            self._method = SurrogateWindows(settings, run)
         self.reset()
 
     def reset(self):
@@ -159,7 +161,7 @@ class VelocityMeter:
         return VALID
 
     def _close(self, index):
-        """Let the window that ends at index periods, if it was open, wait for its angle."""
+        """End the window at index periods, if one was open; it waits for its angle."""
         if self._start is None:
             return
         end_ns = index * self._dt_ns
@@ -172,34 +174,28 @@ class VelocityMeter:
         fixes = []
         while self._waiting:
             index, why_not, total = self._waiting[0]
-            end_ns = index * self._dt_ns
-            tan_alpha = 0.0
-            if self._waits:
-                if self._last_ins_ns is not None and self._reached(end_ns):
-                    tan_alpha = self._angle(self._ins.get(end_ns))
-                elif self._last[0] >= end_ns + WAIT_NS:
-                    tan_alpha = NO_INS
-                else:
-                    break
+            angle = self._angle(index * self._dt_ns)
+            if angle is None:
+                break
             self._waiting.popleft()
-            fixes.append(self._fix(index, why_not, total, tan_alpha))
+            fixes.append(self._fix(index, why_not, total, *angle))
         return fixes
 
-    def _reached(self, end_ns):
-        return self._last_ins_ns >= end_ns - self._dt_ns // 2
+    def _angle(self, end_ns):
+        """Return VALID or why not, and tan(alpha), of the window; None: not known yet."""
+        if not self._waits:
+            return VALID, 0.0
+        if self._last_ins_ns is None or self._last_ins_ns < end_ns - self._dt_ns // 2:
+            return (NO_INS, 0.0) if self._last[0] >= end_ns + WAIT_NS else None
+        if end_ns not in self._ins:
+            return NO_INS, 0.0
+        forward, up = self._ins[end_ns]
+        return (VALID, -up / forward) if abs(up) < forward else (NO_ANGLE, 0.0)
 
-    @staticmethod
-    def _angle(sums):
-        """Return tan(alpha) of the sums of forward and up velocity (equation 8), or why not."""
-        if sums is None:
-            return NO_INS
-        forward, up = sums
-        return -up / forward if abs(up) < forward else NO_ANGLE
-
-    def _fix(self, index, why_not, total, tan_alpha):
+    def _fix(self, index, why_not, total, angle_status, tan_alpha):
         """Return the fix of the window that ends at index periods."""
-        if why_not == VALID and isinstance(tan_alpha, str):
-            why_not = tan_alpha
+        if why_not == VALID:
+            why_not = angle_status
         reading = Reading(why_not)
         if why_not == VALID:
             reading = self._method.read(total, index, tan_alpha)
@@ -210,49 +206,4 @@ class VelocityMeter:
         end_ns = index * self._dt_ns
         return VelocityFix(
             end_ns - self._span_ns, end_ns, self._cycles, (reading.v_x, -reading.v_z), sigma,
-            0.0 if isinstance(tan_alpha, str) else tan_alpha, reading.tau, reading.g,
-            reading.status, end_ns + self._latency_ns)
-
-
-class _SurrogateWindows:
-    """Sums and readings of windows by trapezoids over their instants."""
-
-    def __init__(self, settings, run):
-        self._cycles = settings.window.cycles
-        self._errors = SurrogateErrors(settings, run)
-
-    def add(self, total, index, v_last, v):
-        """Return the sum with a cycle from velocity v_last to v."""
-        x, y, z = total or (0.0, 0.0, 0.0)
-        return (x + 0.5 * (v_last[0] + v[0]), y + 0.5 * (v_last[1] + v[1]),
-                z + 0.5 * (v_last[2] + v[2]))
-
-    def read(self, total, index, tan_alpha):
-        """Return the Reading of a window."""
-        return self._errors.read(index, tuple(part / self._cycles for part in total), tan_alpha)
-
-
-class _SignalWindows:
-    """Sums and readings of windows by correlation functions."""
-
-    def __init__(self, settings, run):
-        self._cycles, self._limits = settings.window.cycles, settings.limits
-        self._geometry, self._lag_s = geometry(settings.antennas), lag_s(settings)
-        self._signals = SignalCycles(settings, run)
-
-    def add(self, total, index, v_last, v):
-        """Return the sum with a cycle, its velocity being the mean of v_last and v."""
-        x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
-        functions = self._signals.cycle(index, math.hypot(x, y), z, -y / x)
-        return functions if total is None else total + functions
-
-    def read(self, total, index, tan_alpha):
-        """Return the Reading of a window; complex functions count by their magnitude."""
-        mean = total / self._cycles
-        if mean.dtype == complex:
-            mean = abs(mean)
-        reading = read(mean, self._lag_s, self._geometry, tan_alpha)
-        low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
-        if reading.status == VALID and not low <= reading.v_x <= high:
-            return Reading('measured speed outside the limits')
-        return reading
+            tan_alpha, reading.tau, reading.g, reading.status, end_ns + self._latency_ns)

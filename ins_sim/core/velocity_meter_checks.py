@@ -1,8 +1,8 @@
 """What settings of the velocity meter must fulfil together."""
 
 from .catalogue import build, values_of
+from .velocity_meter_layout import lag_s, samples
 from .velocity_meter_settings import VelocityMeterSettings
-from .velocity_meter_signal import lag_s, samples
 
 
 def checked(settings):
@@ -39,8 +39,8 @@ def _check_lags(settings):
     signal, limits, antennas = settings.signal, settings.limits, settings.antennas
     step, count = lag_s(settings), samples(settings)
     if signal.lags > count:
-        raise ValueError(f'signal.lags is {signal.lags}, {signal.lags * step * 1e3:g} ms; expected '
-                         f'at most the {count} that a cycle of rate_hz holds')
+        raise ValueError(f'signal.lags is {signal.lags}, together {signal.lags * step * 1e3:g} '
+                         f'ms; expected at most the {count} that a cycle of rate_hz holds')
     offset = antennas.x0_m * (0.5 if antennas.offsets == 'physical' else 1.0)
     longest, shortest = offset / limits.speed_min_m_s, offset / limits.speed_max_m_s
     if longest < step:

@@ -17,15 +17,6 @@ PAIRS = ((0, 1), (1, 2), (0, 0), (1, 1), (2, 2))
 NAMES = ('R12', 'R23', 'R11', 'R22', 'R33')
 
 
-class Geometry(NamedTuple):
-    """X0, Y0, m; s2: +1 antenna 2 on the right, -1 left; kappa: 1/2 physical, 1 effective."""
-
-    x0: float
-    y0: float
-    s2: float
-    kappa: float
-
-
 class Peak(NamedTuple):
     """Maximum of a correlation function: lag, curvature g, 1/lag^2, logarithm of its value."""
 

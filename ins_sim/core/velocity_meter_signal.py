@@ -17,10 +17,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
+from .fixes import VALID
 from .noise import stream
-from .velocity_meter_fit import Geometry, PAIRS
+from .velocity_meter_fit import PAIRS, read, Reading, secant
+from .velocity_meter_layout import geometry, lag_s, samples
 
 # the spectrum is cut, and the delays are parted, at this many standard deviations
 SIGMAS = 5.0
@@ -28,20 +30,9 @@ SIGMAS = 5.0
 JITTER = 1e-9
 
 
-def geometry(antennas):
-    """Return the Geometry of Antennas."""
-    return Geometry(antennas.x0_m, antennas.y0_m, 1.0 if antennas.antenna_2 == 'right' else -1.0,
-                    0.5 if antennas.offsets == 'physical' else 1.0)
-
-
-def lag_s(settings):
-    """Return the time from lag to lag of VelocityMeterSettings, s."""
-    return settings.signal.pulses_per_lag / settings.signal.prf_hz
-
-
-def samples(settings):
-    """Return how many samples, a lag apart, a navigation cycle has."""
-    return int((1.0 + 1e-9) / (settings.rate_hz * lag_s(settings)))
+def power_of_two(n):
+    """Return the power of two that is at least n."""
+    return 1 << (n - 1).bit_length()
 
 
 class Shape(NamedTuple):
@@ -72,7 +63,7 @@ class Field:
         # one period of the synthesis holds the samples and the longest correlation
         reach = (2.0 * self._geometry.kappa * self._geometry.x0
                  + SIGMAS * max(self._lengths)) / limits.speed_min_m_s
-        self._period = fft.next_fast_len(self.length + math.ceil(reach / self.lag_s))
+        self._period = power_of_two(self.length + math.ceil(reach / self.lag_s))
         # sideslip of 45 deg at the greatest forward speed is the fastest that is measured
         fastest = math.hypot(math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths),
                              self._decay)
@@ -90,7 +81,7 @@ class Field:
         angle of attack, which shortens X0 to X0 cos(alpha) in that plane.
         """
         g, (l_x, l_z) = self._geometry, self._lengths
-        x0 = g.kappa * g.x0 / math.sqrt(1.0 + tan_alpha * tan_alpha)
+        x0 = g.kappa * g.x0 / secant(tan_alpha)
         centres = np.array(((x0, 0.0), (0.0, g.s2 * g.kappa * g.y0), (-x0, 0.0))) / self._lengths
         u_x, u_z = speed / l_x, v_z / l_z
         along_2 = u_x * u_x + u_z * u_z
@@ -114,7 +105,7 @@ class Field:
         folded = np.empty((3, self._period), dtype=complex)
         folded[:, self._place] = parts.reshape(3, -1, self._period).sum(axis=1)
         noise = normals[6 * modes:].view(complex).reshape(3, self.length)
-        return (fft.ifft(folded, norm='forward', overwrite_x=True)[:, :self.length]
+        return (fft.ifft(folded, norm='forward')[:, :self.length]
                 + self._noise * noise)
 
     def correlations(self, lags, speed, v_z, tan_alpha, detection):
@@ -137,7 +128,7 @@ class Correlator:
     def __init__(self, settings):
         self._power = settings.signal.detection == 'power'
         self._lags, self._count = settings.signal.lags, samples(settings)
-        self._size = fft.next_fast_len(self._count + self._lags - 1, real=self._power)
+        self._size = power_of_two(self._count + self._lags - 1)
         self._earlier, self._later = (list(side) for side in zip(*PAIRS))
 
     def correlate(self, signals):
@@ -154,20 +145,40 @@ class Correlator:
         return back(products, self._size)[:, :self._lags] / self._count
 
 
-class SignalCycles:
+class SignalWindows:
     """
-    The correlation functions of navigation cycles by their index; each has a field of its own.
+    Sums and readings of windows by correlation functions.
 
-    A field that went on would tie neighbours only over the delay and a correlation time, 0.4 and
-    0.2 ms of a cycle of 10 ms at 250 m/s.  settings: VelocityMeterSettings; run: which of an
-    ensemble.
+    Each cycle has a field of its own.  One that went on would tie neighbours only over the delay
+    and a correlation time, 0.4 and 0.2 ms of a cycle of 10 ms at 250 m/s.  settings:
+    VelocityMeterSettings; run: which of an ensemble.
     """
 
     def __init__(self, settings, run):
+        self._cycles, self._limits = settings.window.cycles, settings.limits
+        self._geometry, self._lag_s = geometry(settings.antennas), lag_s(settings)
         self._field, self._correlator = Field(settings), Correlator(settings)
         self._normals = stream(settings.seed, run, 'velocity_meter.signal', self._field.width, 1)
 
-    def cycle(self, index, speed, v_z, tan_alpha):
-        """Return the five functions of the cycle that ends at index periods, (5, lags)."""
-        normals = self._normals.normal_block(index)[0]
-        return self._correlator.correlate(self._field.signals(normals, speed, v_z, tan_alpha))
+    def add(self, total, index, v_last, v):
+        """
+        Return the sum with the cycle that ends at index periods, its velocity being the mean.
+
+        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        """
+        x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
+        signals = self._field.signals(self._normals.normal_block(index)[0], math.hypot(x, y), z,
+                                      -y / x)
+        functions = self._correlator.correlate(signals)
+        return functions if total is None else total + functions
+
+    def read(self, total, index, tan_alpha):
+        """Return the Reading of a window; complex functions count by their magnitude."""
+        mean = total / self._cycles
+        if mean.dtype == complex:
+            mean = abs(mean)
+        reading = read(mean, self._lag_s, self._geometry, tan_alpha)
+        low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
+        if reading.status == VALID and not low <= reading.v_x <= high:
+            return Reading('measured speed outside the limits')
+        return reading

@@ -23,9 +23,9 @@ def sigmas(surrogate, cycles, beta):
             math.hypot(surrogate.sigma_z_m_s, surrogate.slip_z_m_s * beta) / root)
 
 
-class SurrogateErrors:
+class SurrogateWindows:
     """
-    The readings of windows by their mean velocity.
+    Sums and readings of windows by trapezoids over the instants of their cycles.
 
     settings: VelocityMeterSettings; run: which of an ensemble.
     """
@@ -38,14 +38,24 @@ class SurrogateErrors:
             beam.sigma_theta_z_rad / beam.sigma_theta_x_rad) ** 2
         self._normals = stream(settings.seed, run, 'velocity_meter.surrogate', 2)
 
-    def read(self, index, mean, tan_alpha):
+    def add(self, total, index, v_last, v):
+        """
+        Return the sum with the cycle that ends at index periods.
+
+        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        """
+        x, y, z = total or (0.0, 0.0, 0.0)
+        return (x + 0.5 * (v_last[0] + v[0]), y + 0.5 * (v_last[1] + v[1]),
+                z + 0.5 * (v_last[2] + v[2]))
+
+    def read(self, total, index, tan_alpha):
         """
         Return the Reading of the window that ends at index periods.
 
-        mean: true (V_x1, V_y1, V_z1) of it, m/s; tan_alpha: the one taken for the angle of attack.
-        A wrong one scales both components by (cos taken / cos true)^2, as with signals.
+        tan_alpha: tangent of what is taken for the angle of attack.  A wrong one scales both
+        components by (cos taken / cos true)^2, as with signals.
         """
-        v_x, v_y, v_z = mean
+        v_x, v_y, v_z = (part / self._cycles for part in total)
         scale = (secant(v_y / v_x) / secant(tan_alpha)) ** 2
         sigma_x, sigma_z = sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
         n_x, n_z = self._normals.normal(index)
