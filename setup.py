@@ -28,7 +28,8 @@ setup(
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'mcap'],
+        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'mcap',
+                 'geographiclib'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

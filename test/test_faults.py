@@ -123,7 +123,7 @@ def test_navigator_refuses_bad_truth(navigator, truth):
     refused(navigator.push_truth, (t, (math.nan, 0.0, 0.0), q, v), 'expected finite', False)
     refused(navigator.push_truth, (t, r, (0.0, 0.0, 0.0, 0.5), v), 'norm 0.5', False)
     navigator.push_imu(3 * DT, *truth(3)[0][2:])
-    assert navigator.waiting_for_truth
+    assert navigator.waiting
     refused(navigator.push_truth, (t + 1000, r, q, v),
             'has no truth of the same stamp, the nearest is 0.030001000 s', True)
 

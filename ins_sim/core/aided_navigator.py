@@ -7,6 +7,7 @@ taken, and the samples since then advanced again.
 
 from bisect import insort
 from collections import deque, namedtuple
+from dataclasses import replace
 import math
 
 from . import attitude, earth
@@ -38,8 +39,8 @@ class AidedNavigator:
 
     settings: AidedNavigatorSettings; run: of the ensemble, which draws other initial errors.
     Give it samples by ``step`` and fixes, in any order, by ``take``: a fix counts from its
-    arrival_ns on.  ``filter`` has sigmas() and estimates.  Raises ValueError on settings that do
-    not go together.
+    arrival_ns on.  ``filter`` has sigmas() and estimates; ``sources``: the instruments that aid.
+    Raises ValueError on settings that do not go together.
     """
 
     def __init__(self, settings, run=0):
@@ -51,8 +52,9 @@ class AidedNavigator:
         self._window_ns = settings.window.cycles * self._dt_ns
         self._buffer_ns = round(settings.buffer_s * 1e9)
         self._after_ns = round(settings.initial.after_s * 1e9)
-        self._use = {METER: settings.meter_model.use and settings.filter != 'free',
-                     GNSS: settings.gnss_model.use}
+        used = {METER: settings.meter_model.use and settings.filter != 'free',
+                GNSS: settings.gnss_model.use}
+        self.sources = tuple(source for source, use in used.items() if use)
         self._altimeter = settings.vertical.channel == 'altimeter'
         self._spin = earth.ROTATION_RATE if settings.earth.rotation else 0.0
         self._first_ns = self._ins = self.filter = None
@@ -171,7 +173,7 @@ class AidedNavigator:
         fix = entry.fix
         if not fix.valid:
             return refused(f'the fix is none: {fix.status}')
-        if not self._use[entry.source]:
+        if entry.source not in self.sources:
             return refused(f'{entry.source} is not used')
         if fix.t_ns < self._snapshots[0].t_ns:
             late = (self._ins.t_ns - fix.t_ns) * 1e-9
@@ -216,7 +218,9 @@ class AidedNavigator:
                                     self._settings.gnss_model.lever_arm_m)
         if self._window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
             return refused('the solution does not cover its window')
-        return self.filter.velocity(ins, fix)
+        forward, left = fix.velocity
+        known = self._settings.meter_model.bias_x_m_s / fix.cycles
+        return self.filter.velocity(ins, replace(fix, velocity=(forward - known, left)))
 
     def _check(self):
         """Raise StreamFault if the covariance is none any more."""

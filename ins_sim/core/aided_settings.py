@@ -55,6 +55,9 @@ class MeterModel(Settings):
     """What the filter believes of the velocity meter at the start."""
 
     use: bool = setting(True, 'the velocity meter aids')
+    bias_x_m_s: float = setting(-16.0, 'known forward bias of the fits of one cycle; that of a '
+                                'fix is this over window.cycles, and is taken off', 'm/s', -1e3,
+                                1e3)
     mounting_sigma_arcmin: float = setting(0.0, 'mounting error in yaw; 0 = known', 'arcmin', 0.0,
                                            600.0)
     scale_x_sigma: float = setting(0.0, 'forward scale error; 0 = known', '', 0.0, 1.0)

@@ -1,17 +1,14 @@
 """
 The strapdown system: start from truth, step on IMU samples, compare with truth.
 
-``Strapdown`` takes matched samples; ``Navigator`` matches two streams by their stamps.
+``Strapdown`` takes matched samples; ``Navigator`` those of two streams.
 """
 
-from collections import deque
 import math
 
 from . import attitude, earth, strapdown
 from .errors import ErrorMeter
-from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
-from .instants import period_ns
-from .map_frame import MapFrame
+from .matching import MatchedStreams
 from .orientation import Orientation
 
 CHANNELS = {'truth': strapdown.FROM_TRUTH, 'free': strapdown.FREE, 'damped': strapdown.DAMPED}
@@ -106,103 +103,20 @@ class Strapdown:
         return self._meter.measure((t_ns - self._start_ns) * 1e-9, self.state, truth)
 
 
-class Navigator:
-    """
-    A Strapdown on two live streams, IMU and truth, matched by stamp.
+class Navigator(MatchedStreams):
+    """A Strapdown on two live streams, IMU and truth; outputs are (t_ns, solution, errors)."""
 
-    processed_ns is the motion time of the last IMU sample that was used, or None.
-
-    Both push methods return a list of (t_ns, solution, errors) and raise StreamFault; the first
-    IMU sample may be repeated and is answered again.
-    """
-
-    def __init__(self, settings):
-        self._settings = settings
-        self._frame = MapFrame(settings.datum, settings.earth.rotation)
-        self._dt_ns = period_ns(settings.rate_hz)
-        self._truth = deque(maxlen=settings.topics.depth)
-        self._joined_ns = None
-        self.reset()
-
-    def reset(self):
-        """Forget the solution; the next IMU sample starts anew.  Truth is no state: it stays."""
+    def begin(self):
+        """Forget the solution."""
         self._strapdown = Strapdown(self._settings)
-        self._imu = deque()
-        self._last_ns = self.processed_ns = None
-        self._repeat = None
-        self._steps = 0
 
     @property
-    def waiting_for_truth(self):
-        """Return whether an IMU sample is queued whose truth has not come."""
-        return bool(self._imu)
+    def navigates(self):
+        """Return whether there is a solution."""
+        return self._strapdown.state is not None
 
-    def push_imu(self, t_ns, omega, f):
-        """Take the IMU sample of stamp t_ns (motion time)."""
-        check_finite('imu', t_ns, omega, f)
-        if self._repeat is not None and t_ns == self._repeat[0]:
-            return self._repeat[1]
-        if self._last_ns is not None and t_ns < self._last_ns and self._truth \
-                and self._truth[0][0] > t_ns:
-            # the truth that is known belongs to the time before the jump
-            self._truth.clear()
-        if self._last_ns is not None and not (t_ns == self._last_ns and self._steps <= 1):
-            check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
-            self._repeat = None
-        elif t_ns == self._last_ns:
-            return []
-        self._last_ns = t_ns
-        self._imu.append((t_ns, omega, f))
-        return self._match()
-
-    def push_truth(self, t_ns, r_m, q_mb, v_b):
-        """
-        Take the truth of stamp t_ns (motion time).
-
-        A repeated stamp is passed over; a stamp that jumps back begins a new history, and it is
-        the IMU, which jumps back too, that is reported.
-        """
-        check_finite('truth', t_ns, r_m, q_mb, v_b)
-        check_unit('truth', t_ns, q_mb)
-        if self._truth and t_ns <= self._truth[-1][0]:
-            if t_ns == self._truth[-1][0]:
-                return []
-            self._truth.clear()
-        if not self._truth:
-            self._joined_ns = t_ns
-        self._truth.append((t_ns, r_m, q_mb, v_b))
-        return self._match()
-
-    def _match(self):
-        outputs = []
-        imu, truth = self._imu, self._truth
-        while imu and truth:
-            t_ns, omega, f = imu[0]
-            while len(truth) > 1 and truth[0][0] < t_ns:
-                truth.popleft()
-            if truth[0][0] < t_ns:
-                break
-            if truth[0][0] > t_ns:
-                imu.popleft()
-                if self._strapdown.state is None and truth[0][0] == self._joined_ns:
-                    # the streams were joined at different times: pass over what came before
-                    continue
-                raise StreamFault(
-                    f'imu at {seconds(t_ns)} has no truth of the same stamp, the nearest is '
-                    f'{seconds(truth[0][0])}; expected a truth rate that is a multiple of the '
-                    'IMU rate, both from the same start (imu_time: nominal for stamps with jitter '
-                    'or latency)', restart=True)
-            imu.popleft()
-            output = self._advance(t_ns, omega, f, self._frame.geodetic_one(*truth[0][1:]))
-            outputs.extend(output)
-        return outputs
-
-    def _advance(self, t_ns, omega, f, truth):
-        self.processed_ns = t_ns
+    def advance(self, t_ns, omega, f, truth):
+        """Take matched samples; return the outputs."""
         if not self._strapdown.step(t_ns, omega, f, truth):
             return []
-        output = [(t_ns, self._strapdown.solution(t_ns), self._strapdown.errors(t_ns, truth))]
-        if self._steps == 0:
-            self._repeat = (t_ns, output)
-        self._steps += 1
-        return output
+        return [(t_ns, self._strapdown.solution(t_ns), self._strapdown.errors(t_ns, truth))]
