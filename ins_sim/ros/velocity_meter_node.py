@@ -43,8 +43,8 @@ class VelocityMeterNode(StageNode):
         if self.settings.attack_angle == 'ins':
             self._ins_reader = topics.INS_ODOMETRY.reader(((43, 46),))
             self._ins = HandQueue(self, topics.INS_ODOMETRY, self.depth)
-        self._patience = Patience(self, self._waits, self._take_ins, self._miss_ins,
-                                  lambda: self.seen(self._newest_ns))
+        self._patience = Patience(self, lambda: self._meter.waiting_for_ins, lambda: self._windows,
+                                  self._take_ins, self._miss_ins, self._on_complete)
 
     def on_message(self, data):
         """Give one truth message to the instrument, and the solutions that have come."""
@@ -60,9 +60,6 @@ class VelocityMeterNode(StageNode):
             self._publish(self.stage.add(self._meter.give_up_ins()))
         self._patience.wait()
 
-    def _waits(self):
-        return self._meter.waiting_for_ins
-
     def _take_ins(self):
         while self._ins is not None and not self.stop and (data := self._ins.take()) is not None:
             self._absent = False
@@ -75,6 +72,10 @@ class VelocityMeterNode(StageNode):
         self.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected the '
                    'solution up to the end of every window (attack_angle: none needs none)')
         self._publish(self.stage.add(self._meter.give_up_ins()))
+
+    def _on_complete(self):
+        if self._newest_ns is not None:
+            self.seen(self._newest_ns)
 
     def _publish(self, fixes):
         for fix in fixes:
