@@ -11,7 +11,7 @@ import re
 import yaml
 
 from .core.catalogue import build, flatten, nearest, unknown, values_of
-from .core.settings import ALL_NODES, NODES
+from .core.settings import AIDING, ALL_NODES, NODES
 from .core.simulation import Settings
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')
@@ -26,6 +26,13 @@ def read(paths, assignments=()):
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
     """
     return Settings(**read_nodes(paths, assignments, NODES, ALL_NODES))
+
+
+def read_aided(paths, assignments=()):
+    """Return aided_simulation.AidedSettings as ``read`` does simulation.Settings."""
+    from .core.aided_simulation import AidedSettings
+    built = read_nodes(paths, assignments, {**NODES, **AIDING}, ALL_NODES)
+    return AidedSettings(Settings(**{node: built.pop(node) for node in NODES}), **built)
 
 
 def read_nodes(paths, assignments, nodes, known=None):

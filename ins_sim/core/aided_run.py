@@ -28,20 +28,25 @@ class AidedRun:
     faults: tuple = ()
 
 
-def aid(settings, motion, blocks, meter=None, gnss=None, run=0):
-    """
-    Return the AidedRun of AidedNavigatorSettings over blocks of ImuSamples.
+def with_truth(motion, blocks):
+    """Yield pairs of ImuSamples and the Truth at their stamps."""
+    for imu in blocks:
+        yield imu, motion.at(imu.t_ns)
 
-    motion: the truth; meter, gnss: the instruments, anything with fixes(Truth) -> list of fixes
-    in the order of arrival, or None; run: of the ensemble.  Faults are handled as on_fault says:
-    the solution starts anew from the truth, or ValueError is raised.  Raises ValueError where
-    there is no output.
+
+def aid(settings, blocks, meter=None, gnss=None, run=0):
+    """
+    Return the AidedRun of AidedNavigatorSettings over the blocks of ``with_truth``.
+
+    meter, gnss: the instruments, anything with fixes(Truth) -> list of fixes in the order of
+    arrival, or None; run: of the ensemble.  Faults are handled as on_fault says: the solution
+    starts anew from the truth, or ValueError is raised.  Raises ValueError where there is no
+    output.
     """
     chain = _Chain(settings, run)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
                if instrument is not None]
-    for imu in blocks:
-        truth = motion.at(imu.t_ns)
+    for imu, truth in blocks:
         fixes = sorted(((fix.arrival_ns, source, fix) for source, instrument in sources
                         for fix in instrument.fixes(truth)), key=lambda f: f[:2])
         chain.block(imu, truth, fixes)
