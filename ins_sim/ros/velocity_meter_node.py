@@ -35,7 +35,7 @@ class VelocityMeterNode(StageNode):
         self._record, self._velocity = (qos.publisher(self, topic, self.depth) for topic in (
             topics.METER_RECORD, topics.METER_VELOCITY))
         self._pack = topics.METER_VELOCITY.writer().pack
-        self._windows = self._invalid = 0
+        self._windows = self._invalid = self._heard = 0
         self._reason = ''
         self.monitor.add(self._describe)
         self._newest_ns, self._absent = None, False
@@ -43,8 +43,9 @@ class VelocityMeterNode(StageNode):
         if self.settings.attack_angle == 'ins':
             self._ins_reader = topics.INS_ODOMETRY.reader(((43, 46),))
             self._ins = HandQueue(self, topics.INS_ODOMETRY, self.depth)
-        self._patience = Patience(self, lambda: self._meter.waiting_for_ins, lambda: self._windows,
-                                  self._take_ins, self._miss_ins, self._on_complete)
+        self._patience = Patience(self, lambda: self._meter.waiting_for_ins,
+                                  lambda: (self._windows, self._heard), self._take_ins,
+                                  self._miss_ins, self._on_complete)
 
     def on_message(self, data):
         """Give one truth message to the instrument, and the solutions that have come."""
@@ -63,6 +64,7 @@ class VelocityMeterNode(StageNode):
     def _take_ins(self):
         while self._ins is not None and not self.stop and (data := self._ins.take()) is not None:
             self._absent = False
+            self._heard += 1
             sample = self.read(self._ins_reader, data)
             if sample is not None:
                 self._publish(self.stage.add(self.push(self._meter.push_ins, sample)))
