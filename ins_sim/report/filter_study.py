@@ -115,6 +115,6 @@ def save_figure(path, title, cases, flown):
     bottom.set_xlabel('time [min]')
     for axes in (top, bottom):
         axes.grid(which='both', alpha=0.3)
-        axes.legend(fontsize='small', loc='upper left')
+        axes.legend(fontsize='small', loc='lower right' if axes is top else 'upper left')
     figure.suptitle(title)
     figure.savefig(path, dpi=110)
