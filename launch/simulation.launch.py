@@ -2,7 +2,8 @@
 Start the motion generator, the IMU and the strapdown; end when the generator ends.
 
 Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_time_factor:=10.0
-With record:=DIR a recorder writes their topics into a bag, and lock-step waits for it as well.
+With aided:=true velocity meter, GNSS and aided navigator run too.  With record:=DIR a recorder
+writes their topics into a bag.  Lock-step waits for all of them.
 """
 
 from ins_sim import graph, resources
@@ -22,6 +23,7 @@ ARGUMENTS = (
     ('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; empty = as '
                              'the parameter files say'),
     ('lock_step', '', 'true or false: wait for the consumers; empty = as the parameter files say'),
+    ('aided', 'false', 'true or false: velocity_meter, gnss and aided_navigator run as well'),
     ('record', '', 'folder of a new bag for the topics of the nodes; empty = none'),
     ('use_sim_time', 'false', 'true or false: the nodes take their time from /clock'),
 )
@@ -35,23 +37,32 @@ def _overrides(process, value):
     if process.name == graph.MASTER:
         parameters.update({'pacing.' + name: typed[name]
                            for name in ('real_time_factor', 'lock_step') if value[name]})
-        if value['record']:
-            parameters['pacing.required'] = ['strapdown', graph.RECORDER.name]
+        if _added(value):
+            parameters['pacing.required'] = ['strapdown', *(p.name for p in _added(value))]
     elif process is graph.RECORDER:
-        parameters['record.topics'] = [topic.name for topic in topics.DATA]
+        recorded = (*topics.DATA, *(topics.AIDING if value['aided'] else ()))
+        parameters['record.topics'] = [topic.name for topic in recorded]
         parameters['storage.path'] = value['record']
     return parameters
+
+
+def _added(value):
+    """Return the processes beside those of every simulation."""
+    return (*([graph.RECORDER] if value['record'] else []),
+            *(graph.AIDING if value['aided'] else ()))
 
 
 def _simulation(context):
     """Return the actions, now that the values of the arguments are known."""
     value = {name: LaunchConfiguration(name).perform(context) for name, _, _ in ARGUMENTS}
+    if value['aided'] not in ('true', 'false'):
+        raise ValueError(f'aided is {value["aided"]!r}; expected true or false')
+    value['aided'] = value['aided'] == 'true'
     overlay = [str(resources.parameter_file(value['params_file']))] if value['params_file'] else []
-    processes = (*([graph.RECORDER] if value['record'] else []), *graph.PROCESSES)
     nodes = {process.name: Node(
         package='ins_sim', executable=process.executable, name=process.name, output='screen',
         parameters=[*(str(resources.config(name)) for name in process.config), *overlay,
-                    _overrides(process, value)]) for process in processes}
+                    _overrides(process, value)]) for process in (*_added(value), *graph.PROCESSES)}
     end = OnProcessExit(target_action=nodes[graph.MASTER],
                         on_exit=[Shutdown(reason='the motion generator has ended')])
     return [RegisterEventHandler(end),

@@ -84,6 +84,26 @@ def test_simulation_with_and_without_a_recorder(started):
     assert own['storage.path'] == 'bag' and nodes['recorder'].executable == 'recorder'
 
 
+def test_aided_simulation(started):
+    """All six, each of which lock-step waits for but the sensor, whose work the others show."""
+    plain = {process.name for process in graph.PROCESSES}
+    aiding = {process.name for process in graph.AIDING}
+    assert aiding == {'velocity_meter', 'gnss', 'aided_navigator'}
+    nodes = started('simulation', aided='true')
+    assert set(nodes) == plain | aiding
+    assert all(nodes[name].executable == name for name in aiding)
+    parameters = nodes[graph.MASTER].parameters[-1]
+    assert set(parameters['pacing.required']) == {'strapdown', *aiding}
+    nodes = started('simulation', aided='true', record='bag')
+    assert set(nodes) == {*plain, *aiding, 'recorder'}
+    parameters = nodes[graph.MASTER].parameters[-1]
+    assert set(parameters['pacing.required']) == {'strapdown', 'recorder', *aiding}
+    recorded = nodes['recorder'].parameters[-1]['record.topics']
+    assert recorded == [t.name for t in (*topics.DATA, *topics.AIDING)]
+    with pytest.raises(ValueError, match="aided is 'yes'; expected true or false"):
+        started('simulation', aided='yes')
+
+
 def test_replay(started):
     """The nodes behind the source, and the verb that plays into them."""
     for source, names in (('imu', {'strapdown'}), ('truth', {'strapdown', 'imu_sensor'})):

@@ -164,7 +164,9 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
             'bad = {{"scipy", "matplotlib", "numba", "rosbags"}} & set(sys.modules); '
             'assert not bad, bad')
     for name, cls in (('motion_generator', 'MotionGeneratorNode'),
-                      ('imu_sensor', 'ImuSensorNode'), ('strapdown', 'StrapdownNode')):
+                      ('imu_sensor', 'ImuSensorNode'), ('strapdown', 'StrapdownNode'),
+                      ('gnss', 'GnssNode'), ('velocity_meter', 'VelocityMeterNode'),
+                      ('aided_navigator', 'AidedNavigatorNode')):
         extra = min(float(subprocess.run(
             [sys.executable, '-c', code.format(name, cls)], env=environment,
             capture_output=True, text=True, check=True).stdout) for _ in range(15))

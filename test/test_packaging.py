@@ -53,7 +53,7 @@ def test_versions_agree():
 
 def test_graph_names_executables():
     """Each process of the table is an installed executable, started by the same module."""
-    for process in graph.PROCESSES:
+    for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER):
         assert SCRIPTS[process.executable] == f'ins_sim.ros.{process.executable}'
         assert graph.command(process)[2] == SCRIPTS[process.executable]
         assert all(resources.config(name).is_file() for name in process.config)
@@ -69,8 +69,8 @@ def test_command_passes_names_files_and_values():
 
 def test_scripts_exist():
     """Each console script names a module that is there."""
-    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'recorder',
-                            'ins_sim'}
+    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter',
+                            'gnss', 'aided_navigator', 'recorder', 'ins_sim'}
     for module in SCRIPTS.values():
         assert (ROOT / (module.replace('.', '/') + '.py')).is_file()
 

@@ -42,7 +42,8 @@ def test_an_hour_offline(benchmark):
     assert seconds <= 60.0
 
 
-@pytest.mark.parametrize('node', ['motion_generator', 'imu_sensor', 'strapdown'])
+@pytest.mark.parametrize('node', ['motion_generator', 'imu_sensor', 'strapdown', 'gnss',
+                                  'velocity_meter', 'aided_navigator'])
 def test_a_node_imports_nothing_heavy(node):
     """No SciPy, Numba or matplotlib on the way of a node's start."""
     pytest.importorskip('rclpy')

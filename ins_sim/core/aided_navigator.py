@@ -107,7 +107,7 @@ class AidedNavigator:
             check_velocity(fix, self._settings.window.cycles, self._dt_ns)
         else:
             check_gnss(fix)
-        if now_ns is not None and fix.t_ns > now_ns + self._buffer_ns:
+        if now_ns is not None and fix.t_ns > now_ns + self._dt_ns + self._buffer_ns:
             raise StreamFault(f'{source}: fix at {seconds(fix.t_ns)} is from the future, the '
                               f'newest IMU sample is of {seconds(now_ns)}; expected a fix at most '
                               f'{self._settings.buffer_s:g} s ahead; it was dropped',

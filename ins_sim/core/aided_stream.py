@@ -6,39 +6,61 @@ the offline run.  What is due the settings say: both instruments report every wi
 instant, valid or not.
 """
 
+from bisect import insort
+
 from .aided_navigator import AidedNavigator, GNSS, METER
 from .errors import level_errors
+from .fix_checks import check_gnss, check_velocity
 from .instants import period_ns
 from .matching import MatchedStreams
 
 
 class FixSchedule:
-    """Which fixes are due; settings: AidedNavigatorSettings."""
+    """Which fixes are due; settings: AidedNavigatorSettings; sources: that are waited for."""
 
     def __init__(self, settings, sources):
         window_ns = settings.window.cycles * period_ns(settings.rate_hz)
-        periods = {METER: (window_ns, window_ns, settings.window.latency_ms),
-                   GNSS: (period_ns(settings.gnss.rate_hz), 0, settings.gnss.latency_ms)}
+        gnss_ns = period_ns(settings.gnss.rate_hz)
+        # period; how long after the first sample the first fix may be; latency
+        periods = {METER: (window_ns, window_ns, round(1e6 * settings.window.latency_ms)),
+                   GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
-        self._next = {}
+        self._newest, self._jumped = {}, set()
         self.silent = set()
+        self.begin()
+
+    def begin(self):
+        """Count from the next sample on; what has come stays known."""
+        self._first = {}
 
     def missing(self, t_ns):
         """Return the sources whose fix is due by the sample t_ns and has not come."""
         late = []
-        for source, (period_ns_, lead_ns, latency_ms) in self._periods.items():
+        for source, (step_ns, lead_ns, latency_ms) in self._periods.items():
             # a window is reported that was seen from its start
-            next_ns = self._next.setdefault(source, -(-t_ns // period_ns_) * period_ns_ + lead_ns)
-            if source not in self.silent and next_ns + round(1e6 * latency_ms) <= t_ns:
+            first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
+            due_ns = (t_ns - latency_ms) // step_ns * step_ns
+            if due_ns >= first_ns and source not in self.silent and (
+                    source not in self._newest or self._newest[source] < due_ns):
                 late.append(source)
         return late
 
-    def came(self, source, fix):
-        """Take note of a fix, valid or not."""
+    def came(self, source, t_ns):
+        """Take note of a fix, valid or not; return whether it is not a repeated one."""
         self.silent.discard(source)
-        if source in self._periods:
-            self._next[source] = max(fix.t_ns + self._periods[source][0],
-                                     self._next.get(source, fix.t_ns))
+        newest_ns = self._newest.get(source)
+        if newest_ns is not None and t_ns < newest_ns:
+            self._jumped.add(source)
+        self._newest[source] = t_ns
+        return t_ns != newest_ns
+
+    def jump_back(self):
+        """Follow the samples back to an earlier time; return the sources still to follow."""
+        behind = set(self._newest) - self._jumped
+        for source in behind:
+            del self._newest[source]
+        self._jumped.clear()
+        return behind
 
 
 class AidedStream(MatchedStreams):
@@ -49,11 +71,15 @@ class AidedStream(MatchedStreams):
     became of the fixes; the owner empties it.
     """
 
+    def __init__(self, settings):
+        self.taken, self._fixes = [], []
+        self._schedule = FixSchedule(settings, AidedNavigator(settings).sources)
+        super().__init__(settings)
+
     def begin(self):
-        """Forget the solution, and the fixes that wait."""
+        """Forget the solution.  Fixes are no state: those that have come stay."""
         self.navigator = AidedNavigator(self._settings)
-        self._schedule = FixSchedule(self._settings, self.navigator.sources)
-        self.taken = []
+        self._schedule.begin()
 
     @property
     def navigates(self):
@@ -70,10 +96,30 @@ class AidedStream(MatchedStreams):
         self._schedule.silent.add(source)
         return self.match()
 
+    def push_imu(self, t_ns, omega, f):
+        """Take the IMU sample of stamp t_ns (motion time)."""
+        if self._last_ns is not None and t_ns < self._last_ns:
+            behind = self._schedule.jump_back()
+            self._fixes = [entry for entry in self._fixes if entry[1] not in behind]
+        return super().push_imu(t_ns, omega, f)
+
     def push_fix(self, source, fix):
-        """Take a fix of METER or GNSS; return the outputs."""
-        self._schedule.came(source, fix)
-        self.navigator.take(source, fix)
+        """
+        Take a fix of METER or GNSS, on time or late; return the outputs.
+
+        Raises StreamFault for a fix that cannot be one; it is dropped, and nothing waits for it:
+        match() then goes on.  A repeated one is passed over, and one that jumps back begins a new
+        history of its source.
+        """
+        if not self._schedule.came(source, fix.t_ns):
+            return []
+        self._fixes = [entry for entry in self._fixes
+                       if entry[1] != source or entry[2].t_ns < fix.t_ns]
+        if source == METER:
+            check_velocity(fix, self._settings.window.cycles, self._dt_ns)
+        else:
+            check_gnss(fix)
+        insort(self._fixes, (fix.arrival_ns, source, fix), key=lambda entry: entry[:2])
         return self.match()
 
     def held(self, t_ns):
@@ -81,7 +127,10 @@ class AidedStream(MatchedStreams):
         return bool(self._schedule.missing(t_ns))
 
     def advance(self, t_ns, omega, f, truth):
-        """Take matched samples; return the outputs."""
+        """Take matched samples, and the fixes that are there by then; return the outputs."""
+        while self._fixes and self._fixes[0][0] <= t_ns:
+            _, source, fix = self._fixes.pop(0)
+            self.navigator.take(source, fix)
         taken = self.navigator.step(t_ns, omega, f, truth)
         if taken is None:
             return []

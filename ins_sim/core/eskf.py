@@ -145,3 +145,7 @@ class ErrorStateFilter(FreeFilter):
         """Return the standard deviations of position, velocity and attitude, ENU."""
         s = np.sqrt(np.diagonal(self.covariance)).tolist()
         return tuple(s[0:3]), tuple(s[3:6]), tuple(s[6:9])
+
+    def estimate_sigmas(self):
+        """Return the standard deviations of mu, kx, kz."""
+        return tuple(np.sqrt(np.diagonal(self.covariance)[17:20]).tolist())

@@ -61,6 +61,10 @@ class FreeFilter:
         """Return the standard deviations of position, velocity and attitude, or None."""
         return None
 
+    def estimate_sigmas(self):
+        """Return the standard deviations of the estimates, or None."""
+        return None
+
     def _residual(self, fix):
         x, y = self.mean.value
         return x - fix.velocity[0], y - fix.velocity[1]

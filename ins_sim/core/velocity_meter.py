@@ -118,6 +118,18 @@ class VelocityMeter:
             del self._ins[next(iter(self._ins))]
         return self._complete()
 
+    @property
+    def waiting_for_ins(self):
+        """Return whether a window is over to whose end the INS has not come."""
+        return bool(self._waiting)
+
+    def give_up_ins(self):
+        """Return the VelocityFixes, invalid, of the windows that wait for the INS."""
+        fixes = [self._fix(index, why_not, total, NO_INS, 0.0)
+                 for index, why_not, total in self._waiting]
+        self._waiting.clear()
+        return fixes
+
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """
         Return the VelocityFixes of a block of cycles, to the bit those of single pushes.

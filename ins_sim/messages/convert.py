@@ -63,6 +63,49 @@ def fix_one(solution):
     return math.degrees(solution[0]), math.degrees(solution[1]), solution[2]
 
 
+def aided_odometry_one(frame, solution, omega, sigmas):
+    """
+    Return the runs of aided/odometry, those of ins/odometry each followed by its covariance.
+
+    sigmas: of position (m), velocity (m/s) and attitude (rad) in East, North, Up, or None.  Their
+    covariances are turned into the axes of map and base_link, correlations being left out; those
+    of rates, and without sigmas of all, are zero: unknown.
+    """
+    pose, twist = odometry_one(frame, solution, omega)
+    if sigmas is None:
+        return pose, _UNKNOWN, twist, _UNKNOWN
+    q_nb = solution[4]
+    q_mn = attitude.multiply(pose[3:], attitude.conjugate(q_nb))
+    position, velocity, turned = sigmas
+    return (pose, _blocks(_turned(q_mn, position), _turned(q_mn, turned)), twist,
+            _blocks(_turned(attitude.conjugate(q_nb), velocity), _UNKNOWN[:9]))
+
+
+_UNKNOWN = (0.0,) * 36
+
+
+def _turned(q, sigmas):
+    """Return C diag(sigmas^2) C^T for the quaternion q of C, row by row."""
+    axes = [attitude.rotate(q, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0),
+                                                  (0.0, 0.0, 1.0))]
+    return [sum(s * s * axis[i] * axis[k] for s, axis in zip(sigmas, axes))
+            for i in range(3) for k in range(3)]
+
+
+def _blocks(upper, lower):
+    """Return the covariance of 6 x 6 with two blocks of 3 x 3 in its diagonal."""
+    nothing = [0.0] * 3
+    rows = [upper[k:k + 3] + nothing for k in (0, 3, 6)]
+    rows += [nothing + list(lower[k:k + 3]) for k in (0, 3, 6)]
+    return [x for row in rows for x in row]
+
+
+def aided_fix_one(solution, sigmas):
+    """Return the runs of aided/fix: place and variances by East, North, Up, zero if unknown."""
+    variances = ((s * s,) for s in (sigmas[0] if sigmas else (0.0,) * 3))
+    return fix_one(solution), *variances
+
+
 def _rate_in_map(frame, q_mb, omega):
     turn = attitude.rotate_back(np.moveaxis(q_mb, -1, 0), frame.omega_ie_m)
     return omega - np.stack(turn, axis=-1)

@@ -73,7 +73,9 @@ GNSS_VELOCITY = Topic('gnss/velocity', TWIST, ('enu',), _NO_RATE,
                       ((0, 3), (6, 7), (13, 14), (20, 21)))
 AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (),
                        ((0, 7), (7, 43), (43, 49), (49, 85)))
-AIDED_FIX = Topic('aided/fix', FIX, ('base_link',))
+# covariance diagonal, known, or of filters without one unknown
+AIDED_FIX = Topic('aided/fix', FIX, ('base_link',), (), GNSS_FIX.runs, (0, 0, 2))
+AIDED_FIX_ALONE = replace(AIDED_FIX, numbers=(0, 0, 0))
 # solution less truth, and three standard deviations by the filter
 AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('enu',))
                      for name in ('attitude', 'velocity', 'position'))

@@ -13,14 +13,14 @@ class Patience:
     Waits while waiting() is true: here for a moment, then from a timer of the node.
 
     take() takes what has come; done() follows once nothing is waited for; missed() is called when
-    it has not come in MISSING_S of wall time, and must end the waiting.  No number depends on a
-    clock: without missed() the outcome is the same however long it takes.
+    progress() has given the same value for MISSING_S of wall time, and must end that waiting.  No
+    number depends on a clock: without missed() the outcome is the same however long it takes.
     """
 
-    def __init__(self, node, waiting, take, missed, done):
-        self._node, self._waiting, self._take = node, waiting, take
-        self._missed, self._done = missed, done
-        self._since = None
+    def __init__(self, node, waiting, progress, take, missed, done):
+        self._node, self._waiting, self._progress = node, waiting, progress
+        self._take, self._missed, self._done = take, missed, done
+        self._since = self._mark = None
         self._retry = node.create_timer(RETRY_S, self._on_retry)
         self._retry.cancel()
 
@@ -28,11 +28,14 @@ class Patience:
         """Wait for a moment, and if that is not enough let the timer go on."""
         start = time.monotonic()
         while self._waiting() and not self._node.stop:
-            now = time.monotonic()
+            now, mark = time.monotonic(), self._progress()
+            if mark != self._mark:
+                self._mark, self._since = mark, None
             if self._since is not None and now - self._since > MISSING_S:
                 self._missed()
+                self._since, start = None, now
             elif self._since is not None or now - start >= patience_s:
-                self._since = self._since or start
+                self._since = self._since or now
                 self._retry.reset()
                 return
             else:

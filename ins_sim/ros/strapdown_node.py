@@ -39,8 +39,9 @@ class StrapdownNode(StageNode):
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
-        self._patience = Patience(self, lambda: self.stage.waiting, self._take_truth,
-                                  self._miss_truth, self._on_matched)
+        self._patience = Patience(
+            self, lambda: self.stage.waiting, lambda: self.stage.processed_ns, self._take_truth,
+            self._miss_truth, self._on_matched)
 
     def on_message(self, data):
         """Give one IMU message to the navigator, and the truth that it waits for."""

@@ -1,0 +1,52 @@
+"""What became of the fixes, for /diagnostics.  No ROS is imported."""
+
+from ins_sim.core.triad_model import DEG
+
+
+class AidingHealth:
+    """Counts of an AidedStream, by instrument, and the filter's view of the velocity meter."""
+
+    def __init__(self, stream):
+        self._stream = stream
+        self._came = {source: 0 for source in stream.navigator.sources}
+        self._taken, self._refused = dict(self._came), dict(self._came)
+        self._nis, self._last_ns = {}, {}
+        self._reason = ''
+
+    def came(self, source, fix):
+        """Count a fix that has come."""
+        self._came[source] += 1
+        self._last_ns[source] = fix.t_ns
+
+    def judge(self, taken):
+        """Take what became of fixes, Taken, and empty the list."""
+        for source, _, result in taken:
+            (self._taken if result.taken else self._refused)[source] += 1
+            if result.nis is not None:
+                self._nis[source] = result.nis / result.freedom
+            if not result.taken:
+                self._reason = f'{source}: {result.reason}'
+        taken.clear()
+
+    def describe(self):
+        """Return nothing that is wrong, and the values for /diagnostics."""
+        values, now_ns = [], self._stream.processed_ns
+        for source, count in self._came.items():
+            values += [(f'{source} fixes', count), (f'{source} taken', self._taken[source]),
+                       (f'{source} refused', self._refused[source])]
+            if source in self._nis:
+                values.append((f'{source} NIS per degree of freedom', f'{self._nis[source]:.3f}'))
+            if source in self._last_ns and now_ns is not None:
+                age_s = (now_ns - self._last_ns[source]) * 1e-9
+                values.append((f'{source} age s', f'{age_s:.3f}'))
+        values.append(('last refusal', self._reason))
+        filter_ = self._stream.navigator.filter
+        if filter_ is not None:
+            known = filter_.estimate_sigmas() or (None,) * 3
+            names = ('mounting arcmin', 'scale x', 'scale z')
+            for name, factor, value, sigma in zip(names, (60.0 / DEG, 1.0, 1.0), filter_.estimates,
+                                                  known):
+                values.append((name, f'{value * factor:.6g}'))
+                if sigma is not None:
+                    values.append((f'{name} sigma', f'{sigma * factor:.3g}'))
+        return '', values
