@@ -117,32 +117,60 @@ class Field:
         return np.array(rows) ** 2 if detection == 'power' else np.array(rows)
 
 
+class Sums(NamedTuple):
+    """
+    What a window adds up over its cycles.
+
+    products (5, lags): of values, by PAIRS; means (3, lags): of the values that stand in them,
+    by antenna and lag; power (3,): mean squared amplitude.
+    """
+
+    products: np.ndarray
+    means: np.ndarray
+    power: np.ndarray
+
+
 class Correlator:
     """
-    Two cross- and three autocorrelation functions of a cycle, normalised by its mean power.
+    Two cross- and three autocorrelation functions, averaged over cycles.
 
     Every lag has as many products as the cycle has samples, for the correlator goes on beyond
-    its end.  Powers are correlated less their mean, 1.
+    its end.  Powers are correlated less their mean and over it: that of the window, or that of
+    each cycle, which costs the functions a pedestal of about a correlation time over the cycle.
     """
 
     def __init__(self, settings):
-        self._power = settings.signal.detection == 'power'
+        self._powers = settings.signal.detection == 'power'
+        self._by_cycle = settings.signal.normalisation == 'cycle'
         self._lags, self._count = settings.signal.lags, samples(settings)
         self._size = power_of_two(self._count + self._lags - 1)
         self._earlier, self._later = (list(side) for side in zip(*PAIRS))
 
-    def correlate(self, signals):
-        """Return the functions of signals (3, length) by lag, (5, lags), real or complex."""
-        power = signals.real ** 2 + signals.imag ** 2
-        mean = power.mean(axis=1, keepdims=True)
-        if self._power:
-            values, forward, back = power / mean - 1.0, fft.rfft, fft.irfft
-        else:
-            values, forward, back = signals / np.sqrt(mean), fft.fft, fft.ifft
+    def sums(self, signals):
+        """Return the Sums of one cycle; signals: complex amplitudes (3, length)."""
+        values = power = signals.real ** 2 + signals.imag ** 2
+        forward, back = fft.rfft, fft.irfft
+        if not self._powers:
+            values, forward, back = signals, fft.fft, fft.ifft
+        mean = power.mean(axis=1)
+        if self._by_cycle:
+            scale = mean if self._powers else np.sqrt(mean)
+            values, mean = values / scale[:, None], np.ones(3)
         early = forward(values[:, :self._count], self._size).conj()
-        late = forward(values, self._size)
-        products = early[self._earlier] * late[self._later]
-        return back(products, self._size)[:, :self._lags] / self._count
+        products = early[self._earlier] * forward(values, self._size)[self._later]
+        ends = values.cumsum(axis=1)
+        starts = np.concatenate((np.zeros((3, 1)), ends), axis=1)[:, :self._lags]
+        return Sums(back(products, self._size)[:, :self._lags] / self._count,
+                    (ends[:, self._count - 1:] - starts) / self._count, mean)
+
+    def functions(self, total, cycles):
+        """Return the functions, real, (5, lags), of the Sums of so many cycles."""
+        products, means, power = (part / cycles for part in total)
+        p, q = power[self._earlier, None], power[self._later, None]
+        if not self._powers:
+            return abs(products) / np.sqrt(p * q)
+        early, late = means[self._earlier, :1], means[self._later]
+        return (products - early * q - p * late + p * q) / (p * q)
 
 
 class SignalWindows:
@@ -169,15 +197,13 @@ class SignalWindows:
         x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
         signals = self._field.signals(self._normals.normal_block(index)[0], math.hypot(x, y), z,
                                       -y / x)
-        functions = self._correlator.correlate(signals)
-        return functions if total is None else total + functions
+        one = self._correlator.sums(signals)
+        return one if total is None else Sums(*(a + b for a, b in zip(total, one)))
 
     def read(self, total, index, tan_alpha):
-        """Return the Reading of a window; complex functions count by their magnitude."""
-        mean = total / self._cycles
-        if mean.dtype == complex:
-            mean = abs(mean)
-        reading = read(mean, self._lag_s, self._geometry, tan_alpha)
+        """Return the Reading of a window."""
+        functions = self._correlator.functions(total, self._cycles)
+        reading = read(functions, self._lag_s, self._geometry, tan_alpha)
         low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
         if reading.status == VALID and not low <= reading.v_x <= high:
             return Reading('measured speed outside the limits')
