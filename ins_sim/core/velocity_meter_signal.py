@@ -28,6 +28,8 @@ from .velocity_meter_layout import geometry, lag_s, samples
 SIGMAS = 5.0
 # added to the diagonal of G, which is singular where two antennas follow one another
 JITTER = 1e-9
+# 0.3 s and 100 MB a cycle
+MOST_MODES = 1 << 20
 
 
 def power_of_two(n):
@@ -48,7 +50,8 @@ class Field:
     The signals of the three antennas in one navigation cycle.
 
     settings: VelocityMeterSettings.  ``length`` samples a lag apart: those of the cycle and,
-    for the later antenna of a pair, as many more as the correlator has lags to go.
+    for the later antenna of a pair, as many more as the correlator has lags to go.  Raises
+    ValueError where a cycle takes too many.
     """
 
     def __init__(self, settings):
@@ -68,6 +71,11 @@ class Field:
         fastest = math.hypot(math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths),
                              self._decay)
         bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
+        if bands * self._period > MOST_MODES:
+            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz with '
+                             f'signal.pulses_per_lag {signal.pulses_per_lag}: a cycle takes '
+                             f'{bands * self._period} modes of the field; expected at most '
+                             f'{MOST_MODES}')
         modes = np.arange(bands * self._period) - bands * self._period // 2
         self._place = modes[:self._period] % self._period
         self._omega = 2.0 * np.pi / (self._period * self.lag_s) * modes
