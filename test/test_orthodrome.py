@@ -18,8 +18,6 @@ from ins_sim.core.route_settings import TurningPoints
 R0 = earth.MEAN_RADIUS
 LATITUDES = st.floats(-1.56, 1.56)
 LONGITUDES = st.floats(-math.pi, math.pi)
-STUDY = ((55.0, 56.236503, 56.183184, 57.615913, 58.237129),
-         (37.0, 38.288523, 40.862209, 41.011251, 43.442361))
 
 
 def apart(p, q):
@@ -109,6 +107,22 @@ def test_z_is_to_the_right():
     """South of an eastward leg, east of a northward one."""
     assert Leg(0.0, 0.0, 0.0, 1.0).to_xz(-0.1, 0.5)[1] > 0.0
     assert Leg(0.0, 0.0, 1.0, 0.0).to_xz(0.5, 0.1)[1] > 0.0
+
+
+def test_both_ends_of_a_short_leg_are_on_it():
+    """Ten metres suffice for a great circle through both points, to rounding."""
+    rng = np.random.default_rng(5)
+    worst = 0.0
+    for _ in range(500):
+        lat, lon, chi = rng.uniform(-1.5, 1.5), rng.uniform(-3.0, 3.0), rng.uniform(0.0, 6.0)
+        end = (lat + 2e-6 * math.cos(chi), lon + 2e-6 * math.sin(chi) / math.cos(lat))
+        leg = Leg(lat, lon, *end)
+        ends = np.array((leg.to_xz(lat, lon), leg.to_xz(*end)))
+        # and where the leg itself says they are
+        middle = leg.to_xz(*leg.from_xz(0.5 * leg.length, 0.0))
+        worst = max(worst, np.abs(ends - ((0.0, 0.0), (leg.length, 0.0))).max(), abs(middle[1]))
+    print(f'\nlegs of 13 m: ends and middle off by {worst:.1e} m')
+    assert worst < 1e-8
 
 
 def test_legs_change_at_the_bisector():

@@ -254,7 +254,7 @@ def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     truth, free = motion.at(t_ns), on_legs(motion, t_ns)
     leg = motion.route.legs_at(truth.lat, truth.lon)
     x, z = motion.route.to_xz(truth.lat, truth.lon, leg)
-    assert np.abs(z[free]).max() < 1e-5
+    assert np.abs(z[free]).max() < 2e-8
     way = np.linalg.norm(np.diff(truth.v_n, axis=0), axis=1)
     # half a second of the turn
     assert way.max() < 0.51 * (AIRSPEED + wind) * math.radians(rate)

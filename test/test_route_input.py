@@ -78,7 +78,8 @@ def test_what_can_be_flown(values):
     rate = np.abs(np.diff(truth.v_n, axis=0)).max() / 0.05
     print(f'\n{len(motion.turns)} turns, {motion.end_s:.0f} s: |Z| {np.abs(z[free]).max():.1e} m, '
           f'airspeed {v:.6f} within {np.abs(speed - v).max():.1e} m/s, slope {rate:.2f} m/s^2')
-    assert np.abs(z[free]).max() < 1e-6
+    # a few roundings of radians
+    assert np.abs(z[free]).max() < 2e-8
     assert np.abs(speed - v).max() < 1e-7 * v
     # the heading turns by no more than its rate, the local axes by V/R0 tan(88.5 deg)
     assert ((truth.q_nb[1:] * truth.q_nb[:-1]).sum(axis=1) > 0.99).all()

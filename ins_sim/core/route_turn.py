@@ -109,7 +109,7 @@ def turn_between(flow, before, after, rate, roll_s):
     def attempt(start, by):
         lat, lon, psi, _ = flow.on_leg(before, np.array([start * before.length]))
         piece, end = fly(flow, (lat[0], lon[0], psi[0]), TurnProfile(
-            by, rate, roll_s, STEP_M / flow.airspeed))
+            float(by), rate, roll_s, STEP_M / flow.airspeed))
         off = np.array((after.to_xz(*end[:2])[1] / earth.MEAN_RADIUS,
                         _wrap(flow.course(end[0], end[2]) - after.course(*end[:2]))))
         return off, piece, end
@@ -127,11 +127,11 @@ def turn_between(flow, before, after, rate, roll_s):
             unknown = unknown - np.linalg.solve(slopes, found[0])
         except np.linalg.LinAlgError:
             break
-    (off, piece, end), (start, _) = best
+    (off, piece, end), (start, _) = best[0], best[1].tolist()
     if not np.abs(off).max() <= _CLOSE:
         raise ValueError(f'a turn of {math.degrees(angle):.1f} deg that ends on no path to the '
                          'next point; expected longer legs or a smaller turn')
-    return float(start) * before.length, piece, after.to_xz(*end[:2])[0]
+    return start * before.length, piece, after.to_xz(*end[:2])[0]
 
 
 def _wrap(angle):
