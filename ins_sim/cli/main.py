@@ -7,6 +7,7 @@ import sys
 import warnings
 
 from .. import __version__
+from ..core.aided_settings import FILTERS
 
 ROS_ARGS = '--ros-args'
 NODE_VERBS = ('record', 'play')
@@ -103,6 +104,28 @@ def parser():
                                    'run', description='Navigate one offline run by quaternion, '
                                    'Poisson\'s equation and Euler vector, and compare them.')
     _settings(orientation)
+
+    filters = verbs.add_parser('compare-filters', help='all filters of the aided navigator over '
+                               'the same flights', description='Fly the filters of the aided '
+                               'navigator over the same flights and seeds, on all cores, and show '
+                               'table and figure.')
+    filters.add_argument('--params-file', action='append', default=[], metavar='FILE',
+                         help='ROS parameter file, or the name of a shipped one; may be repeated, '
+                         'later ones win (default: route_flight and grade_mid)')
+    filters.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
+                         help='one parameter, for every node that knows it')
+    filters.add_argument('--runs', type=int, default=24, metavar='N', help='flights, each with '
+                         'seeds of its own (default: %(default)s)')
+    filters.add_argument('--filters', nargs='+', choices=FILTERS, default=None, metavar='NAME',
+                         help=f'of {", ".join(FILTERS)} (default: all)')
+    filters.add_argument('--cycles', nargs='+', type=int, default=None, metavar='N',
+                         help='cycles of a fix: the first for all filters, the others for eskf as '
+                         'well (default: window.cycles)')
+    filters.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
+                         'as many as cores)')
+    filters.add_argument('-o', '--output', default='ins_sim_filters', metavar='DIR',
+                         help='folder of figure and numbers (default: %(default)s)')
+    filters.add_argument('--force', action='store_true', help='replace what is in DIR')
 
     allan = verbs.add_parser('allan', help='Allan deviation of a record or of simulated noise',
                              description='Show Allan deviations and the noise coefficients '

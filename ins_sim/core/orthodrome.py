@@ -67,6 +67,10 @@ class Leg:
                 f'the leg from {math.degrees(lat1):.9g}, {math.degrees(lon1):.9g} deg to '
                 f'{math.degrees(lat2):.9g}, {math.degrees(lon2):.9g} deg joins {kind}; expected '
                 'points with one great circle through them')
+        # of a short leg the product is not quite square to u1, which would be read as Z
+        slip = dot(normal, self.u1)
+        normal = tuple(x - slip * u for x, u in zip(normal, self.u1))
+        size = math.sqrt(dot(normal, normal))
         self.n = tuple(x / size for x in normal)
         self.e2 = attitude.cross(self.n, self.u1)
         self.length = earth.MEAN_RADIUS * angle

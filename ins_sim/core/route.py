@@ -4,7 +4,10 @@ Flight along a route of great circles, with wind, gusts and a weaving heading.
 Between turns the track made good is the great circle of ``orthodrome``; turns are coordinated and
 flown inside the corners (``route_turn``).  The vehicle points along its velocity relative to the
 air without gusts; gusts carry it.  Its axes are those of the velocity relative to the air, banked
-by atan(V psi'/g) about that velocity and turned up by the attack angle about the left axis.
+about it as a coordinated turn asks and turned up by the attack angle about the left axis.  With
+the turn of the local axes and Coriolis' force the bank is
+
+    atan(V [psi' - (2 Omega + lon') sin lat]/g)                                 (Groves 5.44, 5.53)
 """
 
 import math
@@ -22,6 +25,8 @@ from .weave import Weave
 
 STEEPEST_DEG = 60.0
 GUST_MARGIN = 3.0
+# longitude and north turn too fast beyond
+POLEMOST_DEG = 89.0
 
 
 class RouteMotion:
@@ -37,8 +42,8 @@ class RouteMotion:
     end_name = 'the arrival at the last turning point'
 
     def __init__(self, settings, earth_settings):
-        _check(settings)
         self._rotation = earth_settings.rotation
+        self._spin = earth.ROTATION_RATE if self._rotation else 0.0
         self._height, self._airspeed = settings.height_m, settings.airspeed_m_s
         self._attack = math.radians(settings.attack_deg)
         self.route = Route.of_points(settings.points)
@@ -50,10 +55,11 @@ class RouteMotion:
         if settings.gust_m_s:
             self.gusts = Gusts(settings.gust_m_s, settings.gust_length_m, self._airspeed,
                                settings.gust_seed)
-        made_good = self._weave.made_good if self._weave else 1.0
+        made_good = self._airspeed * (self._weave.made_good if self._weave else 1.0)
+        _check(settings, made_good)
         self.wind = _wind(settings)
         self._track, self.turns = _track(
-            Flow(self._height, self._airspeed * made_good, self.wind), self.route.legs,
+            Flow(self._height, made_good, self.wind), self.route.legs,
             math.radians(settings.turn_rate_deg_s), settings.roll_in_s)
         self.end_s = self._track.end_s
 
@@ -72,7 +78,9 @@ class RouteMotion:
         r_n, r_e = earth.radii(sin_lat)
         lon = lon + east / ((r_e + self._height) * cos_lat)
         lat = lat + north / (r_n + self._height)
-        bank = taylor.atan2(psi.derivative() * self._airspeed, psi.constant(STANDARD_GRAVITY))
+        # no bank holds a great circle but against Coriolis' force
+        turn = psi.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
+        bank = taylor.atan2(turn * self._airspeed, psi.constant(STANDARD_GRAVITY))
         # the axis points left: nose up is negative
         q_nb = attitude.multiply(attitude.from_angles(-psi, psi.constant(0.0), bank),
                                  attitude.about_axis(1, psi.constant(-self._attack)))
@@ -85,13 +93,13 @@ def _wind(settings):
     return (-settings.wind_m_s * math.sin(direction), -settings.wind_m_s * math.cos(direction))
 
 
-def _check(settings):
-    """Raise ValueError on what no vehicle flies."""
+def _check(settings, made_good):
+    """Raise ValueError on what no vehicle flies; made_good: airspeed less the weave, m/s."""
     strongest = settings.wind_m_s + GUST_MARGIN * settings.gust_m_s
-    if strongest >= settings.airspeed_m_s:
+    if strongest >= made_good:
         raise ValueError(
-            f'motion.route.wind_m_s and {GUST_MARGIN:g} motion.route.gust_m_s are {strongest:g} '
-            f'm/s; expected less than motion.route.airspeed_m_s, {settings.airspeed_m_s:g} m/s')
+            f'motion.route.wind_m_s and {GUST_MARGIN:g} times motion.route.gust_m_s are '
+            f'{strongest:g} m/s; expected less than the airspeed made good, {made_good:g} m/s')
     rate = math.radians(settings.turn_rate_deg_s) + (
         math.radians(settings.weave_deg) * 2.0 * math.pi / settings.weave_period_s)
     bank = math.degrees(math.atan(settings.airspeed_m_s * rate / STANDARD_GRAVITY))
@@ -123,4 +131,8 @@ def _track(flow, legs, rate, roll_s):
             pieces.append(turn[1])
             turns.append((time, time + turn[1].length_s))
             time, x = turns[-1][1], turn[2]
+    nearest = math.degrees(max(np.abs(piece.lat).max() for piece in pieces))
+    if nearest > POLEMOST_DEG:
+        raise ValueError(f'motion.route.points: the route reaches a latitude of {nearest:.2f} deg;'
+                         f' expected at most {POLEMOST_DEG:g} deg')
     return Track(flow, pieces), turns

@@ -16,11 +16,11 @@ import math
 import numpy as np
 
 from . import earth, taylor
-from .orthodrome import dot, FLATTENING2, unit_vector
+from .orthodrome import FLATTENING2
 
 # of the expansions about the knots: what is left out is below rounding (docs/design/route.md)
 ORDER = 10
-LEG_STEP_S = 10.0
+STEP_M = 2000.0
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _K = 1.0 - FLATTENING2 ** 2
 
@@ -98,17 +98,17 @@ def leg_piece(flow, leg, first, last):
     """
     Return the Piece along a leg from X = first to last, m.
 
-    The time is the integral of dX/X', by Gauss and Legendre with eight points every ten seconds:
-    exact to rounding, as X' changes over thousands of kilometres.
+    The time is the integral of dX/X', by Gauss and Legendre with eight points every two
+    kilometres: exact to rounding, as X' changes over thousands.
     """
-    count = max(1, math.ceil((last - first) / (LEG_STEP_S * flow.airspeed)))
+    count = max(1, math.ceil((last - first) / STEP_M))
     x = np.linspace(first, last, count + 1)
     half = 0.5 * (last - first) / count
     inner = (x[:-1, None] + half) + half * _NODES
     speed = flow.on_leg(leg, inner.ravel())[3].reshape(inner.shape)
     t = np.concatenate([[0.0], np.cumsum(half * (_WEIGHTS / speed).sum(axis=1))])
     lat, lon, psi, _ = flow.on_leg(leg, x[:-1])
-    return Piece(t[:-1], lat, lon, psi, np.zeros((count, 1)), t[-1])
+    return Piece(t[:-1], lat, lon, psi, np.zeros((count, 1)), float(t[-1]))
 
 
 class Track:
@@ -156,8 +156,3 @@ def _expand(flow, lat, lon, psi, turn):
         for i, rate in enumerate(rates):
             c[k + 1, i] = rate.c[k] / (k + 1)
     return c
-
-
-def across(leg, lat, lon):
-    """Return the angle to the right of a leg, rad, floats."""
-    return -math.asin(dot(unit_vector(lat, lon), leg.n))

@@ -12,22 +12,30 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .route_track import across, Piece
+from . import earth
+from .route_track import Piece, STEP_M
 
-STEP_S = 2.0
+# of the integration, and between knots: at most this angle and STEP_M, and a roll in eight
+STEP_ANGLE = 0.05
 ROLL_STEPS = 8
 # Below this legs are joined without a turn: the course jumps by no more, rad.
 STRAIGHT = 1e-10
 SHARPEST = math.radians(170.0)
 # how far beside and how far turned from the next leg a turn may end, rad: 6e-6 m
 _CLOSE = 1e-12
+# of the slopes by differences: part of the leg, and rad
 _STEP_START, _STEP_ANGLE = 1e-5, 1e-4
 
 
 class TurnProfile:
-    """The rate over a turn by angle (rad, signed), at most rate (rad/s), rolling in roll_s."""
+    """
+    The rate over a turn by angle (rad, signed), at most rate (rad/s), rolling in roll_s.
 
-    def __init__(self, angle, rate, roll_s):
+    longest_s: what a step may be; parts: length (s), step (s), and the rate as a polynomial of
+    the time since the start of the part.
+    """
+
+    def __init__(self, angle, rate, roll_s, longest_s):
         hold_s = abs(angle) / rate - roll_s
         if hold_s < 0.0:
             hold_s, peak = 0.0, angle / roll_s
@@ -35,11 +43,11 @@ class TurnProfile:
             peak = math.copysign(rate, angle)
         s = np.polynomial.Polynomial((0.0, 1.0 / roll_s))
         rise = peak * s ** 3 * (10.0 - 15.0 * s + 6.0 * s * s)
-        roll_step = min(roll_s / ROLL_STEPS, STEP_S)
-        # (length, greatest step, rate as a polynomial of the time since the start of the part)
+        step = min(longest_s, STEP_ANGLE / max(abs(peak), 1e-9))
+        roll_step = min(roll_s / ROLL_STEPS, step)
         self.parts = [(roll_s, roll_step, rise)]
         if hold_s > 0.0:
-            self.parts.append((hold_s, STEP_S, np.polynomial.Polynomial((peak,))))
+            self.parts.append((hold_s, step, np.polynomial.Polynomial((peak,))))
         self.parts.append((roll_s, roll_step, peak - rise))
 
 
@@ -83,10 +91,10 @@ def _taylor(polynomial, t):
 
 def turn_between(flow, before, after, rate, roll_s):
     """
-    Return the turn from Leg before to Leg after as (X of its start on before, Piece, X of its end
-    on after), or None where the legs are one great circle.
+    Return the turn from Leg before to Leg after, or None where both are one great circle.
 
-    rate: rad/s; roll_s: s.  Raises ValueError on a turn of about 180 deg.
+    It is X of its start on before, m, the Piece, and X of its end on after, m.  rate: rad/s;
+    roll_s: s.  Raises ValueError on a turn of about 180 deg, and where none fits.
     """
     heading = [float(flow.on_leg(leg, np.array([x]))[2][0])
                for leg, x in ((before, before.length), (after, 0.0))]
@@ -100,8 +108,9 @@ def turn_between(flow, before, after, rate, roll_s):
 
     def attempt(start, by):
         lat, lon, psi, _ = flow.on_leg(before, np.array([start * before.length]))
-        piece, end = fly(flow, (lat[0], lon[0], psi[0]), TurnProfile(by, rate, roll_s))
-        off = np.array((across(after, *end[:2]),
+        piece, end = fly(flow, (lat[0], lon[0], psi[0]), TurnProfile(
+            float(by), rate, roll_s, STEP_M / flow.airspeed))
+        off = np.array((after.to_xz(*end[:2])[1] / earth.MEAN_RADIUS,
                         _wrap(flow.course(end[0], end[2]) - after.course(*end[:2]))))
         return off, piece, end
 
@@ -114,9 +123,12 @@ def turn_between(flow, before, after, rate, roll_s):
             break
         slopes = np.stack([(attempt(*(unknown + h))[0] - found[0]) / h.sum()
                            for h in np.diag((_STEP_START, _STEP_ANGLE))], axis=1)
-        unknown = unknown - np.linalg.solve(slopes, found[0])
-    (off, piece, end), (start, _) = best
-    if np.abs(off).max() > _CLOSE:
+        try:
+            unknown = unknown - np.linalg.solve(slopes, found[0])
+        except np.linalg.LinAlgError:
+            break
+    (off, piece, end), (start, _) = best[0], best[1].tolist()
+    if not np.abs(off).max() <= _CLOSE:
         raise ValueError(f'a turn of {math.degrees(angle):.1f} deg that ends on no path to the '
                          'next point; expected longer legs or a smaller turn')
     return start * before.length, piece, after.to_xz(*end[:2])[0]

@@ -13,6 +13,8 @@ from .fixes import VALID
 # lags whose correlation is at least this part of the greatest are fitted
 PART = 0.5
 LEAST_CROSS, LEAST_AUTO = 5, 3
+# a determinant below this part of its terms is rounding
+ROUNDING = 1e-12
 PAIRS = ((0, 1), (1, 2), (0, 0), (1, 1), (2, 2))
 NAMES = ('R12', 'R23', 'R11', 'R22', 'R33')
 
@@ -47,16 +49,20 @@ def log_quadratic(values, first, even=False):
     Return g, d, c of ln C = g k^2 + d k + c by least squares with weights C^2 (equation 6).
 
     values: positive correlations at the lags k = first, first + 1, ...; even: with d = 0.  The
-    weights make the errors of C, alike at all lags, count alike.
+    weights make the errors of C, alike at all lags, count alike.  NaN where they vanish at all
+    but one or two lags.
     """
-    middle = 0 if even else first + len(values) // 2
+    middle, top = 0 if even else first + len(values) // 2, max(values)
     s0 = s1 = s2 = s3 = s4 = t0 = t1 = t2 = 0.0
     for k, value in enumerate(values, first - middle):
-        w, y = value * value, math.log(value)
+        w, y = (value / top) ** 2, math.log(value)
         s0, s1, s2, s3, s4 = s0 + w, s1 + w * k, s2 + w * k**2, s3 + w * k**3, s4 + w * k**4
         t0, t1, t2 = t0 + w * y, t1 + w * y * k, t2 + w * y * k**2
     if even:
-        g = (t2 * s0 - t0 * s2) / (s4 * s0 - s2 * s2)
+        determinant = s4 * s0 - s2 * s2
+        if determinant <= ROUNDING * s4 * s0:
+            return (math.nan,) * 3
+        g = (t2 * s0 - t0 * s2) / determinant
         return g, 0.0, (t0 - g * s2) / s0
     # moments about the mean lag part the unknowns
     m = s1 / s0
@@ -64,6 +70,8 @@ def log_quadratic(values, first, even=False):
     a4 = s4 - s2 * s2 / s0
     b1, b2 = t1 - m * t0, t2 - s2 / s0 * t0
     determinant = a2 * a4 - a3 * a3
+    if a2 <= ROUNDING * s2 or determinant <= ROUNDING * a2 * a4:
+        return (math.nan,) * 3
     g, d = (a2 * b2 - a3 * b1) / determinant, (a4 * b1 - a3 * b2) / determinant
     c = (t0 - d * s1 - g * s2) / s0
     return g, d - 2.0 * g * middle, c - d * middle + g * middle * middle

@@ -47,6 +47,9 @@ class Signal(Settings):
     snr_db: float = setting(10.0, 'signal to noise ratio of a sample', 'dB', -30.0, 200.0)
     detection: str = setting('power', 'what is correlated: powers (square-law detector), or '
                              'complex amplitudes', choices=('power', 'complex'))
+    normalisation: str = setting('window', 'mean power that correlations are divided by: that of '
+                                 'the window, or cycle by cycle, as the paper has it, which makes '
+                                 'V_z 5 % small in cycles of 10 ms', choices=('window', 'cycle'))
     decay_time_s: float = setting(0.0, 'the field itself decays as exp(-t^2/(2 T_d^2)), T_d; 0 = '
                                   'it is frozen', 's', 0.0, 1e3)
 

@@ -28,6 +28,8 @@ from .velocity_meter_layout import geometry, lag_s, samples
 SIGMAS = 5.0
 # added to the diagonal of G, which is singular where two antennas follow one another
 JITTER = 1e-9
+# 0.3 s and 100 MB a cycle
+MOST_MODES = 1 << 20
 
 
 def power_of_two(n):
@@ -48,7 +50,8 @@ class Field:
     The signals of the three antennas in one navigation cycle.
 
     settings: VelocityMeterSettings.  ``length`` samples a lag apart: those of the cycle and,
-    for the later antenna of a pair, as many more as the correlator has lags to go.
+    for the later antenna of a pair, as many more as the correlator has lags to go.  Raises
+    ValueError where a cycle takes too many.
     """
 
     def __init__(self, settings):
@@ -68,6 +71,11 @@ class Field:
         fastest = math.hypot(math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths),
                              self._decay)
         bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
+        if bands * self._period > MOST_MODES:
+            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz with '
+                             f'signal.pulses_per_lag {signal.pulses_per_lag}: a cycle takes '
+                             f'{bands * self._period} modes of the field; expected at most '
+                             f'{MOST_MODES}')
         modes = np.arange(bands * self._period) - bands * self._period // 2
         self._place = modes[:self._period] % self._period
         self._omega = 2.0 * np.pi / (self._period * self.lag_s) * modes
@@ -117,32 +125,60 @@ class Field:
         return np.array(rows) ** 2 if detection == 'power' else np.array(rows)
 
 
+class Sums(NamedTuple):
+    """
+    What a window adds up over its cycles.
+
+    products (5, lags): of values, by PAIRS; means (3, lags): of the values that stand in them,
+    by antenna and lag; power (3,): mean squared amplitude.
+    """
+
+    products: np.ndarray
+    means: np.ndarray
+    power: np.ndarray
+
+
 class Correlator:
     """
-    Two cross- and three autocorrelation functions of a cycle, normalised by its mean power.
+    Two cross- and three autocorrelation functions, averaged over cycles.
 
     Every lag has as many products as the cycle has samples, for the correlator goes on beyond
-    its end.  Powers are correlated less their mean, 1.
+    its end.  Powers are correlated less their mean and over it: that of the window, or that of
+    each cycle, which costs the functions a pedestal of about a correlation time over the cycle.
     """
 
     def __init__(self, settings):
-        self._power = settings.signal.detection == 'power'
+        self._powers = settings.signal.detection == 'power'
+        self._by_cycle = settings.signal.normalisation == 'cycle'
         self._lags, self._count = settings.signal.lags, samples(settings)
         self._size = power_of_two(self._count + self._lags - 1)
         self._earlier, self._later = (list(side) for side in zip(*PAIRS))
 
-    def correlate(self, signals):
-        """Return the functions of signals (3, length) by lag, (5, lags), real or complex."""
-        power = signals.real ** 2 + signals.imag ** 2
-        mean = power.mean(axis=1, keepdims=True)
-        if self._power:
-            values, forward, back = power / mean - 1.0, fft.rfft, fft.irfft
-        else:
-            values, forward, back = signals / np.sqrt(mean), fft.fft, fft.ifft
+    def sums(self, signals):
+        """Return the Sums of one cycle; signals: complex amplitudes (3, length)."""
+        values = power = signals.real ** 2 + signals.imag ** 2
+        forward, back = fft.rfft, fft.irfft
+        if not self._powers:
+            values, forward, back = signals, fft.fft, fft.ifft
+        mean = power.mean(axis=1)
+        if self._by_cycle:
+            scale = mean if self._powers else np.sqrt(mean)
+            values, mean = values / scale[:, None], np.ones(3)
         early = forward(values[:, :self._count], self._size).conj()
-        late = forward(values, self._size)
-        products = early[self._earlier] * late[self._later]
-        return back(products, self._size)[:, :self._lags] / self._count
+        products = early[self._earlier] * forward(values, self._size)[self._later]
+        ends = values.cumsum(axis=1)
+        starts = np.concatenate((np.zeros((3, 1)), ends), axis=1)[:, :self._lags]
+        return Sums(back(products, self._size)[:, :self._lags] / self._count,
+                    (ends[:, self._count - 1:] - starts) / self._count, mean)
+
+    def functions(self, total, cycles):
+        """Return the functions, real, (5, lags), of the Sums of so many cycles."""
+        products, means, power = (part / cycles for part in total)
+        p, q = power[self._earlier, None], power[self._later, None]
+        if not self._powers:
+            return abs(products) / np.sqrt(p * q)
+        early, late = means[self._earlier, :1], means[self._later]
+        return (products - early * q - p * late + p * q) / (p * q)
 
 
 class SignalWindows:
@@ -169,15 +205,13 @@ class SignalWindows:
         x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
         signals = self._field.signals(self._normals.normal_block(index)[0], math.hypot(x, y), z,
                                       -y / x)
-        functions = self._correlator.correlate(signals)
-        return functions if total is None else total + functions
+        one = self._correlator.sums(signals)
+        return one if total is None else Sums(*(a + b for a, b in zip(total, one)))
 
     def read(self, total, index, tan_alpha):
-        """Return the Reading of a window; complex functions count by their magnitude."""
-        mean = total / self._cycles
-        if mean.dtype == complex:
-            mean = abs(mean)
-        reading = read(mean, self._lag_s, self._geometry, tan_alpha)
+        """Return the Reading of a window."""
+        functions = self._correlator.functions(total, self._cycles)
+        reading = read(functions, self._lag_s, self._geometry, tan_alpha)
         low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
         if reading.status == VALID and not low <= reading.v_x <= high:
             return Reading('measured speed outside the limits')

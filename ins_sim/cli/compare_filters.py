@@ -1,0 +1,75 @@
+"""Verb compare-filters: all filters over the same flights and seeds, on all cores."""
+
+from concurrent.futures import as_completed, ProcessPoolExecutor
+from dataclasses import asdict
+import json
+import os
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from .. import parameter_files, resources
+from ..core.aided_settings import FILTERS
+from ..core.filter_study import Case, fly, run_settings
+from ..core.motions import check_length, make_motion
+from ..report import filter_study as report, storage
+
+MARK = 'comparison.json'
+
+
+def run(chosen):
+    """Fly, show and save; return the exit code."""
+    names = chosen.params_file or ['route_flight', 'grade_mid']
+    settings = parameter_files.read_aided(
+        [resources.parameter_file(name) for name in names], chosen.param)
+    if chosen.runs < 1 or chosen.jobs < 0:
+        raise ValueError(f'--runs is {chosen.runs} and --jobs {chosen.jobs}; expected 1 or more '
+                         'runs, and 0 (every core) or more jobs')
+    storage.check_free(chosen.output, chosen.force, MARK)
+    cases = _cases(chosen, settings.velocity_meter.window.cycles)
+    # what is wrong with the flight is said at once, and not by every worker
+    generator = run_settings(settings, 0).simulation.motion_generator
+    check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
+    console = Console()
+    flights = _fly_all(settings, cases, chosen.runs, chosen.jobs or os.cpu_count(), console)
+    flown = list(zip(*flights))
+    rows = [report.row(case, list(f)) for case, f in zip(cases, flown)]
+    title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
+             + ', '.join(map(str, names)))
+    report.show(title, rows, console)
+    with storage.whole(chosen.output, chosen.force, MARK) as folder:
+        report.save_figure(folder / 'comparison.png', title, cases, flown)
+        (folder / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
+                                   encoding='utf-8')
+    console.print(f'figure: {chosen.output}/comparison.png', soft_wrap=True, markup=False)
+    return 0
+
+
+def _cases(chosen, cycles):
+    windows = chosen.cycles or [cycles]
+    filters = list(dict.fromkeys(chosen.filters or FILTERS))
+    for n in windows:
+        if not 1 <= n <= 100000:
+            raise ValueError(f'--cycles is {n}; expected 1 to 100000')
+    # the other filters are made for one window: it is the first
+    cases = [Case(name, windows[0]) for name in filters]
+    return cases + [Case('eskf', n) for n in windows[1:] if 'eskf' in filters]
+
+
+def _fly_all(settings, cases, runs, jobs, console):
+    """Return the list of Flown of each run, in their order."""
+    flights = [None] * runs
+    with Progress(TextColumn('flying'), BarColumn(), TextColumn('{task.completed:.0f} of '
+                  '{task.total:.0f} flights'), TimeRemainingColumn(), console=console,
+                  transient=True) as progress:
+        task = progress.add_task('', total=runs)
+        with ProcessPoolExecutor(min(jobs, runs)) as pool:
+            futures = {pool.submit(fly, settings, cases, k): k for k in range(runs)}
+            try:
+                for future in as_completed(futures):
+                    flights[futures[future]] = future.result()
+                    progress.advance(task)
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+    return flights

@@ -1,0 +1,53 @@
+"""Settings, flights and readings that the tests of the velocity meter share."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.catalogue import build
+from ins_sim.core.fixes import VALID
+from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
+from ins_sim.core.velocity_meter_signal import SignalWindows
+
+DT_NS = 10_000_000
+# an instrument without errors of its own
+PERFECT = {'surrogate.sigma_x_m_s': 0.0, 'surrogate.sigma_z_m_s': 0.0, 'surrogate.slip_x': 0.0,
+           'surrogate.slip_z_m_s': 0.0, 'surrogate.bias_x_m_s': 0.0}
+
+
+def meter_settings(values=None, **more):
+    """Return VelocityMeterSettings of {dotted name: value}; double underscores are dots."""
+    values = {'attack_angle': 'none', **(values or {}),
+              **{k.replace('__', '.'): v for k, v in more.items()}}
+    return build(VelocityMeterSettings, values)
+
+
+def body(speed, beta, alpha=0.0):
+    """Return the velocity in body axes FLU, spec/velocity_meter 1; beta, alpha rad."""
+    return (speed * math.cos(beta) * math.cos(alpha), -speed * math.sin(beta),
+            -speed * math.cos(beta) * math.sin(alpha))
+
+
+def flight(cycles, v_b=(250.0, 0.0, 0.0), first=0):
+    """Return t_ns, v_b, height of a steady flight over so many cycles."""
+    t_ns = np.arange(first, first + cycles + 1) * DT_NS
+    return t_ns, np.tile(np.array(v_b), (cycles + 1, 1)), np.full(cycles + 1, 500.0)
+
+
+def errors(settings, windows, beta=0.0, speed=250.0):
+    """
+    Return the errors of V_x1, V_z1, V_z1 by delays of the valid windows, (n, 3), mode signal.
+
+    Also the part of the windows that is valid.
+    """
+    made, v = SignalWindows(settings, 0), (speed * math.cos(beta), 0.0, speed * math.sin(beta))
+    found, index = [], 0
+    for _ in range(windows):
+        total = None
+        for _ in range(settings.window.cycles):
+            index += 1
+            total = made.add(total, index, v, v)
+        one = made.read(total, index, 0.0)
+        if one.status == VALID:
+            found.append((one.v_x - v[0], one.v_z - v[2], one.v_z_delays - v[2]))
+    return np.array(found), len(found) / windows
