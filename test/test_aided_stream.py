@@ -14,8 +14,9 @@ from ins_sim.core.aided_stream import AidedStream, FixSchedule
 from ins_sim.core.catalogue import build, flatten
 from ins_sim.core.faults import StreamFault
 from ins_sim.core.map_frame import MapFrame
+from ins_sim.core.meter_on_truth import body_velocity
 from ins_sim.core.motions import make_motion
-from ins_sim.core.settings import AIDING
+from ins_sim.core.settings import AIDING, NODES
 from ins_sim.core.simulation import simulate
 from studies import settings as simulation_settings
 
@@ -27,19 +28,26 @@ VALUES = {'source': 'motion', 'motion.kind': 'route', 'duration_s': 12.0, 'windo
           (100.0, 50.0, 0.0)}
 
 
+def chosen_settings(values):
+    """Return AidedSettings of {dotted name: value}."""
+    known = {name: set(flatten(cls)) for name, cls in AIDING.items()}
+    simulated = set().union(*(flatten(cls) for cls in NODES.values()))
+    return AidedSettings(
+        simulation_settings({k: v for k, v in values.items() if k in simulated}),
+        **{name: build(cls, {k: v for k, v in values.items() if k in known[name]})
+           for name, cls in AIDING.items()})
+
+
 @lru_cache(maxsize=None)
 def scene():
     """Return (AidedSettings, AidedRun offline, events by stream) of a short flight."""
-    known = {name: set(flatten(cls)) for name, cls in AIDING.items()}
-    simulation = simulation_settings({k: v for k, v in VALUES.items() if not any(
-        k in names for names in known.values()) or k in ('seed',) or k.startswith('datum')})
-    chosen = AidedSettings(simulation, **{name: build(cls, {
-        k: v for k, v in VALUES.items() if k in known[name]}) for name, cls in AIDING.items()})
+    chosen = chosen_settings(VALUES)
+    simulation = chosen.simulation
     generator = simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(simulation, twin=False, motion=motion)
     offline = simulate_aided(chosen, motion, run)
-    meter, gnss = chosen.instruments()
+    meter, gnss = chosen.instruments((run.states.t_ns, body_velocity(run.states)))
     truth = [t for _, t in with_truth(motion, [run.imu])][0]
     frame = MapFrame(generator.datum, True)
     poses = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
@@ -89,9 +97,8 @@ def test_the_stream_is_the_offline_run():
     """
     Solution and errors to the rounding of the truth, which passes through the map.
 
-    A place is 1e-9 m in a double, a few of which add up; a filter that takes a position for a
-    velocity does so at most once a second, and velocity for attitude at most by the ratio of
-    their sigmas, 1.5 mrad to 0.05 m/s.
+    As in test_live_graph: a place is 1e-9 m in a double, a few of which add up; an attitude
+    rounds at 1e-15.
     """
     _, offline, streams = scene()
     outputs, faults, stream = run_stream(streams, np.random.default_rng(0))
@@ -103,7 +110,7 @@ def test_the_stream_is_the_offline_run():
     ratio = np.abs(sigma[:, 0] / offline.errors.position_sigma - 1.0).max()
     print(f'\nattitude {off[0]:.1e} rad, velocity {off[1]:.1e} m/s, position {off[2]:.1e} m, '
           f'sigma of the position {ratio:.1e} of it')
-    assert off[2] < 1e-8 and off[1] < 1e-8 and off[0] < 3e-10 and ratio < 1e-9
+    assert off[2] < 8e-9 and off[1] < 1e-11 and off[0] < 1e-14 and ratio < 1e-12
     assert [(t.source, t.t_ns, t.result.taken) for t in stream.taken] == [
         (t.source, t.t_ns, t.result.taken) for t in offline.taken]
     assert sum(t.result.taken for t in stream.taken) == 5 + 10
