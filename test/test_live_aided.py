@@ -4,8 +4,10 @@ from dataclasses import replace
 import subprocess
 import sys
 
+from ins_sim.bags.bag_reader import open_bag
 from ins_sim.core.aided_simulation import simulate_aided
 from ins_sim.core.map_frame import MapFrame
+from ins_sim.core.meter_on_truth import body_velocity
 from ins_sim.core.motions import make_motion
 from ins_sim.core.orthodrome import Route
 from ins_sim.core.simulation import simulate
@@ -161,3 +163,49 @@ def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain
     assert process.wait(60.0) == 2
     text = chain.text(process)
     assert sentence in text and text.count('\n') == 1
+
+
+def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_path):
+    """
+    Every topic is whole in the bag, though meter, GNSS and sigmas say nothing with sample 0.
+
+    The records are the offline fixes to the rounding of the truth; aided/fix says that its
+    covariance is unknown, and aided/sigma/* is silent.
+    """
+    values = {**VALUES, 'duration_s': 6.0, 'filter': 'paper_corrected', 'gnss_model.use': False}
+    live_values = {**LIVE, **values, 'source': 'stream', 'outages.start_s': [4.5],
+                   'outages.end_s': [6.5], 'pacing.real_time_factor': 0.0,
+                   'accelerometer.errors.bias_ug': [100.0, 50.0, 0.0],
+                   'pacing.required': REQUIRED.replace('listener', 'recorder')}
+    names = [t.name for t in (topics.TRUTH_ODOMETRY, *topics.AIDING)]
+    chain = Chain(ros_domain, tmp_path)
+    try:
+        recorder = chain.start('recorder', {'storage.path': tmp_path / 'bag', 'record.topics':
+                                            f'[{", ".join(names)}]'})
+        started = [chain.start(node, live_values) for node in NODES]
+        assert started[-1].wait(60.0) == 0, [chain.text(p) for p in (recorder, *started)]
+        assert set(chain.end().values()) == {0}
+    finally:
+        chain.end()
+    settings = chosen_settings({**values, 'source': 'stream'})
+    generator = settings.simulation.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    run = simulate(settings.simulation, twin=False, motion=motion)
+    meter, _ = settings.instruments((run.states.t_ns, body_velocity(run.states)))
+    with open_bag(tmp_path / 'bag') as bag:
+        counts = {n.lstrip('/'): span.count for n, span in bag.spans().items()}
+        records = [velocity_record.read(bytes(data), 0) for n, _, data in bag.messages()
+                   if n == '/velocity_meter/record']
+        fix, aided = bag.arrays('gnss/fix'), bag.arrays('aided/fix')
+    dense = [t.name for t in topics.AIDING if t not in topics.SELDOM]
+    assert {name: counts[name] for name in dense} == dict.fromkeys(dense, 601)
+    # GNSS at 0 to 5 s, that of 6 s being late; the window of 6 s too
+    assert counts['gnss/fix'] == 6 and counts['gnss/velocity'] == 5
+    assert fix['status'].tolist() == [0, 0, 0, 0, 0, -1]
+    assert not any(counts[t.name] for t in topics.AIDED_SIGMAS)
+    assert set(aided['position_covariance_type'].tolist()) == {0}
+    expected = meter.fixes(motion.at(run.imu.t_ns))[:2]
+    assert [r.end_ns for r in records] == [2 * SECOND, 4 * SECOND]
+    off = np.abs(np.subtract([r.velocity for r in records], [f.velocity for f in expected])).max()
+    print(f'\nrecords and offline fixes are {off:.1e} m/s apart')
+    assert off < 1e-10
