@@ -152,6 +152,33 @@ def test_a_gap_starts_anew(ros_domain, tmp_path):
         stream.close()
 
 
+def test_a_jump_back_begins_anew(ros_domain, tmp_path):
+    """The second run has every window of the first, whatever of the INS was under way."""
+    stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
+    try:
+        node = stream.chain.start('velocity_meter', VALUES)
+        stream.begin(node)
+        ins = stream.blocks(np.arange(0, 251) * DT)[topics.TRUTH_ODOMETRY]
+        stamps = np.arange(0, 251) * DT
+        stream.send(stamps[1:])
+        stream.send(stamps[:200], topics.INS_ODOMETRY, ins[:200])
+        stream.listener.poll_until(lambda: SECOND in stream.raw[Record.name])
+        first = records(stream)
+        stream.raw[Record.name].clear()
+        # the truth jumps back while the INS is still on its way to 2.3 s
+        stream.send(stamps[:50])
+        stream.chain.wait_text(node, 'truth jumps back from 2.500000000 s to 0.000000000 s')
+        stream.send(stamps[200:230], topics.INS_ODOMETRY, ins[200:230])
+        stream.send(stamps, topics.INS_ODOMETRY, ins)
+        stream.send(stamps[50:])
+        stream.listener.poll_until(lambda: 2 * SECOND in stream.raw[Record.name])
+        assert repr(records(stream)[:len(first)]) == repr(first) and len(first) == 1
+        assert [f.valid for f in records(stream)] == [True, True]
+        assert 'INS velocity jumps' not in stream.chain.text(node)
+    finally:
+        stream.close()
+
+
 @pytest.mark.parametrize('values, sentence', [
     ({'window.cycle': 10}, "the nearest known one is 'window.cycles'"),
     ({'mode': 'signals'}, 'nearest: signal'),

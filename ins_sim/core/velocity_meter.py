@@ -130,6 +130,10 @@ class VelocityMeter:
         self._waiting.clear()
         return fixes
 
+    def restart_ins(self):
+        """Forget what the INS said: it begins anew at an earlier time, or at any."""
+        self._last_ins_ns, self._ins = None, {}
+
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """
         Return the VelocityFixes of a block of cycles, to the bit those of single pushes.
