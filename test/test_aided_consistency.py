@@ -4,10 +4,11 @@ from concurrent.futures import ProcessPoolExecutor
 import os
 
 from ins_sim import parameter_files, resources
-from ins_sim.core import kalman
+from ins_sim.core import aided_navigator, eskf_model as model, kalman
 from ins_sim.core.aided_navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.errors import level_errors
-from ins_sim.core.filter_study import run_settings
+from ins_sim.core.eskf import ErrorStateFilter
+from ins_sim.core.filter_study import Case, fly, run_settings
 from ins_sim.core.motions import make_motion
 from ins_sim.core.simulation import sense
 import numpy as np
@@ -30,6 +31,52 @@ CASES = {'velocity meter': ('window.cycles:=100',),
                                      'lever_arm_m:=[1.0, 0.5, 0.3]',
                                      'gnss_model.lever_arm_m:=[1.0, 0.5, 0.3]',
                                      'gnss.latency_ms:=150.0')}
+
+
+class StampedAtItsEnd(ErrorStateFilter):
+    """The mean of the window taken for the velocity at its end, as conventional filters do."""
+
+    def velocity(self, ins, fix):
+        """Weigh the fix against the velocity now, which eta has no part in."""
+        self._propagate(ins)
+        read, of_mean, columns = model.meter(ins.v_b[:2], *self.estimates)
+        h = np.zeros((2, model.SIZE))
+        c = model.matrix(ins.q_nb)
+        h[:, model.V] = of_mean @ c.T[:2]
+        h[:, model.PHI] = of_mean @ (c.T[:2] @ model.skew(ins.v))
+        h[:, model.MU:] = columns
+        return self._update(ins, read - fix.velocity, h, np.diag(np.square(fix.sigma)))
+
+
+def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch):
+    """
+    Ten minutes on a straight leg, the heading weaving: NIS 2 of two, and 82 (spec section 4).
+
+    NIS of 60 fixes, 95 % chi-square interval; of the other within a quarter of what the weave
+    makes of the lateral velocity in the window, 1.05 V A / sqrt 2.
+    """
+    points = ('motion.route.points.latitude_deg:=[55.0, 57.0]',
+              'motion.route.points.longitude_deg:=[37.0, 39.0]', 'motion.route.wind_m_s:=0.0')
+    exact, _ = consistency_of(points)
+    monkeypatch.setitem(aided_navigator.KINDS, 'eskf', StampedAtItsEnd)
+    stamped, sigma = consistency_of((*points, 'gate_probability:=0.0'))
+    low, high = (chi2.ppf(p, 2 * len(exact)) / len(exact) for p in (0.025, 0.975))
+    off = 1.05 * 200.0 * np.radians(1.0) / np.sqrt(2.0)
+    expected = 2.0 + (off / sigma) ** 2
+    print(f'NIS of the mean {exact.mean():.2f} ({low:.2f} to {high:.2f}), stamped at its end '
+          f'{stamped.mean():.0f}; expected {expected:.0f}')
+    assert low < exact.mean() < high
+    assert stamped.mean() == pytest.approx(expected, rel=0.25)
+    assert stamped.mean() > 40.0
+
+
+def consistency_of(assignments):
+    """Return the NIS of the fixes of ten minutes of the study flight, and their lateral sigma."""
+    settings = parameter_files.read_aided(
+        [resources.config(name) for name in ('default', 'route_flight')],
+        ['duration_s:=600.0', *IMU, *assignments])
+    flown, = fly(settings, [Case('eskf', 1000)], 3)
+    return flown.nis, 8.7 / np.sqrt(1000.0)
 
 
 def by_time(entry):
