@@ -8,6 +8,7 @@ from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.motions import make_motion
 from ins_sim.core.settings import MotionGeneratorSettings
 from ins_sim.messages import topics
+from ins_sim.messages.cdr import LAYOUTS
 from ins_sim.messages.convert import truth_blocks
 from live import Chain, Listener
 import numpy as np
@@ -27,8 +28,8 @@ class Stream:
         self.listener = Listener(domain, (ACK, *heard))
         self.heard, self.raw = self.listener.heard, self.listener.raw
         self.seen = self.listener.diagnostics()
-        self._out = {t: (t.writer(), publisher(self.listener.node, t, 10000).publish)
-                     for t in published}
+        self._out = {t: (t.writer() if t.type_name in LAYOUTS else None,
+                         publisher(self.listener.node, t, 10000).publish) for t in published}
         self.settings = build(MotionGeneratorSettings, motion or {})
         self.frame = MapFrame(self.settings.datum, True)
         self._motion = make_motion(self.settings.motion, self.settings.datum, self.settings.earth)
@@ -38,8 +39,10 @@ class Stream:
         return self._motion.at(np.asarray(stamps_ns, dtype=np.int64))
 
     def blocks(self, stamps_ns):
-        """Return {Topic: values} of the truth at stamps."""
-        return truth_blocks(self.frame, self.truth(stamps_ns))
+        """Return {Topic: values} of the truth at stamps, and of an IMU that reads it."""
+        truth = self.truth(stamps_ns)
+        return {**truth_blocks(self.frame, truth), topics.IMU_RAW: np.concatenate(
+            [truth.omega_ib_b, truth.f_ib_b], axis=1)}
 
     def odometry(self, stamps_ns):
         """Return [(t_ns, r_m, q_mb, v_b, rate)] as nodes read them from truth/odometry."""
@@ -68,7 +71,7 @@ class Stream:
         while not self.heard[ACK.name]:
             assert time.monotonic() < end and process.poll() is None, self.chain.text(process)
             for topic in self._out:
-                if topic in topics.TRUTH:
+                if topic in (*topics.TRUTH, topics.IMU_RAW):
                     self.send(np.array([first * DT]), topic)
             time.sleep(0.1)
             self.listener.poll()

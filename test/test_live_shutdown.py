@@ -20,15 +20,16 @@ PARAMETERS = {'rate_hz': 200.0, 'duration_s': 0.0}
 @pytest.mark.parametrize('name', SIGNALS)
 def test_signals(name, ros_domain, tmp_path):
     """
-    30 of 30 tries, ten of each node, which talk to each other.
+    30 of 30 tries, five of each node, which talk to each other.
 
     Some signals come while the process still imports, some while it publishes.
     """
     rng = random.Random(name)
-    nodes = ('motion_generator', 'imu_sensor', 'strapdown')
+    nodes = ('motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter', 'gnss',
+             'aided_navigator')
     chain = Chain(ros_domain, tmp_path)
     for first in range(0, TRIES, AT_ONCE):
-        started = [chain.start(nodes[k % 3], PARAMETERS) for k in range(first, first + AT_ONCE)]
+        started = [chain.start(nodes[k % 6], PARAMETERS) for k in range(first, first + AT_ONCE)]
         for process in started:
             wait_handlers(process)
         for process in started:

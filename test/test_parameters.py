@@ -6,6 +6,7 @@ import runpy
 
 from hypothesis import given, strategies as st
 import pytest
+import yaml
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.catalogue import ALL_NAMES, build, flatten, values_of
@@ -31,6 +32,21 @@ def test_default_yaml_is_the_catalogue():
         assert getattr(settings, node) == cls()
         for name in flatten(cls):
             assert f' {name.rsplit(".", 1)[-1]}:' in made
+
+
+@pytest.mark.parametrize('name', [name for name in CONFIG if name != 'default'])
+def test_an_overlay_wins_over_the_default(name):
+    """For ROS a key of a node in default.yaml wins over the same key in /** of a later file."""
+    default, overlay = (yaml.safe_load(resources.config(n).read_text()) for n in ('default', name))
+
+    def names(section, prefix=''):
+        for key, value in section.items():
+            yield from names(value, f'{prefix}{key}.') if isinstance(value, dict) else (
+                prefix + key,)
+    of_nodes = {key for node, section in default.items() if node != '/**'
+                for key in names(section['ros__parameters'])}
+    shared = overlay.get('/**', {'ros__parameters': {}})['ros__parameters']
+    assert not set(names(shared)) & of_nodes
 
 
 @pytest.mark.parametrize('name', CONFIG)

@@ -4,11 +4,15 @@ from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
+from ins_sim.core.aided_settings import AidedNavigatorSettings
 from ins_sim.core.navigate_settings import NAVIGATE
 from ins_sim.core.presets import PRESETS
 from ins_sim.core.settings import ALL_NODES, MotionGeneratorSettings
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
+# of an instrument and the navigator: a file over this one sets them in its section /** as well,
+# where they would lose against those of a node here
+AGREED = ('window', 'gnss')
 HEAD = """\
 # Every parameter of the nodes with its default.  Written by tools/make_config.py from
 # ins_sim/core/settings.py; a test keeps it in step.  Overlays beside this file hold the studies:
@@ -59,8 +63,10 @@ def document():
     out = [HEAD.rstrip(), '', '/**:', '  ros__parameters:']
     own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
     out += lines(MotionGeneratorSettings, 4, skip=own)
+    out += lines(AidedNavigatorSettings, 4, skip=[f.name for f in fields(AidedNavigatorSettings)
+                                                  if f.name not in AGREED])
     for node, cls in ALL_NODES.items():
-        out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED)]
+        out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED + AGREED)]
     return '\n'.join(out) + '\n'
 
 

@@ -93,6 +93,8 @@ DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
 # of velocity_meter, gnss and aided_navigator
 AIDING = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, AIDED_ODOMETRY, AIDED_FIX,
           *AIDED_ERRORS, *AIDED_SIGMAS, AIDED_ORTHODROME)
+# of which nothing may come with the first sample, nor ever
+SELDOM = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, *AIDED_SIGMAS)
 
 
 def imu_raw(rate_variance, force_variance):

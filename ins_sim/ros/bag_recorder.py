@@ -33,6 +33,7 @@ class Track:
     queue: HandQueue
     gaps: Gaps
     stamped: bool
+    seldom: bool
     count: int = 0
     repeated: int = 0
     last: bytes = None
@@ -49,8 +50,8 @@ class BagRecorder:
     told what is wrong.  The owner calls ``poll`` until nothing more is to come, and closes the
     bag.  A stamped message equal to the one before it is a repeated sample of lock-step and is
     written once.  The stamps of the first topic of ANSWERED are acknowledged, no further than all
-    of PACED that are recorded have come, and from when every stamped topic has been heard and
-    ``settled`` is true: until then lock-step repeats sample 0.
+    of PACED that are recorded have come, and from when every stamped topic has been heard, one of
+    topics.SELDOM has a publisher, and ``settled`` is true: until then lock-step repeats sample 0.
     """
 
     def __init__(self, node, bag, log_time='stamp', depth=10000, report=None):
@@ -80,9 +81,10 @@ class BagRecorder:
         except BaseException:
             self._node.destroy_subscription(queue.subscription)
             raise
-        track = Track(name, topic.type_name, queue, Gaps(), stamped(topic.type_name))
+        seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
+        track = Track(name, topic.type_name, queue, Gaps(), stamped(topic.type_name), seldom)
         self.tracks[name] = track
-        if track.stamped and name != self._ack_name:
+        if (track.stamped or seldom) and name != self._ack_name:
             self._silent.append(track)
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
         known = [n for n in order if n in self.tracks]
@@ -180,7 +182,8 @@ class BagRecorder:
 
     def _acknowledge(self):
         if self._silent:
-            self._silent = [t for t in self._silent if t.last is None]
+            self._silent = [t for t in self._silent if t.last is None and not (
+                t.seldom and t.queue.subscription.get_publisher_count())]
         if self._answered_ns is None or not self.settled or self._silent:
             return
         # another topic of the same sample may still be on its way, or under repair

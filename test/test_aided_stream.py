@@ -1,0 +1,218 @@
+"""The aided navigator on streams: the order in which things come changes nothing."""
+
+from functools import lru_cache
+import math
+
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+
+from ins_sim.core.aided_navigator import GNSS, METER
+from ins_sim.core.aided_run import with_truth
+from ins_sim.core.aided_simulation import AidedSettings, simulate_aided
+from ins_sim.core.aided_stream import AidedStream, FixSchedule
+from ins_sim.core.catalogue import build, flatten
+from ins_sim.core.faults import StreamFault
+from ins_sim.core.map_frame import MapFrame
+from ins_sim.core.meter_on_truth import body_velocity
+from ins_sim.core.motions import make_motion
+from ins_sim.core.settings import AIDING, NODES
+from ins_sim.core.simulation import simulate
+from studies import settings as simulation_settings
+
+SECOND = 1_000_000_000
+VALUES = {'source': 'motion', 'motion.kind': 'route', 'duration_s': 12.0, 'window.cycles': 200,
+          'window.latency_ms': 130.0, 'gnss.latency_ms': 70.0, 'gnss_model.use': True,
+          'seed': 2, 'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0,
+          'outages.start_s': (4.5,), 'outages.end_s': (6.5,), 'accelerometer.errors.bias_ug':
+          (100.0, 50.0, 0.0)}
+
+
+def chosen_settings(values):
+    """Return AidedSettings of {dotted name: value}."""
+    known = {name: set(flatten(cls)) for name, cls in AIDING.items()}
+    simulated = set().union(*(flatten(cls) for cls in NODES.values()))
+    return AidedSettings(
+        simulation_settings({k: v for k, v in values.items() if k in simulated}),
+        **{name: build(cls, {k: v for k, v in values.items() if k in known[name]})
+           for name, cls in AIDING.items()})
+
+
+@lru_cache(maxsize=None)
+def scene():
+    """Return (AidedSettings, AidedRun offline, events by stream) of a short flight."""
+    chosen = chosen_settings(VALUES)
+    simulation = chosen.simulation
+    generator = simulation.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    run = simulate(simulation, twin=False, motion=motion)
+    offline = simulate_aided(chosen, motion, run)
+    meter, gnss = chosen.instruments((run.states.t_ns, body_velocity(run.states)))
+    truth = [t for _, t in with_truth(motion, [run.imu])][0]
+    frame = MapFrame(generator.datum, True)
+    poses = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
+    streams = {
+        'push_imu': [(t, tuple(w), tuple(f)) for t, w, f in zip(
+            run.imu.t_ns.tolist(), run.imu.omega.tolist(), run.imu.f.tolist())],
+        'push_truth': [(t, *map(tuple, pose)) for t, pose in zip(truth.t_ns.tolist(), zip(
+            *(p.tolist() for p in poses)))],
+        METER: [(METER, fix) for fix in meter.fixes(truth)],
+        GNSS: [(GNSS, fix) for fix in gnss.fixes(truth)]}
+    return chosen, offline, streams
+
+
+def push(stream, name, event, faults):
+    """Push as a node does; return the outputs."""
+    method = getattr(stream, name if name.startswith('push') else 'push_fix')
+    for _ in range(2):
+        try:
+            return method(*event)
+        except StreamFault as fault:
+            faults.append(str(fault))
+            if not fault.restart:
+                return stream.match()
+            stream.reset()
+    raise AssertionError('twice the same fault')
+
+
+def mixed(streams, rng):
+    """Yield (name, event) of streams in a random order that keeps the order of each."""
+    order = [name for name, events in streams.items() for _ in events]
+    rng.shuffle(order)
+    places = dict.fromkeys(streams, 0)
+    for name in order:
+        yield name, streams[name][places[name]]
+        places[name] += 1
+
+
+def run_stream(streams, rng):
+    """Return outputs, faults and the stream after events in random order."""
+    stream, outputs, faults = AidedStream(scene()[0].aided_navigator), [], []
+    for name, event in mixed(streams, rng):
+        outputs += push(stream, name, event, faults)
+    return outputs, faults, stream
+
+
+def test_the_stream_is_the_offline_run():
+    """
+    Solution and errors to the rounding of the truth, which passes through the map.
+
+    As in test_live_graph: a place is 1e-9 m in a double, a few of which add up; an attitude
+    rounds at 1e-15.
+    """
+    _, offline, streams = scene()
+    outputs, faults, stream = run_stream(streams, np.random.default_rng(0))
+    assert not faults and [o[0] for o in outputs] == offline.states.t_ns.tolist()
+    off = np.abs(np.array([o[2] for o in outputs]) - np.stack(
+        [offline.errors.attitude, offline.errors.velocity, offline.errors.position],
+        axis=1)).max(axis=(0, 2))
+    sigma = np.array([o[3] for o in outputs])
+    ratio = np.abs(sigma[:, 0] / offline.errors.position_sigma - 1.0).max()
+    print(f'\nattitude {off[0]:.1e} rad, velocity {off[1]:.1e} m/s, position {off[2]:.1e} m, '
+          f'sigma of the position {ratio:.1e} of it')
+    assert off[2] < 8e-9 and off[1] < 1e-11 and off[0] < 1e-14 and ratio < 1e-12
+    assert [(t.source, t.t_ns, t.result.taken) for t in stream.taken] == [
+        (t.source, t.t_ns, t.result.taken) for t in offline.taken]
+    assert sum(t.result.taken for t in stream.taken) == 5 + 10
+
+
+@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_any_order_gives_the_same_bits(seed):
+    """IMU, truth and fixes may overtake each other by any amount."""
+    _, _, streams = scene()
+    first, _, _ = run_stream(streams, np.random.default_rng(0))
+    again, faults, _ = run_stream(streams, np.random.default_rng(seed))
+    assert not faults and again == first
+
+
+@settings(max_examples=4, deadline=None)
+@given(seed=st.integers(0, 2**32))
+def test_after_a_gap_of_the_imu_alone_any_order_gives_the_same_bits(seed):
+    """Fixes that came before the gap was seen are still known behind it."""
+    _, _, streams = scene()
+    streams = {**streams, 'push_imu': [e for e in streams['push_imu']
+                                       if not 5.2 < e[0] / SECOND < 5.6]}
+    first, _, _ = run_stream(streams, np.random.default_rng(0))
+    again, faults, stream = run_stream(streams, np.random.default_rng(seed))
+    gaps = [f for f in faults if 'gap' in f]
+    assert gaps == ['imu has a gap from 5.200000000 s to 5.600000000 s; expected steps of 0.01 s']
+    behind = [[o for o in outputs if o[0] > 5.4 * SECOND] for outputs in (first, again)]
+    assert behind[0] == behind[1] and len(behind[0]) == 641 and not stream.waiting
+
+
+def test_a_jump_back_begins_anew_whoever_jumps_first():
+    """The second run is the first one again, fixes of the new run coming before or after."""
+    _, _, streams = scene()
+    expected, _, _ = run_stream(streams, np.random.default_rng(0))
+    for names in ((METER, GNSS, 'push_truth', 'push_imu'),
+                  ('push_truth', 'push_imu', GNSS, METER)):
+        stream, faults = AidedStream(scene()[0].aided_navigator), []
+        for name, event in mixed(streams, np.random.default_rng(1)):
+            push(stream, name, event, faults)
+        assert not faults
+        outputs = []
+        # the first event of each stream in this order, then the rest at random
+        for name in names:
+            outputs += push(stream, name, streams[name][0], faults)
+        rest = {name: events[1:] for name, events in streams.items()}
+        for name, event in mixed(rest, np.random.default_rng(2)):
+            outputs += push(stream, name, event, faults)
+        assert faults == ['imu jumps back from 12.000000000 s to 0.000000000 s; expected rising '
+                          'stamps']
+        assert outputs == expected
+
+
+def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
+    """Without its fixes samples wait; told to go on, they go; a late fix still counts."""
+    chosen, _, streams = scene()
+    expected, _, on_time = run_stream(streams, np.random.default_rng(0))
+    stream, outputs, faults = AidedStream(chosen.aided_navigator), [], []
+    for name in (GNSS, 'push_truth', 'push_imu'):
+        for event in streams[name]:
+            outputs += push(stream, name, event, faults)
+    # the window that ends at 2 s is there at 2.13 s
+    assert stream.awaited == [METER] and outputs[-1][0] == 212 * SECOND // 100
+    outputs += stream.go_on_without(METER)
+    assert outputs[-1][0] == 12 * SECOND and not stream.waiting
+    assert outputs[-1] != expected[-1]
+    # all of them late; another sample takes them where they belong
+    for _, fix in streams[METER]:
+        assert not stream.push_fix(METER, fix)
+    t, omega, f = streams['push_imu'][-1]
+    _, *pose = streams['push_truth'][-1]
+    dt = SECOND // 100
+    ends = []
+    for other in (stream, on_time):
+        other.push_truth(t + dt, *pose)
+        ends += other.push_imu(t + dt, omega, f)
+    print(f'\nvelocity error {math.hypot(*outputs[-1][2][1]):.4f} m/s without the meter, with it '
+          f'{math.hypot(*expected[-1][2][1]):.4f} m/s, apart when late '
+          f'{math.dist(ends[0][2][1], ends[1][2][1]):.1e} m/s')
+    assert ends[0] == ends[1]
+    assert [t.result.taken for t in stream.taken if t.source == METER] == [True] * 5
+
+
+def test_a_bad_fix_is_dropped_and_holds_nothing_up():
+    """A window of another length is refused in a sentence; the samples go on without it."""
+    from dataclasses import replace
+    chosen, _, streams = scene()
+    stream, faults = AidedStream(chosen.aided_navigator), []
+    bad = [(METER, replace(fix, cycles=100)) for _, fix in streams[METER]]
+    outputs = []
+    for name, event in mixed({**streams, METER: bad}, np.random.default_rng(0)):
+        outputs += push(stream, name, event, faults)
+    assert len(outputs) == 1201 and len(faults) == 6
+    assert 'averages 100 cycles in 2 s; expected 200 cycles in 2 s' in faults[0]
+
+
+@pytest.mark.parametrize('first_ns, t_ns, missing', [
+    (0, 0, []), (0, 69_999_999, []), (0, 70_000_000, [GNSS]), (0, 2_130_000_000, [METER, GNSS]),
+    # one that begins inside a window waits for the next whole one
+    (10_000_000, 1_060_000_000, []), (10_000_000, 1_070_000_000, [GNSS]),
+    (10_000_000, 4_120_000_000, [GNSS]), (10_000_000, 4_130_000_000, [METER, GNSS])])
+def test_what_is_due(first_ns, t_ns, missing):
+    """By period and latency of both, from the first sample on."""
+    schedule = FixSchedule(scene()[0].aided_navigator, (METER, GNSS))
+    assert schedule.missing(first_ns) == []
+    assert schedule.missing(t_ns) == missing
