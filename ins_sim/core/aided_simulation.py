@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from .aided_navigator import AidedNavigator
 from .aided_run import aid, Reported, with_truth
 from .aided_settings import AidedNavigatorSettings
 from .gnss import Gnss
@@ -42,6 +43,9 @@ class AidedSettings:
                              f'of imu_sensor, {sensor.output}')
         self._check_streams()
         self._check_route()
+        # what does not go together within a stage is said by the stage, before the run
+        self.instruments()
+        AidedNavigator(navigator)
 
     def _check_streams(self):
         """Refuse streams that the live stages would report with every message."""

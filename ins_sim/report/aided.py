@@ -13,9 +13,10 @@ from ..core.aided_run import AidedRun
 from ..core.aided_simulation import AidedSettings
 from ..core.triad_model import DEG
 from .consistency import mean_interval, THREE_SIGMA
-from .table import number
 
 FIGURE = 'aided.png'
+AIDED = 'aided '
+# reasons that are named
 REASONS = 3
 
 
@@ -26,7 +27,8 @@ class Row:
 
     measured: what it is; free: the same figure of the strapdown alone; sigma: standard deviation
     by the filter; true: what it would be were all perfect; low, high: the interval in which 95 %
-    of consistent filters have it; note: in words.
+    of consistent filters have it; source: the instrument whose
+    fixes it counts; note: in words.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Row:
     true: float | None = None
     low: float | None = None
     high: float | None = None
+    source: str = ''
     note: str = ''
 
 
@@ -98,12 +101,12 @@ def rows(settings, flown, errors):
 
 
 def _error_rows(aided, free):
-    table = [Row(f'aided max |d{name}|', 'm', _largest(aided, axis), _largest(free, axis))
+    table = [Row(f'{AIDED}max |d{name}|', 'm', _largest(aided, axis), _largest(free, axis))
              for axis, name in ((1, 'N'), (0, 'E'))]
     own, others = _horizontal(aided), _horizontal(free)
     sigma = np.hypot(aided.position_sigma[:, 0], aided.position_sigma[:, 1])
-    table.append(Row('aided rms horizontal', 'm', _rms(own), _rms(others), _known(_rms(sigma))))
-    table.append(Row('aided horizontal at the end', 'm', float(own[-1]), float(others[-1]),
+    table.append(Row(f'{AIDED}rms horizontal', 'm', _rms(own), _rms(others), _known(_rms(sigma))))
+    table.append(Row(f'{AIDED}horizontal at the end', 'm', float(own[-1]), float(others[-1]),
                      _known(float(sigma[-1]))))
     return table
 
@@ -132,7 +135,7 @@ def _inside_rows(errors):
         axes = [axis for axis in range(3) if (sigma[:, axis] > 0.0).any()]
         if axes:
             inside = np.abs(error[:, axes]) <= 3.0 * sigma[:, axes]
-            table.append(Row(f'aided {kind} within 3 sigma', '%', 100.0 * float(inside.mean()),
+            table.append(Row(f'{AIDED}{kind} in 3 sigma', '%', 100.0 * float(inside.mean()),
                              true=100.0 * THREE_SIGMA))
     return table
 
@@ -146,13 +149,12 @@ def _fix_rows(source, flown):
         # the mean of chi-squares that all have the freedom of the instrument
         freedom = weighed[0].freedom
         low, high = mean_interval(len(weighed), freedom)
-        table.append(Row(f'aided NIS of {source}', '', float(np.mean([r.nis for r in weighed])),
+        table.append(Row(f'{AIDED}NIS of {source}', '', float(np.mean([r.nis for r in weighed])),
                          true=float(freedom), low=low, high=high))
     taken = sum(r.taken for r in results)
-    table.append(Row(f'aided {source} fixes', '', len(fixes)))
-    table.append(Row(f'aided {source} fixes taken', '', taken))
-    table.append(Row(f'aided {source} fixes refused', '', len(results) - taken,
-                     note=_reasons(results)))
+    for name, number, note in (('reported', len(fixes), ''), ('taken', taken, ''),
+                               ('refused', len(results) - taken, _reasons(results))):
+        table.append(Row(f'{AIDED}{source} fixes {name}', '', number, source=source, note=note))
     return table
 
 
@@ -179,31 +181,35 @@ def _estimate_rows(settings, errors):
             ('scale kx', '', 1.0, model.scale_x_sigma, k_x),
             ('scale kz', '', 1.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
         if given:
-            table.append(Row(f'aided {name}', unit, factor * float(errors.estimates[-1, k]),
+            table.append(Row(f'{AIDED}{name}', unit, factor * float(errors.estimates[-1, k]),
                              sigma=factor * float(errors.estimates_sigma[-1, k]), true=true))
     return table
 
 
 def show(title, rows, console):
-    """Print the rows; columns that are empty throughout are left out, notes stand below."""
-    columns = [('measured', 'aided'), ('free', 'strapdown alone'), ('sigma', 'sigma'),
-               ('true', 'expected')]
-    columns = [c for c in columns if any(getattr(r, c[0]) is not None for r in rows)]
-    table = Table(title=title)
+    """Print a table of the rows, and below it a line about the fixes of each instrument."""
+    table = Table(title=title, caption='sigma: by the filter; expected of NIS: 95 % of '
+                  'consistent runs')
     table.add_column('figure', no_wrap=True)
-    table.add_column('unit')
-    for _, head in columns:
-        table.add_column(head, justify='right')
-    table.add_column('95 %', justify='right', no_wrap=True)
+    table.add_column('unit', no_wrap=True)
+    for head in ('aided', 'alone', 'sigma', 'expected'):
+        table.add_column(head, justify='right', no_wrap=True)
     for row in rows:
-        interval = '-' if row.low is None else f'{row.low:.3f} to {row.high:.3f}'
-        table.add_row(row.name.removeprefix('aided '), row.unit,
-                      *(number(getattr(row, c)) for c, _ in columns), interval)
+        if not row.source:
+            expected = _short(row.true) if row.low is None else f'{row.low:.2f} to {row.high:.2f}'
+            table.add_row(row.name.removeprefix(AIDED), row.unit, _short(row.measured),
+                          _short(row.free), _short(row.sigma), expected)
     console.print(table)
-    for row in rows:
-        if row.note:
-            console.print(f'{row.name.removeprefix("aided ")}: {row.note}', markup=False,
-                          highlight=False, soft_wrap=True)
+    for source in dict.fromkeys(row.source for row in rows if row.source):
+        counts = [row for row in rows if row.source == source]
+        told = ', '.join(f'{row.measured} {row.name.split()[-1]}' for row in counts)
+        notes = ''.join(f': {row.note}' for row in counts if row.note)
+        console.print(f'{source} fixes: {told}{notes}', markup=False, highlight=False,
+                      soft_wrap=True)
+
+
+def _short(value):
+    return '-' if value is None else f'{value:.4g}'
 
 
 def faults(flown):
