@@ -136,6 +136,12 @@ def dump(settings):
     return dump_nodes({node: getattr(settings, node) for node in NODES})
 
 
+def dump_aided(settings):
+    """Return the text of a parameter file with every key of aided_simulation.AidedSettings."""
+    return dump_nodes({**{node: getattr(settings.simulation, node) for node in NODES},
+                       **{node: getattr(settings, node) for node in AIDING}})
+
+
 def dump_nodes(built):
     """Return the text of a parameter file with every key of {node: its settings}."""
     document = {}

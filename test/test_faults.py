@@ -1,6 +1,7 @@
 """Bad samples in the streams: each is said in one sentence, and nothing is integrated over it."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -146,3 +147,10 @@ def test_seconds_are_exact_text():
     assert seconds(1) == '0.000000001 s'
     assert seconds(-1_500_000_000) == '-1.500000000 s'
     assert seconds(1_700_000_000_123_456_789) == '1700000000.123456789 s'
+
+
+def test_a_fault_crosses_from_process_to_process():
+    """Sentence and restart survive pickling, as from a worker of an ensemble."""
+    for restart in (False, True):
+        fault = pickle.loads(pickle.dumps(StreamFault('what happened', restart)))
+        assert (str(fault), fault.restart) == ('what happened', restart)

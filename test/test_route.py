@@ -207,6 +207,26 @@ def test_the_weave_is_flown():
     assert np.abs(speed - AIRSPEED).max() < 1e-9
 
 
+def test_a_slipping_weave_swings_the_nose_and_not_the_track():
+    """Heading +-1 deg, the track straight, so that the nose slips by the weave; no bank for it."""
+    points = {'points.latitude_deg': (0.0, 0.0), 'points.longitude_deg': (37.0, 38.0)}
+    motion, calm = (route(points, weave, attack_deg=0.0) for weave in (
+        {**WEAVE, 'weave': 'slipping'}, {}))
+    t_ns = instants(motion, 0.01)
+    truth = motion.at(t_ns)
+    heading = np.degrees(to_compass(truth.q_nb)[2]) - 90.0
+    z = motion.route.legs[0].to_xz(truth.lat, truth.lon)[1]
+    v_b = in_body(truth, truth.v_n)
+    slip = np.degrees(np.arctan2(v_b[:, 1], v_b[:, 0]))
+    print(f'heading {heading.min():.6f} to {heading.max():.6f} deg, |Z| {np.abs(z).max():.1e} m')
+    assert heading.max() == pytest.approx(1.0, abs=1e-6)
+    assert np.abs(z).max() < 1e-7
+    np.testing.assert_allclose(slip, heading, atol=1e-9)
+    np.testing.assert_allclose(to_compass(truth.q_nb)[1], to_compass(calm.at(t_ns).q_nb)[1],
+                               atol=1e-9)
+    assert motion.end_s == calm.end_s
+
+
 def test_any_cutting_gives_the_same_bits():
     """Truth of blocks cut at random is that of the whole."""
     motion = route(ROUGH)

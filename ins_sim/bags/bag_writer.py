@@ -126,7 +126,7 @@ class BagWriter:
         Write blocks of messages, in the order of their log times, ties as the blocks stand.
 
         blocks: {name: (log_ns (n,), messages (n,))}, messages a NumPy array of one element a
-        message (``messages.cdr.Writer.block``).
+        message: of ``messages.cdr.Writer.block``, or of bytes as objects, of any length.
         """
         ready = []
         for name, (log_ns, messages) in blocks.items():
@@ -137,9 +137,10 @@ class BagWriter:
             if len(log_ns) and log_ns.min() < 0:
                 raise ValueError(f'{name}: the log time is {log_ns.min()} ns; expected 0 or '
                                  'later')
-            # as opaque elements they are copied whole, and not field by field
-            ready.append((self._channel(name).id, log_ns, np.ascontiguousarray(
-                messages.view(f'V{messages.dtype.itemsize}'))))
+            if messages.dtype != object:
+                # as opaque elements they are copied whole, and not field by field
+                messages = np.ascontiguousarray(messages.view(f'V{messages.dtype.itemsize}'))
+            ready.append((self._channel(name).id, log_ns, messages))
         ready = [block for block in ready if len(block[1])]
         if not ready:
             return

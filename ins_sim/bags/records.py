@@ -30,7 +30,7 @@ class Order:
     The order of the messages of several blocks by log time, ties as the blocks stand.
 
     channel, log_ns, sizes (n,): of each record in order; ranks: for each block the places of its
-    messages, which ascend.
+    messages, which ascend; blocks: their messages in this order.
     """
 
     channel: np.ndarray
@@ -41,14 +41,18 @@ class Order:
 
 
 def arrange(blocks):
-    """Return the Order of blocks (channel id, log_ns (n,), messages (n,) of type V)."""
+    """
+    Return the Order of blocks (channel id, log_ns (n,), messages (n,)).
+
+    messages: of type V, or of bytes as objects where not all are equally long.
+    """
     counts = [len(log_ns) for _, log_ns, _ in blocks]
     log_ns = np.concatenate([log_ns for _, log_ns, _ in blocks])
     which = np.repeat(np.arange(len(blocks)), counts)
     order = np.argsort(log_ns, kind='stable')
     which = which[order]
     numbers = np.array([number for number, _, _ in blocks])
-    sizes = np.array([HEAD.itemsize + m.dtype.itemsize for _, _, m in blocks])
+    sizes = HEAD.itemsize + np.concatenate([_lengths(messages) for _, _, messages in blocks])
     sorted_blocks, ranks, start = [], [], 0
     for k, (number, times, messages) in enumerate(blocks):
         rank = np.flatnonzero(which == k)
@@ -57,7 +61,14 @@ def arrange(blocks):
         ranks.append(rank)
         sorted_blocks.append(messages)
         start += counts[k]
-    return Order(numbers[which], log_ns[order], sizes[which], ranks, sorted_blocks)
+    return Order(numbers[which], log_ns[order], sizes[order], ranks, sorted_blocks)
+
+
+def _lengths(messages):
+    """Return how many bytes each message takes (n,)."""
+    if messages.dtype != object:
+        return np.full(len(messages), messages.dtype.itemsize)
+    return np.array([len(message) for message in messages], dtype=np.int64)
 
 
 def fill(order, first, stop, data, starts):
@@ -69,11 +80,16 @@ def fill(order, first, stop, data, starts):
         rows = rank[a:b] - first
         heads = np.zeros(b - a, dtype=HEAD)
         heads['opcode'] = form.MESSAGE
-        heads['length'] = HEAD.itemsize - form.RECORD.size + messages.dtype.itemsize
+        heads['length'] = order.sizes[rank[a:b]] - form.RECORD.size
         heads['channel'] = order.channel[rank[a]]
         heads['log_ns'] = heads['publish_ns'] = order.log_ns[rank[a:b]]
         _scatter(data, starts[rows], heads)
-        _scatter(data, starts[rows] + HEAD.itemsize, messages[a:b])
+        bodies = starts[rows] + HEAD.itemsize
+        if messages.dtype != object:
+            _scatter(data, bodies, messages[a:b])
+            continue
+        for start, message in zip(bodies.tolist(), messages[a:b]):
+            data[start:start + len(message)] = np.frombuffer(message, dtype=np.uint8)
 
 
 def _scatter(data, starts, items):

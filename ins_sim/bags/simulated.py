@@ -3,6 +3,7 @@
 import numpy as np
 
 from .motions import make_motion
+from .simulated_aiding import AidingSource
 from .windows import write_windows
 from ..core.catalogue import nearest
 from ..core.instants import period_ns
@@ -19,20 +20,26 @@ WINDOW = 4096
 CLOCK_HZ = 100.0
 
 
-def published(settings):
-    """Return the Topics that the nodes of Settings publish, in the order of equal stamps."""
+def published(settings, aided=False):
+    """
+    Return the Topics that the nodes of Settings publish, in the order of equal stamps.
+
+    aided: velocity_meter, gnss and aided_navigator too.
+    """
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
-    return (*clock, *topics.DATA, *parity)
+    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()))
 
 
-def select(settings, names):
+def select(settings, names, aided=False):
     """
     Return the Topics of these names, in the order of ``published``; all where names is None.
 
+    aided: as of ``published``.
+
     Raises ValueError, naming the nearest one, for a topic that the nodes do not publish.
     """
-    known = {topic.name.lstrip('/'): topic for topic in published(settings)}
+    known = {topic.name.lstrip('/'): topic for topic in published(settings, aided)}
     if names is None:
         return tuple(known.values())
     wanted = {name.lstrip('/') for name in names}
@@ -44,14 +51,20 @@ def select(settings, names):
 
 
 def write(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
-          progress=None):
+          progress=None, aided=None):
     """
     Write a Run into a bag that appears only if it is whole; return {topic: message count}.
 
     settings: simulation.Settings; chosen: Topics of ``select``; the rest as of BagWriter;
-    progress: called with the fraction done.  A message is logged at its own stamp.
+    progress: called with the fraction done; aided: AidedSettings and the AidedRun on this run, or
+    None.  A message is logged at its own stamp.
     """
-    source = _Source(settings, run)
+    aiding = None
+    if aided is not None:
+        aided_settings, flown = aided
+        aiding = AidingSource(aided_settings, flown, _rates_at(
+            flown.states.t_ns, run.imu.t_ns, run.imu.omega))
+    source = _Source(settings, run, aiding)
 
     def windows():
         for first in range(0, source.count, WINDOW):
@@ -59,20 +72,21 @@ def write(path, settings, run, chosen, storage='mcap', compression='none', repla
             if progress is not None:
                 progress(min(1.0, (first + WINDOW) / source.count))
 
-    return write_windows(path, {topic: _as_published(topic, settings) for topic in chosen},
+    return write_windows(path, {topic: _as_published(topic, settings, aiding)
+                                for topic in chosen},
                          windows(), storage, compression, replace)
 
 
-def _as_published(topic, settings):
-    if topic is not topics.IMU_RAW:
-        return topic
-    return topics.imu_raw(*reported_variances(settings.imu_sensor))
+def _as_published(topic, settings, aiding):
+    if topic is topics.IMU_RAW:
+        return topics.imu_raw(*reported_variances(settings.imu_sensor))
+    return topic if aiding is None else aiding.as_published(topic)
 
 
 class _Source:
     """The records of a run, and the truth at every sample of the generator, by windows."""
 
-    def __init__(self, settings, run):
+    def __init__(self, settings, run, aiding):
         generator = settings.motion_generator
         self._motion = make_motion(generator)
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
@@ -84,7 +98,7 @@ class _Source:
         self.count = round(generator.duration_s * SECOND) // self._dt_ns + 1
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
         clock = SampleClock(strapdown, period_ns(strapdown.rate_hz))
-        self._run = run
+        self._run, self._aiding = run, aiding
         self._omega = _rates_at(run.states.t_ns, clock.instant(run.imu.t_ns), run.imu.omega)
         self._parity = None
         if run.imu.parity is not None:
@@ -111,6 +125,8 @@ class _Source:
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
             blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
+        if self._aiding is not None:
+            blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .bag_writer import BagWriter
+from ..messages.cdr import LAYOUTS
 
 
 def write_windows(path, chosen, windows, storage='mcap', compression='none', replace=False):
@@ -10,12 +11,14 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
     Write windows into a bag that appears only if it is whole; return {topic: message count}.
 
     chosen: {Topic: the Topic as which it is written}; windows: an iterable of {Topic: (stamps_ns
-    (n,), values (n, k))}, in which every chosen one is; the rest as of BagWriter.  A message is
-    logged at its own stamp.  Raises as BagWriter and ``messages.cdr.Writer.block`` do.
+    (n,), values (n, k))}, in which every chosen one is; the rest as of BagWriter.  Where values
+    are an array of objects they are the messages, bytes, of any length.  A message is logged at
+    its own stamp.  Raises as BagWriter and ``messages.cdr.Writer.block`` do.
     """
     bag = BagWriter(path, storage, compression, replace)
     try:
-        writers = {topic: written.writer() for topic, written in chosen.items()}
+        writers = {topic: written.writer() for topic, written in chosen.items()
+                   if written.type_name in LAYOUTS}
         counts = {topic.name: 0 for topic in chosen.values()}
         for topic in chosen.values():
             bag.add_topic(topic.name, topic.type_name)
@@ -23,9 +26,11 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
             messages = {}
             for topic, written in chosen.items():
                 stamps_ns, values = blocks[topic]
+                packed = values is not None and values.dtype == object
                 # the first stamp may jitter to before the epoch, a time of logging can not
-                messages[written.name] = (np.maximum(stamps_ns, 0),
-                                          writers[topic].block(stamps_ns, values))
+                messages[written.name] = (
+                    np.maximum(stamps_ns, 0),
+                    values if packed else writers[topic].block(stamps_ns, values))
                 counts[written.name] += len(stamps_ns)
             bag.write_blocks(messages)
         bag.close()

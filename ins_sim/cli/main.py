@@ -28,6 +28,8 @@ def parser():
                           help='folder of the run (default: %(default)s)')
     simulate.add_argument('--force', action='store_true', help='replace the run in DIR')
     simulate.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
+    simulate.add_argument('--aided', action='store_true', help='also run velocity meter, GNSS and '
+                          'aided navigator on the same readings of the IMU')
     simulate.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
                           'the nodes would publish into a rosbag2 bag')
     _storage(simulate)

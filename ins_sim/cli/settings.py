@@ -11,6 +11,15 @@ def read(chosen):
                                 chosen.param)
 
 
+def read_simulation(chosen):
+    """Return simulation.Settings, and with --aided the AidedSettings that they are of, or None."""
+    if not chosen.aided:
+        return read(chosen), None
+    aided = parameter_files.read_aided(
+        [resources.parameter_file(name) for name in chosen.params_file], chosen.param)
+    return aided.simulation, aided
+
+
 def title(settings):
     """Return a line that names motion and delays."""
     motion, sensor = settings.motion_generator.motion, settings.imu_sensor

@@ -7,6 +7,7 @@ from rich.progress import Progress, TextColumn, BarColumn, TimeRemainingColumn
 
 from . import settings as chosen_settings
 from ..bags.motions import make_motion
+from ..core.aided_simulation import simulate_aided
 from ..core.prediction import NoPrediction, predict
 from ..core.simulation import simulate
 from ..report import storage, summary, table
@@ -14,7 +15,7 @@ from ..report import storage, summary, table
 
 def run(chosen):
     """Run, write and show; return the exit code."""
-    settings = chosen_settings.read(chosen)
+    settings, aided = chosen_settings.read_simulation(chosen)
     storage.check_free(chosen.output, chosen.force)
     write_bag = _bag_writer(chosen, settings)
     title = chosen_settings.title(settings)
@@ -25,20 +26,35 @@ def run(chosen):
     except NoPrediction as reason:
         prediction = None
         console.print(str(reason))
-    with Progress(TextColumn('simulating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
-                  TimeRemainingColumn(), console=console, transient=True) as progress:
-        task = progress.add_task('', total=1.0)
-        result = simulate(settings, not chosen.no_twin,
-                          lambda done: progress.update(task, completed=done), motion)
+    with Progress(TextColumn('{task.description}'), BarColumn(),
+                  TextColumn('{task.percentage:>3.0f} %'), TimeRemainingColumn(),
+                  console=console, transient=True) as progress:
+        result = simulate(settings, not chosen.no_twin, _watch(progress, 'simulating'), motion)
+        flown = None if aided is None else simulate_aided(aided, motion, result,
+                                                          _watch(progress, 'aiding'))
     rows = summary.rows(settings, result.errors, result.twin, prediction)
-    storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force)
+    report = None if aided is None else _report(aided, flown, result)
+    storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force, report)
     table.show(title, rows, console)
     for line in (*summary.gaps(result.faults), *summary.parity(settings.imu_sensor, result.imu)):
         console.print(line)
+    if report is not None:
+        report.show(console)
     console.print(f'written: {chosen.output}')
     if write_bag is not None:
-        write_bag(result, console)
+        write_bag(result, console, None if aided is None else (aided, flown))
     return 0
+
+
+def _watch(progress, name):
+    """Return the function that shows a fraction done under a name."""
+    task = progress.add_task(name, total=1.0)
+    return lambda done: progress.update(task, completed=done)
+
+
+def _report(settings, flown, result):
+    from ..report import aided
+    return aided.Report(settings, flown, aided.rows(settings, flown, result.errors))
 
 
 def _bag_writer(chosen, settings):
@@ -49,12 +65,12 @@ def _bag_writer(chosen, settings):
                 raise ValueError(f'--{name} is given without --bag; expected the folder of a bag')
         return None
     from ..bags import bag_writer, digest, simulated
-    wanted = simulated.select(settings, chosen.topics)
+    wanted = simulated.select(settings, chosen.topics, chosen.aided)
     bag_writer.check(chosen.bag, chosen.storage, chosen.compression, chosen.force)
 
-    def write_bag(result, console):
+    def write_bag(result, console, aided):
         counts = simulated.write(chosen.bag, settings, result, wanted, chosen.storage,
-                                 chosen.compression, chosen.force)
+                                 chosen.compression, chosen.force, aided=aided)
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):

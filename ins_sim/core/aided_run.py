@@ -1,5 +1,6 @@
 """The aided navigator offline: readings of the IMU and fixes of the instruments in blocks."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,8 @@ from .faults import check_interval, StreamFault
 from .instants import period_ns
 from .records import AidedErrors, NavStates, Truth
 
-UNKNOWN = ((np.nan,) * 3,) * 3
+NONE = (np.nan,) * 3
+UNKNOWN = (NONE,) * 3
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,8 @@ class AidedRun:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    taken: a Taken for every fix, in the order of arrival; faults: a sentence for each fault.
+    taken: a Taken for every fix, in the order of arrival; faults: a sentence for each fault;
+    velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them.
     """
 
     truth: Truth
@@ -26,6 +29,21 @@ class AidedRun:
     errors: AidedErrors
     taken: tuple
     faults: tuple = ()
+    velocity_fixes: tuple = ()
+    gnss_fixes: tuple = ()
+
+
+class Reported:
+    """Fixes that are known already, in the order of their instants, an instrument of ``aid``."""
+
+    def __init__(self, fixes):
+        self._fixes, self._next = fixes, 0
+
+    def fixes(self, truth):
+        """Return the fixes up to the last instant of a Truth record that were not returned yet."""
+        first, self._next = self._next, bisect_right(
+            self._fixes, int(truth.t_ns[-1]), lo=self._next, key=lambda fix: fix.t_ns)
+        return self._fixes[first:self._next]
 
 
 def with_truth(motion, blocks):
@@ -47,9 +65,8 @@ def aid(settings, blocks, meter=None, gnss=None, run=0):
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
                if instrument is not None]
     for imu, truth in blocks:
-        fixes = sorted(((fix.arrival_ns, source, fix) for source, instrument in sources
-                        for fix in instrument.fixes(truth)), key=lambda f: f[:2])
-        chain.block(imu, truth, fixes)
+        chain.block(imu, truth, [(fix.arrival_ns, source, fix) for source, instrument in sources
+                                 for fix in instrument.fixes(truth)])
     return chain.finish()
 
 
@@ -64,8 +81,9 @@ class _Chain:
         self._waiting = []
 
     def block(self, imu, truth, fixes):
-        """Step through a block; fixes: (arrival_ns, source, fix) in order."""
-        self._waiting.extend(fixes)
+        """Step through a block; fixes: (arrival_ns, source, fix)."""
+        # one that is on its way from an earlier block may arrive behind one of this
+        self._waiting = sorted(self._waiting + fixes, key=lambda entry: entry[:2])
         columns = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()),
                       map(tuple, imu.f.tolist()), truth.lat.tolist(), truth.lon.tolist(),
                       truth.height.tolist(), truth.v_n.tolist(), truth.q_nb.tolist())
@@ -107,7 +125,7 @@ class _Chain:
         self._t_ns.append(t_ns)
         self._solutions.append(solution)
         self._errors.append((*level_errors(solution, truth), *(filter_.sigmas() or UNKNOWN)[::-1],
-                             filter_.estimates))
+                             filter_.estimates, filter_.estimate_sigmas() or NONE))
         return True
 
     def _fault(self, fault):

@@ -1,13 +1,15 @@
 """The whole aided chain offline: six stages, the numbers of the six nodes in lock-step."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from .aided_run import aid, with_truth
+from .aided_navigator import AidedNavigator
+from .aided_run import aid, Reported, with_truth
 from .aided_settings import AidedNavigatorSettings
 from .gnss import Gnss
 from .gnss_settings import GnssSettings
 from .meter_on_truth import body_velocity, MeterOnTruth
-from .simulation import Settings
+from .orthodrome import Route
+from .simulation import Settings, truth_blocks
 from .velocity_meter import VelocityMeter
 from .velocity_meter_settings import VelocityMeterSettings
 
@@ -39,21 +41,81 @@ class AidedSettings:
         if navigator.input != sensor.output:
             raise ValueError(f'aided_navigator: input is {navigator.input}; expected the output '
                              f'of imu_sensor, {sensor.output}')
+        self._check_streams()
+        self._check_route()
+        # what does not go together within a stage is said by the stage, before the run
+        self.instruments()
+        AidedNavigator(navigator)
+
+    def _check_streams(self):
+        """Refuse streams that the live stages would report with every message."""
+        generator, sensor = self.simulation.motion_generator, self.simulation.imu_sensor
+        sent = generator.rate_hz
+        if self.velocity_meter.rate_hz != sent:
+            raise ValueError(f'velocity_meter: rate_hz is {self.velocity_meter.rate_hz:g} Hz; '
+                             f'expected that of motion_generator, {sent:g} Hz: a cycle is from '
+                             'truth to truth')
+        if self.gnss.rate_hz > sent:
+            raise ValueError(f'gnss: rate_hz is {self.gnss.rate_hz:g} Hz; expected at most that '
+                             f'of motion_generator, {sent:g} Hz')
+        for key in ('jitter_us', 'latency_us'):
+            value = getattr(sensor.sampling, key)
+            if value:
+                raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
+                                 'aided_navigator, which needs the truth of the same stamp')
+
+    def _check_route(self):
+        """Refuse a route that orthodromic coordinates cannot refer to, or another one."""
+        points, motion = self.aided_navigator.motion.route.points, \
+            self.simulation.motion_generator.motion
+        try:
+            Route.of_points(points)
+        except ValueError as error:
+            raise ValueError(f'aided_navigator: {error}') from None
+        if motion.kind == 'route' and points != motion.route.points:
+            raise ValueError('aided_navigator: motion.route.points are not those of '
+                             'motion_generator; expected the route that is flown: name it under '
+                             '"/**", for both')
 
     def instruments(self, ins=None):
         """Return the velocity meter and GNSS on the truth, new ones; ins: as of MeterOnTruth."""
         return MeterOnTruth(VelocityMeter(self.velocity_meter), ins), Gnss(self.gnss)
 
 
-def simulate_aided(settings, motion, run):
+def simulate_aided(settings, motion, run, progress=None):
     """
     Return the AidedRun on a Run of the first three stages.
 
-    settings: AidedSettings; motion: that of the run; run: simulation.Run with every step put out
-    (strapdown.output_every 1), whose body velocity gives the angle of attack.
+    settings: AidedSettings; motion: that of the run; run: simulation.Run, whose solution, as often
+    as it is put out, gives the velocity meter the angle of attack, as it does on ins/odometry;
+    progress: called with the fraction done.  The instruments see the truth of the generator,
+    whatever the IMU loses.  Raises ValueError as the stages do.
     """
     meter, gnss = settings.instruments((run.states.t_ns, body_velocity(run.states)))
-    return aid(settings.aided_navigator, with_truth(motion, _blocks(run.imu)), meter, gnss)
+    generator = settings.simulation.motion_generator
+    velocity_fixes, gnss_fixes = [], []
+    done, total = 0, 2 * len(run.imu)
+
+    def went(count):
+        nonlocal done
+        done += count
+        if progress is not None:
+            progress(min(1.0, done / total))
+
+    for truth in truth_blocks(generator, motion):
+        velocity_fixes += meter.fixes(truth)
+        gnss_fixes += gnss.fixes(truth)
+        went(len(truth))
+    velocity_fixes += meter.finish()
+
+    def blocks():
+        for imu in _blocks(run.imu):
+            yield imu
+            went(len(imu))
+
+    flown = aid(settings.aided_navigator, with_truth(motion, blocks()), Reported(velocity_fixes),
+                Reported(gnss_fixes))
+    return replace(flown, velocity_fixes=tuple(velocity_fixes), gnss_fixes=tuple(gnss_fixes))
 
 
 def _blocks(imu, length=4096):

@@ -15,6 +15,10 @@ class StreamFault(ValueError):
         super().__init__(sentence)
         self.restart = restart
 
+    def __reduce__(self):
+        """Let it cross from one process to another."""
+        return type(self), (str(self), self.restart)
+
 
 def check_finite(name, t_ns, *vectors):
     """Raise StreamFault (sample dropped) if a vector of floats holds a NaN or an infinity."""

@@ -28,6 +28,10 @@ class MeterOnTruth:
             found += self._meter.push_ins(now_ns, v)
         return found
 
+    def finish(self):
+        """Return the VelocityFixes, invalid, of windows to whose end the INS never came."""
+        return self._meter.give_up_ins()
+
 
 def body_velocity(record):
     """Return C_bn v_n (n, 3), m/s, of a record with q_nb and v_n."""

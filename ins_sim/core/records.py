@@ -103,7 +103,8 @@ class AidedErrors(Record):
 
     t_ns (n,); attitude: rotation vector, q_nb = exp(attitude) q_nb_true, rad; velocity m/s;
     position m; the three sigmas: standard deviations by the filter, all NaN where it has none;
-    estimates: mounting mu (rad), kx, kz of the velocity meter.  Each (n, 3).
+    estimates: mounting mu (rad), kx, kz of the velocity meter, and their standard deviations,
+    NaN too where there is none.  Each (n, 3).
     """
 
     t_ns: np.ndarray
@@ -114,3 +115,4 @@ class AidedErrors(Record):
     velocity_sigma: np.ndarray
     position_sigma: np.ndarray
     estimates: np.ndarray
+    estimates_sigma: np.ndarray

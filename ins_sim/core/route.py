@@ -3,9 +3,9 @@ Flight along a route of great circles, with wind, gusts and a weaving heading.
 
 Between turns the track made good is the great circle of ``orthodrome``; turns are coordinated and
 flown inside the corners (``route_turn``).  The vehicle points along its velocity relative to the
-air without gusts; gusts carry it.  Its axes are those of the velocity relative to the air, banked
-about it as a coordinated turn asks and turned up by the attack angle about the left axis.  With
-the turn of the local axes and Coriolis' force the bank is
+air without gusts, or weaves to the sides of it, slipping; gusts carry it.  Its axes are those of
+the velocity relative to the air, banked about it as a coordinated turn asks and turned up by the
+attack angle about the left axis.  With the turn of the local axes and Coriolis' force the bank is
 
     atan(V [psi' - (2 Omega + lon') sin lat]/g)                                 (Groves 5.44, 5.53)
 """
@@ -55,7 +55,10 @@ class RouteMotion:
         if settings.gust_m_s:
             self.gusts = Gusts(settings.gust_m_s, settings.gust_length_m, self._airspeed,
                                settings.gust_seed)
-        made_good = self._airspeed * (self._weave.made_good if self._weave else 1.0)
+        self._slips = settings.weave == 'slipping'
+        made_good = self._airspeed
+        if self._weave and not self._slips:
+            made_good *= self._weave.made_good
         _check(settings, made_good)
         self.wind = _wind(settings)
         self._track, self.turns = _track(
@@ -68,18 +71,21 @@ class RouteMotion:
         t = np.asarray(t_ns) * 1e-9
         lat, lon, psi = self._track.at(t)
         east, north, up = self.gusts.displacement(t) if self.gusts else (psi * 0.0,) * 3
+        course = psi
         if self._weave:
             time = taylor.Series.time(t, 2)
-            along, right = self._weave.displacement(time)
-            sin, cos = taylor.sincos(psi)
-            east, north = east + along * sin + right * cos, north + along * cos - right * sin
             psi = psi + self._weave.angle(time)
+            if not self._slips:
+                along, right = self._weave.displacement(time)
+                sin, cos = taylor.sincos(course)
+                east, north = east + along * sin + right * cos, north + along * cos - right * sin
+                course = psi
         sin_lat, cos_lat = taylor.sincos(lat)
         r_n, r_e = earth.radii(sin_lat)
         lon = lon + east / ((r_e + self._height) * cos_lat)
         lat = lat + north / (r_n + self._height)
         # no bank holds a great circle but against Coriolis' force
-        turn = psi.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
+        turn = course.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
         bank = taylor.atan2(turn * self._airspeed, psi.constant(STANDARD_GRAVITY))
         # the axis points left: nose up is negative
         q_nb = attitude.multiply(attitude.from_angles(-psi, psi.constant(0.0), bank),
@@ -100,8 +106,9 @@ def _check(settings, made_good):
         raise ValueError(
             f'motion.route.wind_m_s and {GUST_MARGIN:g} times motion.route.gust_m_s are '
             f'{strongest:g} m/s; expected less than the airspeed made good, {made_good:g} m/s')
-    rate = math.radians(settings.turn_rate_deg_s) + (
-        math.radians(settings.weave_deg) * 2.0 * math.pi / settings.weave_period_s)
+    rate = math.radians(settings.turn_rate_deg_s)
+    if settings.weave == 'flown':
+        rate += math.radians(settings.weave_deg) * 2.0 * math.pi / settings.weave_period_s
     bank = math.degrees(math.atan(settings.airspeed_m_s * rate / STANDARD_GRAVITY))
     if bank > STEEPEST_DEG:
         raise ValueError(

@@ -23,6 +23,9 @@ class FlightRoute(Settings):
     roll_in_s: float = setting(5.0, 'time to roll into a turn and out of it', 's', 0.1, 100.0)
     attack_deg: float = setting(3.0, 'attack angle: nose above the velocity relative to the air',
                                 'deg', -30.0, 30.0)
+    weave: str = setting('flown', 'how the heading weaves: the track with it, banked (flown), or '
+                         'to the sides of a straight track (slipping)',
+                         choices=('flown', 'slipping'))
     weave_deg: float = setting(0.0, 'amplitude of the weave of the heading; 0 = none', 'deg', 0.0,
                                30.0)
     weave_period_s: float = setting(25.0, 'its period', 's', 0.1, 1e4)

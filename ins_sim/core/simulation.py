@@ -81,6 +81,14 @@ def sense(settings, motion):
             yield block
 
 
+def truth_blocks(generator, motion):
+    """Yield the Truth at the instants of MotionGeneratorSettings, from the first to the last."""
+    first_ns, steps = round(generator.start_s * 1e9), _steps(generator)
+    for start in range(0, steps + 1, BLOCK):
+        k = np.arange(start, min(start + BLOCK, steps + 1), dtype=np.int64)
+        yield motion.at(first_ns + period_ns(generator.rate_hz) * k)
+
+
 def _ideal(settings, motion):
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
@@ -93,9 +101,7 @@ def _ideal(settings, motion):
             left -= BLOCK
         return
     imu, frame = StreamImu(sensor), MapFrame(sensor.datum, sensor.earth.rotation)
-    for start in range(0, steps + 1, BLOCK):
-        k = np.arange(start, min(start + BLOCK, steps + 1), dtype=np.int64)
-        truth = motion.at(first_ns + period_ns(generator.rate_hz) * k)
+    for truth in truth_blocks(generator, motion):
         readings = []
         for sample in zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
                           truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):

@@ -12,6 +12,9 @@ import numpy as np
 
 from . import topics
 
+# of what is published on aided/sigma/*
+SIGMAS = 3.0
+
 
 def truth_blocks(frame, truth):
     """Return {Topic: values (n, k)} of a Truth record; frame: MapFrame."""
@@ -49,6 +52,13 @@ def error_blocks(errors):
     """Return {Topic: values} of NavErrors."""
     return dict(zip(topics.ERRORS, (errors.attitude, errors.velocity, errors.position,
                                     errors.drift)))
+
+
+def aided_error_blocks(errors):
+    """Return {Topic: values} of AidedErrors: errors, and SIGMAS standard deviations."""
+    three = (errors.attitude_sigma, errors.velocity_sigma, errors.position_sigma)
+    return dict(zip((*topics.AIDED_ERRORS, *topics.AIDED_SIGMAS), (
+        errors.attitude, errors.velocity, errors.position, *(SIGMAS * s for s in three))))
 
 
 def odometry_one(frame, solution, omega):

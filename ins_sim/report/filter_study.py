@@ -9,8 +9,8 @@ matplotlib.use('Agg')
 from matplotlib.figure import Figure  # noqa: E402
 import numpy as np  # noqa: E402
 from rich.table import Table  # noqa: E402
-from scipy.stats import chi2  # noqa: E402
 
+from .consistency import mean_interval  # noqa: E402
 from .table import number  # noqa: E402
 
 COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
@@ -49,9 +49,8 @@ def row(case, flown):
     nis = np.concatenate([f.nis for f in flown])
     mean = low = high = None
     if len(nis):
-        freedom = 2 * len(nis)
         mean = float(nis.mean())
-        low, high = (float(chi2.ppf(p, freedom) / len(nis)) for p in (0.025, 0.975))
+        low, high = mean_interval(len(nis), 2)
     refused = [f for f in flown if f.refused]
     return Row(case.filter, case.cycles, len(flown), _rms(ends),
                _rms(np.concatenate([f.horizontal for f in flown])), float(ends.max()),

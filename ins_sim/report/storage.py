@@ -62,11 +62,12 @@ def whole(folder, force=False, mark=MARK):
         raise
 
 
-def write(folder, settings, run, rows, prediction, title, force=False):
+def write(folder, settings, run, rows, prediction, title, force=False, aided=None):
     """
     Write a Run, and what was predicted of it or None, into a folder that appears when complete.
 
-    run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).
+    run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).  aided: the
+    ``aided.Report`` on this run, which goes into the same files, or None.
     """
     with whole(folder, force) as work:
         arrays = {}
@@ -77,8 +78,13 @@ def write(folder, settings, run, rows, prediction, title, force=False):
         if prediction is not None:
             arrays['predicted_t_s'] = prediction.t_s
             arrays['predicted_position'] = prediction.position
+        parameters = parameter_files.dump(settings)
+        if aided is not None:
+            arrays.update(aided.arrays())
+            parameters, rows = aided.parameters(), [*rows, *aided.rows]
+            aided.save_figures(work)
         np.savez(work / ARRAYS, **arrays)
-        (work / PARAMETERS).write_text(parameter_files.dump(settings), encoding='utf-8')
+        (work / PARAMETERS).write_text(parameters, encoding='utf-8')
         figure.save(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')

@@ -6,7 +6,7 @@ from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.orthodrome import Route
 from ins_sim.messages import topics, velocity_record
-from ins_sim.messages.convert import aided_fix_one, aided_odometry_one
+from ins_sim.messages.convert import aided_fix_one, aided_odometry_one, SIGMAS
 from ins_sim.messages.gnss_fixes import GnssPairs
 
 from . import qos
@@ -14,8 +14,6 @@ from .aiding_health import AidingHealth
 from .patience import MISSING_S, Patience
 from .queue import HandQueue
 from .stage import StageNode
-
-THREE = 3.0
 
 
 class AidedNavigatorNode(StageNode):
@@ -131,7 +129,7 @@ class AidedNavigatorNode(StageNode):
             # attitude first, as the errors
             for (publisher, pack), sigma in zip(self._sigmas, sigmas[::-1] if sigmas else ()):
                 if publisher.get_subscription_count():
-                    publisher.publish(pack(stamp_ns, [THREE * s for s in sigma]))
+                    publisher.publish(pack(stamp_ns, [SIGMAS * s for s in sigma]))
             self.monitor.sent += 1
 
     def _orthodrome(self, solution):

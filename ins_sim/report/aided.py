@@ -1,0 +1,219 @@
+"""An aided run in numbers: what the solution was off, whether its filter knew, which fixes."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from rich.table import Table
+
+from . import aided_arrays, aided_figure
+from .. import parameter_files
+from ..core.aided_navigator import GNSS, METER
+from ..core.aided_run import AidedRun
+from ..core.aided_simulation import AidedSettings
+from ..core.triad_model import DEG
+from .consistency import mean_interval, THREE_SIGMA
+
+FIGURE = 'aided.png'
+AIDED = 'aided '
+# reasons that are named
+REASONS = 3
+
+
+@dataclass(frozen=True)
+class Row:
+    """
+    One figure of the aided solution; what does not apply is None.
+
+    measured: what it is; free: the same figure of the strapdown alone; sigma: standard deviation
+    by the filter; true: what it would be were all perfect; low, high: the interval in which 95 %
+    of consistent filters have it; source: the instrument whose
+    fixes it counts; note: in words.
+    """
+
+    name: str
+    unit: str
+    measured: float
+    free: float | None = None
+    sigma: float | None = None
+    true: float | None = None
+    low: float | None = None
+    high: float | None = None
+    source: str = ''
+    note: str = ''
+
+
+@dataclass(frozen=True)
+class Report:
+    """What ``storage.write`` keeps of an aided run; rows: of ``rows``."""
+
+    settings: AidedSettings
+    flown: AidedRun
+    rows: list
+
+    @property
+    def title(self):
+        """Return a line that names filter and instruments."""
+        return f'aided by {self.settings.aided_navigator.filter}: ' + (', '.join(
+            _described(self.settings, source) for source in sources(self.settings)) or 'no fixes')
+
+    def arrays(self):
+        """Return {name: array} for run.npz."""
+        return aided_arrays.arrays(self.flown)
+
+    def parameters(self):
+        """Return the text of the parameter file of all six nodes."""
+        return parameter_files.dump_aided(self.settings)
+
+    def show(self, console):
+        """Print the rows, and what went wrong."""
+        show(self.title, self.rows, console)
+        for line in faults(self.flown):
+            console.print(line, markup=False)
+
+    def save_figures(self, folder):
+        """Save the figure into a folder."""
+        aided_figure.save(folder / FIGURE, self.title, self.flown, sources(self.settings),
+                          self.settings.aided_navigator.gate_probability)
+
+
+def sources(settings):
+    """Return the instruments that aid, of AidedSettings."""
+    navigator = settings.aided_navigator
+    used = {METER: navigator.meter_model.use and navigator.filter != 'free',
+            GNSS: navigator.gnss_model.use}
+    return [source for source, use in used.items() if use]
+
+
+def _described(settings, source):
+    if source == GNSS:
+        return f'GNSS at {settings.gnss.gnss.rate_hz:g} Hz'
+    meter = settings.velocity_meter
+    return f'velocity meter ({meter.mode}), N {meter.window.cycles}'
+
+
+def rows(settings, flown, errors):
+    """Return the Rows of AidedSettings, their AidedRun and the NavErrors of the strapdown."""
+    table = _error_rows(flown.errors, errors) + _inside_rows(flown.errors)
+    for source in sources(settings):
+        table += _fix_rows(source, flown)
+    return table + _estimate_rows(settings, flown.errors)
+
+
+def _error_rows(aided, free):
+    table = [Row(f'{AIDED}max |d{name}|', 'm', _largest(aided, axis), _largest(free, axis))
+             for axis, name in ((1, 'N'), (0, 'E'))]
+    own, others = _horizontal(aided), _horizontal(free)
+    sigma = np.hypot(aided.position_sigma[:, 0], aided.position_sigma[:, 1])
+    table.append(Row(f'{AIDED}rms horizontal', 'm', _rms(own), _rms(others), _known(_rms(sigma))))
+    table.append(Row(f'{AIDED}horizontal at the end', 'm', float(own[-1]), float(others[-1]),
+                     _known(float(sigma[-1]))))
+    return table
+
+
+def _largest(errors, axis):
+    return float(np.abs(errors.position[:, axis]).max())
+
+
+def _horizontal(errors):
+    return np.hypot(errors.position[:, 0], errors.position[:, 1])
+
+
+def _rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def _known(value):
+    return value if np.isfinite(value) else None
+
+
+def _inside_rows(errors):
+    """Return how much of the time each component is within three sigma of the filter."""
+    table = []
+    for kind in ('position', 'velocity', 'attitude'):
+        error, sigma = getattr(errors, kind), getattr(errors, f'{kind}_sigma')
+        axes = [axis for axis in range(3) if (sigma[:, axis] > 0.0).any()]
+        if axes:
+            inside = np.abs(error[:, axes]) <= 3.0 * sigma[:, axes]
+            table.append(Row(f'{AIDED}{kind} in 3 sigma', '%', 100.0 * float(inside.mean()),
+                             true=100.0 * THREE_SIGMA))
+    return table
+
+
+def _fix_rows(source, flown):
+    fixes = flown.velocity_fixes if source == METER else flown.gnss_fixes
+    results = [taken.result for taken in flown.taken if taken.source == source]
+    weighed = [r for r in results if r.nis is not None]
+    table = []
+    if weighed:
+        # the mean of chi-squares that all have the freedom of the instrument
+        freedom = weighed[0].freedom
+        low, high = mean_interval(len(weighed), freedom)
+        table.append(Row(f'{AIDED}NIS of {source}', '', float(np.mean([r.nis for r in weighed])),
+                         true=float(freedom), low=low, high=high))
+    taken = sum(r.taken for r in results)
+    for name, number, note in (('reported', len(fixes), ''), ('taken', taken, ''),
+                               ('refused', len(results) - taken, _reasons(results))):
+        table.append(Row(f'{AIDED}{source} fixes {name}', '', number, source=source, note=note))
+    return table
+
+
+def _reasons(results):
+    """Return why fixes were not taken, the most frequent first."""
+    counts = Counter(r.reason for r in results if not r.taken).most_common()
+    texts = [f'{reason} ({count})' for reason, count in counts[:REASONS]]
+    rest = sum(count for _, count in counts[REASONS:])
+    return '; '.join(texts + ([f'others ({rest})'] if rest else []))
+
+
+def _estimate_rows(settings, errors):
+    """Return what is estimated of the velocity meter, beside what is true of it."""
+    model, meter = settings.aided_navigator.meter_model, settings.velocity_meter
+    if np.isnan(errors.estimates_sigma).any():
+        return []
+    beam = (meter.beam.sigma_theta_z_rad / meter.beam.sigma_theta_x_rad) ** 2
+    surrogate = meter.surrogate if meter.mode == 'surrogate' else None
+    k_x, k_z = (surrogate.k_x, surrogate.k_z) if surrogate else (0.0, 0.0)
+    table = []
+    for k, (name, unit, factor, given, true) in enumerate((
+            ('mounting mu', 'arcmin', 60.0 / DEG, model.mounting_sigma_arcmin,
+             meter.antennas.mounting_yaw_arcmin),
+            ('scale kx', '', 1.0, model.scale_x_sigma, k_x),
+            ('scale kz', '', 1.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
+        if given:
+            table.append(Row(f'{AIDED}{name}', unit, factor * float(errors.estimates[-1, k]),
+                             sigma=factor * float(errors.estimates_sigma[-1, k]), true=true))
+    return table
+
+
+def show(title, rows, console):
+    """Print a table of the rows, and below it a line about the fixes of each instrument."""
+    table = Table(title=title, caption='sigma: by the filter; expected of NIS: 95 % of '
+                  'consistent runs')
+    table.add_column('figure', no_wrap=True)
+    table.add_column('unit', no_wrap=True)
+    for head in ('aided', 'alone', 'sigma', 'expected'):
+        table.add_column(head, justify='right', no_wrap=True)
+    for row in rows:
+        if not row.source:
+            expected = _short(row.true) if row.low is None else f'{row.low:.2f} to {row.high:.2f}'
+            table.add_row(row.name.removeprefix(AIDED), row.unit, _short(row.measured),
+                          _short(row.free), _short(row.sigma), expected)
+    console.print(table)
+    for source in dict.fromkeys(row.source for row in rows if row.source):
+        counts = [row for row in rows if row.source == source]
+        told = ', '.join(f'{row.measured} {row.name.split()[-1]}' for row in counts)
+        notes = ''.join(f': {row.note}' for row in counts if row.note)
+        console.print(f'{source} fixes: {told}{notes}', markup=False, highlight=False,
+                      soft_wrap=True)
+
+
+def _short(value):
+    return '-' if value is None else f'{value:.4g}'
+
+
+def faults(flown):
+    """Return the lines about what made the aided solution start anew, or dropped a fix."""
+    if not flown.faults:
+        return []
+    return [f'{len(flown.faults)} faults of the aided navigator; the first: {flown.faults[0]}']

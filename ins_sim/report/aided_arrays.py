@@ -1,0 +1,36 @@
+"""An aided run as arrays."""
+
+import numpy as np
+
+from ..core.aided_navigator import GNSS, METER
+
+VELOCITY_COLUMNS = ('start_ns', 'end_ns', 'cycles', 'velocity', 'sigma', 'tan_alpha', 'tau', 'g',
+                    'status', 'arrival_ns')
+GNSS_COLUMNS = ('t_ns', 'lat', 'lon', 'height', 'v_n', 'position_sigma', 'velocity_sigma',
+                'status', 'arrival_ns')
+
+
+def arrays(flown):
+    """
+    Return {name: array} of an AidedRun: aided_<record>_<field> as ``core.records`` has them,
+    velocity_meter_<field> and gnss_<field> as ``core.fixes``, one row a fix, and judged_<field>,
+    what became of each: source, t_ns, nis (NaN: not weighed), freedom, taken, reason.
+    """
+    found = {}
+    for name in ('truth', 'states', 'errors'):
+        record = getattr(flown, name)
+        found.update({f'aided_{name}_{k}': v for k, v in record.arrays().items()})
+    for source, fixes, columns in ((METER, flown.velocity_fixes, VELOCITY_COLUMNS),
+                                   (GNSS, flown.gnss_fixes, GNSS_COLUMNS)):
+        found.update({f'{source}_{name}': np.array([getattr(fix, name) for fix in fixes])
+                      for name in columns})
+    judged = flown.taken
+    found.update({
+        'judged_source': np.array([t.source for t in judged], dtype=str),
+        'judged_t_ns': np.array([t.t_ns for t in judged], dtype=np.int64),
+        'judged_nis': np.array([np.nan if t.result.nis is None else t.result.nis
+                                for t in judged]),
+        'judged_freedom': np.array([t.result.freedom for t in judged], dtype=np.int64),
+        'judged_taken': np.array([t.result.taken for t in judged], dtype=bool),
+        'judged_reason': np.array([t.result.reason for t in judged], dtype=str)})
+    return found

@@ -1,0 +1,120 @@
+"""The figure of an aided run: its errors within three sigma of the filter, outages and NIS."""
+
+import matplotlib
+
+matplotlib.use('Agg')
+
+from matplotlib.figure import Figure  # noqa: E402
+import numpy as np  # noqa: E402
+
+from .consistency import largest  # noqa: E402
+from .figure import COLOURS, MOST_POINTS  # noqa: E402
+from ..core.aided_navigator import GNSS, METER  # noqa: E402
+
+SOURCES = {METER: ('tab:purple', 'velocity meter'), GNSS: ('tab:cyan', 'GNSS')}
+PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),
+          ('velocity', 'velocity error [m/s]', (0, 1, 2), 1.0),
+          ('attitude', 'tilt [arcsec]', (0, 1), np.degrees(1.0) * 3600.0),
+          ('attitude', 'azimuth error [arcmin]', (2,), np.degrees(1.0) * 60.0))
+NAMES = tuple(COLOURS)
+# fixes that the line through the NIS is a mean of
+MEAN_OF = 20
+
+
+def save(path, title, flown, sources, gate_probability):
+    """
+    Save the figure as PNG.
+
+    flown: AidedRun with the fixes of the instruments; sources: those that aid; gate_probability:
+    of the navigator, 0: none.
+    """
+    start_ns, end_ns = int(flown.errors.t_ns[0]), int(flown.errors.t_ns[-1])
+    span_s = (end_ns - start_ns) * 1e-9
+    unit, per = ('min', 60.0) if span_s > 300.0 else ('s', 1.0)
+
+    def time(t_ns):
+        return (np.asarray(t_ns, dtype=np.int64) - start_ns) * 1e-9 / per
+
+    errors = flown.errors[::max(1, len(flown.errors) // MOST_POINTS)]
+    figure = Figure(figsize=(10, 13), layout='constrained')
+    *panels, bottom = figure.subplots(len(PANELS) + 1, 1, sharex=True)
+    for axes, (kind, label, components, factor) in zip(panels, PANELS):
+        _show_errors(axes, time(errors.t_ns), getattr(errors, kind) * factor,
+                     getattr(errors, f'{kind}_sigma') * factor, components)
+        axes.set_ylabel(label)
+    _show_nis(bottom, flown.taken, sources, gate_probability, time)
+    bottom.set_ylabel('NIS per degree of freedom')
+    bottom.set_xlabel(f'time [{unit}]')
+    outages = _outages(flown.gnss_fixes, start_ns, end_ns) if GNSS in sources else []
+    for axes in (*panels, bottom):
+        for k, (first, last) in enumerate(outages):
+            axes.axvspan(*time((first, last)), color='0.5', alpha=0.15, lw=0.0,
+                         label=None if k else 'no GNSS')
+        axes.grid(alpha=0.3)
+        axes.set_xlim(*time((start_ns, end_ns)))
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small',
+                        frameon=False)
+    figure.suptitle(title)
+    figure.savefig(path, dpi=110)
+
+
+def _show_errors(axes, t, errors, sigmas, components):
+    """Plot errors, and the bands in which the filter believes them."""
+    for axis in components:
+        colour, bound = COLOURS[NAMES[axis]], 3.0 * sigmas[:, axis]
+        if len(components) == 3 and axis == 2 and not np.any(errors[:, axis]):
+            # held by the altimeter: nothing to see
+            continue
+        if np.isfinite(bound).all() and bound.any():
+            axes.fill_between(t, -bound, bound, color=colour, alpha=0.12, lw=0.0)
+            for sign in (1.0, -1.0):
+                axes.plot(t, sign * bound, color=colour, lw=0.6, alpha=0.7)
+        axes.plot(t, errors[:, axis], color=colour, lw=1.0, label=NAMES[axis])
+    if axes.collections:
+        axes.fill_between([], [], [], color='0.4', alpha=0.25, label='3 sigma')
+
+
+def _show_nis(axes, taken, sources, gate_probability, time):
+    """Plot the NIS of each fix, their running mean, and where the gate is."""
+    weighed = False
+    for source in sources:
+        colour, name = SOURCES[source]
+        fixes = [t for t in taken if t.source == source and t.result.nis is not None]
+        if not fixes:
+            continue
+        weighed = True
+        freedom = fixes[0].result.freedom
+        t = time([fix.t_ns for fix in fixes])
+        nis = np.maximum([fix.result.nis / freedom for fix in fixes], 1e-3)
+        good = np.array([fix.result.taken for fix in fixes])
+        axes.plot(t[good], nis[good], '.', ms=3, alpha=0.5, color=colour, label=name)
+        if not good.all():
+            axes.plot(t[~good], nis[~good], 'x', ms=6, color='tab:red', label=f'{name}, refused')
+        if len(nis) > MEAN_OF:
+            mean = np.convolve(nis, np.full(MEAN_OF, 1.0 / MEAN_OF), 'valid')
+            axes.plot(t[MEAN_OF - 1:], mean, color=colour, lw=1.4, label=f'mean of {MEAN_OF}')
+        if gate_probability:
+            axes.axhline(largest(freedom, gate_probability) / freedom, color=colour, ls='--',
+                         lw=0.8, label='gate')
+    if weighed:
+        axes.set_yscale('log')
+        axes.axhline(1.0, color='k', lw=0.8)
+    else:
+        axes.text(0.5, 0.5, 'no fix was weighed by a covariance', ha='center', va='center',
+                  transform=axes.transAxes)
+
+
+def _outages(fixes, start_ns, end_ns):
+    """Return the spans (first, last), ns, from a fix that is none to the next that is one."""
+    spans, since_ns = [], None
+    for fix in fixes:
+        if not fix.valid and since_ns is None:
+            since_ns = fix.t_ns
+        elif fix.valid and since_ns is not None:
+            spans.append((since_ns, fix.t_ns))
+            since_ns = None
+    if since_ns is not None:
+        spans.append((since_ns, end_ns))
+    return [(max(first, start_ns), min(last, end_ns)) for first, last in spans
+            if last > start_ns and first < end_ns]
