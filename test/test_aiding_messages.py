@@ -10,6 +10,8 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.core import earth
 from ins_sim.core.errors import position_error
+from ins_sim.core.faults import StreamFault
+from ins_sim.core.fix_checks import check_gnss
 from ins_sim.core.fixes import GnssFix, no_gnss_fix, OUTAGE, VelocityFix
 from ins_sim.messages import diagnostic_array, topics, velocity_record
 from ins_sim.messages.cdr import Reader, Writer
@@ -269,3 +271,16 @@ def test_bags_keep_them(storage, tmp_path):
     assert fix['position_covariance'][0, 4] == 1.7 * 1.7
     assert velocity['linear'].tolist() == [[120.0, -70.1, 0.3]]
     assert velocity['twist_covariance'][0, 14] == 0.1 * 0.1
+
+
+@pytest.mark.parametrize('variance', [0.0, -1.0, math.nan])
+def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
+    """Other receivers send zeros, or worse: the fix is there, and dropped in one sentence."""
+    reader = GnssPairs(EPOCH, 0)
+    stamp, place = 7 * SECOND + EPOCH, (55.0, 37.0, 100.0)
+    reader.push_fix(topics.GNSS_FIX.writer().pack(stamp, place, *((variance,),) * 3))
+    fix, = reader.push_velocity(topics.GNSS_VELOCITY.writer().pack(
+        stamp, (1.0, 2.0, 3.0), *((1.0,),) * 3))
+    with pytest.raises(StreamFault, match='gnss: fix at 7.000000000 s has standard deviations of '
+                                          'position .* expected positive ones; it was dropped'):
+        check_gnss(fix)

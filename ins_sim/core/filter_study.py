@@ -89,7 +89,7 @@ def _fly(settings, case, blocks):
     flown = aid(settings.aided_navigator, blocks, *instruments)
     errors = flown.errors
     weighed = [t.result for t in flown.taken if t.source == METER]
-    refused = [r.reason for r in weighed if not r.taken]
+    refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
     return Flown((errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
                  errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
                  np.array([r.nis for r in weighed if r.nis is not None]), len(refused),

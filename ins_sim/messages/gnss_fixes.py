@@ -91,6 +91,11 @@ class GnssPairs:
                 lat, lon, height = place
                 found.append(GnssFix(
                     t_ns, math.radians(lat), math.radians(lon), height, v_n,
-                    *(tuple(math.sqrt(v) for v, in runs) for runs in (variances, slips)),
+                    *(tuple(_sigma(v) for v, in runs) for runs in (variances, slips)),
                     arrival_ns=t_ns + self._latency_ns))
         return found
+
+
+def _sigma(variance):
+    """Return the standard deviation; 0 of what is no variance, which the navigator refuses."""
+    return math.sqrt(variance) if variance > 0.0 else 0.0

@@ -8,10 +8,10 @@ matplotlib.use('Agg')
 
 from matplotlib.figure import Figure  # noqa: E402
 import numpy as np  # noqa: E402
+from rich import box  # noqa: E402
 from rich.table import Table  # noqa: E402
 
 from .consistency import mean_interval  # noqa: E402
-from .table import number  # noqa: E402
 
 COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
            'paper_corrected': 'tab:orange', 'window_kf': 'tab:blue', 'eskf': 'tab:green'}
@@ -64,20 +64,22 @@ def _rms(values):
 
 def show(title, rows, console):
     """Print the table, and below it why fixes were not taken."""
-    table = Table(title=title, caption='horizontal error, m: rms of the flights at their end and '
-                  'over their time, the worst end, and the end as the filter thinks')
+    # as wide as a terminal, with every figure whole
+    table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
+                  caption='horizontal error, m: rms of the flights at their end and over their '
+                  'time, the worst end, and the end as the filter thinks')
     table.add_column('filter', no_wrap=True)
-    for head in ('N', 'end', 'flight', 'worst', 'sigma', 'NIS', '95 %', 'not taken'):
+    for head in ('N', 'end', 'flight', 'worst', 'sigma', 'NIS', '95 %', 'refused'):
         table.add_column(head, justify='right', no_wrap=True)
     for r in rows:
         interval = '-' if r.nis is None else f'{r.nis_low:.2f}-{r.nis_high:.2f}'
-        table.add_row(r.filter, str(r.cycles), number(round(r.end_m, 1)),
-                      number(round(r.flight_m, 1)), number(round(r.worst_m, 1)),
-                      '-' if r.sigma_m is None else number(round(r.sigma_m, 1)),
+        metres = ('-' if m is None else f'{m:.1f}' for m in (r.end_m, r.flight_m, r.worst_m,
+                                                             r.sigma_m))
+        table.add_row(r.filter, str(r.cycles), *metres,
                       '-' if r.nis is None else f'{r.nis:.2f}', interval, str(r.refused))
     console.print(table)
     for r in rows:
-        if r.refused and r.filter != 'free':
+        if r.refused:
             console.print(f'{r.filter}, N {r.cycles}: {r.refused} fixes not taken; the last: '
                           f'{r.reason}', markup=False)
 
