@@ -110,7 +110,8 @@ class Listener:
         for queue, reader, name in self._queues:
             while (data := queue.take()) is not None:
                 stamp_ns, *runs = reader.read(data)
-                self.repeats += stamp_ns in self.heard[name]
+                # the last one heard stands last, be it a repeated stamp of a run that starts anew
+                self.repeats += self.heard[name].pop(stamp_ns, None) is not None
                 self.heard[name][stamp_ns] = sum(runs, ())
                 self.raw[name][stamp_ns] = data
         if all(self.heard.values()):

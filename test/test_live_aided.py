@@ -31,8 +31,8 @@ HEARD = (topics.AIDED_ODOMETRY, topics.AIDED_FIX, *topics.AIDED_ERRORS, *topics.
 REQUIRED = '[strapdown, velocity_meter, gnss, aided_navigator, listener]'
 
 
-def lock_step(domain, folder, order, load=0):
-    """Run six processes; return {topic name: {stamp: doubles}}."""
+def lock_step(domain, folder, order, load=0, reset_ns=None):
+    """Run six processes, after reset_ns from the start again; return {topic: {stamp: doubles}}."""
     folder.mkdir()
     listener, chain = Listener(domain, HEARD), Chain(domain, folder)
     hogs = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
@@ -40,10 +40,20 @@ def lock_step(domain, folder, order, load=0):
         started = {node: chain.start(node, {**LIVE, 'pacing.real_time_factor': 0.0,
                                             'pacing.required': REQUIRED}) for node in order}
         generator = started['motion_generator']
+        if reset_ns is not None:
+            listener.poll_until(lambda: reset_ns in listener.heard['aided/fix'])
+            from std_srvs.srv import Trigger
+            listener.call(Trigger, 'motion_generator/reset')
+            chain.wait_text(started['aided_navigator'], 'imu jumps back from')
+            for heard in listener.heard.values():
+                heard.clear()
         listener.poll_until(lambda: generator.poll() is not None, 120.0)
         listener.poll_until(lambda: all(12 * SECOND in h for h in listener.heard.values()))
         texts = [chain.text(process) for process in started.values()]
-        assert set(chain.end().values()) == {0} and not any('WARN' in t for t in texts), texts
+        assert set(chain.end().values()) == {0}, texts
+        warnings = [line for text in texts for line in text.splitlines() if 'WARN' in line]
+        assert all('jumps back' in line for line in warnings), warnings
+        assert len(warnings) == (0 if reset_ns is None else 5)
     finally:
         for hog in hogs:
             hog.kill()
@@ -57,7 +67,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     Every topic to the rounding of truth and solution in Cartesian messages, as in test_live_graph.
 
     Then the same bits with the nodes started in another order on a busy machine, whoever waits
-    for whom.
+    for whom, and once more when the generator goes back to sample 0 on the way.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', NODES)
     settings = chosen_settings({**VALUES, 'source': 'stream'})
@@ -96,6 +106,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         assert difference.max() < bound
     assert [t.result.taken for t in offline.taken if t.source == 'velocity_meter'] == [True] * 5
     assert lock_step(ros_domain, tmp_path / 'again', NODES[::-1], load=2) == heard
+    again = lock_step(ros_domain, tmp_path / 'reset', NODES, reset_ns=5 * SECOND)
+    assert {name: dict(sorted(h.items())) for name, h in again.items()} == heard
 
 
 ALONE = (topics.TRUTH_ODOMETRY, topics.IMU_RAW, topics.METER_RECORD)
