@@ -3,7 +3,9 @@
 from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict
 import json
+from multiprocessing import active_children
 import os
+import signal
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -63,13 +65,21 @@ def _fly_all(settings, cases, runs, jobs, console):
                   '{task.total:.0f} flights'), TimeRemainingColumn(), console=console,
                   transient=True) as progress:
         task = progress.add_task('', total=runs)
-        with ProcessPoolExecutor(min(jobs, runs)) as pool:
+        with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
             futures = {pool.submit(fly, settings, cases, k): k for k in range(runs)}
             try:
                 for future in as_completed(futures):
                     flights[futures[future]] = future.result()
                     progress.advance(task)
             except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
+                # a flight takes minutes, which nobody waits for who wants to end
+                for worker in active_children():
+                    worker.kill()
                 raise
     return flights
+
+
+def _deaf():
+    """Leave the signals of a terminal to the process that started this one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)

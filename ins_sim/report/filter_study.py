@@ -73,7 +73,7 @@ def show(title, rows, console):
         table.add_column(head, justify='right', no_wrap=True)
     for r in rows:
         interval = '-' if r.nis is None else f'{r.nis_low:.2f}-{r.nis_high:.2f}'
-        metres = ('-' if m is None else f'{m:.1f}' for m in (r.end_m, r.flight_m, r.worst_m,
+        metres = ('-' if m is None else f'{m:.4g}' for m in (r.end_m, r.flight_m, r.worst_m,
                                                              r.sigma_m))
         table.add_row(r.filter, str(r.cycles), *metres,
                       '-' if r.nis is None else f'{r.nis:.2f}', interval, str(r.refused))
