@@ -1,7 +1,8 @@
 """An aided run in numbers: what the solution was off, whether its filter knew, which fixes."""
 
-from collections import Counter
+from collections import Counter, namedtuple
 from dataclasses import dataclass
+import math
 
 import numpy as np
 from rich.table import Table
@@ -15,6 +16,8 @@ from ..core.triad_model import DEG
 from .consistency import mean_interval, THREE_SIGMA
 
 FIGURE = 'aided.png'
+# of the table: head, text of a Row or '', and what it means where that is not plain
+_Column = namedtuple('_Column', 'head value meaning')
 AIDED = 'aided '
 # reasons that are named
 REASONS = 3
@@ -25,10 +28,10 @@ class Row:
     """
     One figure of the aided solution; what does not apply is None.
 
-    measured: what it is; free: the same figure of the strapdown alone; sigma: standard deviation
-    by the filter; true: what it would be were all perfect; low, high: the interval in which 95 %
-    of consistent filters have it; source: the instrument whose
-    fixes it counts; note: in words.
+    measured: what it is (NIS: the mean over all fixes that were weighed, refused ones too); free:
+    the same figure of the strapdown alone; sigma: standard deviation by the filter; true: what it
+    would be were all perfect; low, high: the interval in which 95 % of consistent filters have it;
+    source: the instrument whose fixes it counts; note: in words.
     """
 
     name: str
@@ -54,8 +57,10 @@ class Report:
     @property
     def title(self):
         """Return a line that names filter and instruments."""
-        return f'aided by {self.settings.aided_navigator.filter}: ' + (', '.join(
-            _described(self.settings, source) for source in sources(self.settings)) or 'no fixes')
+        told = [_described(self.settings, source) for source in sources(self.settings)]
+        if not told:
+            return 'not aided by any fix'
+        return f'aided by {self.settings.aided_navigator.filter}: {", ".join(told)}'
 
     def arrays(self):
         """Return {name: array} for run.npz."""
@@ -177,28 +182,28 @@ def _estimate_rows(settings, errors):
     table = []
     for k, (name, unit, factor, given, true) in enumerate((
             ('mounting mu', 'arcmin', 60.0 / DEG, model.mounting_sigma_arcmin,
-             meter.antennas.mounting_yaw_arcmin),
-            ('scale kx', '', 1.0, model.scale_x_sigma, k_x),
-            ('scale kz', '', 1.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
+             math.radians(meter.antennas.mounting_yaw_arcmin / 60.0)),
+            ('scale kx', '%', 100.0, model.scale_x_sigma, k_x),
+            ('scale kz', '%', 100.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
         if given:
             table.append(Row(f'{AIDED}{name}', unit, factor * float(errors.estimates[-1, k]),
-                             sigma=factor * float(errors.estimates_sigma[-1, k]), true=true))
+                             sigma=factor * float(errors.estimates_sigma[-1, k]),
+                             true=factor * true))
     return table
 
 
 def show(title, rows, console):
     """Print a table of the rows, and below it a line about the fixes of each instrument."""
-    table = Table(title=title, caption='sigma: by the filter; expected of NIS: 95 % of '
-                  'consistent runs')
+    columns = [column for column in COLUMNS if any(column.value(row) for row in rows)]
+    table = Table(title=title, caption='; '.join(c.meaning for c in columns if c.meaning))
     table.add_column('figure', no_wrap=True)
     table.add_column('unit', no_wrap=True)
-    for head in ('aided', 'alone', 'sigma', 'expected'):
-        table.add_column(head, justify='right', no_wrap=True)
+    for column in columns:
+        table.add_column(column.head, justify='right', no_wrap=True)
     for row in rows:
         if not row.source:
-            expected = _short(row.true) if row.low is None else f'{row.low:.2f} to {row.high:.2f}'
-            table.add_row(row.name.removeprefix(AIDED), row.unit, _short(row.measured),
-                          _short(row.free), _short(row.sigma), expected)
+            table.add_row(row.name.removeprefix(AIDED), row.unit,
+                          *(column.value(row) or '-' for column in columns))
     console.print(table)
     for source in dict.fromkeys(row.source for row in rows if row.source):
         counts = [row for row in rows if row.source == source]
@@ -209,7 +214,18 @@ def show(title, rows, console):
 
 
 def _short(value):
-    return '-' if value is None else f'{value:.4g}'
+    return '' if value is None else f'{value:.4g}'
+
+
+def _expected(row):
+    return _short(row.true) if row.low is None else f'{row.low:.2f} to {row.high:.2f}'
+
+
+COLUMNS = (
+    _Column('aided', lambda row: _short(row.measured), ''),
+    _Column('alone', lambda row: _short(row.free), 'alone: the strapdown, from its own start'),
+    _Column('sigma', lambda row: _short(row.sigma), 'sigma: by the filter'),
+    _Column('expected', _expected, 'expected of NIS: in 95 % of consistent runs'))
 
 
 def faults(flown):

@@ -17,8 +17,8 @@ PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),
           ('attitude', 'tilt [arcsec]', (0, 1), np.degrees(1.0) * 3600.0),
           ('attitude', 'azimuth error [arcmin]', (2,), np.degrees(1.0) * 60.0))
 NAMES = tuple(COLOURS)
-# fixes that the line through the NIS is a mean of
-MEAN_OF = 20
+# the line through the NIS is a mean of so many fixes at least, and has so many such spans at most
+MEAN_OF, SPANS = 20, 60
 
 
 def save(path, title, flown, sources, gate_probability):
@@ -36,25 +36,26 @@ def save(path, title, flown, sources, gate_probability):
         return (np.asarray(t_ns, dtype=np.int64) - start_ns) * 1e-9 / per
 
     errors = flown.errors[::max(1, len(flown.errors) // MOST_POINTS)]
-    figure = Figure(figsize=(10, 13), layout='constrained')
-    *panels, bottom = figure.subplots(len(PANELS) + 1, 1, sharex=True)
+    weighed = any(t.result.nis is not None for t in flown.taken)
+    rows = len(PANELS) + weighed
+    figure = Figure(figsize=(10, 2.6 * rows), layout='constrained')
+    panels = figure.subplots(rows, 1, sharex=True)
     for axes, (kind, label, components, factor) in zip(panels, PANELS):
         _show_errors(axes, time(errors.t_ns), getattr(errors, kind) * factor,
                      getattr(errors, f'{kind}_sigma') * factor, components)
         axes.set_ylabel(label)
-    _show_nis(bottom, flown.taken, sources, gate_probability, time)
-    bottom.set_ylabel('NIS per degree of freedom')
-    bottom.set_xlabel(f'time [{unit}]')
+    if weighed:
+        _show_nis(panels[-1], flown.taken, sources, gate_probability, time)
+        panels[-1].set_ylabel('NIS per degree of freedom')
+    panels[-1].set_xlabel(f'time [{unit}]')
     outages = _outages(flown.gnss_fixes, start_ns, end_ns) if GNSS in sources else []
-    for axes in (*panels, bottom):
+    for axes in panels:
         for k, (first, last) in enumerate(outages):
             axes.axvspan(*time((first, last)), color='0.5', alpha=0.15, lw=0.0,
                          label=None if k else 'no GNSS')
         axes.grid(alpha=0.3)
         axes.set_xlim(*time((start_ns, end_ns)))
-        if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small',
-                        frameon=False)
+        axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small', frameon=False)
     figure.suptitle(title)
     figure.savefig(path, dpi=110)
 
@@ -76,14 +77,12 @@ def _show_errors(axes, t, errors, sigmas, components):
 
 
 def _show_nis(axes, taken, sources, gate_probability, time):
-    """Plot the NIS of each fix, their running mean, and where the gate is."""
-    weighed = False
+    """Plot the NIS of each fix, the running mean of those taken, and where the gate is."""
     for source in sources:
         colour, name = SOURCES[source]
         fixes = [t for t in taken if t.source == source and t.result.nis is not None]
         if not fixes:
             continue
-        weighed = True
         freedom = fixes[0].result.freedom
         t = time([fix.t_ns for fix in fixes])
         nis = np.maximum([fix.result.nis / freedom for fix in fixes], 1e-3)
@@ -91,18 +90,15 @@ def _show_nis(axes, taken, sources, gate_probability, time):
         axes.plot(t[good], nis[good], '.', ms=3, alpha=0.5, color=colour, label=name)
         if not good.all():
             axes.plot(t[~good], nis[~good], 'x', ms=6, color='tab:red', label=f'{name}, refused')
-        if len(nis) > MEAN_OF:
-            mean = np.convolve(nis, np.full(MEAN_OF, 1.0 / MEAN_OF), 'valid')
-            axes.plot(t[MEAN_OF - 1:], mean, color=colour, lw=1.4, label=f'mean of {MEAN_OF}')
+        count = max(MEAN_OF, int(good.sum()) // SPANS)
+        if good.sum() > count:
+            mean = np.convolve(nis[good], np.full(count, 1.0 / count), 'valid')
+            axes.plot(t[good][count - 1:], mean, color=colour, lw=1.6, label=f'mean of {count}')
         if gate_probability:
             axes.axhline(largest(freedom, gate_probability) / freedom, color=colour, ls='--',
                          lw=0.8, label='gate')
-    if weighed:
-        axes.set_yscale('log')
-        axes.axhline(1.0, color='k', lw=0.8)
-    else:
-        axes.text(0.5, 0.5, 'no fix was weighed by a covariance', ha='center', va='center',
-                  transform=axes.transAxes)
+    axes.set_yscale('log')
+    axes.axhline(1.0, color='k', lw=0.8)
 
 
 def _outages(fixes, start_ns, end_ns):
