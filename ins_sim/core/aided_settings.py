@@ -40,8 +40,8 @@ class ImuModel(Settings):
                                                  1e5)
     angle_random_walk_deg_sqrt_h: float = setting(0.01, 'angle random walk', 'deg/sqrt(h)', 0.0,
                                                   1e3)
-    gyro_scale_sigma_ppm: float = setting(0.0, 'scale factor and non-orthogonality of the gyros',
-                                          'ppm', 0.0, 1e5)
+    gyro_scale_sigma_ppm: float = setting(0.0, 'scale factors and misalignment of the gyros, '
+                                          'seen in turns', 'ppm', 0.0, 1e5)
     accelerometer_bias_sigma_ug: float = setting(200.0, 'accelerometer bias at the start', 'ug',
                                                  0.0, 1e7)
     accelerometer_bias_walk_ug_sqrt_h: float = setting(0.0, 'its random walk', 'ug/sqrt(h)', 0.0,

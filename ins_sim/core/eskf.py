@@ -13,6 +13,8 @@ from .velocity_window import middle
 FLOOR = np.array([1e-3] * 3 + [1e-5] * 3 + [1e-8] * 3 + [1e-9] * 3 + [1e-12] * 3 + [1e-9] * 2
                  + [1e-9, 1e-9, 1e-9])
 GATE = 'its innovation is beyond the gate'
+# how long a turn lasts, and what is shorter than one, s
+TURN_S, SMOOTHING_S = 50.0, 10.0
 
 
 class ErrorStateFilter(FreeFilter):
@@ -46,6 +48,7 @@ class ErrorStateFilter(FreeFilter):
                  + [imu.gyro_bias_walk_deg_h_sqrt_h * DEG_H / SQRT_H] * 3 + [0.0] * 5)
         self._density = np.square(walks)
         self._gyro_scale = (1e-6 * imu.gyro_scale_sigma_ppm) ** 2
+        self._turning = (0.0, 0.0, 0.0)
         self._spin = ins.spin
         self._begin(ins)
 
@@ -74,7 +77,7 @@ class ErrorStateFilter(FreeFilter):
         v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
         c = model.matrix(q_mid)
         phi = model.transition(model.dynamics(ins.lat, ins.height, v, c, f_n, self._spin), dt)
-        half = np.diag(0.5 * dt * self._density)
+        half = np.diag(0.5 * dt * (self._density + self._of_turns(ins, dt)))
         p = phi @ (self.covariance + half) @ phi.T + half
         if self._altimeter:
             for k, variance in zip(model.DOWN, self._held):
@@ -82,6 +85,22 @@ class ErrorStateFilter(FreeFilter):
                 p[k, k] = variance
         self.covariance = 0.5 * (p + p.T)
         self._begin(ins)
+
+    def _of_turns(self, ins, dt):
+        """
+        Return the density of what scale factors and axes of the gyros add in a turn, (20,).
+
+        They are constant, and no states: white noise that after TURN_S at a rate is as large.
+        The rate is smoothed, as a weave takes back what it adds.
+        """
+        density = np.zeros(model.SIZE)
+        if self._gyro_scale:
+            turned = attitude.logarithm(attitude.multiply(attitude.conjugate(self._start[0]),
+                                                          ins.q_nb))
+            part = min(1.0, dt / SMOOTHING_S)
+            self._turning = tuple(w + part * (x / dt - w) for w, x in zip(self._turning, turned))
+            density[model.PHI] = self._gyro_scale * TURN_S * sum(w * w for w in self._turning)
+        return density
 
     def velocity(self, ins, fix):
         """Update with a fix whose window ends now; forget the window's eta."""

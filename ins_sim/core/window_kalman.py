@@ -39,9 +39,10 @@ class WindowFilter(FreeFilter):
         self.covariance = np.diag(np.maximum(np.array(sigmas), FLOOR) ** 2)
         self._noise = np.array([0.0] * 4 + [ACCELERATION_WALK ** 2] * 2 + [OFFSET_WALK ** 2] * 2)
         self._walk = (model.velocity_random_walk_m_s_sqrt_h / 60.0) ** 2
+        self._tilt = tilt
         self._offset = (0.0, 0.0)
         self._integrals = Integrals()
-        self._propagated = False
+        self._propagated, self._turned = False, 0.0
 
     def copy(self):
         """Return a snapshot."""
@@ -53,6 +54,7 @@ class WindowFilter(FreeFilter):
         """Sum up the window."""
         super().step(ins, before, u, dt)
         self._integrals.add(middle(before[0], ins.q_nb), dt)
+        self._turned += ins.rate[2] * dt
 
     def velocity(self, ins, fix):
         """Update at the start of the window, go to its end, and correct the strapdown there."""
@@ -82,6 +84,9 @@ class WindowFilter(FreeFilter):
         phi[0:2, 4:6] = a2
         phi[2:4, 4:6] = a1
         q = self._noise * t
+        # the part of dW that is tilt stands in n, and turns in b
+        q[4:6] += (self._tilt * self._turned) ** 2
+        self._turned = 0.0
         q[2:4] += self._walk * t
         q[0:2] += self._walk * t ** 3 / 3.0
         self.covariance = phi @ self.covariance @ phi.T + np.diag(q)
