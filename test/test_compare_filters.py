@@ -1,16 +1,9 @@
-"""The comparison of filters: one command, the tables of the study, and every figure shown."""
+"""The command compare-filters: table, figure, numbers, and its bad input."""
 
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 import json
-import os
 
-from ins_sim import parameter_files, resources  # noqa: F401
 from ins_sim.cli.main import main
 from ins_sim.core.aided_settings import FILTERS
-from ins_sim.core.filter_study import Case, fly
-from ins_sim.report.filter_study import row
-import numpy as np
 import pytest
 
 SHORT = ['--runs', '2', '-p', 'duration_s:=40.0']
@@ -57,14 +50,3 @@ def test_an_existing_folder_is_kept(tmp_path, capsys):
     for words in ([], ['--force']):
         assert main(['compare-filters', '-o', str(tmp_path / 'mine'), *SHORT, *words]) == 2
     assert (tmp_path / 'mine' / 'thesis.txt').read_text() == 'years of work'
-
-
-def flights(settings, cases, runs):
-    """Return the Rows and the Flown of the cases over a number of runs, on all cores."""
-    with ProcessPoolExecutor(min(runs, os.cpu_count())) as pool:
-        flown = list(zip(*pool.map(partial(fly, settings, cases), range(runs))))
-    rows = [row(case, list(f)) for case, f in zip(cases, flown)]
-    for r in rows:
-        print(f'{r.filter}, N {r.cycles}: end {r.end_m:.0f} m (its sigma {r.sigma_m or 0:.0f}), '
-              f'over the flight {r.flight_m:.0f} m, NIS {r.nis and round(r.nis, 3)}')
-    return rows, flown

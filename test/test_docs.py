@@ -15,7 +15,7 @@ BLOCKS = re.findall(r'```(\w+)\n(.*?)```', README, re.DOTALL)
 COMMANDS = [[line for line in text.splitlines() if line.startswith('ins_sim ')]
             for kind, text in BLOCKS if kind == 'sh']
 # verbs that simulate or predict are shortened; those that need live nodes are tested with them
-SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan'}
+SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters'}
 LIVE = {'record', 'play'}
 DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
 
