@@ -82,6 +82,30 @@ class ConventionalFilter(FreeFilter):
         return Result(z)
 
 
+class MatrixFilter(FreeFilter):
+    """A filter that needs the matrices of the window."""
+
+    def __init__(self, settings, ins):
+        super().__init__(settings, ins)
+        self.integrals = Integrals()
+
+    def copy(self):
+        """Return a snapshot."""
+        twin = super().copy()
+        twin.integrals = self.integrals.copy()
+        return twin
+
+    def step(self, ins, before, u, dt):
+        """Sum up the window."""
+        super().step(ins, before, u, dt)
+        self.integrals.add(middle(before[0], ins.q_nb), dt)
+
+    def close(self):
+        """Begin a window."""
+        super().close()
+        self.integrals.clear()
+
+
 class _ChainedFilter(FreeFilter):
     """A filter that compares each window with the one before it."""
 
@@ -162,7 +186,7 @@ class PaperFilter(_ChainedFilter):
         self._once = self._twice = self._turn_once = self._turn_twice = (0.0, 0.0)
 
 
-class PaperCorrectedFilter(_ChainedFilter):
+class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
     """
     The paper's scheme with a residual that is exact under rotation (spec section 4).
 
@@ -170,25 +194,10 @@ class PaperCorrectedFilter(_ChainedFilter):
     dW.  The acceleration stays corrected by the sum of dW.
     """
 
-    def __init__(self, settings, ins):
-        super().__init__(settings, ins)
-        self._integrals = Integrals()
-
-    def copy(self):
-        """Return a snapshot."""
-        twin = super().copy()
-        twin._integrals = self._integrals.copy()
-        return twin
-
-    def step(self, ins, before, u, dt):
-        """Sum up the window."""
-        super().step(ins, before, u, dt)
-        self._integrals.add(middle(before[0], ins.q_nb), dt)
-
     def velocity(self, ins, fix):
         """Correct acceleration, velocity and position."""
         z, t = self._residual(fix), self.mean.time_s
-        a1, _, _, b2 = self._integrals.matrices
+        a1, _, _, b2 = self.integrals.matrices
         last = self._follow(z)
         if last is None:
             return FIRST
@@ -201,8 +210,3 @@ class PaperCorrectedFilter(_ChainedFilter):
         back = (b2 @ w).tolist()
         self._last = z[0] - back[0], z[1] - back[1]
         return Result(nu)
-
-    def close(self):
-        """Begin a window."""
-        super().close()
-        self._integrals.clear()

@@ -19,6 +19,8 @@ NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
 NO_INS = 'no INS velocity in the window'
 NO_ANGLE = 'INS velocity gives no angle of attack below 45 deg'
+# without the INS: why not, tan(alpha), and no sideslip
+UNSEEN = (NO_INS, 0.0, None)
 # How long a window waits for the INS, in motion time: more than lock-step lets it lag.
 WAIT_NS = 60_000_000_000
 
@@ -125,7 +127,7 @@ class VelocityMeter:
 
     def give_up_ins(self):
         """Return the VelocityFixes, invalid, of the windows that wait for the INS."""
-        fixes = [self._fix(index, why_not, total, NO_INS, 0.0)
+        fixes = [self._fix(index, why_not, total, *UNSEEN)
                  for index, why_not, total in self._waiting]
         self._waiting.clear()
         return fixes
@@ -202,9 +204,9 @@ class VelocityMeter:
         if not self._waits:
             return VALID, 0.0, None
         if self._last_ins_ns is None or self._last_ins_ns < end_ns - self._dt_ns // 2:
-            return (NO_INS, 0.0, None) if self._last[0] >= end_ns + WAIT_NS else None
+            return UNSEEN if self._last[0] >= end_ns + WAIT_NS else None
         if end_ns not in self._ins:
-            return NO_INS, 0.0, None
+            return UNSEEN
         forward, left, up = self._ins[end_ns]
         if abs(up) >= forward:
             return NO_ANGLE, 0.0, None

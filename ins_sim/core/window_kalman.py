@@ -5,9 +5,8 @@ import math
 import numpy as np
 
 from . import kalman
-from .gain_filters import FreeFilter, Result
+from .gain_filters import MatrixFilter, Result
 from .triad_model import STANDARD_GRAVITY, UG
-from .velocity_window import Integrals, middle
 
 # what is known exactly still has a variance, so that the covariance stays positive definite
 FLOOR = 1e-6
@@ -17,7 +16,7 @@ ACCELERATION_WALK = 4e-5
 OFFSET_WALK = 1e-3
 
 
-class WindowFilter(FreeFilter):
+class WindowFilter(MatrixFilter):
     """
     States dp (E, N), dV (E, N), dW (forward, left), c (forward, left); spec section 4.
 
@@ -41,25 +40,17 @@ class WindowFilter(FreeFilter):
         self._walk = (model.velocity_random_walk_m_s_sqrt_h / 60.0) ** 2
         self._tilt = tilt
         self._offset = (0.0, 0.0)
-        self._integrals = Integrals()
         self._propagated, self._turned = False, 0.0
-
-    def copy(self):
-        """Return a snapshot."""
-        twin = super().copy()
-        twin._integrals = self._integrals.copy()
-        return twin
 
     def step(self, ins, before, u, dt):
         """Sum up the window."""
         super().step(ins, before, u, dt)
-        self._integrals.add(middle(before[0], ins.q_nb), dt)
         self._turned += ins.rate[2] * dt
 
     def velocity(self, ins, fix):
         """Update at the start of the window, go to its end, and correct the strapdown there."""
         t = self.mean.time_s
-        a1, a2, b1, b2 = self._integrals.matrices
+        a1, a2, b1, b2 = self.integrals.matrices
         z = np.subtract(self._residual(fix), self._offset)
         h = np.hstack([np.zeros((2, 2)), b1, b2, np.eye(2)])
         r = np.diag(np.square(fix.sigma))
@@ -95,11 +86,10 @@ class WindowFilter(FreeFilter):
     def close(self):
         """Begin a window; without a fix the covariance goes to its end all the same."""
         if not self._propagated and self.mean.time_s:
-            a1, a2, _, _ = self._integrals.matrices
+            a1, a2, _, _ = self.integrals.matrices
             self._propagate(self.mean.time_s, a1, a2)
         self._propagated = False
         super().close()
-        self._integrals.clear()
 
     @property
     def healthy(self):
