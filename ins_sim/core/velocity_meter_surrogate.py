@@ -58,7 +58,9 @@ class SurrogateWindows:
         v_x, v_y, v_z = (part / self._cycles for part in total)
         scale = (secant(v_y / v_x) / secant(tan_alpha)) ** 2
         sigma_x, sigma_z = sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
-        n_x, n_z = self._normals.normal(index)
+        # each cycle has its own noise, so that long windows average that of the short ones
+        cycles = self._normals.normals(index - self._cycles + 1, self._cycles)
+        n_x, n_z = (cycles.sum(axis=0) / math.sqrt(self._cycles)).tolist()
         return Reading(VALID, self._scale_x * scale * v_x
                        + self._surrogate.bias_x_m_s / self._cycles + sigma_x * n_x,
                        self._scale_z * scale * v_z + sigma_z * n_z)
