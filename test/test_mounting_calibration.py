@@ -78,6 +78,12 @@ def test_the_filter_recovers_20_arcmin_to_2(flight):
     assert k_z == pytest.approx(K_Z, abs=0.02)
 
 
+def turned_and_scaled(velocity, total, k_z):
+    """Return what a meter reads that is turned by a small angle, rad, and scaled across."""
+    x, z = velocity.T
+    return np.stack([x, (1.0 + k_z) * (z + total * x)], axis=1)
+
+
 def test_exact_data_give_exact_estimates():
     """Without noise the azimuth, the mounting and the scale come out to rounding."""
     t = np.arange(300.0)
@@ -90,9 +96,9 @@ def test_exact_data_give_exact_estimates():
     found, _ = azimuth_error(t, v + turned - turned[0] + off, v)
     assert found == pytest.approx(dpsi, abs=1e-12)
     computed = np.stack([np.full(40, 200.0), np.linspace(-8.0, 8.0, 40)], axis=1)
-    read = computed + np.stack([np.zeros(40), 6e-3 * computed[:, 0] + 0.03 * computed[:, 1]],
-                               axis=1)
-    assert mounting_sum(read, computed) == pytest.approx(6e-3, abs=1e-12)
+    read = turned_and_scaled(computed, 6e-3, 0.03)
+    # the lateral velocities cancel in the sum, the scale of the rest does not
+    assert mounting_sum(read, computed) == pytest.approx(1.03 * 6e-3, abs=1e-12)
     total, _, k_z, _ = least_squares(read, computed)
     assert (total, k_z) == pytest.approx((6e-3, 0.03), abs=1e-12)
 
@@ -100,9 +106,8 @@ def test_exact_data_give_exact_estimates():
 def test_wind_on_one_side_spoils_the_sum_and_not_the_least_squares():
     """A mean drift times k_z adds to (27); the regression on V_z1N takes it out."""
     computed = np.stack([np.full(40, 200.0), np.linspace(2.0, 8.0, 40)], axis=1)
-    read = computed + np.stack([np.zeros(40), 6e-3 * computed[:, 0] + 0.05 * computed[:, 1]],
-                               axis=1)
-    assert mounting_sum(read, computed) - 6e-3 == pytest.approx(0.05 * 5.0 / 200.0, rel=1e-9)
+    read = turned_and_scaled(computed, 6e-3, 0.05)
+    assert mounting_sum(read, computed) - 1.05 * 6e-3 == pytest.approx(0.05 * 5.0 / 200.0)
     assert least_squares(read, computed)[0] == pytest.approx(6e-3, abs=1e-12)
 
 

@@ -18,7 +18,9 @@ from .records import NavStates
 @dataclass(frozen=True)
 class Mounting:
     """
-    Estimates and their standard deviations.
+    Estimates and their standard deviations, from the residuals as if they were white.
+
+    What of a free INS no quadratic follows is not in that of dpsi: at mid grade 0.7 arcmin.
 
     dpsi: azimuth error, rad; total: mu + dpsi by equation (27), rad; fitted, k_z: mu + dpsi and
     the lateral scale error by least squares.
@@ -98,11 +100,13 @@ def least_squares(read, computed):
     """
     Return mu + dpsi (rad), its sigma, k_z and its sigma: the form that survives wind.
 
-    Least squares of V_z - V_z1N on [V_x, V_z1N] (spec section 3); as in ``mounting_sum``.
+    Least squares of V_z - V_z1N on [V_x, V_z1N] (spec section 3); as in ``mounting_sum``.  The
+    instrument turns first and scales then, so that the first coefficient is (1 + k_z)(mu + dpsi).
     """
     rows = np.stack([read[:, 0], computed[:, 1]], axis=1)
     x, sigma = _fit(rows, read[:, 1] - computed[:, 1])
-    return float(x[0]), float(sigma[0]), float(x[1]), float(sigma[1])
+    scale = 1.0 + x[1]
+    return float(x[0] / scale), float(sigma[0] / scale), float(x[1]), float(sigma[1])
 
 
 def _fit(rows, values):
