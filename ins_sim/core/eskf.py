@@ -88,10 +88,11 @@ class ErrorStateFilter(FreeFilter):
 
     def _of_turns(self, ins, dt):
         """
-        Return the density of what scale factors and axes of the gyros add in a turn, (20,).
+        Return the density of what scale factors and axes of the gyros add to the tilt, (20,).
 
         They are constant, and no states: white noise that after TURN_S at a rate is as large.
-        The rate is smoothed, as a weave takes back what it adds.
+        The rate is smoothed, as a weave takes back what it adds.  The azimuth is left out, for
+        its sigma is large beside that, and a turn back takes it back.
         """
         density = np.zeros(model.SIZE)
         if self._gyro_scale:
@@ -99,7 +100,7 @@ class ErrorStateFilter(FreeFilter):
                                                           ins.q_nb))
             part = min(1.0, dt / SMOOTHING_S)
             self._turning = tuple(w + part * (x / dt - w) for w, x in zip(self._turning, turned))
-            density[model.PHI] = self._gyro_scale * TURN_S * sum(w * w for w in self._turning)
+            density[model.TILT] = self._gyro_scale * TURN_S * sum(w * w for w in self._turning)
         return density
 
     def velocity(self, ins, fix):

@@ -17,7 +17,7 @@ from .orientation import dcm_of
 SIZE = 20
 P, V, PHI, BA, BG = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)
 ETA, MU, KX, KZ = slice(15, 17), 17, 18, 19
-DOWN = (2, 5)
+DOWN, TILT = (2, 5), slice(6, 8)
 
 
 def skew(v):
