@@ -7,17 +7,19 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core.aided_navigator import GNSS, METER
+from ins_sim.core.aided_navigator import GNSS, METER, Taken
 from ins_sim.core.aided_run import with_truth
 from ins_sim.core.aided_simulation import AidedSettings, simulate_aided
 from ins_sim.core.aided_stream import AidedStream, FixSchedule
 from ins_sim.core.catalogue import build, flatten
 from ins_sim.core.faults import StreamFault
+from ins_sim.core.gain_filters import refused, Result
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.meter_on_truth import body_velocity
 from ins_sim.core.motions import make_motion
 from ins_sim.core.settings import AIDING, NODES
 from ins_sim.core.simulation import simulate
+from ins_sim.ros.aiding_health import AidingHealth
 from studies import settings as simulation_settings
 
 SECOND = 1_000_000_000
@@ -216,3 +218,18 @@ def test_what_is_due(first_ns, t_ns, missing):
     schedule = FixSchedule(scene()[0].aided_navigator, (METER, GNSS))
     assert schedule.missing(first_ns) == []
     assert schedule.missing(t_ns) == missing
+
+
+def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
+    """/diagnostics: a GNSS jump is a warning with its instant, an outage only a count."""
+    stream = AidedStream(chosen_settings(VALUES).aided_navigator)
+    health = AidingHealth(stream)
+    gated = Result((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
+    health.judge([Taken(GNSS, 7 * SECOND, gated),
+                  Taken(GNSS, 8 * SECOND, refused('the fix is none: outage'))])
+    wrong, values = health.describe()
+    assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '
+                     'gate')
+    assert dict(values)['gnss refused'] == 2
+    assert dict(values)['last refusal'] == 'gnss: the fix is none: outage'
+    assert health.describe()[0] == ''

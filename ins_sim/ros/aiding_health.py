@@ -1,5 +1,6 @@
 """What became of the fixes, for /diagnostics.  No ROS is imported."""
 
+from ins_sim.core.faults import seconds
 from ins_sim.core.triad_model import DEG
 
 
@@ -11,7 +12,7 @@ class AidingHealth:
         self._came = {source: 0 for source in stream.navigator.sources}
         self._taken, self._refused = dict(self._came), dict(self._came)
         self._nis, self._last_ns = {}, {}
-        self._reason = ''
+        self._reason = self._wrong = ''
 
     def came(self, source, fix):
         """Count a fix that has come."""
@@ -20,16 +21,20 @@ class AidingHealth:
 
     def judge(self, taken):
         """Take what became of fixes, Taken, and empty the list."""
-        for source, _, result in taken:
+        for source, t_ns, result in taken:
             (self._taken if result.taken else self._refused)[source] += 1
             if result.nis is not None:
                 self._nis[source] = result.nis / result.freedom
             if not result.taken:
                 self._reason = f'{source}: {result.reason}'
+                if result.innovation:
+                    # weighed and found wanting, not merely absent
+                    self._wrong = (f'{source}: the fix at {seconds(t_ns)} is not taken: '
+                                   f'{result.reason}')
         taken.clear()
 
     def describe(self):
-        """Return nothing that is wrong, and the values for /diagnostics."""
+        """Return the last fix refused since the last time, or '', and the values."""
         values, now_ns = [], self._stream.processed_ns
         for source, count in self._came.items():
             values += [(f'{source} fixes', count), (f'{source} taken', self._taken[source]),
@@ -49,4 +54,5 @@ class AidingHealth:
                 values.append((name, f'{value * factor:.6g}'))
                 if sigma is not None:
                     values.append((f'{name} sigma', f'{sigma * factor:.3g}'))
-        return '', values
+        wrong, self._wrong = self._wrong, ''
+        return wrong, values
