@@ -54,7 +54,7 @@ def _watch(progress, name):
 
 def _report(settings, flown, result):
     from ..report import aided
-    return aided.Report(settings, flown, aided.rows(settings, flown, result.errors))
+    return aided.Report(settings, flown, aided.rows(settings, flown, result.states, result.errors))
 
 
 def _bag_writer(chosen, settings):

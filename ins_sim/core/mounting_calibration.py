@@ -58,6 +58,8 @@ def calibrate(states, gnss, meter):
     t_ns = np.array([fix.t_ns for fix in fixes])
     v_gnss = np.array([fix.v_n[:2] for fix in fixes])
     at = np.searchsorted(states.t_ns, t_ns)
+    if (states.t_ns[at] != t_ns).any():
+        raise ValueError('the INS has no solution at some GNSS fixes; expected one at every cycle')
     dpsi, dpsi_sigma = azimuth_error((t_ns - t_ns[0]) * 1e-9, states.v_n[at, :2], v_gnss)
     read, computed = _windows(states, t_ns, v_gnss, meter)
     return Mounting(dpsi, dpsi_sigma, mounting_sum(read, computed),

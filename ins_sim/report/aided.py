@@ -2,7 +2,6 @@
 
 from collections import Counter, namedtuple
 from dataclasses import dataclass
-import math
 
 import numpy as np
 from rich.table import Table
@@ -12,6 +11,7 @@ from .. import parameter_files
 from ..core.aided_navigator import GNSS, METER
 from ..core.aided_run import AidedRun
 from ..core.aided_simulation import AidedSettings
+from ..core.mounting_calibration import calibrate
 from ..core.triad_model import DEG
 from .consistency import mean_interval, THREE_SIGMA
 
@@ -19,6 +19,7 @@ FIGURE = 'aided.png'
 # of the table: head, text of a Row or '', and what it means where that is not plain
 _Column = namedtuple('_Column', 'head value meaning')
 AIDED = 'aided '
+ARCMIN = DEG / 60.0
 # reasons that are named
 REASONS = 3
 
@@ -97,12 +98,13 @@ def _described(settings, source):
     return f'velocity meter ({meter.mode}), N {meter.window.cycles}'
 
 
-def rows(settings, flown, errors):
-    """Return the Rows of AidedSettings, their AidedRun and the NavErrors of the strapdown."""
+def rows(settings, flown, states, errors):
+    """Return the Rows of AidedSettings, their AidedRun and the strapdown's states and errors."""
     table = _error_rows(flown.errors, errors) + _inside_rows(flown.errors)
     for source in sources(settings):
         table += _fix_rows(source, flown)
-    return table + _estimate_rows(settings, flown.errors)
+    return (table + _estimate_rows(settings, flown.errors)
+            + _by_hand_rows(settings.velocity_meter, flown, states))
 
 
 def _error_rows(aided, free):
@@ -181,8 +183,8 @@ def _estimate_rows(settings, errors):
     k_x, k_z = (surrogate.k_x, surrogate.k_z) if surrogate else (0.0, 0.0)
     table = []
     for k, (name, unit, factor, given, true) in enumerate((
-            ('mounting mu', 'arcmin', 60.0 / DEG, model.mounting_sigma_arcmin,
-             math.radians(meter.antennas.mounting_yaw_arcmin / 60.0)),
+            ('mounting mu', 'arcmin', 1.0 / ARCMIN, model.mounting_sigma_arcmin,
+             ARCMIN * meter.antennas.mounting_yaw_arcmin),
             ('scale kx', '%', 100.0, model.scale_x_sigma, k_x),
             ('scale kz', '%', 100.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
         if given:
@@ -190,6 +192,22 @@ def _estimate_rows(settings, errors):
                              sigma=factor * float(errors.estimates_sigma[-1, k]),
                              true=factor * true))
     return table
+
+
+def _by_hand_rows(meter, flown, states):
+    """Return azimuth and mounting by the two manoeuvres, of the free strapdown, if there are."""
+    try:
+        found = calibrate(states, flown.gnss_fixes, flown.velocity_fixes)
+    except ValueError:
+        # too few fixes of either instrument, or no turn while GNSS works
+        return []
+    mu, sigma = found.least_squares
+    true = meter.antennas.mounting_yaw_arcmin
+    return [Row(f'{AIDED}mounting by (27)', 'arcmin', found.two_manoeuvres / ARCMIN, true=true),
+            Row(f'{AIDED}mounting, least squares', 'arcmin', mu / ARCMIN, sigma=sigma / ARCMIN,
+                true=true),
+            Row(f'{AIDED}azimuth of the strapdown', 'arcmin', found.dpsi / ARCMIN,
+                sigma=found.dpsi_sigma / ARCMIN)]
 
 
 def show(title, rows, console):
