@@ -1,5 +1,6 @@
 """The aided navigator on streams: the order in which things come changes nothing."""
 
+from dataclasses import replace
 from functools import lru_cache
 import math
 
@@ -218,6 +219,22 @@ def test_what_is_due(first_ns, t_ns, missing):
     schedule = FixSchedule(scene()[0].aided_navigator, (METER, GNSS))
     assert schedule.missing(first_ns) == []
     assert schedule.missing(t_ns) == missing
+
+
+def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
+    """A receiver with another epoch: one sentence, and its later fixes count."""
+    _, _, streams = scene()
+    stream, outputs, faults = AidedStream(scene()[0].aided_navigator), [], []
+    for name, event in mixed(streams, np.random.default_rng(5)):
+        outputs += push(stream, name, event, faults)
+        if name == GNSS and event[1].t_ns == 3 * SECOND:
+            late = replace(event[1], t_ns=1000 * SECOND, arrival_ns=1000 * SECOND)
+            outputs += push(stream, GNSS, (GNSS, late), faults)
+    fault, = faults
+    assert fault.startswith('gnss: fix at 1000.000000000 s is from the future, the newest IMU')
+    assert fault.endswith('expected a fix at most 60 s ahead; it was dropped')
+    expected, _, _ = run_stream(streams, np.random.default_rng(5))
+    assert outputs == expected
 
 
 def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():

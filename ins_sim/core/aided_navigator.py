@@ -14,7 +14,7 @@ from . import attitude, earth
 from .corrected_strapdown import CorrectedStrapdown
 from .eskf import ErrorStateFilter
 from .faults import seconds, StreamFault
-from .fix_checks import check_gnss, check_velocity
+from .fix_checks import check_ahead, check_gnss, check_velocity
 from .gain_filters import (ConventionalFilter, FreeFilter, PaperCorrectedFilter, PaperFilter,
                            refused)
 from .instants import period_ns
@@ -102,16 +102,12 @@ class AidedNavigator:
         source: METER or GNSS.  Raises StreamFault, in one sentence, for a fix that cannot be
         one: from the future, with another window, without a positive variance, NaN.
         """
-        now_ns = None if self._ins is None else self._ins.t_ns
         if source == METER:
             check_velocity(fix, self._settings.window.cycles, self._dt_ns)
         else:
             check_gnss(fix)
-        if now_ns is not None and fix.t_ns > now_ns + self._dt_ns + self._buffer_ns:
-            raise StreamFault(f'{source}: fix at {seconds(fix.t_ns)} is from the future, the '
-                              f'newest IMU sample is of {seconds(now_ns)}; expected a fix at most '
-                              f'{self._settings.buffer_s:g} s ahead; it was dropped',
-                              restart=False)
+        if self._ins is not None:
+            check_ahead(source, fix.t_ns, self._ins.t_ns, self._dt_ns + self._buffer_ns)
         insort(self._pending, _Entry(source, fix), key=_arrival)
 
     def _start(self, t_ns, omega, f, truth):

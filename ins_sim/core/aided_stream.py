@@ -10,9 +10,12 @@ from bisect import insort
 
 from .aided_navigator import AidedNavigator, GNSS, METER
 from .errors import level_errors
-from .fix_checks import check_gnss, check_velocity
+from .fix_checks import check_ahead, check_gnss, check_velocity
 from .instants import period_ns
 from .matching import MatchedStreams
+
+# further than lock-step or a busy machine lets the IMU lag behind the instruments
+AHEAD_NS = 60_000_000_000
 
 
 class FixSchedule:
@@ -111,6 +114,9 @@ class AidedStream(MatchedStreams):
         match() then goes on.  A repeated one is passed over, and one that jumps back begins a new
         history of its source.
         """
+        if self._last_ns is not None:
+            # before it counts as the newest of its source
+            check_ahead(source, fix.t_ns, self._last_ns, AHEAD_NS)
         if not self._schedule.came(source, fix.t_ns):
             return []
         self._fixes = [entry for entry in self._fixes

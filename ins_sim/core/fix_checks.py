@@ -22,6 +22,14 @@ def check_velocity(fix, cycles, dt_ns):
         _check(where, 'velocity', fix.velocity, fix.sigma)
 
 
+def check_ahead(source, t_ns, newest_ns, ahead_ns):
+    """Raise StreamFault (fix dropped) for an instant too far ahead of the newest IMU sample."""
+    if t_ns > newest_ns + ahead_ns:
+        raise _dropped(f'{source}: fix at {seconds(t_ns)} is from the future, the newest IMU '
+                       f'sample is of {seconds(newest_ns)}; expected a fix at most '
+                       f'{ahead_ns * 1e-9:g} s ahead')
+
+
 def check_gnss(fix):
     """Raise StreamFault (fix dropped) unless a GnssFix is finite, with positive variances."""
     where = f'gnss: fix at {seconds(fix.t_ns)}'
