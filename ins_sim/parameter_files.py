@@ -52,7 +52,10 @@ def read_nodes(paths, assignments, nodes, known=None):
         name, separator, text = assignment.partition(':=')
         if not separator:
             raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
-        _assign(values, known, '/**', name, _parse(text, f'-p {assignment}'), '-p')
+        # NODE:NAME as ROS writes it, for one node
+        node, separator, own = name.partition(':')
+        section, name = (node, own) if separator and node in known else ('/**', name)
+        _assign(values, known, section, name, _parse(text, f'-p {assignment}'), '-p')
     built = {}
     for node, cls in nodes.items():
         try:

@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core.aided_navigator import GNSS, METER, Taken
+from ins_sim.core.aided_navigator import AidedNavigator, GNSS, METER, Taken
 from ins_sim.core.aided_run import with_truth
 from ins_sim.core.aided_simulation import AidedSettings, simulate_aided
 from ins_sim.core.aided_stream import AidedStream, FixSchedule
@@ -247,6 +247,49 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     wrong, values = health.describe()
     assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '
                      'gate')
-    assert dict(values)['gnss refused'] == 2
-    assert dict(values)['last refusal'] == 'gnss: the fix is none: outage'
+    assert (dict(values)['gnss refused'], dict(values)['gnss none']) == (1, 1)
+    assert dict(values)['last refusal'] == 'gnss: its innovation is beyond the gate'
     assert health.describe()[0] == ''
+
+
+def test_a_missing_instrument_stays_wrong_until_it_delivers():
+    """While the first sample waits, and while it is gone on without."""
+    _, _, streams = scene()
+    stream = AidedStream(scene()[0].aided_navigator)
+    health = AidingHealth(stream)
+    for truth in streams['push_truth'][:50]:
+        stream.push_truth(*truth)
+    for sample in streams['push_imu'][:50]:
+        stream.push_imu(*sample)
+    # a moment is in order
+    assert health.describe()[0] == ''
+    assert health.describe()[0] == 'waiting for a fix of gnss'
+    stream.go_on_without(GNSS)
+    told = 'going on without gnss; expected the fixes of all that aid'
+    assert health.describe()[0] == health.describe()[0] == told
+    stream.push_fix(*streams[GNSS][0])
+    assert health.describe()[0] == ''
+
+
+def test_other_windows_hold_nothing_up():
+    """A meter with another window.cycles: refused, and none of ours is waited for."""
+    _, _, streams = scene()
+    stream, faults = AidedStream(scene()[0].aided_navigator), []
+    wrong = [replace(fix, cycles=100, start_ns=fix.end_ns - SECOND) for _, fix in streams[METER]]
+    push(stream, METER, (METER, wrong[0]), faults)
+    assert 'averages 100 cycles in 1 s; expected 200 cycles in 2 s' in faults[0]
+    outputs = []
+    for name in ('push_truth', GNSS, 'push_imu'):
+        for event in streams[name]:
+            outputs += push(stream, name, event, faults)
+    assert len(outputs) == len(streams['push_imu']) and len(faults) == 1
+
+
+@pytest.mark.parametrize('values, sentence', [
+    ({'filter': 'paper', 'gain': 1.5}, 'gain is 1.5 with filter paper; expected at most 1'),
+    ({'gnss.latency_ms': 20000.0}, 'gnss.latency_ms is 20000 ms; expected at most buffer_s, 10 s'),
+    ({'window.latency_ms': 10001.0}, 'window.latency_ms is 10001 ms; expected at most buffer_s')])
+def test_settings_that_cannot_aid_are_refused(values, sentence):
+    """One sentence each, at construction."""
+    with pytest.raises(ValueError, match=sentence):
+        AidedNavigator(build(AIDING['aided_navigator'], values))

@@ -60,7 +60,7 @@ def test_fifty_minutes_by_every_filter():
         assert low * least < getattr(by[name, 1000], figure) < high * most, name
     # the printed scheme is for straight legs: it refuses every window of a weaving heading
     assert by['paper', 1000].refused == FLIGHTS * 300
-    assert 'refuses a turn' in by['paper', 1000].reason
+    assert 'in which the body turns' in by['paper', 1000].reason
     assert by['paper', 1000].end_m == by['free', 1000].end_m
     eskf = by['eskf', 1000]
     assert eskf.nis_low < eskf.nis < eskf.nis_high

@@ -54,7 +54,7 @@ def test_the_printed_scheme_refuses_a_turn_and_says_so():
     """Nothing is corrected, and the reason names the way out."""
     results, left = fly(circle(), 'paper', 3)
     assert not any(r.taken for r in results)
-    assert results[-1].reason.startswith('filter paper refuses a turn')
+    assert results[-1].reason.startswith('filter paper refuses a window in which the body turns')
     assert 'straight leg' in results[-1].reason
     np.testing.assert_array_equal(left, 0.0)
 

@@ -189,3 +189,12 @@ def test_endless_and_too_long_runs_are_refused(shared_data):
         simulate(settings)
     generator = replace(settings.motion_generator, duration_s=0.5)
     assert len(simulate(replace(settings, motion_generator=generator)).errors) == 51
+
+
+def test_an_assignment_may_name_its_node():
+    """NODE:NAME:=VALUE as ROS has it reaches that node alone; an unknown node is said."""
+    settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
+    assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
+    assert settings.simulation.imu_sensor.seed == 0
+    with pytest.raises(ValueError, match="unknown parameter 'meter:seed'"):
+        parameter_files.read_aided([], ['meter:seed:=7'])

@@ -15,8 +15,8 @@ from .corrected_strapdown import CorrectedStrapdown
 from .eskf import ErrorStateFilter
 from .faults import seconds, StreamFault
 from .fix_checks import check_ahead, check_gnss, check_velocity
-from .gain_filters import (ConventionalFilter, FreeFilter, PaperCorrectedFilter, PaperFilter,
-                           refused)
+from .gain_filters import (ConventionalFilter, FreeFilter, NO_FIX, PaperCorrectedFilter,
+                           PaperFilter, refused)
 from .instants import period_ns
 from .noise import stream
 from .window_kalman import WindowFilter
@@ -47,6 +47,14 @@ class AidedNavigator:
         if settings.gnss_model.use and not KINDS[settings.filter].takes_gnss:
             raise ValueError(f'gnss_model.use is true with filter {settings.filter}; expected '
                              'filter eskf, which alone takes GNSS')
+        if settings.filter == 'paper' and settings.gain > 1.0:
+            raise ValueError(f'gain is {settings.gain:g} with filter paper; expected at most 1, '
+                             'beyond which it is unstable')
+        for name, latency_ms in (('window', settings.window.latency_ms),
+                                 ('gnss', settings.gnss.latency_ms)):
+            if latency_ms > 1e3 * settings.buffer_s:
+                raise ValueError(f'{name}.latency_ms is {latency_ms:g} ms; expected at most '
+                                 f'buffer_s, {settings.buffer_s:g} s: such fixes come too late')
         self._settings, self._run = settings, run
         self._dt_ns = period_ns(settings.rate_hz)
         self._window_ns = settings.window.cycles * self._dt_ns
@@ -168,7 +176,7 @@ class AidedNavigator:
         """Return the Result of a fix that is not to be taken, or None."""
         fix = entry.fix
         if not fix.valid:
-            return refused(f'the fix is none: {fix.status}')
+            return refused(f'{NO_FIX}: {fix.status}')
         if entry.source not in self.sources:
             return refused(f'{entry.source} is not used')
         if fix.t_ns < self._snapshots[0].t_ns:

@@ -94,6 +94,11 @@ class AidedStream(MatchedStreams):
         """Return the sources that the oldest sample waits for."""
         return self._schedule.missing(self._imu[0][0]) if self._imu else []
 
+    @property
+    def silent(self):
+        """Return the sources that are waited for no longer."""
+        return sorted(self._schedule.silent)
+
     def go_on_without(self, source):
         """Wait no longer for a source until it delivers again; return the outputs."""
         self._schedule.silent.add(source)
@@ -121,6 +126,9 @@ class AidedStream(MatchedStreams):
             return []
         self._fixes = [entry for entry in self._fixes
                        if entry[1] != source or entry[2].t_ns < fix.t_ns]
+        if source == METER and fix.cycles != self._settings.window.cycles:
+            # with other windows there is none to wait for
+            self._schedule.silent.add(source)
         if source == METER:
             check_velocity(fix, self._settings.window.cycles, self._dt_ns)
         else:

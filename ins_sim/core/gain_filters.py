@@ -20,6 +20,8 @@ Result = namedtuple('Result', 'innovation nis freedom taken reason', defaults=(N
 # The paper takes the acceleration in body axes for the derivative of the velocity in body axes:
 # a turn whose product rate x velocity adds more than this to its innovation, m/s^2, is refused.
 TURN_LIMIT = 0.01
+# how the reason of a fix begins that its instrument reports as none
+NO_FIX = 'the fix is none'
 
 
 def refused(reason):
@@ -171,8 +173,9 @@ class PaperFilter(_ChainedFilter):
         turning = math.hypot(*(a[1] + b[1] for a, b in zip(now, last)))
         if turning > TURN_LIMIT:
             return Result(innovation, taken=False, reason=(
-                f'filter paper refuses a turn: it would take {turning:.3g} m/s^2 of it for an '
-                'error; expected a straight leg (paper_corrected and eskf fly turns)'))
+                f'filter paper refuses a window in which the body turns: it would take '
+                f'{turning:.3g} m/s^2 of it for an error; expected a straight leg without weave '
+                '(paper_corrected and eskf fly turns)'))
         w = tuple(self._settings.gain * x for x in innovation)
         ins.add_biases(accelerometer=(*w, 0.0))
         e, n, _ = attitude.rotate(ins.q_nb, (*w, 0.0))

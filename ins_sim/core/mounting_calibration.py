@@ -14,6 +14,9 @@ import numpy as np
 from .meter_on_truth import body_velocity
 from .records import NavStates
 
+# no quadratic follows the errors of a free INS for longer
+SPAN_NS = 600_000_000_000
+
 
 @dataclass(frozen=True)
 class Mounting:
@@ -52,7 +55,8 @@ def calibrate(states, gnss, meter):
     The INS at every cycle; invalid fixes are left out, and so are windows without GNSS at both
     ends.  Raises ValueError where there are too few fixes, or no turn.
     """
-    fixes = [fix for fix in gnss if fix.valid and states.t_ns[0] <= fix.t_ns <= states.t_ns[-1]]
+    fixes = _about_the_turn([fix for fix in gnss if fix.valid
+                             and states.t_ns[0] <= fix.t_ns <= states.t_ns[-1]])
     if len(fixes) < 10:
         raise ValueError(f'{len(fixes)} GNSS fixes; expected at least 10 for the azimuth')
     t_ns = np.array([fix.t_ns for fix in fixes])
@@ -64,6 +68,20 @@ def calibrate(states, gnss, meter):
     read, computed = _windows(states, t_ns, v_gnss, meter)
     return Mounting(dpsi, dpsi_sigma, mounting_sum(read, computed),
                     *least_squares(read, computed))
+
+
+def _about_the_turn(fixes):
+    """Return the fixes of the SPAN_NS in which the velocity changes most."""
+    best, most = fixes, -1.0
+    for first in range(0, len(fixes), max(1, len(fixes) // 50)):
+        end_ns = fixes[first].t_ns + SPAN_NS
+        span = [fix for fix in fixes[first:] if fix.t_ns <= end_ns]
+        spread = float(np.var([fix.v_n[:2] for fix in span], axis=0).sum())
+        if spread > most:
+            best, most = span, spread
+        if fixes[-1].t_ns <= end_ns:
+            break
+    return best
 
 
 def azimuth_error(t_s, v_ins, v_gnss):

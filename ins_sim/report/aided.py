@@ -103,8 +103,10 @@ def rows(settings, flown, states, errors):
     table = _error_rows(flown.errors, errors) + _inside_rows(flown.errors)
     for source in sources(settings):
         table += _fix_rows(source, flown)
-    return (table + _estimate_rows(settings, flown.errors)
-            + _by_hand_rows(settings.velocity_meter, flown, states))
+    table += _estimate_rows(settings, flown.errors)
+    if len(sources(settings)) == 2:
+        table += _by_hand_rows(settings.velocity_meter, flown, states)
+    return table
 
 
 def _error_rows(aided, free):
@@ -203,7 +205,8 @@ def _by_hand_rows(meter, flown, states):
         return []
     mu, sigma = found.least_squares
     true = meter.antennas.mounting_yaw_arcmin
-    return [Row(f'{AIDED}mounting by (27)', 'arcmin', found.two_manoeuvres / ARCMIN, true=true),
+    return [Row(f'{AIDED}mounting by the paper\'s (27)', 'arcmin', found.two_manoeuvres / ARCMIN,
+                true=true),
             Row(f'{AIDED}mounting, least squares', 'arcmin', mu / ARCMIN, sigma=sigma / ARCMIN,
                 true=true),
             Row(f'{AIDED}azimuth of the strapdown', 'arcmin', found.dpsi / ARCMIN,
@@ -243,7 +246,8 @@ COLUMNS = (
     _Column('aided', lambda row: _short(row.measured), ''),
     _Column('alone', lambda row: _short(row.free), 'alone: the strapdown, from its own start'),
     _Column('sigma', lambda row: _short(row.sigma), 'sigma: by the filter'),
-    _Column('expected', _expected, 'expected of NIS: in 95 % of consistent runs'))
+    _Column('expected', _expected,
+            'expected of a NIS: the interval that holds 95 % of consistent runs'))
 
 
 def faults(flown):

@@ -63,6 +63,8 @@ class AidedNavigatorNode(NavigatorNode):
         except ValueError as error:
             self.fault(str(error))
             return
+        if source in self.stage.silent:
+            self.get_logger().info(f'{source} delivers again')
         for fix in fixes:
             self._health.came(source, fix)
             self.publish(self.push(self.stage.push_fix, (source, fix)))

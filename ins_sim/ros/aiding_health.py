@@ -1,7 +1,11 @@
 """What became of the fixes, for /diagnostics.  No ROS is imported."""
 
 from ins_sim.core.faults import seconds
+from ins_sim.core.gain_filters import NO_FIX
 from ins_sim.core.triad_model import DEG
+
+# below it a sigma of mu, kx, kz is the floor of what is given as known
+KNOWN = 1e-8
 
 
 class AidingHealth:
@@ -10,18 +14,23 @@ class AidingHealth:
     def __init__(self, stream):
         self._stream = stream
         self._came = {source: 0 for source in stream.navigator.sources}
-        self._taken, self._refused = dict(self._came), dict(self._came)
+        self._taken, self._refused, self._none = (dict(self._came) for _ in range(3))
+        self._stuck_ns = None
         self._nis, self._last_ns = {}, {}
         self._reason = self._wrong = ''
 
     def came(self, source, fix):
         """Count a fix that has come."""
         self._came[source] += 1
-        self._last_ns[source] = fix.t_ns
+        if fix.valid:
+            self._last_ns[source] = fix.t_ns
 
     def judge(self, taken):
         """Take what became of fixes, Taken, and empty the list."""
         for source, t_ns, result in taken:
+            if result.reason.startswith(NO_FIX):
+                self._none[source] += 1
+                continue
             (self._taken if result.taken else self._refused)[source] += 1
             if result.nis is not None:
                 self._nis[source] = result.nis / result.freedom
@@ -38,7 +47,8 @@ class AidingHealth:
         values, now_ns = [], self._stream.processed_ns
         for source, count in self._came.items():
             values += [(f'{source} fixes', count), (f'{source} taken', self._taken[source]),
-                       (f'{source} refused', self._refused[source])]
+                       (f'{source} refused', self._refused[source]),
+                       (f'{source} none', self._none[source])]
             if source in self._nis:
                 values.append((f'{source} NIS per degree of freedom', f'{self._nis[source]:.3f}'))
             if source in self._last_ns and now_ns is not None:
@@ -52,7 +62,17 @@ class AidingHealth:
             for name, factor, value, sigma in zip(names, (60.0 / DEG, 1.0, 1.0), filter_.estimates,
                                                   known):
                 values.append((name, f'{value * factor:.6g}'))
-                if sigma is not None:
+                if sigma is not None and sigma > KNOWN:
                     values.append((f'{name} sigma', f'{sigma * factor:.3g}'))
         wrong, self._wrong = self._wrong, ''
-        return wrong, values
+        return wrong or self._missing(now_ns), values
+
+    def _missing(self, now_ns):
+        """Return which instruments are missing, or ''."""
+        silent = self._stream.silent
+        # a moment's waiting is in order: it is stuck where it was the last time
+        awaited = self._stream.awaited if now_ns == self._stuck_ns else []
+        self._stuck_ns = now_ns
+        if silent:
+            return f'going on without {" and ".join(silent)}; expected the fixes of all that aid'
+        return f'waiting for a fix of {" and ".join(awaited)}' if awaited else ''

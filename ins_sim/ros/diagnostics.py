@@ -26,13 +26,17 @@ class Monitor:
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
         self._stale, self._told = False, None
-        self._more = []
+        self._more, self._standing = [], set()
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
         # a wall timer: simulated time may stand still, and that is worth reporting
         node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def add(self, describe):
-        """Let describe() -> (what is wrong or '', [(key, value)]) have its say once a second."""
+        """
+        Let describe() -> (what is wrong or '', [(key, value)]) have its say once a second.
+
+        What stays wrong is logged when it begins.
+        """
         self._more.append(describe)
 
     def fault(self, sentence, fatal=False):
@@ -44,10 +48,9 @@ class Monitor:
         if fatal:
             logger.fatal(sentence)
         else:
-            # by kind: the sentence without its numbers
-            kind = re.sub(r'[-+.\d]+(e[-+]?\d+)?', '#', sentence)
-            if self._fault_time - self._logged.get(kind, -math.inf) >= 1.0:
-                self._logged[kind] = self._fault_time
+            name = kind(sentence)
+            if self._fault_time - self._logged.get(name, -math.inf) >= 1.0:
+                self._logged[name] = self._fault_time
                 logger.warning(sentence)
 
     def publish(self):
@@ -75,9 +78,14 @@ class Monitor:
                 self._node.get_logger().warning(status.message)
                 self._stale = True
         more = [describe() for describe in self._more]
-        for wrong, _ in more:
-            if wrong:
+        kinds = {kind(wrong): wrong for wrong, _ in more if wrong}
+        for name, wrong in kinds.items():
+            if name in self._standing:
+                # said when it began, and true until it ends
+                self.last_fault, self._fault_time = wrong, now
+            else:
                 self.fault(wrong)
+        self._standing = set(kinds)
         if self.faults and now - self._fault_time < RECENT_S:
             status.level, status.message = DiagnosticStatus.WARN, self.last_fault
         span = max(now - last, 1e-3)
@@ -91,3 +99,8 @@ class Monitor:
         array = DiagnosticArray(status=[status])
         array.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(array)
+
+
+def kind(sentence):
+    """Return a sentence without its numbers: which kind of fault it tells of."""
+    return re.sub(r'[-+.\d]+(e[-+]?\d+)?', '#', sentence)

@@ -59,4 +59,5 @@ class GnssNode(StageNode):
         self._receiver.force_outage(request.data)
         response.success = True
         response.message = 'no fix from now on' if request.data else 'fixes by the schedule'
+        self.get_logger().info(response.message)
         return response
