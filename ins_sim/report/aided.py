@@ -205,8 +205,7 @@ def _by_hand_rows(meter, flown, states):
         return []
     mu, sigma = found.least_squares
     true = meter.antennas.mounting_yaw_arcmin
-    return [Row(f'{AIDED}mounting by the paper\'s (27)', 'arcmin', found.two_manoeuvres / ARCMIN,
-                true=true),
+    return [Row(f'{AIDED}mounting by (27)', 'arcmin', found.two_manoeuvres / ARCMIN, true=true),
             Row(f'{AIDED}mounting, least squares', 'arcmin', mu / ARCMIN, sigma=sigma / ARCMIN,
                 true=true),
             Row(f'{AIDED}azimuth of the strapdown', 'arcmin', found.dpsi / ARCMIN,
@@ -239,7 +238,7 @@ def _short(value):
 
 
 def _expected(row):
-    return _short(row.true) if row.low is None else f'{row.low:.2f} to {row.high:.2f}'
+    return _short(row.true) if row.low is None else f'{row.low:.2f}-{row.high:.2f}'
 
 
 COLUMNS = (
