@@ -82,7 +82,10 @@ class BagRecorder:
             self._node.destroy_subscription(queue.subscription)
             raise
         seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
-        track = Track(name, topic.type_name, queue, Gaps(), stamped(topic.type_name), seldom)
+        # its array is stamped with the time of the run, as that of /diagnostics need not be
+        by_stamp = stamped(topic.type_name) or name == self._node.resolve_topic_name(
+            topics.METER_RECORD.name)
+        track = Track(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
         self.tracks[name] = track
         if (track.stamped or seldom) and name != self._ack_name:
             self._silent.append(track)
