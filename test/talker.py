@@ -38,6 +38,8 @@ class Talker:
         while not all(p.get_subscription_count() for p in publishers):
             assert time.monotonic() < end, [p.topic_name for p in publishers]
             time.sleep(0.02)
+        # discovery is not symmetric: a reader may know of its publisher a moment later
+        time.sleep(0.3)
 
     def close(self):
         """Leave the domain."""
