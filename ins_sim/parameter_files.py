@@ -11,7 +11,8 @@ import re
 import yaml
 
 from .core.catalogue import build, flatten, nearest, unknown, values_of
-from .core.settings import AIDING, ALL_NODES, NODES
+from .core.node_settings import AIDING, ALL_NODES
+from .core.settings import NODES
 from .core.simulation import Settings
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')

@@ -18,7 +18,8 @@ from ins_sim.core.gain_filters import refused, Result
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.meter_on_truth import body_velocity
 from ins_sim.core.motions import make_motion
-from ins_sim.core.settings import AIDING, NODES
+from ins_sim.core.node_settings import AIDING
+from ins_sim.core.settings import NODES
 from ins_sim.core.simulation import simulate
 from ins_sim.ros.aiding_health import AidingHealth
 from studies import settings as simulation_settings

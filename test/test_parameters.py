@@ -9,7 +9,8 @@ import pytest
 import yaml
 
 from ins_sim import parameter_files, resources
-from ins_sim.core.catalogue import ALL_NAMES, build, flatten, values_of
+from ins_sim.core.catalogue import build, flatten, values_of
+from ins_sim.core.node_settings import ALL_NAMES
 from ins_sim.core.settings import NODES
 from ins_sim.core.simulation import simulate
 

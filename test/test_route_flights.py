@@ -11,7 +11,8 @@ from ins_sim.core import earth
 from ins_sim.core.angles import to_compass
 from ins_sim.core.motions import make_motion
 from ins_sim.core.orthodrome import FLATTENING2
-from ins_sim.core.settings import AIDING, NODES
+from ins_sim.core.node_settings import AIDING
+from ins_sim.core.settings import NODES
 from ins_sim.core.simulation import simulate
 
 # file, lengths of the legs (km), turns (deg); all begin at 55 N 37 E on a course of 30 deg

@@ -6,8 +6,9 @@ import textwrap
 
 from ins_sim.core.aided_settings import AidedNavigatorSettings
 from ins_sim.core.navigate_settings import NAVIGATE
+from ins_sim.core.node_settings import ALL_NODES
 from ins_sim.core.presets import PRESETS
-from ins_sim.core.settings import ALL_NODES, MotionGeneratorSettings
+from ins_sim.core.settings import MotionGeneratorSettings
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
 # of an instrument and the navigator: a file over this one sets them in its section /** as well,

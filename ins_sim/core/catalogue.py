@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 import math
 
-from .settings import ALL_NODES
-
 
 def flatten(cls, prefix=''):
     """Return {dotted name: dataclass field} of a settings class, in the order of declaration."""
@@ -30,9 +28,6 @@ def values_of(settings, prefix=''):
     return values
 
 
-ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))
-
-
 def nearest(name, known):
     """Return the known text that is most like name."""
     # on the way of an error only, and off the way of a node's start
@@ -40,7 +35,7 @@ def nearest(name, known):
     return get_close_matches(str(name), sorted(known), n=1, cutoff=0.0)[0]
 
 
-def unknown(name, known=ALL_NAMES):
+def unknown(name, known):
     """Return the sentence about an unknown key, naming the nearest known one."""
     return f'unknown parameter {name!r}; the nearest known one is {nearest(name, known)!r}'
 

@@ -5,15 +5,11 @@ This catalogue is the only place a parameter is described.  ROS parameters, the 
 the configuration reference are derived from it.
 """
 
-from .aided_settings import AidedNavigatorSettings
-from .bag_settings import RecorderSettings
 from .dtg_settings import Dtg
 from .error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
-from .gnss_settings import GnssSettings
 from .place_settings import Datum, Earth, Time, Topics
 from .route_settings import FlightRoute
 from .setting import group, setting, Settings, settings_class
-from .velocity_meter_settings import VelocityMeterSettings
 
 
 @settings_class
@@ -274,8 +270,3 @@ class StrapdownSettings(Settings):
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
          'strapdown': StrapdownSettings}
-# the instruments that aid, and the navigator that they aid
-AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
-          'aided_navigator': AidedNavigatorSettings}
-# those of a simulation, and the one that watches it
-ALL_NODES = {**NODES, **AIDING, 'recorder': RecorderSettings}

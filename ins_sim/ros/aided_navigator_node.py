@@ -1,6 +1,7 @@
 """Node aided_navigator: readings of an IMU and fixes in, aided solution and its errors out."""
 
 from ins_sim.core.aided_navigator import GNSS, METER
+from ins_sim.core.aided_settings import AidedNavigatorSettings
 from ins_sim.core.aided_stream import AidedStream
 from ins_sim.core.orthodrome import Route
 from ins_sim.messages import topics, velocity_record
@@ -18,6 +19,7 @@ class AidedNavigatorNode(NavigatorNode):
     """Reads imu/data_raw, truth/odometry and fixes; publishes aided/*."""
 
     NAME = 'aided_navigator'
+    SETTINGS = AidedNavigatorSettings
     PUBLISHED = (topics.AIDED_ODOMETRY, *topics.AIDED_ERRORS, topics.AIDED_ORTHODROME)
 
     def make_navigator(self):

@@ -1,6 +1,7 @@
 """Node gnss: streamed truth in, fixes of a GNSS receiver out."""
 
 from ins_sim.core.gnss import Gnss
+from ins_sim.core.gnss_settings import GnssSettings
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.messages import topics
 from ins_sim.messages.gnss_fixes import GnssWriter
@@ -15,6 +16,7 @@ class GnssNode(StageNode):
     """Reads truth/odometry, publishes gnss/fix and, while there is a fix, gnss/velocity."""
 
     NAME = 'gnss'
+    SETTINGS = GnssSettings
     DRIVER = topics.TRUTH_ODOMETRY
 
     def make_stage(self):

@@ -4,6 +4,7 @@ from ins_sim.core.imu_stream import make_imu
 from ins_sim.core.instants import period_ns
 from ins_sim.core.instrument import reported_variances
 from ins_sim.core.sampling import Sampler
+from ins_sim.core.settings import ImuSensorSettings
 from ins_sim.core.triad_model import DEG_H
 from ins_sim.messages import topics
 from std_srvs.srv import SetBool
@@ -16,6 +17,7 @@ class ImuSensorNode(StageNode):
     """Reads truth/imu, publishes imu/data_raw and, with tuned gyros, imu/parity."""
 
     NAME = 'imu_sensor'
+    SETTINGS = ImuSensorSettings
     DRIVER = topics.TRUTH_IMU
 
     def make_stage(self):

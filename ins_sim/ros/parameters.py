@@ -1,6 +1,6 @@
 """The catalogue of settings as declared ROS parameters."""
 
-from ins_sim.core.catalogue import ALL_NAMES, build, flatten, unknown, values_of
+from ins_sim.core.catalogue import build, flatten, unknown, values_of
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 
 OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
@@ -16,10 +16,13 @@ def declare_settings(node, cls):
     """
     fields = flatten(cls)
     given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
-    for name in given:
+    strange = [name for name in given if name not in fields and not name.startswith(OF_ROS)]
+    if strange:
         # a parameter file may serve all nodes: a key of another node is not a mistake
-        if name not in ALL_NAMES and not name.startswith(OF_ROS):
-            raise ValueError(unknown(name))
+        from ins_sim.core.node_settings import ALL_NAMES
+        for name in strange:
+            if name not in ALL_NAMES:
+                raise ValueError(unknown(name, ALL_NAMES))
     settings = build(cls, {name: _plain(value, fields[name]) for name, value in given.items()
                            if name in fields})
     node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,

@@ -5,7 +5,7 @@ import time
 from ins_sim.bags import bag_writer, qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import define
-from ins_sim.core.settings import RecorderSettings
+from ins_sim.core.bag_settings import RecorderSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from rclpy.exceptions import NameValidationException

@@ -1,7 +1,6 @@
 """What the nodes that follow a stream share: parameters, faults, acknowledgements, reset."""
 
 from ins_sim.core.faults import StreamFault
-from ins_sim.core.settings import ALL_NODES
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, Writer
 from rclpy.node import Node
@@ -19,14 +18,14 @@ class StageNode(Node):
     """
     A node driven by one topic, which reads no clock and computes from the messages alone.
 
-    A subclass sets NAME and DRIVER, makes ``self.stage`` with ``reset()`` and whose pushes raise
-    StreamFault, and has ``on_message(bytes)``.
+    A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
+    pushes raise StreamFault, and has ``on_message(bytes)``.
     """
 
     def __init__(self, stop=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
         self.stop = Stop() if stop is None else stop
-        self.settings = declare_settings(self, ALL_NODES[self.NAME])
+        self.settings = declare_settings(self, self.SETTINGS)
         self.epoch_ns = self.settings.time.epoch_s * SECOND
         self.stage = self.make_stage()
         self.depth = self.settings.topics.depth

@@ -3,6 +3,7 @@
 from ins_sim.core.instants import period_ns
 from ins_sim.core.navigator import Navigator
 from ins_sim.core.sampling import SampleClock
+from ins_sim.core.settings import StrapdownSettings
 from ins_sim.messages import topics
 from ins_sim.messages.convert import fix_one, odometry_one
 
@@ -13,6 +14,7 @@ class StrapdownNode(NavigatorNode):
     """Reads imu/data_raw and truth/odometry, publishes ins/odometry, ins/fix, ins/error/*."""
 
     NAME = 'strapdown'
+    SETTINGS = StrapdownSettings
     PUBLISHED = (topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
 
     def make_navigator(self):

@@ -2,6 +2,7 @@
 
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.velocity_meter import VelocityMeter
+from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
 from ins_sim.messages import topics, velocity_record
 
 from . import qos
@@ -20,6 +21,7 @@ class VelocityMeterNode(StageNode):
     """
 
     NAME = 'velocity_meter'
+    SETTINGS = VelocityMeterSettings
     DRIVER = topics.TRUTH_ODOMETRY
 
     def make_stage(self):
