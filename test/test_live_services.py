@@ -146,6 +146,7 @@ def test_clock_and_use_sim_time(chain, ros_domain):
         listener.close()
 
 
+@pytest.mark.slow
 def test_nodes_start_as_cheaply_as_a_bare_node(chain):
     """
     CPU that our node takes beyond a bare one with a publisher: at most 0.1 s.

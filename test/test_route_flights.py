@@ -103,6 +103,7 @@ def test_what_the_study_flight_is():
     assert np.abs(ground - 200.0).max() < 8.0 + 2.0 + 0.3
 
 
+@pytest.mark.slow
 def test_the_study_flight_closes():
     """An ideal IMU at 100 Hz: the strapdown stays within a centimetre in fifty minutes."""
     run = simulate(read('route_flight', 'source:=motion'))
