@@ -11,7 +11,8 @@ from ins_sim.core.catalogue import build
 from ins_sim.core.errors import position_error
 from ins_sim.core.faults import StreamFault
 from ins_sim.core.fixes import VALID
-from ins_sim.core.gnss import Gnss, rate_on_earth
+from ins_sim.core.gnss import Gnss
+from ins_sim.core.kinematics import rate_on_earth
 from ins_sim.core.gnss_settings import GnssSettings
 from ins_sim.core.motions import make_motion
 from ins_sim.core.settings import MotionGeneratorSettings

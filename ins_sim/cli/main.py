@@ -111,11 +111,7 @@ def parser():
                                'the same flights', description='Fly the filters of the aided '
                                'navigator over the same flights and seeds, on all cores, and show '
                                'table and figure.')
-    filters.add_argument('--params-file', action='append', default=[], metavar='FILE',
-                         help='ROS parameter file, or the name of a shipped one; may be repeated, '
-                         'later ones win (default: route_flight and grade_mid)')
-    filters.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
-                         help='one parameter, for every node that knows it')
+    _settings(filters, 'route_flight and grade_mid')
     filters.add_argument('--runs', type=int, default=24, metavar='N', help='flights, each with '
                          'seeds of its own (default: %(default)s)')
     filters.add_argument('--filters', nargs='+', choices=FILTERS, default=None, metavar='NAME',
@@ -198,10 +194,11 @@ def _play(verbs):
                       '%(default)s)')
 
 
-def _settings(verb):
+def _settings(verb, default=''):
     verb.add_argument('--params-file', action='append', default=[], metavar='FILE',
                       help='ROS parameter file, or the name of a shipped one such as motion_2; '
-                      'may be repeated, later ones win')
+                      'may be repeated, later ones win'
+                      + (f' (default: {default})' if default else ''))
     verb.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                       help='one parameter, for every node that knows it')
 

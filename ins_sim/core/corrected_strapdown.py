@@ -4,6 +4,7 @@ import copy
 import math
 
 from . import attitude, earth, strapdown
+from .kinematics import rate_on_earth
 from .orientation import turn
 
 ZERO = (0.0, 0.0, 0.0)
@@ -50,9 +51,7 @@ class CorrectedStrapdown:
     @property
     def rate_to_earth(self):
         """Return the rate of b relative to the Earth, in b, rad/s."""
-        spin_n = (0.0, self.spin * math.cos(self.lat), self.spin * math.sin(self.lat))
-        turned = attitude.rotate_back(self.q_nb, spin_n)
-        return tuple(a - b for a, b in zip(self.rate, turned))
+        return rate_on_earth(self.lat, self.q_nb, self.rate, self.spin)
 
     def advance(self, t_ns, omega, f, vertical):
         """

@@ -13,6 +13,7 @@ from . import attitude, earth
 from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
 from .fixes import GnssFix, no_gnss_fix, OUTAGE
 from .instants import period_ns
+from .kinematics import rate_on_earth
 
 
 class Gnss:
@@ -125,12 +126,6 @@ class Gnss:
         lat, lon, height = earth.displaced(lat, lon, height, off)
         return GnssFix(t_ns, lat, math.remainder(lon, 2.0 * math.pi), height, v_n,
                        self._position_sigma, self._velocity_sigma, arrival_ns=arrival_ns)
-
-
-def rate_on_earth(lat, q_nb, omega_ib_b, spin):
-    """Return the rate of b relative to an Earth of that spin, resolved in b, floats, rad/s."""
-    turn = attitude.rotate_back(q_nb, (0.0, spin * math.cos(lat), spin * math.sin(lat)))
-    return omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2]
 
 
 class _Errors:

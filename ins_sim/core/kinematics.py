@@ -1,5 +1,7 @@
 """Truth from a pose: velocity, rate and specific force by differentiating one pose."""
 
+import math
+
 import numpy as np
 
 from . import attitude, earth, taylor
@@ -59,3 +61,9 @@ def rate_of_n(lat, height, v_n, earth_rotation):
     lon_rate = v_n[:, 0] / ((r_e + height) * c)
     return np.stack((-v_n[:, 1] / (r_n + height), (spin + lon_rate) * c, (spin + lon_rate) * s),
                     axis=-1)
+
+
+def rate_on_earth(lat, q_nb, omega_ib_b, spin):
+    """Return the rate of b relative to an Earth of that spin, resolved in b, floats, rad/s."""
+    turn = attitude.rotate_back(q_nb, (0.0, spin * math.cos(lat), spin * math.sin(lat)))
+    return omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2]

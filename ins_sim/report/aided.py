@@ -8,7 +8,7 @@ from rich.table import Table
 
 from . import aided_arrays, aided_figure
 from .. import parameter_files
-from ..core.aided_navigator import GNSS, METER
+from ..core.aided_navigator import AidedNavigator, GNSS, METER
 from ..core.aided_run import AidedRun
 from ..core.aided_simulation import AidedSettings
 from ..core.mounting_calibration import calibrate
@@ -85,10 +85,7 @@ class Report:
 
 def sources(settings):
     """Return the instruments that aid, of AidedSettings."""
-    navigator = settings.aided_navigator
-    used = {METER: navigator.meter_model.use and navigator.filter != 'free',
-            GNSS: navigator.gnss_model.use}
-    return [source for source, use in used.items() if use]
+    return AidedNavigator(settings.aided_navigator).sources
 
 
 def _described(settings, source):
