@@ -4,7 +4,7 @@ import random
 import signal
 import time
 
-from live import Chain, wait_handlers
+from live import Chain, wait_ready_to_end
 import pytest
 
 pytest.importorskip('rclpy')
@@ -31,7 +31,7 @@ def test_signals(name, ros_domain, tmp_path):
     for first in range(0, TRIES, AT_ONCE):
         started = [chain.start(nodes[k % 6], PARAMETERS) for k in range(first, first + AT_ONCE)]
         for process in started:
-            wait_handlers(process)
+            wait_ready_to_end(process)
         for process in started:
             time.sleep(rng.choice((0.0, 0.1, 0.4)))
             for k, number in enumerate(SIGNALS[name]):

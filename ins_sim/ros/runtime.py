@@ -2,13 +2,16 @@
 How a node process starts, runs and ends: signals, exit codes, the loop.
 
 rclpy's own handlers end the context under a running callback, and a second SIGINT kills Python
-while it finalises.  So the handlers here only set a flag, and the first signal makes the process
-deaf to the next ones.  Nothing heavy is imported before they stand.
+while it finalises.  Python's cannot be taken down without a race: a signal in the very moment is
+reported as lost, with a traceback.  So no handler is installed: SIGINT and SIGTERM are blocked,
+and a thread waits for the first of them and sets a flag; the next ones stay pending for ever.
+Nothing heavy is imported before that, and threads made later inherit the mask.
 """
 
 import gc
 import signal
 import sys
+import threading
 import warnings
 
 EXIT_OK = 0
@@ -34,19 +37,13 @@ class Stop:
             self.code = code
 
     def install(self):
-        """Let SIGINT and SIGTERM request the end."""
-        for number in SIGNALS:
-            signal.signal(number, self._handle)
+        """Let SIGINT and SIGTERM request the end: call from the main thread, before others."""
+        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+        threading.Thread(target=self._wait, daemon=True).start()
 
-    def _handle(self, number, frame):
-        deafen()
+    def _wait(self):
+        signal.sigwait(SIGNALS)
         self.request()
-
-
-def deafen():
-    """Ignore further signals: the process is on its way out already."""
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
 
 
 def node_main(load, args=None, **more):
@@ -89,7 +86,6 @@ def node_main(load, args=None, **more):
         getattr(node, 'run', _spin)(executor, stop)
         executor.shutdown()
         node.destroy_node()
-    deafen()
     rclpy.try_shutdown()
     return stop.code
 
