@@ -119,6 +119,34 @@ def test_the_rows_are_the_errors(run, rows, capsys):
               + f'; mu {mounting.measured:.2f} +- {mounting.sigma:.2f} arcmin (true 20)')
 
 
+def test_the_figure_shows_where_fixes_are_missing(monkeypatch, tmp_path):
+    """Outage shaded, drop-outs a strip of their own, and no mean is drawn through either."""
+    chosen = settings('drop_outs.start_s:=[20.0,70.0]', 'drop_outs.end_s:=[40.0,75.0]',
+                      'outages.start_s:=[30.0]', 'outages.end_s:=[60.0]')
+    flight = flown(chosen)[-1]
+    figures = []
+    monkeypatch.setattr(aided_figure.Figure, 'savefig',
+                        lambda figure, *_, **__: figures.append(figure))
+    aided_figure.save(tmp_path / 'x.png', 'title', flight, (METER, GNSS), 0.0)
+    figure, = figures
+    start_s = flight.errors.t_ns[0] * 1e-9
+    for axes in figure.axes:
+        strip, = [c for c in axes.collections if c.get_label() == 'no velocity meter']
+        edges = [path.get_extents().intervalx + start_s for path in strip.get_paths()]
+        # windows of one second that overlap the drop-outs, stamped at their ends
+        assert np.allclose(edges, [(21.0, 41.0), (71.0, 76.0)])
+        shaded, = [p for p in axes.patches if p.get_label() == 'no GNSS']
+        assert np.allclose(shaded.get_extents().transformed(
+            axes.transData.inverted()).intervalx + start_s, (30.0, 60.0))
+    for source, first, last in ((METER, 20.5, 40.5), (GNSS, 29.5, 59.5)):
+        means = [line.get_xdata() + start_s for line in figure.axes[-1].lines
+                 if line.get_linewidth() == 1.6
+                 and line.get_color() == aided_figure.SOURCES[source][0]]
+        assert len(means) == 2 - (source == METER)
+        for mean in means:
+            assert mean[-1] < first or mean[0] > last
+
+
 def test_what_is_not_known_is_not_shown(tmp_path, capsys):
     """A filter without covariance has no sigma, no NIS, no estimates; without GNSS no outages."""
     assert command(tmp_path, flight=('duration_s:=30.0', 'filter:=conventional')) == 0

@@ -19,6 +19,10 @@ PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),
 NAMES = tuple(COLOURS)
 # the line through the NIS is a mean of so many fixes at least, and has so many such spans at most
 MEAN_OF, SPANS = 20, 60
+# and is broken where fixes are missing: at so many times their usual distance
+GAP = 5.0
+# of a panel's height: the strip that shows when the velocity meter had no fix
+STRIP = 0.04
 
 
 def save(path, title, flown, sources, gate_probability):
@@ -48,11 +52,17 @@ def save(path, title, flown, sources, gate_probability):
         _show_nis(panels[-1], flown.taken, sources, gate_probability, time)
         panels[-1].set_ylabel('NIS per degree of freedom')
     panels[-1].set_xlabel(f'time [{unit}]')
-    outages = _outages(flown.gnss_fixes, start_ns, end_ns) if GNSS in sources else []
+    silent = {source: [time(span) for span in _silent(fixes, start_ns, end_ns)]
+              for source, fixes in ((GNSS, flown.gnss_fixes), (METER, flown.velocity_fixes))
+              if source in sources}
     for axes in panels:
-        for k, (first, last) in enumerate(outages):
-            axes.axvspan(*time((first, last)), color='0.5', alpha=0.15, lw=0.0,
-                         label=None if k else 'no GNSS')
+        for k, span in enumerate(silent.get(GNSS, [])):
+            axes.axvspan(*span, color='0.5', alpha=0.15, lw=0.0, label=None if k else 'no GNSS')
+        if silent.get(METER):
+            colour, name = SOURCES[METER]
+            axes.broken_barh([(first, last - first) for first, last in silent[METER]],
+                             (0.0, STRIP), transform=axes.get_xaxis_transform(), color=colour,
+                             label=f'no {name}')
         axes.grid(alpha=0.3)
         axes.set_xlim(*time((start_ns, end_ns)))
         axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small', frameon=False)
@@ -91,9 +101,12 @@ def _show_nis(axes, taken, sources, gate_probability, time):
         if not good.all():
             axes.plot(t[~good], nis[~good], 'x', ms=6, color='tab:red', label=f'{name}, refused')
         count = max(MEAN_OF, int(good.sum()) // SPANS)
-        if good.sum() > count:
-            mean = np.convolve(nis[good], np.full(count, 1.0 / count), 'valid')
-            axes.plot(t[good][count - 1:], mean, color=colour, lw=1.6, label=f'mean of {count}')
+        label = f'mean of {count}'
+        for part in _unbroken(t[good]):
+            if part.stop - part.start > count:
+                mean = np.convolve(nis[good][part], np.full(count, 1.0 / count), 'valid')
+                axes.plot(t[good][part][count - 1:], mean, color=colour, lw=1.6, label=label)
+                label = None
         if gate_probability:
             axes.axhline(largest(freedom, gate_probability) / freedom, color=colour, ls='--',
                          lw=0.8, label='gate')
@@ -101,7 +114,15 @@ def _show_nis(axes, taken, sources, gate_probability, time):
     axes.axhline(1.0, color='k', lw=0.8)
 
 
-def _outages(fixes, start_ns, end_ns):
+def _unbroken(t):
+    """Return the slices of sorted times between which fixes are missing."""
+    steps = np.diff(t)
+    ends = np.flatnonzero(steps > GAP * np.median(steps)) + 1 if len(steps) else []
+    bounds = [0, *ends, len(t)]
+    return [slice(*pair) for pair in zip(bounds, bounds[1:])]
+
+
+def _silent(fixes, start_ns, end_ns):
     """Return the spans (first, last), ns, from a fix that is none to the next that is one."""
     spans, since_ns = [], None
     for fix in fixes:
