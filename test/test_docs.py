@@ -8,6 +8,7 @@ import shlex
 import pytest
 
 from ins_sim.cli.main import main, parser
+import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
@@ -61,6 +62,30 @@ def test_names_in_the_documents_exist(path):
         target = module
         for part in parts[2:]:
             target = getattr(target, part)
+
+
+def test_the_arrays_of_a_run_are_documented(tmp_path, monkeypatch):
+    """run_files.md names each array of run.npz, and only those, by its dimensions."""
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / 'docs' / 'run_files.md').read_text(encoding='utf-8')
+    dimensions = {}
+    for keys, shape in re.findall(r'^\| (`.*?`) \| ([^|]*?) \|', text, re.MULTILINE):
+        for key in re.findall(r'`(\w+_\w+)`', keys):
+            assert key not in dimensions, key
+            dimensions[key] = shape
+    found = set()
+    for words in ('--params-file motion_2', '--params-file motion_2 --params-file '
+                  'imu_tactical_dtg', '--aided --params-file route_flight --params-file grade_mid '
+                  '-p window.cycles:=100'):
+        assert main(['simulate', *words.split(), '-p', 'duration_s:=3.0', '-o', 'run',
+                     '--force']) == 0
+        with np.load('run/run.npz') as arrays:
+            found |= set(arrays)
+            for key in set(arrays) & set(dimensions):
+                given = [part.strip() for part in dimensions[key].split(',')]
+                shape = arrays[key].shape
+                assert given == ['as above'] or [str(n) for n in shape[1:]] == given[1:], key
+    assert found == set(dimensions)
 
 
 def test_links_of_the_readme_lead_somewhere():
