@@ -11,7 +11,7 @@ import copy
 import math
 
 from . import attitude, earth
-from .velocity_window import BodyMean, Integrals, middle
+from .velocity_window import BodyMean, DoubleIntegral, Integrals, middle
 
 # What became of a fix: innovation (its components), their normalised square, how many they are
 # (nis None without a covariance), whether it was taken, and why not.
@@ -142,7 +142,7 @@ class PaperFilter(_ChainedFilter):
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
-        self._once = self._twice = self._turn_once = self._turn_twice = (0.0, 0.0)
+        self._all = self._turn = DoubleIntegral()
 
     def step(self, ins, before, u, dt):
         """Integrate the acceleration in b twice, and that part of it which is rate x velocity."""
@@ -154,17 +154,13 @@ class PaperFilter(_ChainedFilter):
         w = attitude.rotate_back(middle(q_start, ins.q_nb), (
             ins.v[0] - v[0] - spin * v[1], ins.v[1] - v[1] + spin * v[0], ins.v[2] - v[2]))
         turn = w[0] - ins.v_b[0] + b_start[0], w[1] - ins.v_b[1] + b_start[1]
-        half = 0.5 * dt
-        for once, twice, x in (('_once', '_twice', w), ('_turn_once', '_turn_twice', turn)):
-            a, b = getattr(self, once), getattr(self, twice)
-            setattr(self, twice, (b[0] + dt * a[0] + half * x[0], b[1] + dt * a[1] + half * x[1]))
-            setattr(self, once, (a[0] + x[0], a[1] + x[1]))
+        self._all, self._turn = self._all.after(w, dt), self._turn.after(turn, dt)
 
     def velocity(self, ins, fix):
         """Correct acceleration, velocity and coordinates (20), unless the windows hold a turn."""
         t = self.mean.time_s
         scale = 2.0 / (t * t)
-        now = [(scale * self._twice[k], scale * self._turn_twice[k], fix.velocity[k])
+        now = [(scale * self._all.twice[k], scale * self._turn.twice[k], fix.velocity[k])
                for k in range(2)]
         last = self._follow(now)
         if last is None:
@@ -186,7 +182,7 @@ class PaperFilter(_ChainedFilter):
     def close(self):
         """Begin a window."""
         super().close()
-        self._once = self._twice = self._turn_once = self._turn_twice = (0.0, 0.0)
+        self._all = self._turn = DoubleIntegral()
 
 
 class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):

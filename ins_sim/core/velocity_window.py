@@ -1,5 +1,6 @@
 """The window of the velocity meter on the side of the navigator: what is summed over it."""
 
+from collections import namedtuple
 import copy
 
 import numpy as np
@@ -8,12 +9,8 @@ from . import attitude
 from .orientation import dcm_of
 
 
-class BodyMean:
-    """
-    Mean velocity in b over the window so far, by the trapezoid of its cycles.
-
-    Values are replaced, never changed: a shallow copy is a snapshot.
-    """
+class _Sums:
+    """Sums over a window: values are replaced, never changed, so a shallow copy is a snapshot."""
 
     def __init__(self):
         self.clear()
@@ -21,6 +18,10 @@ class BodyMean:
     def copy(self):
         """Return a snapshot."""
         return copy.copy(self)
+
+
+class BodyMean(_Sums):
+    """Mean velocity in b over the window so far, by the trapezoid of its cycles."""
 
     def clear(self):
         """Begin a window."""
@@ -44,7 +45,7 @@ class BodyMean:
         return self._sum[0] / self.time_s, self._sum[1] / self.time_s
 
 
-class Integrals:
+class Integrals(_Sums):
     """
     The matrices of the window, of the level axes (East, North) and the body's (forward, left).
 
@@ -52,13 +53,6 @@ class Integrals:
     velocity_meter section 4): what a constant error of acceleration in b, or of velocity in n,
     makes of the velocity, of the position and of the mean velocity in b.  Each is (2, 2).
     """
-
-    def __init__(self):
-        self.clear()
-
-    def copy(self):
-        """Return a snapshot."""
-        return copy.copy(self)
 
     def clear(self):
         """Begin a window."""
@@ -86,6 +80,17 @@ class Integrals:
         sums = self._a1, self._a2, self._b1, self._b2
         a1, a2, b1, b2 = (np.array(x).reshape(2, 2) for x in sums)
         return a1, a2, b1 / self.time_s, b2 / self.time_s
+
+
+class DoubleIntegral(namedtuple('DoubleIntegral', 'once twice', defaults=2 * ((0.0, 0.0),))):
+    """An acceleration (forward, left) integrated once, m/s, and twice, m, over the window."""
+
+    def after(self, increment, dt):
+        """Return the integrals a cycle later: increment, m/s, in dt, s."""
+        a, b, half = self.once, self.twice, 0.5 * dt
+        return DoubleIntegral((a[0] + increment[0], a[1] + increment[1]),
+                              (b[0] + dt * a[0] + half * increment[0],
+                               b[1] + dt * a[1] + half * increment[1]))
 
 
 def middle(q_start, q_end):
