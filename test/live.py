@@ -72,15 +72,15 @@ class Chain:
                 process.kill()
 
 
-def wait_ready_to_end(process, timeout_s=60.0):
-    """Wait until a process has blocked SIGTERM: before that no program can end cleanly."""
+def wait_handlers(process, timeout_s=60.0):
+    """Wait until a process catches SIGTERM: before that no program can end cleanly."""
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
         for line in Path(f'/proc/{process.pid}/status').read_text().splitlines():
-            if line.startswith('SigBlk:') and int(line.split()[1], 16) >> 14 & 1:
+            if line.startswith('SigCgt:') and int(line.split()[1], 16) >> 14 & 1:
                 return
         time.sleep(0.002)
-    raise TimeoutError(f'SIGTERM not waited for within {timeout_s} s')
+    raise TimeoutError(f'no handler of SIGTERM within {timeout_s} s')
 
 
 class Listener:

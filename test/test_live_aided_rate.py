@@ -6,7 +6,7 @@ import time
 
 from ins_sim import graph, resources
 from ins_sim.messages import topics
-from live import Chain, Listener, wait_ready_to_end
+from live import Chain, Listener, wait_handlers
 import numpy as np
 import pytest
 
@@ -36,7 +36,7 @@ def test_ten_minutes_in_real_time_lose_nothing(ros_domain, tmp_path):
         nodes = {process.name: chain.start(process.executable, VALUES, files)
                  for process in (*graph.AIDING, *graph.PROCESSES) if process.name != graph.MASTER}
         for node in nodes.values():
-            wait_ready_to_end(node)
+            wait_handlers(node)
         names = [topic.name for topic in (topics.IMU_RAW, topics.INS_ODOMETRY,
                                           topics.AIDED_ODOMETRY, topics.GNSS_FIX)]
         end = time.monotonic() + 60.0

@@ -2,9 +2,11 @@
 
 import random
 import signal
+import subprocess
+import sys
 import time
 
-from live import Chain, wait_ready_to_end
+from live import Chain, wait_handlers
 import pytest
 
 pytest.importorskip('rclpy')
@@ -15,6 +17,17 @@ AT_ONCE = 10
 SIGNALS = {'SIGINT': (signal.SIGINT,), 'SIGINT twice': (signal.SIGINT, signal.SIGINT),
            'SIGTERM': (signal.SIGTERM,)}
 PARAMETERS = {'rate_hz': 200.0, 'duration_s': 0.0}
+# makes the handlers anew each time one has made the process deaf
+HANDLERS = """
+from ins_sim.ros.runtime import Stop
+Stop().install()
+print('ready', flush=True)
+for _ in range(5000):
+    stop = Stop()
+    stop.install()
+    while not stop:
+        pass
+"""
 
 
 @pytest.mark.parametrize('name', SIGNALS)
@@ -31,7 +44,7 @@ def test_signals(name, ros_domain, tmp_path):
     for first in range(0, TRIES, AT_ONCE):
         started = [chain.start(nodes[k % 6], PARAMETERS) for k in range(first, first + AT_ONCE)]
         for process in started:
-            wait_ready_to_end(process)
+            wait_handlers(process)
         for process in started:
             time.sleep(rng.choice((0.0, 0.1, 0.4)))
             for k, number in enumerate(SIGNALS[name]):
@@ -41,3 +54,17 @@ def test_signals(name, ros_domain, tmp_path):
             assert process.wait(30.0) == 0, chain.text(process)
             assert 'Traceback' not in chain.text(process)
     assert len(chain.processes) == TRIES
+
+
+def test_signals_in_the_moment_of_a_change_of_handlers():
+    """A shower of signals: some fall into signal.signal itself, and nothing is said of them."""
+    with subprocess.Popen([sys.executable, '-c', HANDLERS], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        sent = 0
+        while process.poll() is None:
+            process.send_signal(signal.SIGINT)
+            sent += 1
+        said = process.stderr.read()
+    assert process.returncode == 0 and said == '', said[-500:]
+    assert sent > 5000

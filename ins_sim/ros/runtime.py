@@ -2,16 +2,16 @@
 How a node process starts, runs and ends: signals, exit codes, the loop.
 
 rclpy's own handlers end the context under a running callback, and a second SIGINT kills Python
-while it finalises.  Python's cannot be taken down without a race: a signal in the very moment is
-reported as lost, with a traceback.  So no handler is installed: SIGINT and SIGTERM are blocked,
-and a thread waits for the first of them and sets a flag; the next ones stay pending for ever.
-Nothing heavy is imported before that, and threads made later inherit the mask.
+while it finalises.  So the handlers here only set a flag, and the first signal makes the process
+deaf to the next ones.  Nothing heavy is imported before they stand.
+
+A signal that falls into the few instructions in which Python changes a handler is reported, with a
+traceback, as "ignored due to race condition": ignored is what it shall be, so that is not said.
 """
 
 import gc
 import signal
 import sys
-import threading
 import warnings
 
 EXIT_OK = 0
@@ -37,13 +37,26 @@ class Stop:
             self.code = code
 
     def install(self):
-        """Let SIGINT and SIGTERM request the end: call from the main thread, before others."""
-        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-        threading.Thread(target=self._wait, daemon=True).start()
+        """Let SIGINT and SIGTERM request the end."""
+        sys.unraisablehook = _report
+        for number in SIGNALS:
+            signal.signal(number, self._handle)
 
-    def _wait(self):
-        signal.sigwait(SIGNALS)
+    def _handle(self, number, frame):
+        deafen()
         self.request()
+
+
+def deafen():
+    """Ignore further signals: the process is on its way out already."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def _report(unraisable):
+    """Report an exception that nobody can catch, unless it is a signal that came too late."""
+    if 'ignored due to race condition' not in str(unraisable.exc_value):
+        sys.__unraisablehook__(unraisable)
 
 
 def node_main(load, args=None, **more):
@@ -86,6 +99,7 @@ def node_main(load, args=None, **more):
         getattr(node, 'run', _spin)(executor, stop)
         executor.shutdown()
         node.destroy_node()
+    deafen()
     rclpy.try_shutdown()
     return stop.code
 
