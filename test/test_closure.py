@@ -5,7 +5,8 @@ import pytest
 from studies import FLIGHT, Pool
 
 # the Gulfstream's cruise from 748 s on; the circuit from the air start to before the landing
-FLIGHTS = [('cruise_gv_acclip_rf01.csv.gz', 1000.0, 3600.0, {}),
+FLIGHTS = [pytest.param(('cruise_gv_acclip_rf01.csv.gz', 1000.0, 3600.0, {}),
+                        marks=pytest.mark.slow),
            ('cruise_gv_acclip_rf01.csv.gz', 9000.0, 3600.0, {}),
            ('uavcircuit_umn_thor_fl75.csv.gz', 3.0, 600.0,
             {'motion.recording.smoothing_s': 1.0}),
@@ -30,10 +31,7 @@ def study(folder, name, start_s, duration_s, more):
 @pytest.mark.parametrize('row', FLIGHTS, ids=lambda r: f'{r[0][:10]} {r[1]:g}')
 def test_recorded_flights_close(row, pool, shared_data):
     """The twin is the closure; the delays give at most metres (the paper's conclusion)."""
-    folder = shared_data / 'flights'
-    for other in FLIGHTS:
-        pool.submit(study(folder, *other))
-    errors, twin = pool.result(study(folder, *row))
+    errors, twin = pool.result(study(shared_data / 'flights', *row))
     closure = np.abs(twin.position[:, :2]).max()
     late = np.abs(errors.position - twin.position)[:, :2].max()
     print(f'\n{row[0]} from {row[1]:g} s, {row[2]:g} s: closure {closure:.2e} m (1e-2), '

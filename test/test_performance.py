@@ -35,6 +35,7 @@ def test_one_step_of_tuned_gyros_with_every_error(benchmark):
     assert us <= 120.0
 
 
+@pytest.mark.slow
 def test_an_hour_offline(benchmark):
     """One hour of motion 2 at 100 Hz in at most 60 s."""
     seconds = benchmark.hour_s()
