@@ -68,3 +68,14 @@ def test_signals_in_the_moment_of_a_change_of_handlers():
         said = process.stderr.read()
     assert process.returncode == 0 and said == '', said[-500:]
     assert sent > 5000
+
+
+def test_a_node_that_hangs_in_its_end_ends():
+    """Stuck in C with the interpreter locked, as Fast DDS may be: exit code as it was to be."""
+    code = ('import ctypes\n'
+            'from ins_sim.ros.last_resort import exit_within\n'
+            'exit_within(1, 3)\n'
+            'ctypes.PyDLL(None).sleep(60)\n')
+    start = time.monotonic()
+    assert subprocess.run([sys.executable, '-c', code], timeout=30.0).returncode == 3
+    assert 1.0 <= time.monotonic() - start < 20.0

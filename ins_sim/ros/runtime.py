@@ -20,6 +20,8 @@ EXIT_FAULT = 3
 EXIT_CONSUMER = 4
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 POLL_S = 0.2
+# what a node takes to leave the graph is a tenth of it
+END_S = 5
 
 
 class Stop:
@@ -71,6 +73,8 @@ def node_main(load, args=None, **more):
     try:
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
+
+        from .last_resort import exit_within
         node_class = load()
     except ImportError as error:
         print(f'cannot import ROS 2: {error}; source a ROS 2 Jazzy or install ins_sim[ros]',
@@ -80,6 +84,7 @@ def node_main(load, args=None, **more):
         return stop.code
     warnings.showwarning = lambda sentence, *_: rclpy.logging.get_logger(
         node_class.NAME).warning(str(sentence))
+    node = None
     try:
         rclpy.init(args=args, signal_handler_options=rclpy.SignalHandlerOptions.NO)
         node = node_class(stop=stop, **more)
@@ -98,6 +103,8 @@ def node_main(load, args=None, **more):
         gc.freeze()
         getattr(node, 'run', _spin)(executor, stop)
         executor.shutdown()
+    exit_within(END_S, stop.code)
+    if node is not None:
         node.destroy_node()
     deafen()
     rclpy.try_shutdown()

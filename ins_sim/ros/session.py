@@ -103,6 +103,11 @@ class Session:
         return f'{name} ended with exit code {code}: {lines[-1] if lines else "it said nothing"}'
 
     def __exit__(self, *exception):
+        # first, for the reason of last_resort: others that vanish meanwhile could hold it up
+        if self._node is not None:
+            self._node.destroy_node()
+        if self._context is not None:
+            self._context.try_shutdown()
         for process in self._processes.values():
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
@@ -114,10 +119,6 @@ class Session:
                 process.wait()
         if self._writer is not None:
             self._writer.discard()
-        if self._node is not None:
-            self._node.destroy_node()
-        if self._context is not None:
-            self._context.try_shutdown()
         for number, handler in self._before.items():
             signal.signal(number, handler)
         if self._interrupted and not any(exception):
