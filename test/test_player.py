@@ -9,7 +9,7 @@ from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
-from live import Chain, Listener
+from live import Chain, Listener, REPAIR_S
 import numpy as np
 import pytest
 from talker import Talker
@@ -81,7 +81,7 @@ def test_played_and_recorded_again(chain, tmp_path):
     text = chain.text(player)
     assert '/no name is not played: Invalid topic name' in text
     assert '/unknown is not played: ' in text and 'played 222 messages on 3 topics' in text
-    time.sleep(0.3)
+    time.sleep(REPAIR_S)
     end(chain, recorder)
     before, after = contents(path), contents(tmp_path / 'again')
     assert after['/robot/imu'] == before['/imu']
@@ -141,7 +141,7 @@ def original(chain, tmp_path):
     nodes = [chain.start(n, {**PARAMETERS, **LOCK_STEP})
              for n in ('motion_generator', 'imu_sensor', 'strapdown')]
     assert nodes[0].wait(60.0) == 0, chain.text(nodes[0])
-    time.sleep(0.3)
+    time.sleep(REPAIR_S)
     end(chain, recorder, *nodes[1:])
     return path
 
@@ -163,13 +163,13 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
         player = chain.run('player', graph.play_command(
             path, replay, ['--lock-step', 'strapdown', 'recorder'], 'left'))
         assert player.wait(60.0) == 0, chain.text(player)
-        time.sleep(0.3)
+        texts = [chain.text(p) for p in started]
+        time.sleep(REPAIR_S)
         end(chain, recorder, *started)
         after = contents(again)
         for name in OUTPUTS:
             assert len(after['/left/' + name]) == 501
             assert after['/left/' + name] == before['/' + name]
-        texts = [chain.text(p) for p in started]
         assert not any('WARN' in text for text in texts), texts
 
 

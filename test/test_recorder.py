@@ -91,7 +91,7 @@ def test_all_topics_in_lock_step(chain, tmp_path):
     recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
     started = [chain.start(n, parameters) for n in ('strapdown', 'imu_sensor', 'motion_generator')]
     assert started[-1].wait(60.0) == 0, chain.text(started[-1])
-    time.sleep(0.3)
+    time.sleep(REPAIR_S)
     said = end(chain, recorder)
     for topic in topics.DATA:
         assert said['/' + topic.name][1] == 201, said
