@@ -20,7 +20,7 @@ EXIT_FAULT = 3
 EXIT_CONSUMER = 4
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 POLL_S = 0.2
-# what a node takes to leave the graph is a tenth of it
+# far longer than a node takes to leave the graph
 END_S = 5
 
 
