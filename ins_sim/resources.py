@@ -47,6 +47,11 @@ def launch(name):
     return _find('launch', name, '.launch.py')
 
 
+def middleware_profile(name):
+    """Return the path of the profile of a middleware, such as 'fastdds'."""
+    return _find('config', name, '.xml')
+
+
 def _find(folder, name, suffix):
     for directory in share_directories():
         path = directory / folder / f'{name}{suffix}'

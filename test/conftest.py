@@ -5,11 +5,14 @@ import os
 from pathlib import Path
 import tempfile
 
+from ins_sim.ros.repairs import use_profile
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# Before anything imports rclpy: no test talks to another machine, and setters check types.
+# Before anything imports rclpy: no test talks to another machine, setters check types, and what
+# a test publishes is repaired as soon as what a node does.
+use_profile()
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 

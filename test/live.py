@@ -14,10 +14,6 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / 'benchmarks'))
 
 
-# by then Fast DDS has sent again what a transport dropped: its heartbeats are 3 s apart
-REPAIR_S = 3.5
-
-
 class Chain:
     """Node processes of one ROS domain; ``texts()`` ends them and gives what they wrote."""
 

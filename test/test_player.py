@@ -2,14 +2,13 @@
 
 import re
 import signal
-import time
 
 from ins_sim import graph
 from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
-from live import Chain, Listener, REPAIR_S
+from live import Chain, Listener
 import numpy as np
 import pytest
 from talker import Talker
@@ -81,7 +80,6 @@ def test_played_and_recorded_again(chain, tmp_path):
     text = chain.text(player)
     assert '/no name is not played: Invalid topic name' in text
     assert '/unknown is not played: ' in text and 'played 222 messages on 3 topics' in text
-    time.sleep(REPAIR_S)
     end(chain, recorder)
     before, after = contents(path), contents(tmp_path / 'again')
     assert after['/robot/imu'] == before['/imu']
@@ -141,7 +139,6 @@ def original(chain, tmp_path):
     nodes = [chain.start(n, {**PARAMETERS, **LOCK_STEP})
              for n in ('motion_generator', 'imu_sensor', 'strapdown')]
     assert nodes[0].wait(60.0) == 0, chain.text(nodes[0])
-    time.sleep(REPAIR_S)
     end(chain, recorder, *nodes[1:])
     return path
 
@@ -164,7 +161,6 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
             path, replay, ['--lock-step', 'strapdown', 'recorder'], 'left'))
         assert player.wait(60.0) == 0, chain.text(player)
         texts = [chain.text(p) for p in started]
-        time.sleep(REPAIR_S)
         end(chain, recorder, *started)
         after = contents(again)
         for name in OUTPUTS:

@@ -8,7 +8,7 @@ from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import define
 from ins_sim.cli.main import main
-from live import Chain, Listener, REPAIR_S
+from live import Chain, Listener
 import pytest
 from talker import Talker
 
@@ -70,7 +70,6 @@ def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path)
         listener.poll_until(lambda: started[0].poll() is not None)
         assert started[0].returncode == 0, chain.text(started[0])
         listener.poll_until(lambda: all(len(got) == 501 for got in listener.raw.values()))
-        time.sleep(REPAIR_S)
     finally:
         listener.close()
     said = end(chain, recorder)
@@ -91,7 +90,6 @@ def test_all_topics_in_lock_step(chain, tmp_path):
     recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
     started = [chain.start(n, parameters) for n in ('strapdown', 'imu_sensor', 'motion_generator')]
     assert started[-1].wait(60.0) == 0, chain.text(started[-1])
-    time.sleep(REPAIR_S)
     said = end(chain, recorder)
     for topic in topics.DATA:
         assert said['/' + topic.name][1] == 201, said

@@ -10,12 +10,14 @@ from ins_sim.messages.cdr import SECOND, Writer
 from . import qos
 from .gaps import Gaps
 from .queue import HandQueue
+from .repairs import REPAIR_S
 from .run_clock import RunClock, stamped
 
 BATCH = 200
 FLUSH_S = 1.0
 # publishers that go on may not hold up the end
 FINISH_S = 2.0
+NAP_S = 0.002
 # messages without a stamp that wait for the first stamp of the run
 WAITING = 1000
 # by which of them a recorder answers in lock-step: the first that it records
@@ -196,8 +198,11 @@ class BagRecorder:
             self._sent_ns = stamp_ns
 
     def finish(self):
-        """Take what is left in the queues and write all there is, but leave the bag open."""
-        end = time.monotonic() + FINISH_S
-        while self.poll() and time.monotonic() < end:
+        """Take what is on its way or in the queues, write all there is, leave the bag open."""
+        repaired = time.monotonic() + REPAIR_S
+        while time.monotonic() < repaired:
+            if not self.poll():
+                time.sleep(NAP_S)
+        while self.poll() and time.monotonic() < repaired + FINISH_S:
             pass
         self._write_waiting()

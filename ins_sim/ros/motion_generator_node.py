@@ -126,14 +126,6 @@ class MotionGeneratorNode(Node):
         self._announce('finished')
         self.get_logger().info(f'finished after {self._next} samples')
         if self.settings.exit_at_end:
-            # what has left this process only counts once the readers have it; in lock-step the
-            # consumers have said so, unless one of them fell silent before the last sample
-            if not self._lock:
-                qos.drain((self._status, *self._publishers), 1.5)
-            elif self._lock.slowest < self._source.count - 1:
-                qos.drain(self._publishers, qos.REPAIR_S)
-            else:
-                qos.drain((self._status,), 0.3)
             stop.request()
 
     def _on_pause(self, request, response):

@@ -7,7 +7,6 @@ import time
 from ins_sim.bags import qos as bag_qos
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader, SECOND, stamp_of
-from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
@@ -97,9 +96,6 @@ class PlayerNode(Node):
             self.monitor.fault(str(error), fatal=True)
             stop.request(EXIT_FAULT)
         if not stop:
-            # what has left this process only counts once the readers have it
-            for publisher in self._data_publishers:
-                publisher.wait_for_all_acked(Duration(seconds=0.3))
             stop.request()
         self._playing.close()
         self.get_logger().info(f'played {self.monitor.sent} messages on {len(self._publish)} '

@@ -1,14 +1,9 @@
 """Quality of service: one profile for data, one for what late joiners must see."""
 
-import time
-
 from ins_sim.messages import topics
-from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 ACK_DEPTH = 1000
-# longer than the heartbeats of Fast DDS are apart
-REPAIR_S = 4.0
 LATCHING = DurabilityPolicy.TRANSIENT_LOCAL
 
 
@@ -24,17 +19,6 @@ def latched():
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1,
                       reliability=ReliabilityPolicy.RELIABLE,
                       durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-def drain(publishers, most_s):
-    """
-    Wait until the readers of publishers have all that was sent, at most most_s together.
-
-    What a transport drops is sent again only after a heartbeat, if the publisher still lives.
-    """
-    end = time.monotonic() + most_s
-    for publisher in publishers:
-        publisher.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic())))
 
 
 def message_class(topic):

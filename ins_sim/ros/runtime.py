@@ -14,6 +14,8 @@ import signal
 import sys
 import warnings
 
+from .repairs import drain, use_profile
+
 EXIT_OK = 0
 EXIT_PARAMETERS = 2
 EXIT_FAULT = 3
@@ -70,6 +72,7 @@ def node_main(load, args=None, **more):
     """
     stop = Stop()
     stop.install()
+    use_profile()
     try:
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
@@ -105,6 +108,8 @@ def node_main(load, args=None, **more):
         executor.shutdown()
     exit_within(END_S, stop.code)
     if node is not None:
+        # what has left this process only counts once the readers have it
+        drain(node.publishers)
         node.destroy_node()
     deafen()
     rclpy.try_shutdown()

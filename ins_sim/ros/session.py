@@ -9,6 +9,8 @@ from ins_sim import graph, parameter_files
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 
+from .repairs import use_profile
+
 RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -49,6 +51,7 @@ class Session:
         import rclpy
 
         from .bag_recorder import BagRecorder
+        use_profile()
         os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         self._context = rclpy.Context()
         # Ctrl-C belongs to the caller, as KeyboardInterrupt
