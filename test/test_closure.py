@@ -5,9 +5,8 @@ import pytest
 from studies import FLIGHT, Pool
 
 # the Gulfstream's cruise from 748 s on; the circuit from the air start to before the landing
-FLIGHTS = [pytest.param(('cruise_gv_acclip_rf01.csv.gz', 1000.0, 3600.0, {}),
-                        marks=pytest.mark.slow),
-           ('cruise_gv_acclip_rf01.csv.gz', 9000.0, 3600.0, {}),
+FLIGHTS = [*(pytest.param(('cruise_gv_acclip_rf01.csv.gz', start_s, 3600.0, {}),
+                          marks=pytest.mark.slow) for start_s in (1000.0, 9000.0)),
            ('uavcircuit_umn_thor_fl75.csv.gz', 3.0, 600.0,
             {'motion.recording.smoothing_s': 1.0}),
            ('uavaero_proto_flt09.csv', 3.0, 25.0, {'motion.recording.on_gap': 'cut'})]
