@@ -1,6 +1,5 @@
 """Six live nodes in lock-step, recorded, are the bag of ``simulate --aided --bag``."""
 
-
 from aided_runs import command
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics, velocity_record

@@ -1,6 +1,5 @@
 """A live lock-step run, recorded, is the bag that ``simulate --bag`` writes."""
 
-
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
 from ins_sim.core.presets import preset

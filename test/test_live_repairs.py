@@ -12,7 +12,6 @@ from live import Chain
 import pytest
 
 pytest.importorskip('rclpy')
-live = pytest.mark.live
 
 LENGTH_S = 4
 RATE_HZ = 1000
@@ -37,7 +36,7 @@ def test_a_profile_that_the_user_has_named_stays(monkeypatch):
     assert os.path.isfile(os.environ[VARIABLE])
 
 
-@live
+@pytest.mark.live
 def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
     """
     A recorder that is held up until the generator would have ended gets everything.

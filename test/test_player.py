@@ -160,12 +160,12 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
         player = chain.run('player', graph.play_command(
             path, replay, ['--lock-step', 'strapdown', 'recorder'], 'left'))
         assert player.wait(60.0) == 0, chain.text(player)
-        texts = [chain.text(p) for p in started]
         end(chain, recorder, *started)
         after = contents(again)
         for name in OUTPUTS:
             assert len(after['/left/' + name]) == 501
             assert after['/left/' + name] == before['/' + name]
+        texts = [chain.text(p) for p in started]
         assert not any('WARN' in text for text in texts), texts
 
 

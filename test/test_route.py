@@ -257,20 +257,20 @@ def test_evaluation_is_fast():
 
 
 @settings(deadline=None, max_examples=40)
-@given(st.floats(-60.0, 60.0), st.floats(-180.0, 180.0), st.floats(0.0, 360.0),
-       st.lists(st.floats(-140.0, 140.0), min_size=1, max_size=3), st.floats(0.0, 20.0),
+@given(st.floats(-70.0, 70.0), st.floats(-180.0, 180.0), st.floats(0.0, 360.0),
+       st.lists(st.floats(-150.0, 150.0), min_size=1, max_size=3), st.floats(0.0, 20.0),
        st.floats(0.0, 360.0), st.floats(0.5, 3.0))
 def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     """
     Random corners, winds and rates: every leg a great circle, the last point reached.
 
-    The slowest turn has a radius of up to 25 km.  By 140 deg, and 10 more where meridians meet, it
-    starts r tan(75 deg) = 94 km before its point: two fit on a leg of 222 km.
+    The slowest turn has a radius of up to 25 km.  By 150 deg, and 10 more where meridians meet, it
+    starts r tan(80 deg) = 142 km before its point: two fit on a leg of 333 km.
     """
     lats, lons = [lat], [lon]
     for turn in (*turns, 0.0):
-        lats.append(lats[-1] + 2.0 * math.cos(math.radians(course)))
-        lons.append(lons[-1] + 2.0 * math.sin(math.radians(course))
+        lats.append(lats[-1] + 3.0 * math.cos(math.radians(course)))
+        lons.append(lons[-1] + 3.0 * math.sin(math.radians(course))
                     / math.cos(math.radians(lats[-1])))
         course += turn
     motion = route({'points.latitude_deg': tuple(lats),

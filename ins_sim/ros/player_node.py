@@ -95,8 +95,7 @@ class PlayerNode(Node):
         except ValueError as error:
             self.monitor.fault(str(error), fatal=True)
             stop.request(EXIT_FAULT)
-        if not stop:
-            stop.request()
+        stop.request()
         self._playing.close()
         self.get_logger().info(f'played {self.monitor.sent} messages on {len(self._publish)} '
                                'topics')
