@@ -122,6 +122,11 @@ class Listener:
             self.poll()
             time.sleep(0.02)
 
+    def poll_for(self, length_s):
+        """Take what comes in this time: longer than a dropped message takes to come."""
+        end = time.monotonic() + length_s
+        self.poll_until(lambda: time.monotonic() > end)
+
     def spin_until(self, condition, timeout_s=30.0):
         """Serve the node's ordinary subscriptions and clients until the condition holds."""
         from rclpy.executors import SingleThreadedExecutor

@@ -25,7 +25,8 @@ class Stream:
     def __init__(self, domain, folder, heard, motion=None, published=(topics.TRUTH_ODOMETRY,)):
         from ins_sim.ros.qos import publisher
         self.chain = Chain(domain, folder)
-        self.listener = Listener(domain, (ACK, *heard))
+        # a node that knows the reader of its answers, made last, knows all readers
+        self.listener = Listener(domain, (*heard, ACK))
         self.heard, self.raw = self.listener.heard, self.listener.raw
         self.seen = self.listener.diagnostics()
         self._out = {t: (t.writer() if t.type_name in LAYOUTS else None,
@@ -80,6 +81,11 @@ class Stream:
     def wait_ack(self, t_ns, timeout_s=30.0):
         """Wait until a stamp is acknowledged."""
         self.listener.poll_until(lambda: t_ns in self.heard[ACK.name], timeout_s)
+
+    def wait_counts(self, counts):
+        """Wait until so many stamps are heard of each Topic: none comes with another."""
+        self.listener.poll_until(lambda: all(
+            len(self.heard[topic.name]) >= count for topic, count in counts.items()))
 
     def wait_diagnosis(self, part, timeout_s=30.0):
         """Wait until /diagnostics says this."""

@@ -35,7 +35,8 @@ def lock_step(domain, folder, order=FORWARD, values=VALUES, load=0, more=(), war
         generator = started['motion_generator']
         listener.poll_until(lambda: generator.poll() is not None, 120.0)
         end_ns = round(values['duration_s'] * 1e9) - round(1e9 / values['rate_hz'])
-        listener.poll_until(lambda: max(listener.heard['ins/error/drift'], default=0) >= end_ns)
+        listener.poll_until(lambda: all(
+            max(stamps, default=0) >= end_ns for stamps in listener.heard.values()))
         codes = chain.end()
         assert set(codes.values()) == {0}, [chain.text(p) for p in started.values()]
         texts = [chain.text(process) for process in started.values()]

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import time
 
 from ins_sim.messages import topics
 from live import Chain, Listener
@@ -87,7 +86,7 @@ def test_namespace_and_remapping(chain, ros_domain):
             generator = chain.start(node, parameters, rules)
         listener.poll_until(lambda: generator.poll() is not None)
         assert generator.returncode == 0
-        assert {len(s) for s in listener.heard.values()} == {301}
+        listener.poll_until(lambda: {len(s) for s in listener.heard.values()} == {301})
     finally:
         listener.close()
 
@@ -112,14 +111,12 @@ def test_pause_step_reset_and_status(chain, ros_domain):
         listener.poll_until(lambda: len(heard) > 10)
         pause = SetBool.Request(data=True)
         assert listener.call(SetBool, '/motion_generator/pause', pause).success
-        time.sleep(0.5)
-        listener.poll()
+        listener.poll_for(0.5)
         count = len(heard)
         for _ in range(3):
             assert listener.call(Trigger, '/motion_generator/step').success
         listener.poll_until(lambda: len(heard) == count + 3)
-        time.sleep(0.3)
-        listener.poll()
+        listener.poll_for(0.5)
         assert len(heard) == count + 3
         listener.call(Trigger, '/motion_generator/reset')
         listener.call(Trigger, '/motion_generator/step')
@@ -141,7 +138,7 @@ def test_clock_and_use_sim_time(chain, ros_domain):
             '[strapdown, listener]'})
         listener.poll_until(lambda: generator.poll() is not None)
         assert generator.returncode == 0
-        assert max(listener.heard['/clock']) == 1700000003 * 10**9
+        listener.poll_until(lambda: max(listener.heard['/clock']) == 1700000003 * 10**9)
     finally:
         listener.close()
 
