@@ -78,7 +78,8 @@ def test_exact_increments_at_large_angles():
 
 def test_free_vertical_channel_diverges_and_damped_does_not():
     """Free: exp(t sqrt(2 g / R)), time constant 570 s; damped: the reference wins."""
-    start = {'motion.kind': 'static', 'initial.position_error_m': [0.0, 0.0, 10.0]}
+    start = {'motion.kind': 'static', 'rate_hz': 20.0,
+             'initial.position_error_m': [0.0, 0.0, 10.0]}
     free = simulate(settings(start, duration_s=1200.0, vertical__channel='free'), False).errors
     growth = free.position[-1, 2] / 10.0
     expected = np.cosh(1200.0 * np.sqrt(2 * 9.8156 / 6.3782e6))
