@@ -110,6 +110,26 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
         stream.close()
 
 
+def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path):
+    """In lock-step the generator waits for the answer, and /clock with it."""
+    stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
+    try:
+        node = stream.chain.start('velocity_meter', {**VALUES, 'use_sim_time': True})
+        stream.begin(node)
+        stamps = np.arange(0, 111) * DT
+        stream.send(stamps[1:])
+        stream.wait_ack(99 * DT)
+        # long after the moment that it waits within the callback
+        stream.listener.poll_for(0.3)
+        assert max(stream.heard['sim/ack']) == 99 * DT
+        stream.send(stamps, topics.INS_ODOMETRY, stream.blocks(stamps)[topics.TRUTH_ODOMETRY])
+        stream.wait_ack(110 * DT, 4.0)
+        stream.wait_counts({Record: 1})
+        assert [f.valid for f in records(stream)] == [True]
+    finally:
+        stream.close()
+
+
 def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
     """Calm water: a record of each window, no velocity; /diagnostics give the last reason."""
     from diagnostic_msgs.msg import DiagnosticArray

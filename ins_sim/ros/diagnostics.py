@@ -5,7 +5,8 @@ import re
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from rclpy.clock import Clock, ClockType
+
+from .wall_timer import wall_timer
 
 RECENT_S = 5.0
 
@@ -28,8 +29,7 @@ class Monitor:
         self._stale, self._told = False, None
         self._more, self._standing = [], set()
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        # a wall timer: simulated time may stand still, and that is worth reporting
-        node.create_timer(1.0, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        wall_timer(node, 1.0, self.publish)
 
     def add(self, describe):
         """

@@ -2,6 +2,8 @@
 
 import time
 
+from .wall_timer import wall_timer
+
 RETRY_S = 0.005
 PATIENCE_S = 0.001
 NAP_S = 5e-5
@@ -21,7 +23,7 @@ class Patience:
         self._node, self._waiting, self._progress = node, waiting, progress
         self._take, self._missed, self._done = take, missed, done
         self._since = self._mark = None
-        self._retry = node.create_timer(RETRY_S, self._on_retry)
+        self._retry = wall_timer(node, RETRY_S, self._on_retry)
         self._retry.cancel()
 
     def wait(self, patience_s=PATIENCE_S):
