@@ -18,7 +18,10 @@ class MatchedStreams:
     processed_ns is the motion time of the last IMU sample that was used, or None.
 
     The push methods return a list of outputs and raise StreamFault; the first IMU sample may be
-    repeated and is answered again.
+    repeated and is answered again.  Nothing depends on which stream is ahead.  A gap behind
+    samples that still wait is no fault of the push, for its turn comes after theirs: ``faults``
+    collects these, and the owner empties it.  When one stream jumps back the samples that the
+    other brings of the time before are not matched.
     """
 
     def __init__(self, settings):
@@ -26,15 +29,27 @@ class MatchedStreams:
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._dt_ns = period_ns(settings.rate_hz)
         self._truth = deque(maxlen=settings.topics.depth)
-        self._joined_ns = None
+        self._joined_ns = self._truth_ns = None
+        # jumps back of the IMU less those of the truth that it must follow
+        self._lead = 0
+        self.faults = []
         self.reset()
 
     def reset(self):
         """Forget the solution; the next IMU sample starts anew.  Truth is no state: it stays."""
+        self._imu, self._gaps = deque(), {}
+        self._last_ns = None
+        self._start_anew()
+
+    def rejoin(self):
+        """Start anew as if both streams began now: one of them has not brought what it should."""
+        self._lead, self._truth_ns = 0, None
+        self._truth.clear()
+        self.reset()
+
+    def _start_anew(self):
         self.begin()
-        self._imu = deque()
-        self._last_ns = self.processed_ns = None
-        self._repeat = None
+        self.processed_ns = self._repeat = None
         self._steps = 0
 
     @property
@@ -51,18 +66,31 @@ class MatchedStreams:
         check_finite('imu', t_ns, omega, f)
         if self._repeat is not None and t_ns == self._repeat[0]:
             return self._repeat[1]
-        if self._last_ns is not None and t_ns < self._last_ns and self._truth \
-                and self._truth[0][0] > t_ns:
-            # the truth that is known belongs to the time before the jump
-            self._truth.clear()
         if self._last_ns is not None and not (t_ns == self._last_ns and self._steps <= 1):
-            check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
+            self._check_interval(t_ns)
             self._repeat = None
         elif t_ns == self._last_ns:
             return []
         self._last_ns = t_ns
         self._imu.append((t_ns, omega, f))
         return self.match()
+
+    def _check_interval(self, t_ns):
+        try:
+            check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
+        except StreamFault as fault:
+            if t_ns < self._last_ns:
+                self._jump_back(t_ns)
+            if not self._imu or t_ns <= self._last_ns:
+                raise
+            self._gaps[t_ns] = fault
+
+    def _jump_back(self, t_ns):
+        """Let the IMU be at t_ns again, where the truth is already or has still to come to."""
+        if self._lead < 0 or self._truth_ns is not None and self._truth_ns > t_ns:
+            self._lead += 1
+        if self._lead > 0:
+            self._truth.clear()
 
     def push_truth(self, t_ns, r_m, q_mb, v_b):
         """
@@ -73,10 +101,15 @@ class MatchedStreams:
         """
         check_finite('truth', t_ns, r_m, q_mb, v_b)
         check_unit('truth', t_ns, q_mb)
-        if self._truth and t_ns <= self._truth[-1][0]:
-            if t_ns == self._truth[-1][0]:
-                return []
+        if t_ns == self._truth_ns:
+            return []
+        if self._truth_ns is not None and t_ns < self._truth_ns:
             self._truth.clear()
+            if self._lead > 0 or self._last_ns is not None and self._last_ns > t_ns:
+                self._lead -= 1
+        self._truth_ns = t_ns
+        if self._lead > 0:
+            return []
         if not self._truth:
             self._joined_ns = t_ns
         self._truth.append((t_ns, r_m, q_mb, v_b))
@@ -86,32 +119,38 @@ class MatchedStreams:
         """Use what can be used; return the outputs."""
         outputs = []
         imu, truth = self._imu, self._truth
-        while imu and truth:
+        while imu and truth and not self._lead:
             t_ns, omega, f = imu[0]
             while len(truth) > 1 and truth[0][0] < t_ns:
                 truth.popleft()
             if truth[0][0] < t_ns:
                 break
+            if t_ns in self._gaps:
+                self._end(self._gaps.pop(t_ns))
             if truth[0][0] > t_ns:
                 imu.popleft()
-                if not self.navigates and truth[0][0] == self._joined_ns:
-                    # the streams were joined at different times: pass over what came before
-                    continue
-                raise StreamFault(
-                    f'imu at {seconds(t_ns)} has no truth of the same stamp, the nearest is '
-                    f'{seconds(truth[0][0])}; expected a truth rate that is a multiple of the '
-                    'IMU rate, both from the same start (imu_time: nominal for stamps with jitter '
-                    'or latency)', restart=True)
+                # else the streams were joined at different times: pass over what came before
+                if self.navigates or truth[0][0] != self._joined_ns:
+                    self._end(StreamFault(
+                        f'imu at {seconds(t_ns)} has no truth of the same stamp, the nearest is '
+                        f'{seconds(truth[0][0])}; expected a truth rate that is a multiple of the '
+                        'IMU rate, both from the same start (imu_time: nominal for stamps with '
+                        'jitter or latency)', restart=True))
+                continue
             if self.held(t_ns):
                 break
             imu.popleft()
             outputs.extend(self._use(t_ns, omega, f, self._frame.geodetic_one(*truth[0][1:])))
         return outputs
 
+    def _end(self, fault):
+        self.faults.append(fault)
+        self._start_anew()
+
     def _use(self, t_ns, omega, f, truth):
         self.processed_ns = t_ns
         output = self.advance(t_ns, omega, f, truth)
-        if output and self._steps == 0:
+        if output and self._steps == 0 and t_ns == self._last_ns:
             self._repeat = (t_ns, output)
         self._steps += bool(output)
         return output

@@ -74,7 +74,7 @@ class NavigatorNode(StageNode):
         """Say what has not come, and go on without."""
         self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected the '
                    'truth of every reading')
-        self.stage.reset()
+        self.stage.rejoin()
 
     def _on_matched(self):
         self._rates.clear()
@@ -82,7 +82,9 @@ class NavigatorNode(StageNode):
             self.seen(self._newest_ns)
 
     def publish(self, outputs):
-        """Publish every output_every-th of the stage's outputs."""
+        """Publish every output_every-th of the stage's outputs, and report what ended them."""
+        while self.stage.faults:
+            self.fault(str(self.stage.faults.pop(0)))
         for t_ns, *output in outputs:
             if self._first_ns is None or t_ns < self._first_ns:
                 self._first_ns = t_ns
