@@ -167,6 +167,29 @@ def test_a_jump_back_begins_anew_whoever_jumps_first():
         assert outputs == expected
 
 
+def test_fixes_of_the_run_before_are_passed_over():
+    """They come when the samples have jumped back already, and none is taken for the new run's."""
+    _, _, streams = scene()
+    expected, _, _ = run_stream(streams, np.random.default_rng(0))
+    late = {METER: 1, GNSS: 2}
+    stream, faults = AidedStream(scene()[0].aided_navigator), []
+    for name, event in mixed({name: events[:len(events) - late.get(name, 0)]
+                              for name, events in streams.items()}, np.random.default_rng(1)):
+        push(stream, name, event, faults)
+    outputs = []
+    for name in ('push_imu', 'push_truth'):
+        outputs += push(stream, name, streams[name][0], faults)
+    for name, count in late.items():
+        for event in streams[name][-count:]:
+            assert push(stream, name, event, faults) == []
+    rest = {name: events if name in late else events[1:] for name, events in streams.items()}
+    for name, event in mixed(rest, np.random.default_rng(2)):
+        outputs += push(stream, name, event, faults)
+    assert [fault.split(';')[0] for fault in faults] == [
+        'imu jumps back from 12.000000000 s to 0.000000000 s']
+    assert outputs == expected
+
+
 def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
     """Without its fixes samples wait; told to go on, they go; a late fix still counts."""
     chosen, _, streams = scene()

@@ -7,12 +7,15 @@ instant, valid or not.
 """
 
 from bisect import insort
+from collections import defaultdict
+import math
 
 from .aided_navigator import AidedNavigator, GNSS, METER
 from .errors import level_errors
 from .fix_checks import check_ahead, check_gnss, check_velocity
 from .instants import period_ns
 from .matching import MatchedStreams
+from .runs import Runs
 
 # further than lock-step or a busy machine lets the IMU lag behind the instruments
 AHEAD_NS = 60_000_000_000
@@ -28,7 +31,8 @@ class FixSchedule:
         periods = {METER: (window_ns, window_ns, round(1e6 * settings.window.latency_ms)),
                    GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
-        self._newest, self._jumped = {}, set()
+        # runs: the samples are the first, a source the second
+        self._newest, self._runs = {}, defaultdict(Runs)
         self.silent = set()
         self.begin()
 
@@ -44,26 +48,40 @@ class FixSchedule:
             first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
             due_ns = (t_ns - latency_ms) // step_ns * step_ns
             if due_ns >= first_ns and source not in self.silent and (
-                    source not in self._newest or self._newest[source] < due_ns):
+                    self._runs[source].lead or self._newest.get(source, -math.inf) < due_ns):
                 late.append(source)
         return late
 
-    def came(self, source, t_ns):
-        """Take note of a fix, valid or not; return whether it is not a repeated one."""
-        self.silent.discard(source)
-        newest_ns = self._newest.get(source)
-        if newest_ns is not None and t_ns < newest_ns:
-            self._jumped.add(source)
-        self._newest[source] = t_ns
-        return t_ns != newest_ns
+    def of_the_past(self, source, t_ns):
+        """Return whether a fix goes on with the run before that of the samples."""
+        return self._runs[source].lead > 0 and t_ns > self._newest[source]
 
-    def jump_back(self):
-        """Follow the samples back to an earlier time; return the sources still to follow."""
-        behind = set(self._newest) - self._jumped
-        for source in behind:
-            del self._newest[source]
-        self._jumped.clear()
-        return behind
+    def came(self, source, t_ns, sample_ns):
+        """
+        Take note of a fix, valid or not; return whether it is not a repeated one.
+
+        sample_ns: where the samples are, or None.
+        """
+        self.silent.discard(source)
+        newest_ns, runs = self._newest.get(source), self._runs[source]
+        self._newest[source] = t_ns
+        # the instant of the last fix again: that of the new run if the samples have begun one
+        if t_ns == newest_ns and runs.lead <= 0:
+            return False
+        if newest_ns is not None and t_ns <= newest_ns:
+            runs.second_jumps(t_ns, sample_ns)
+        return True
+
+    def jump_back(self, t_ns):
+        """Follow the samples back to t_ns; return the sources still to follow."""
+        for source, newest_ns in self._newest.items():
+            self._runs[source].first_jumps(t_ns, newest_ns)
+        return {source for source, runs in self._runs.items() if runs.lead > 0}
+
+    def give_up(self, source):
+        """Wait for a source no longer, until it delivers again."""
+        self.silent.add(source)
+        self._runs.pop(source, None)
 
 
 class AidedStream(MatchedStreams):
@@ -101,13 +119,13 @@ class AidedStream(MatchedStreams):
 
     def go_on_without(self, source):
         """Wait no longer for a source until it delivers again; return the outputs."""
-        self._schedule.silent.add(source)
+        self._schedule.give_up(source)
         return self.match()
 
     def push_imu(self, t_ns, omega, f):
         """Take the IMU sample of stamp t_ns (motion time)."""
         if self._last_ns is not None and t_ns < self._last_ns:
-            behind = self._schedule.jump_back()
+            behind = self._schedule.jump_back(t_ns)
             self._fixes = [entry for entry in self._fixes if entry[1] not in behind]
         return super().push_imu(t_ns, omega, f)
 
@@ -119,10 +137,12 @@ class AidedStream(MatchedStreams):
         match() then goes on.  A repeated one is passed over, and one that jumps back begins a new
         history of its source.
         """
+        if self._schedule.of_the_past(source, fix.t_ns):
+            return []
         if self._last_ns is not None:
             # before it counts as the newest of its source
             check_ahead(source, fix.t_ns, self._last_ns, AHEAD_NS)
-        if not self._schedule.came(source, fix.t_ns):
+        if not self._schedule.came(source, fix.t_ns, self._last_ns):
             return []
         self._fixes = [entry for entry in self._fixes
                        if entry[1] != source or entry[2].t_ns < fix.t_ns]

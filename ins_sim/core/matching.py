@@ -5,6 +5,7 @@ from collections import deque
 from .faults import check_finite, check_interval, check_unit, seconds, StreamFault
 from .instants import period_ns
 from .map_frame import MapFrame
+from .runs import Runs
 
 
 class MatchedStreams:
@@ -30,8 +31,8 @@ class MatchedStreams:
         self._dt_ns = period_ns(settings.rate_hz)
         self._truth = deque(maxlen=settings.topics.depth)
         self._joined_ns = self._truth_ns = None
-        # jumps back of the IMU less those of the truth that it must follow
-        self._lead = 0
+        # the IMU is the first of the two
+        self._runs = Runs()
         self.faults = []
         self.reset()
 
@@ -43,7 +44,7 @@ class MatchedStreams:
 
     def rejoin(self):
         """Start anew as if both streams began now: one of them has not brought what it should."""
-        self._lead, self._truth_ns = 0, None
+        self._runs, self._truth_ns = Runs(), None
         self._truth.clear()
         self.reset()
 
@@ -80,17 +81,12 @@ class MatchedStreams:
             check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
         except StreamFault as fault:
             if t_ns < self._last_ns:
-                self._jump_back(t_ns)
+                self._runs.first_jumps(t_ns, self._truth_ns)
+                if self._runs.lead > 0:
+                    self._truth.clear()
             if not self._imu or t_ns <= self._last_ns:
                 raise
             self._gaps[t_ns] = fault
-
-    def _jump_back(self, t_ns):
-        """Let the IMU be at t_ns again, where the truth is already or has still to come to."""
-        if self._lead < 0 or self._truth_ns is not None and self._truth_ns > t_ns:
-            self._lead += 1
-        if self._lead > 0:
-            self._truth.clear()
 
     def push_truth(self, t_ns, r_m, q_mb, v_b):
         """
@@ -105,10 +101,9 @@ class MatchedStreams:
             return []
         if self._truth_ns is not None and t_ns < self._truth_ns:
             self._truth.clear()
-            if self._lead > 0 or self._last_ns is not None and self._last_ns > t_ns:
-                self._lead -= 1
+            self._runs.second_jumps(t_ns, self._last_ns)
         self._truth_ns = t_ns
-        if self._lead > 0:
+        if self._runs.lead > 0:
             return []
         if not self._truth:
             self._joined_ns = t_ns
@@ -119,7 +114,7 @@ class MatchedStreams:
         """Use what can be used; return the outputs."""
         outputs = []
         imu, truth = self._imu, self._truth
-        while imu and truth and not self._lead:
+        while imu and truth and not self._runs.lead:
             t_ns, omega, f = imu[0]
             while len(truth) > 1 and truth[0][0] < t_ns:
                 truth.popleft()

@@ -11,6 +11,7 @@ import math
 from .faults import check_finite, check_interval, seconds, StreamFault
 from .fixes import VALID, VelocityFix
 from .instants import period_ns
+from .runs import Runs
 from .velocity_meter_checks import checked
 from .velocity_meter_fit import Reading
 from .velocity_meter_surrogate import sigmas, SurrogateWindows
@@ -56,12 +57,13 @@ class VelocityMeter:
             self._method = SignalWindows(settings, run)
         else:
             self._method = SurrogateWindows(settings, run)
+        self._truth_ns = None
+        self._forget_ins()
         self.reset()
 
     def reset(self):
-        """Forget the window that is open, those that wait, and what the INS said."""
-        self._last = self._last_ins_ns = None
-        self._ins = {}
+        """Forget the window that is open and those that wait.  What the INS said stays."""
+        self._last = None
         self._waiting = deque()
         self._repeatable = False
         self._open(None)
@@ -80,6 +82,11 @@ class VelocityMeter:
             raise StreamFault(f'truth at {seconds(t_ns)} lies between the cycles of rate_hz; '
                               f'expected whole periods of {self._dt_ns * 1e-9:.9g} s; the sample '
                               'was dropped', restart=False)
+        if self._truth_ns is not None and t_ns < self._truth_ns:
+            self._runs.first_jumps(t_ns, self._last_ins_ns)
+            if self._runs.lead > 0:
+                self._ins = {}
+        self._truth_ns = t_ns
         forward, left, up = v_b
         v = (self._cos * forward + self._sin * left, up, self._sin * forward - self._cos * left)
         if self._last is None:
@@ -101,8 +108,9 @@ class VelocityMeter:
         Take the body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
 
         Any rate will do, and a gap is none of the meter's faults; with attack_angle ``none``
-        nothing is done.  Raises StreamFault on NaN and backwards stamps; a repeated one is passed
-        over.
+        nothing is done.  Raises StreamFault on NaN.  A repeated stamp is passed over; one that
+        jumps back begins a new history, and it is the truth, which jumps back too, that is
+        reported.
         """
         if not self._waits:
             return []
@@ -110,9 +118,11 @@ class VelocityMeter:
         if self._last_ins_ns is not None and t_ns <= self._last_ins_ns:
             if t_ns == self._last_ins_ns:
                 return []
-            raise StreamFault(f'INS velocity jumps back from {seconds(self._last_ins_ns)} to '
-                              f'{seconds(t_ns)}; expected rising stamps', restart=True)
+            self._runs.second_jumps(t_ns, self._truth_ns)
+            self._ins = {}
         self._last_ins_ns = t_ns
+        if self._runs.lead > 0:
+            return []
         end_ns = -(-(t_ns - self._dt_ns // 2) // self._span_ns) * self._span_ns
         last = self._ins.get(end_ns, (0.0, 0.0, 0.0))
         self._ins[end_ns] = tuple(a + b for a, b in zip(last, v_b))
@@ -130,11 +140,13 @@ class VelocityMeter:
         fixes = [self._fix(index, why_not, total, *UNSEEN)
                  for index, why_not, total in self._waiting]
         self._waiting.clear()
+        if self._runs.lead:
+            self._forget_ins()
         return fixes
 
-    def restart_ins(self):
-        """Forget what the INS said: it begins anew at an earlier time, or at any."""
-        self._last_ins_ns, self._ins = None, {}
+    def _forget_ins(self):
+        # the truth is the first of the two
+        self._runs, self._last_ins_ns, self._ins = Runs(), None, {}
 
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """
@@ -203,7 +215,8 @@ class VelocityMeter:
         """Return VALID or why not, tan(alpha) and sideslip by the INS; None: not known yet."""
         if not self._waits:
             return VALID, 0.0, None
-        if self._last_ins_ns is None or self._last_ins_ns < end_ns - self._dt_ns // 2:
+        if self._runs.lead or self._last_ins_ns is None \
+                or self._last_ins_ns < end_ns - self._dt_ns // 2:
             return UNSEEN if self._last[0] >= end_ns + WAIT_NS else None
         if end_ns not in self._ins:
             return UNSEEN

@@ -6,7 +6,8 @@ import time
 from ins_sim.messages import topics
 
 REPEAT_S = 0.1
-SILENCE_S = 0.5
+# longer than a busy machine keeps a consumer from its core
+SILENCE_S = 2.0
 STARTING = -1
 
 

@@ -40,7 +40,7 @@ class VelocityMeterNode(StageNode):
         self._windows = self._invalid = self._heard = 0
         self._reason = ''
         self.monitor.add(self._describe)
-        self._newest_ns = self._ins_ns = None
+        self._newest_ns = None
         self._absent = False
         self._ins = None
         if self.settings.attack_angle == 'ins':
@@ -70,10 +70,6 @@ class VelocityMeterNode(StageNode):
             self._heard += 1
             sample = self.read(self._ins_reader, data)
             if sample is not None:
-                # a jump back is reported of the truth, which jumps too
-                if self._ins_ns is not None and sample[0] < self._ins_ns:
-                    self._meter.restart_ins()
-                self._ins_ns = sample[0]
                 self._publish(self.stage.add(self.push(self._meter.push_ins, sample)))
 
     def _miss_ins(self):
