@@ -51,7 +51,9 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
         listener.poll_until(lambda: all(12 * SECOND in h for h in listener.heard.values()))
         texts = [chain.text(process) for process in started.values()]
         assert set(chain.end().values()) == {0}, texts
-        warnings = [line for text in texts for line in text.splitlines() if 'WARN' in line]
+        # of a machine that stands still for a second the navigator says so
+        warnings = [line for text in texts for line in text.splitlines()
+                    if 'WARN' in line and 'waiting for a fix of' not in line]
         assert all('jumps back' in line for line in warnings), warnings
         assert len(warnings) == (0 if reset_ns is None else 5)
     finally:

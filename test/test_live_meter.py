@@ -103,6 +103,8 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
         stream.listener.poll_until(lambda: 4 * SECOND in stream.heard[Record.name], 4.0)
         stamps = np.arange(401, 511) * DT
         stream.send(stamps, topics.INS_ODOMETRY, stream.blocks(stamps)[topics.TRUTH_ODOMETRY])
+        # it is not waited for until it has come
+        stream.listener.poll_for(0.5)
         stream.send(np.arange(411, 511) * DT)
         stream.listener.poll_until(lambda: 5 * SECOND in stream.heard[Record.name])
         assert [f.valid for f in records(stream)] == [False] * 4 + [True]

@@ -130,7 +130,7 @@ def test_a_run_after_a_jump_back_is_whole(order):
                 found += meter.push_truth(*sample)
         else:
             found += meter.push_ins(int(t_ns[k]), ins_v_b[k].tolist())
-    assert not meter.waiting_for_ins
+    assert meter.waits_for_ns is None
     assert same(found[-5:], whole[:5]) and same(found[:-5], whole[:len(found) - 5])
 
 

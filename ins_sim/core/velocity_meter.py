@@ -131,9 +131,9 @@ class VelocityMeter:
         return self._complete()
 
     @property
-    def waiting_for_ins(self):
-        """Return whether a window is over to whose end the INS has not come."""
-        return bool(self._waiting)
+    def waits_for_ns(self):
+        """Return the end of the first window that is over and to which the INS has not come."""
+        return self._waiting[0][0] * self._dt_ns if self._waiting else None
 
     def give_up_ins(self):
         """Return the VelocityFixes, invalid, of the windows that wait for the INS."""

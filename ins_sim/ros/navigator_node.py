@@ -44,7 +44,7 @@ class NavigatorNode(StageNode):
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
         self._patience = Patience(self, lambda: self.stage.waiting,
                                   lambda: self.stage.processed_ns, self.take, self.miss,
-                                  self._on_matched)
+                                  self._settle)
 
     def instant(self, stamp_ns):
         """Return the instant of a reading by its stamp, motion time."""
@@ -76,7 +76,10 @@ class NavigatorNode(StageNode):
                    'truth of every reading')
         self.stage.rejoin()
 
-    def _on_matched(self):
+    def _settle(self):
+        if self.stage.waiting:
+            self.seen_so_far(self.stage.processed_ns)
+            return
         self._rates.clear()
         if self._newest_ns is not None:
             self.seen(self._newest_ns)

@@ -14,14 +14,15 @@ class Patience:
     """
     Waits while waiting() is true: here for a moment, then from a timer of the node.
 
-    take() takes what has come; done() follows once nothing is waited for; missed() is called when
-    progress() has given the same value for MISSING_S of wall time, and must end that waiting.  No
-    number depends on a clock: without missed() the outcome is the same however long it takes.
+    take() takes what has come; settle() follows each time, be it that nothing is waited for or
+    that the timer goes on; missed() is called when progress() has given the same value for
+    MISSING_S of wall time, and must end that waiting.  No number depends on a clock: without
+    missed() the outcome is the same however long it takes.
     """
 
-    def __init__(self, node, waiting, progress, take, missed, done):
+    def __init__(self, node, waiting, progress, take, missed, settle):
         self._node, self._waiting, self._progress = node, waiting, progress
-        self._take, self._missed, self._done = take, missed, done
+        self._take, self._missed, self._settle = take, missed, settle
         self._since = self._mark = None
         self._retry = wall_timer(node, RETRY_S, self._on_retry)
         self._retry.cancel()
@@ -39,12 +40,13 @@ class Patience:
             elif self._since is not None or now - start >= patience_s:
                 self._since = self._since or now
                 self._retry.reset()
+                self._settle()
                 return
             else:
                 time.sleep(NAP_S)
                 self._take()
         self._since = None
-        self._done()
+        self._settle()
 
     def _on_retry(self):
         self._retry.cancel()

@@ -32,7 +32,7 @@ class StageNode(Node):
         self._stops = self.settings.on_fault == 'stop'
         self._ack = Writer(topics.HEADER, self.get_name())
         self._ack_publisher = qos.ack_publisher(self)
-        self._last_stamp = None
+        self._last_stamp = self._seen_ns = None
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
@@ -77,7 +77,12 @@ class StageNode(Node):
 
     def seen(self, t_ns):
         """Remember the motion time up to which all is done, for the acknowledgement."""
-        self._last_stamp = t_ns + self.epoch_ns
+        self._seen_ns, self._last_stamp = t_ns, t_ns + self.epoch_ns
+
+    def seen_so_far(self, t_ns):
+        """Remember, once, up to where all is done while what comes behind has to wait."""
+        if t_ns is not None and t_ns != self._seen_ns:
+            self.seen(t_ns)
 
     def on_drained(self):
         """Acknowledge once a wake-up."""

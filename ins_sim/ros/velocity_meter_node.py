@@ -1,5 +1,6 @@
 """Node velocity_meter: streamed truth in, windows of the correlation velocity meter out."""
 
+from ins_sim.core.instants import period_ns
 from ins_sim.core.map_frame import MapFrame
 from ins_sim.core.velocity_meter import VelocityMeter
 from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
@@ -40,15 +41,15 @@ class VelocityMeterNode(StageNode):
         self._windows = self._invalid = self._heard = 0
         self._reason = ''
         self.monitor.add(self._describe)
-        self._newest_ns = None
+        self._newest_ns, self._dt_ns = None, period_ns(self.settings.rate_hz)
         self._absent = False
         self._ins = None
         if self.settings.attack_angle == 'ins':
             self._ins_reader = topics.INS_ODOMETRY.reader(((43, 46),))
             self._ins = HandQueue(self, topics.INS_ODOMETRY, self.depth)
-        self._patience = Patience(self, lambda: self._meter.waiting_for_ins,
+        self._patience = Patience(self, lambda: self._meter.waits_for_ns is not None,
                                   lambda: (self._windows, self._heard), self._take_ins,
-                                  self._miss_ins, self._on_complete)
+                                  self._miss_ins, self._settle)
 
     def on_message(self, data):
         """Give one truth message to the instrument, and the solutions that have come."""
@@ -78,8 +79,11 @@ class VelocityMeterNode(StageNode):
                    'solution up to the end of every window (attack_angle: none needs none)')
         self._publish(self.stage.add(self._meter.give_up_ins()))
 
-    def _on_complete(self):
-        if self._newest_ns is not None:
+    def _settle(self):
+        end_ns = self._meter.waits_for_ns
+        if end_ns is not None:
+            self.seen_so_far(end_ns - self._dt_ns)
+        elif self._newest_ns is not None:
             self.seen(self._newest_ns)
 
     def _publish(self, fixes):
