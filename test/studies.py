@@ -40,9 +40,9 @@ def streamed(s):
                               truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
 
 
-def run(values):
+def run(values, twin=True):
     """Return errors and twin errors (or None) of a run."""
-    result = simulate(settings(values))
+    result = simulate(settings(values), twin)
     return result.errors, result.twin
 
 
@@ -55,11 +55,11 @@ class Pool:
                                          multiprocessing.get_context('spawn'))
         self._futures = {}
 
-    def submit(self, values):
-        """Start a study unless it has been started."""
+    def submit(self, values, twin=True):
+        """Start a study unless it has been started; twin: whether with its twin."""
         key = tuple(sorted(values.items()))
         if key not in self._futures:
-            self._futures[key] = self._pool.submit(run, values)
+            self._futures[key] = self._pool.submit(run, values, twin)
         return self._futures[key]
 
     def result(self, values):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from studies import MOTION_2, settings
+from studies import MOTION_1, MOTION_2, Pool, settings
 
 from ins_sim.core import attitude, strapdown
 from ins_sim.core.simulation import simulate
@@ -104,16 +104,25 @@ def test_initial_errors_are_what_was_asked():
     np.testing.assert_allclose(errors.position[0], [20.0, -30.0, 0.0], atol=1e-8)
 
 
+NO_DELAY = {'gyro.delay_us.x': 0.0, 'gyro.delay_us.y': 0.0}
+AT_ONE_MS = {name: {**values, 'rate_hz': 1000.0, 'output_every': 10} for name, values in (
+    ('motion 1', {**MOTION_1, **NO_DELAY}), ('motion 1 late', MOTION_1),
+    ('motion 2', {**MOTION_2, **NO_DELAY}))}
+
+
+@pytest.fixture(scope='module')
+def hours():
+    """Return {name: future of (errors, None)} of the hours at 1 ms, all under way."""
+    pool = Pool()
+    yield {name: pool.submit(values, twin=False) for name, values in AT_ONE_MS.items()}
+    pool.close()
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize('name', ['motion 1', 'motion 1 late', 'motion 2'])
-def test_one_hour_at_one_millisecond(name):
+@pytest.mark.parametrize('name', AT_ONE_MS)
+def test_one_hour_at_one_millisecond(hours, name):
     """Floor 5e-4 m with no delay; motion 1 late: 112.05 and 15.04 m (section 4)."""
-    from studies import MOTION_1
-    values = {**(MOTION_2 if name == 'motion 2' else MOTION_1), 'rate_hz': 1000.0,
-              'output_every': 10}
-    if name != 'motion 1 late':
-        values.update({'gyro.delay_us.x': 0.0, 'gyro.delay_us.y': 0.0})
-    errors = simulate(settings(values), twin=False).errors
+    errors, _ = hours[name].result()
     east, north, _ = np.abs(errors.position).max(axis=0)
     print(f'\n{name} at 1 ms: |dN| {north:.4g}, |dE| {east:.4g} m')
     if name == 'motion 1 late':
