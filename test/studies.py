@@ -57,7 +57,7 @@ class Pool:
 
     def submit(self, values, twin=True):
         """Start a study unless it has been started; twin: whether with its twin."""
-        key = tuple(sorted(values.items()))
+        key = (twin, *sorted(values.items()))
         if key not in self._futures:
             self._futures[key] = self._pool.submit(run, values, twin)
         return self._futures[key]

@@ -112,6 +112,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
         node = stream.chain.start('gnss', {'gnss.latency_ms': 500.0})
         stream.begin(node)
         stream.send(np.arange(1, 231) * DT)
+        stream.wait_ack(230 * DT)
         fix = stream.heard['gnss/fix']
         stream.listener.poll_until(lambda: SECOND in fix)
         fix.clear()
