@@ -9,18 +9,20 @@ from time import process_time
 
 import numpy as np
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.instants import period_ns
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.instrument import reported_variances
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigator import Navigator
-from ins_sim.core.parity import ParityTest
-from ins_sim.core.presets import preset
-from ins_sim.core.sampling import Sampler
-from ins_sim.core.settings import ImuSensorSettings, MotionGeneratorSettings, StrapdownSettings
-from ins_sim.core.simulation import Settings, simulate
+from ins_sim.settings.catalogue import build
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.navigation.live import Navigator
+from ins_sim.core.sensors.tuned_gyro.parity import ParityTest
+from ins_sim.settings.presets import preset
+from ins_sim.core.sensors.imu.sampling import Sampler
+from ins_sim.settings.imu import ImuSensorSettings
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.strapdown import StrapdownSettings
+from ins_sim.core.simulation.inertial import Settings, simulate
 from ins_sim.messages import topics
 from ins_sim.messages.convert import truth_blocks
 

@@ -60,7 +60,7 @@ def environment(domain):
 
 def start(node, parameters=(), domain=91, arguments=(), **kwargs):
     """Start a node process with {name: value} parameters and further ROS arguments."""
-    command = [sys.executable, '-m', f'ins_sim.ros.{node}', '--ros-args', *arguments]
+    command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
     for name, value in dict(parameters).items():
         command += ['-p', f'{name}:={value}']
     return subprocess.Popen(command, env=environment(domain), **kwargs)
@@ -85,7 +85,7 @@ class Listener:
 
     def __init__(self, domain, truth=True):
         import rclpy
-        from ins_sim.ros.queue import HandQueue
+        from ins_sim.ros.transport.backlog import HandQueue
         self._context = rclpy.Context()
         self._context.init(domain_id=domain)
         self.node = rclpy.create_node('listener', context=self._context)

@@ -10,12 +10,13 @@ from time import process_time
 
 import numpy as np
 
-from ins_sim.core import velocity_meter_fit as fit
-from ins_sim.core.catalogue import build
-from ins_sim.core.fixes import VALID
-from ins_sim.core.velocity_meter_layout import geometry, lag_s
-from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
-from ins_sim.core.velocity_meter_signal import Correlator, Field
+from ins_sim.core.sensors.velocity_meter import reading as fit
+from ins_sim.settings.catalogue import build
+from ins_sim.core.timeseries.fixes import VALID
+from ins_sim.core.sensors.velocity_meter.antennas import geometry
+from ins_sim.settings.velocity_meter import lag_s
+from ins_sim.settings.velocity_meter import VelocityMeterSettings
+from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
 
 BETA = math.radians(6.0)
 

@@ -36,7 +36,7 @@ Angles of attitude
 ------------------
 psi: counter-clockwise from north in the bench motions (the paper's +psi), clockwise (true
 heading) in the flights.  theta: nose up.  gamma: right wing down.  ``C_nb`` of the paper's
-(right, forward, up) axes is Rz(psi) Rx(theta) Ry(gamma); see ``ins_sim.core.attitude``.
+(right, forward, up) axes is Rz(psi) Rx(theta) Ry(gamma); see ``ins_sim.core.attitude.angles``.
 """
 
 __version__ = '0.1.0'

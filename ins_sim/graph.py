@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 import sys
 
-from .messages import topics
+from ins_sim.messages import topics
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def command(process, params_files=(), parameters=(), namespace=''):
     ``params_files`` are paths, ``parameters`` pairs of name and value as ROS writes them.
     """
     # The module, and not the script, for where the script is depends on the kind of installation.
-    words = [sys.executable, '-m', f'ins_sim.ros.{process.executable}', '--ros-args',
+    words = [sys.executable, '-m', 'ins_sim.ros.main', process.executable, '--ros-args',
              '-r', f'__node:={process.name}']
     words += _in_namespace(namespace)
     for path in params_files:

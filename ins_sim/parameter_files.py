@@ -10,10 +10,10 @@ import re
 
 import yaml
 
-from .core.catalogue import build, flatten, nearest, unknown, values_of
-from .core.node_settings import AIDING, ALL_NODES
-from .core.settings import NODES
-from .core.simulation import Settings
+from ins_sim.core.simulation.inertial import Settings
+from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
+from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.suggest import nearest, unknown
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')
 
@@ -31,7 +31,7 @@ def read(paths, assignments=()):
 
 def read_aided(paths, assignments=()):
     """Return aided_simulation.AidedSettings as ``read`` does simulation.Settings."""
-    from .core.aided_simulation import AidedSettings
+    from ins_sim.core.simulation.aided import AidedSettings
     built = read_nodes(paths, assignments, {**NODES, **AIDING}, ALL_NODES)
     return AidedSettings(Settings(**{node: built.pop(node) for node in NODES}), **built)
 

@@ -2,13 +2,15 @@
 
 import math
 
-from ins_sim.core import attitude, earth, taylor
-from ins_sim.core.catalogue import build
-from ins_sim.core.fixes import VelocityFix
-from ins_sim.core.imu import MotionImu
-from ins_sim.core.meter_on_truth import body_velocity
-from ins_sim.core.motions import Motion
-from ins_sim.core.settings import ImuSensorSettings
+from ins_sim.core.attitude import angles
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import taylor
+from ins_sim.settings.catalogue import build
+from ins_sim.core.timeseries.fixes import VelocityFix
+from ins_sim.core.sensors.imu.ideal import MotionImu
+from ins_sim.core.earth.rates import body_velocity
+from ins_sim.core.motion.motion import Motion
+from ins_sim.settings.imu import ImuSensorSettings
 import numpy as np
 
 DT_NS = 10_000_000
@@ -19,12 +21,12 @@ def circle(rate_deg_s=1.2, speed=200.0):
     w = math.radians(rate_deg_s)
     # where meridians do not converge, for psi is counted from north
     lat0, lon0, radius = math.radians(1.0), math.radians(37.0), speed / w
-    r_n, r_e = (r + 500.0 for r in earth.radii(math.sin(lat0)))
+    r_n, r_e = (r + 500.0 for r in ellipsoid.radii(math.sin(lat0)))
 
     def pose(t):
         s, c = taylor.sincos(t * w)
         # clockwise from north: east = r (1 - cos), north = r sin
-        q = attitude.from_angles(t * -w, t.constant(0.0), t.constant(0.0))
+        q = angles.from_angles(t * -w, t.constant(0.0), t.constant(0.0))
         return (s * (radius / r_n) + lat0,
                 (1.0 - c) * (radius / (r_e * math.cos(lat0))) + lon0, t.constant(500.0), q)
 
@@ -38,7 +40,7 @@ def straight(speed=200.0):
     def pose(t):
         level = t.constant(0.0)
         return (t * (speed / 6371000.0) + lat0, level + lon0, t.constant(500.0),
-                attitude.from_angles(level, level, level))
+                angles.from_angles(level, level, level))
 
     return Motion(pose, 3, True)
 

@@ -2,9 +2,9 @@
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
-from ins_sim.core.aided_simulation import simulate_aided
-from ins_sim.core.motions import make_motion
-from ins_sim.core.simulation import simulate
+from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.simulation.inertial import simulate
 
 FILES = ('gnss_outage_flight', 'grade_mid')
 # GNSS is out for the last of the 90 s; the meter is turned by 20 arcmin and may be by 30

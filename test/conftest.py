@@ -6,7 +6,7 @@ from pathlib import Path
 import tempfile
 
 from hypothesis import settings
-from ins_sim.ros.repairs import use_profile
+from ins_sim.ros.transport.repairs import use_profile
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ins_sim.core import attitude
-from ins_sim.core.catalogue import build
-from ins_sim.core.place_settings import Earth
-from ins_sim.core.route import RouteMotion
-from ins_sim.core.route_settings import FlightRoute
+from ins_sim.core.attitude import quaternion
+from ins_sim.settings.catalogue import build
+from ins_sim.settings.place import Earth
+from ins_sim.core.motion.route.motion import RouteMotion
+from ins_sim.settings.route import FlightRoute
 
 POINTS = {'points.latitude_deg': (55.0, 56.0, 55.8, 57.0),
           'points.longitude_deg': (37.0, 38.0, 40.0, 41.0)}
@@ -51,4 +51,4 @@ def air_velocity(motion, truth):
 
 def in_body(truth, v_n):
     """Return vectors of n (n, 3) in b."""
-    return np.stack(attitude.rotate_back(truth.q_nb.T, v_n.T), axis=-1)
+    return np.stack(quaternion.rotate_back(truth.q_nb.T, v_n.T), axis=-1)

@@ -26,7 +26,7 @@ class Chain:
 
     def start(self, node, parameters=(), arguments=()):
         """Start a node with {name: value} parameters and further ROS arguments."""
-        command = [sys.executable, '-m', f'ins_sim.ros.{node}', '--ros-args', *arguments]
+        command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
         return self.run(node, command)
@@ -89,8 +89,8 @@ class Listener:
 
     def __init__(self, domain, wanted, namespace=''):
         import rclpy
-        from ins_sim.ros.qos import ack_publisher
-        from ins_sim.ros.queue import HandQueue
+        from ins_sim.ros.transport.qos import ack_publisher
+        from ins_sim.ros.transport.backlog import HandQueue
         self.context = rclpy.Context()
         self.context.init(domain_id=domain)
         self.node = rclpy.create_node('listener', context=self.context, namespace=namespace)

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.fixes import VALID
-from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
-from ins_sim.core.velocity_meter_signal import SignalWindows
+from ins_sim.settings.catalogue import build
+from ins_sim.core.timeseries.fixes import VALID
+from ins_sim.settings.velocity_meter import VelocityMeterSettings
+from ins_sim.core.sensors.velocity_meter.pulses import SignalWindows
 
 DT_NS = 10_000_000
 # an instrument without errors of its own

@@ -3,10 +3,10 @@
 from dataclasses import replace
 import time
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.settings import MotionGeneratorSettings
+from ins_sim.settings.catalogue import build
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import LAYOUTS
 from ins_sim.messages.convert import truth_blocks
@@ -23,7 +23,7 @@ class Stream:
     """A node by itself, what it says on some topics, and the truth of a motion at 100 Hz."""
 
     def __init__(self, domain, folder, heard, motion=None, published=(topics.TRUTH_ODOMETRY,)):
-        from ins_sim.ros.qos import publisher
+        from ins_sim.ros.transport.qos import publisher
         self.chain = Chain(domain, folder)
         # a node that knows the reader of its answers, made last, knows all readers
         self.listener = Listener(domain, (*heard, ACK))

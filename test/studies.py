@@ -3,12 +3,12 @@
 from concurrent.futures import ProcessPoolExecutor
 import multiprocessing
 
-from ins_sim.core.catalogue import build, flatten
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.settings import NODES
-from ins_sim.core.simulation import sense, Settings, simulate
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.inertial import sense, Settings, simulate
 
 DEG_PER_HOUR = 206264.806
 

@@ -3,14 +3,14 @@
 import re
 
 from aided_runs import command, flown, settings
-from ins_sim.bags import simulated
+from ins_sim.io import simulated
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli.main import main
-from ins_sim.core.aided_navigator import GNSS, METER
-from ins_sim.core.aided_stream import AidedStream
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.orthodrome import Route
+from ins_sim.core.aiding.navigator import GNSS, METER
+from ins_sim.core.aiding.live import AidedStream
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.earth.great_circle import Route
 from ins_sim.messages import convert, topics, velocity_record
 from ins_sim.messages.cdr import ENCAPSULATION
 from ins_sim.messages.gnss_fixes import GnssPairs

@@ -4,13 +4,15 @@ from concurrent.futures import ProcessPoolExecutor
 import os
 
 from ins_sim import parameter_files, resources
-from ins_sim.core import aided_navigator, eskf_model as model, kalman
-from ins_sim.core.aided_navigator import AidedNavigator, GNSS, METER
-from ins_sim.core.errors import level_errors
-from ins_sim.core.eskf import ErrorStateFilter
-from ins_sim.core.filter_study import Case, fly, run_settings
-from ins_sim.core.motions import make_motion
-from ins_sim.core.simulation import sense
+from ins_sim.core.aiding import kalman, navigator
+from ins_sim.core.aiding.filters import eskf_model
+from ins_sim.core.attitude import matrix
+from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
+from ins_sim.core.navigation.errors import level_errors
+from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
+from ins_sim.studies.filters import Case, fly, run_settings
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.simulation.inertial import sense
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -39,12 +41,12 @@ class StampedAtItsEnd(ErrorStateFilter):
     def velocity(self, ins, fix):
         """Weigh the fix against the velocity now, which eta has no part in."""
         self._propagate(ins)
-        read, of_mean, columns = model.meter(ins.v_b[:2], *self.estimates)
-        h = np.zeros((2, model.SIZE))
-        c = model.matrix(ins.q_nb)
-        h[:, model.V] = of_mean @ c.T[:2]
-        h[:, model.PHI] = of_mean @ (c.T[:2] @ model.skew(ins.v))
-        h[:, model.MU:] = columns
+        read, of_mean, columns = eskf_model.meter(ins.v_b[:2], *self.estimates)
+        h = np.zeros((2, eskf_model.SIZE))
+        c = matrix.matrix(ins.q_nb)
+        h[:, eskf_model.V] = of_mean @ c.T[:2]
+        h[:, eskf_model.PHI] = of_mean @ (c.T[:2] @ matrix.skew(ins.v))
+        h[:, eskf_model.MU:] = columns
         return self._update(ins, read - fix.velocity, h, np.diag(np.square(fix.sigma)))
 
 
@@ -58,7 +60,7 @@ def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch):
     points = ('motion.route.points.latitude_deg:=[55.0, 57.0]',
               'motion.route.points.longitude_deg:=[37.0, 39.0]', 'motion.route.wind_m_s:=0.0')
     exact, _ = consistency_of(points)
-    monkeypatch.setitem(aided_navigator.KINDS, 'eskf', StampedAtItsEnd)
+    monkeypatch.setitem(navigator.KINDS, 'eskf', StampedAtItsEnd)
     stamped, sigma = consistency_of((*points, 'gate_probability:=0.0'))
     low, high = (chi2.ppf(p, 2 * len(exact)) / len(exact) for p in (0.025, 0.975))
     off = 1.05 * 200.0 * np.radians(1.0) / np.sqrt(2.0)

@@ -8,20 +8,20 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core.aided_navigator import AidedNavigator, GNSS, METER, Taken
-from ins_sim.core.aided_run import with_truth
-from ins_sim.core.aided_simulation import AidedSettings, simulate_aided
-from ins_sim.core.aided_stream import AidedStream, FixSchedule
-from ins_sim.core.catalogue import build, flatten
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.gain_filters import refused, Result
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.meter_on_truth import body_velocity
-from ins_sim.core.motions import make_motion
-from ins_sim.core.node_settings import AIDING
-from ins_sim.core.settings import NODES
-from ins_sim.core.simulation import simulate
-from ins_sim.ros.aiding_health import AidingHealth
+from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER, Taken
+from ins_sim.core.simulation.aided_run import with_truth
+from ins_sim.core.simulation.aided import AidedSettings, simulate_aided
+from ins_sim.core.aiding.live import AidedStream, FixSchedule
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.aiding.filters.base import refused, Result
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.earth.rates import body_velocity
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.settings.by_node import AIDING
+from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.inertial import simulate
+from ins_sim.ros.process.aiding_health import AidingHealth
 from studies import settings as simulation_settings
 
 SECOND = 1_000_000_000

@@ -8,11 +8,11 @@ import struct
 from hypothesis import given, settings, strategies as st
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
-from ins_sim.core import earth
-from ins_sim.core.errors import position_error
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.fix_checks import check_gnss
-from ins_sim.core.fixes import GnssFix, no_gnss_fix, OUTAGE, VelocityFix
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.aiding.fix_checks import check_gnss
+from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE, VelocityFix
 from ins_sim.messages import diagnostic_array, topics, velocity_record
 from ins_sim.messages.cdr import Reader, Writer
 from ins_sim.messages.diagnostic_array import Status
@@ -183,7 +183,7 @@ def test_anywhere_on_earth(lat, lon, sigma):
     fix = replace(FIX, lat=lat, lon=lon, position_sigma=(sigma,) * 3)
     found, = pairs([fix])
     most = 2.0**-52 * (3.0 + math.pi)
-    assert abs(found.lat - lat) * earth.SEMI_MAJOR < most * earth.SEMI_MAJOR / 2.0
+    assert abs(found.lat - lat) * ellipsoid.SEMI_MAJOR < most * ellipsoid.SEMI_MAJOR / 2.0
     assert abs(found.lon - lon) < most
     assert found.position_sigma == fix.position_sigma
 

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from ins_sim.core.noise import BLOCK
-from ins_sim.core.presets import PRESETS, triads
-from ins_sim.core.triad_errors import make_noise, TriadErrors
-from ins_sim.core.triad_model import triad_model
+from ins_sim.core.numerics.noise import BLOCK
+from ins_sim.settings.presets import PRESETS, triads
+from ins_sim.core.sensors.imu.triad_errors import make_noise, TriadErrors
+from ins_sim.core.sensors.imu.triad_model import triad_model
 from ins_sim.report import allan
 
 RATE = 10.0

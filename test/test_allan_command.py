@@ -7,9 +7,9 @@ import pytest
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
-from ins_sim.core.error_settings import AccelerometerErrors, GyroErrors
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.resting_record import resting_record
+from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.studies.at_rest import resting_record
 from ins_sim.messages import topics
 from ins_sim.report import noise_terms, storage
 

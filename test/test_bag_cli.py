@@ -4,12 +4,12 @@ import re
 
 from ins_sim import parameter_files, resources
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.bags.reading import read_errors
+from ins_sim.io.published import read_errors
 from ins_sim.cli.main import main
-from ins_sim.core.instants import period_ns
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.simulation import simulate
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import convert, topics
 import numpy as np
 import pytest

@@ -5,8 +5,8 @@ from pathlib import Path
 from time import process_time
 
 from ins_sim import parameter_files, resources
-from ins_sim.bags import simulated
-from ins_sim.core.simulation import simulate
+from ins_sim.io import simulated
+from ins_sim.core.simulation.inertial import simulate
 import pytest
 
 pytest.importorskip('rosbags')

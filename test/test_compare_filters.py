@@ -3,7 +3,7 @@
 import json
 
 from ins_sim.cli.main import main
-from ins_sim.core.aided_settings import FILTERS
+from ins_sim.settings.aided_navigator import FILTERS
 import pytest
 
 SHORT = ['--runs', '2', '-p', 'duration_s:=40.0']

@@ -8,10 +8,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 from studies import settings
 
-from ins_sim.core import attitude, earth, taylor
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.settings import Datum, MOTION_KINDS
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import taylor
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.settings.place import Datum
+from ins_sim.settings.motion import MOTION_KINDS
 
 VECTORS = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 # RFU to FLU: forward is +y, left is -x of (right, forward, up)
@@ -33,12 +36,13 @@ def matrix(q):
 @given(VECTORS, VECTORS)
 def test_quaternions_are_scipys(a, b):
     """Product, rotation, exponential, logarithm: scalar last, Hamilton, active b to n."""
-    p, q = attitude.exponential(a), attitude.exponential(b)
+    p, q = quaternion.exponential(a), quaternion.exponential(b)
     ra, rb = Rotation.from_rotvec(a), Rotation.from_rotvec(b)
-    np.testing.assert_allclose(matrix(attitude.multiply(p, q)), (ra * rb).as_matrix(), atol=1e-14)
-    np.testing.assert_allclose(attitude.rotate(p, b), ra.apply(b), atol=1e-13)
-    np.testing.assert_allclose(attitude.rotate_back(p, b), ra.inv().apply(b), atol=1e-13)
-    np.testing.assert_allclose(attitude.logarithm(attitude.multiply(p, q)),
+    np.testing.assert_allclose(matrix(quaternion.multiply(p, q)), (ra * rb).as_matrix(),
+                               atol=1e-14)
+    np.testing.assert_allclose(quaternion.rotate(p, b), ra.apply(b), atol=1e-13)
+    np.testing.assert_allclose(quaternion.rotate_back(p, b), ra.inv().apply(b), atol=1e-13)
+    np.testing.assert_allclose(quaternion.logarithm(quaternion.multiply(p, q)),
                                (ra * rb).as_rotvec(), atol=1e-7)
 
 
@@ -46,7 +50,7 @@ def test_quaternions_are_scipys(a, b):
 def test_logarithm_inverts_exponential_at_any_size(direction, scale):
     """Relative to the angle, from 1e-12 rad to pi: the atan2 form loses nothing."""
     phi = tuple(1e3 * scale * x for x in direction)
-    back = attitude.logarithm(attitude.exponential(phi))
+    back = quaternion.logarithm(quaternion.exponential(phi))
     np.testing.assert_allclose(back, phi, rtol=1e-14, atol=1e-15 * np.linalg.norm(phi) + 1e-300)
 
 
@@ -86,7 +90,7 @@ def test_imu_at_rest_reads_gravity_up_and_earth_rate():
     """REP-145: +g on z at rest; angular velocity relative to inertial space."""
     truth = motion_of('static', motion__theta_deg=0.0).at(np.array([0]))
     lat = math.radians(55.0)
-    np.testing.assert_allclose(truth.f_ib_b[0], [0, 0, earth.gravity(math.sin(lat), 0.0)],
+    np.testing.assert_allclose(truth.f_ib_b[0], [0, 0, ellipsoid.gravity(math.sin(lat), 0.0)],
                                atol=1e-15)
     w = 7.292115e-5
     np.testing.assert_allclose(truth.omega_ib_b[0], [w * math.cos(lat), 0, w * math.sin(lat)],
@@ -96,20 +100,20 @@ def test_imu_at_rest_reads_gravity_up_and_earth_rate():
 
 def test_normal_gravity_and_radii():
     """WGS-84: equator 9.7803253359, pole 9.8321849379, 45 deg 9.8061977695 m/s^2 (TR8350.2)."""
-    assert earth.gravity(0.0, 0.0) == 9.7803253359
-    assert earth.gravity(1.0, 0.0) == pytest.approx(9.8321849379, abs=2e-10)
-    assert earth.gravity(math.sqrt(0.5), 0.0) == pytest.approx(9.8061977695, abs=2e-9)
-    assert earth.gravity(0.0, 1000.0) == pytest.approx(9.7803253359 * (1 - 2000 / 6378137.0))
-    assert earth.radii(0.0) == (pytest.approx(6335439.327, abs=1e-3), 6378137.0)
-    assert earth.radii(1.0)[0] == pytest.approx(6399593.626, abs=1e-3)
+    assert ellipsoid.gravity(0.0, 0.0) == 9.7803253359
+    assert ellipsoid.gravity(1.0, 0.0) == pytest.approx(9.8321849379, abs=2e-10)
+    assert ellipsoid.gravity(math.sqrt(0.5), 0.0) == pytest.approx(9.8061977695, abs=2e-9)
+    assert ellipsoid.gravity(0.0, 1000.0) == pytest.approx(9.7803253359 * (1 - 2000 / 6378137.0))
+    assert ellipsoid.radii(0.0) == (pytest.approx(6335439.327, abs=1e-3), 6378137.0)
+    assert ellipsoid.radii(1.0)[0] == pytest.approx(6399593.626, abs=1e-3)
 
 
 @given(st.floats(-89.9, 89.9), st.floats(-180, 180), st.floats(-1e4, 1e5))
 def test_geodetic_inverts_ecef(lat, lon, height):
     """Round trip to a nanometre in height and 1e-15 rad, from -10 km to 100 km."""
     a, b = math.radians(lat), math.radians(lon)
-    x = earth.ecef(math.sin(a), math.cos(a), math.sin(b), math.cos(b), height)
-    back = earth.geodetic(*x)
+    x = ellipsoid.ecef(math.sin(a), math.cos(a), math.sin(b), math.cos(b), height)
+    back = ellipsoid.geodetic(*x)
     assert abs(back[0] - a) < 1e-15 + 2e-16 * abs(a) * 4
     assert abs(math.remainder(back[1] - b, 2 * math.pi)) < 1e-15
     assert abs(back[2] - height) < 4e-9
@@ -121,7 +125,7 @@ def test_map_frame_round_trip(lat, lon, d_lat, d_lon, phi):
     """Pose in map and back, up to hundreds of kilometres from the datum."""
     frame = MapFrame(Datum(lat, lon, 100.0), True)
     here = (math.radians(lat + d_lat), math.radians(lon + d_lon), 5000.0, (10.0, 20.0, 3.0),
-            attitude.exponential(phi))
+            quaternion.exponential(phi))
     back = frame.geodetic_one(*frame.pose_one(*here))
     assert abs(back[0] - here[0]) < 2e-15
     assert abs(math.remainder(back[1] - here[1], 2 * math.pi)) < 1e-14
@@ -136,12 +140,12 @@ def test_map_frame_round_trip(lat, lon, d_lat, d_lon, phi):
 def test_map_is_the_tangent_plane_at_the_datum():
     """East and North on the plane, the origin at the datum, the ground falls away below."""
     frame = MapFrame(Datum(55.0, 37.0, 0.0), True)
-    level = attitude.IDENTITY
+    level = quaternion.IDENTITY
     lat, lon = math.radians(55.0), math.radians(37.0)
     r, _, _ = frame.pose_one(lat, lon, 0.0, (0.0, 0.0, 0.0), level)
     np.testing.assert_allclose(r, 0.0, atol=1e-8)
     r, _, _ = frame.pose_one(lat + 1e-3, lon, 0.0, (0.0, 0.0, 0.0), level)
-    assert r[1] == pytest.approx(1e-3 * earth.radii(math.sin(lat))[0], rel=1e-4)
+    assert r[1] == pytest.approx(1e-3 * ellipsoid.radii(math.sin(lat))[0], rel=1e-4)
     assert r[2] == pytest.approx(-0.5 * r[1] ** 2 / 6.38e6, rel=1e-2)
 
 
@@ -160,15 +164,16 @@ def test_truth_is_consistent_by_finite_differences(kind):
     for centre in (0, 137_000_000, 400_000_000_000):
         truth = motion.at(centre + h * offsets)
         s, c = np.sin(truth.lat), np.cos(truth.lat)
-        r = np.stack(earth.ecef(s, c, np.sin(truth.lon), np.cos(truth.lon), truth.height), -1)
+        r = np.stack(ellipsoid.ecef(s, c, np.sin(truth.lon), np.cos(truth.lon), truth.height), -1)
         dt = h * 1e-9
         v_e, a_e = first @ r / dt, second @ r / dt ** 2
         lat, lon = truth.lat[3], truth.lon[3]
         c_en = Rotation.from_euler('zx', [lon + np.pi / 2, np.pi / 2 - lat]).as_matrix()
         c_en = (Rotation.from_euler('z', lon + np.pi / 2)
                 * Rotation.from_euler('x', np.pi / 2 - lat)).as_matrix()
-        spin = np.array([0.0, 0.0, earth.ROTATION_RATE])
-        f_e = a_e + 2 * np.cross(spin, v_e) + c_en @ [0, 0, earth.gravity(s[3], truth.height[3])]
+        spin = np.array([0.0, 0.0, ellipsoid.ROTATION_RATE])
+        g = ellipsoid.gravity(s[3], truth.height[3])
+        f_e = a_e + 2 * np.cross(spin, v_e) + c_en @ [0, 0, g]
         c_nb = matrix(truth.q_nb[3])
         np.testing.assert_allclose(c_en.T @ v_e, truth.v_n[3], atol=2e-6)
         np.testing.assert_allclose(c_nb.T @ c_en.T @ f_e, truth.f_ib_b[3], atol=3e-4)

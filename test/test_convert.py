@@ -12,12 +12,13 @@ from test_truth_bag import record
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli.main import main
-from ins_sim.core import csv_columns, csv_writer
-from ins_sim.core.recorded_imu import RecordedImu
-from ins_sim.core.recording import RecordedMotion
-from ins_sim.core.recording_file import read_rows, REQUIRED
-from ins_sim.core.recording_quality import rounding_noise
-from ins_sim.core.settings import Earth, Recording
+from ins_sim.io import csv_imu, csv_writer
+from ins_sim.core.postprocessing.imu_record import RecordedImu
+from ins_sim.core.motion.recorded.spline import RecordedMotion
+from ins_sim.io.csv_flight import read_poses, read_rows, REQUIRED
+from ins_sim.core.motion.recorded.quality import rounding_noise
+from ins_sim.settings.place import Earth
+from ins_sim.settings.motion import Recording
 from ins_sim.messages import topics
 
 SECOND = 1_000_000_000
@@ -54,7 +55,7 @@ def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     assert np.array_equal(rows.height_m, fix['altitude'])
     # over the date line; the file wraps, and reading unwraps
     assert np.abs(rows.lon_deg - np.degrees(truth.lon)).max() < 3e-14
-    poses = csv_columns.read_reference(flight)
+    poses = csv_imu.read_reference(flight)
     q = poses.attitude.values
     q *= np.sign((q * attitude['quaternion']).sum(1))[:, None]
     assert np.abs(q - attitude['quaternion']).max() < 16.0 * 2.0 ** -53
@@ -126,7 +127,7 @@ def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
     assert convert(tmp_path / 'bag', tmp_path / f'back_{name}') == 0
     assert '5000 samples of /left/imu' in capsys.readouterr().out
     assert (tmp_path / f'back_{name}').read_bytes() == path.read_bytes()
-    back = csv_columns.read_imu(path)
+    back = csv_imu.read_imu(path)
     assert np.array_equal(back.t_ns, imu.t_ns)
     assert np.array_equal(back.omega, imu.omega, equal_nan=True)
     assert np.array_equal(back.f, imu.f)
@@ -162,10 +163,11 @@ def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
     capsys.readouterr()
     chosen = settings({**FLIGHT, 'motion.kind': 'recording', 'motion.recording.path':
                        str(tmp_path / 'bag')}).motion_generator
-    from ins_sim.bags.motions import make_motion
+    from ins_sim.io.motion import read_motion
     t_ns = np.arange(0, 14 * SECOND, SECOND // 13)
-    x = make_motion(chosen).at(t_ns)
-    y = RecordedMotion(Recording(path=str(tmp_path / 'flight.csv')), Earth()).at(t_ns)
+    x = read_motion(chosen).at(t_ns)
+    y = RecordedMotion(read_poses(tmp_path / 'flight.csv'),
+                       Recording(path=str(tmp_path / 'flight.csv')), Earth()).at(t_ns)
     assert np.abs(x.lat - y.lat).max() < 1e-15 and np.abs(x.v_n - y.v_n).max() < 1e-6
     # both cubics err by h^4 / 384
     assert np.abs(x.omega_ib_b - y.omega_ib_b).max() < 1e-5
@@ -184,7 +186,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, capsys):
     assert convert(tmp_path / 'imu.csv', tmp_path / 'bag', '--force') == 0
     (tmp_path / 'imu.csv').write_text('old')
     assert convert(tmp_path / 'bag', tmp_path / 'imu.csv', '--force') == 0
-    assert len(csv_columns.read_imu(tmp_path / 'imu.csv')) == 10
+    assert len(csv_imu.read_imu(tmp_path / 'imu.csv')) == 10
     (tmp_path / 'folder.csv').mkdir()
     assert convert(tmp_path / 'bag', tmp_path / 'folder.csv', '--force') == 2
     assert 'is no file; --force replaces only a file' in capsys.readouterr().err
@@ -195,7 +197,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, capsys):
     assert sorted(p.name for p in tmp_path.iterdir()) == ['bag', 'data', 'folder.csv', 'imu.csv']
 
 
-IMU_TEXT = 't_s,' + ','.join(csv_columns.IMU) + '\n'
+IMU_TEXT = 't_s,' + ','.join(csv_imu.IMU) + '\n'
 
 
 def empty_bag(path, name='odom', type_name=topics.VECTOR):

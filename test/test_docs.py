@@ -7,6 +7,7 @@ import shlex
 
 import pytest
 
+import ins_sim
 from ins_sim.cli.main import main, parser
 import numpy as np
 
@@ -58,9 +59,10 @@ def test_names_in_the_documents_exist(path):
     for name in re.findall(r'`(?:ins_sim\.)?((?:core|messages|ros|report)\.[\w.]+)`',
                            path.read_text(encoding='utf-8')):
         parts = name.split('.')
-        module = importlib.import_module('ins_sim.' + '.'.join(parts[:2]))
-        target = module
-        for part in parts[2:]:
+        target = ins_sim
+        for k, part in enumerate(parts):
+            if not hasattr(target, part):
+                importlib.import_module('ins_sim.' + '.'.join(parts[:k + 1]))
             target = getattr(target, part)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from studies import DEG_PER_HOUR, MOTION_2, settings, streamed
 
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.motions import make_motion
-from ins_sim.core.prediction import predict
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import simulate
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import simulate
 
 DTG = {'motion.kind': 'two_axis', 'gyro.model': 'dtg', 'output': 'integrated',
        'input': 'integrated'}
@@ -58,7 +58,7 @@ def test_closed_form_in_any_cutting():
     s = settings(DTG, duration_s=3.0)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    from ins_sim.core.imu import MotionImu
+    from ins_sim.core.sensors.imu.ideal import MotionImu
     whole = MotionImu(s.imu_sensor, motion, 0).advance(300)
     imu = MotionImu(s.imu_sensor, motion, 0)
     parts = ImuSamples.concatenate(imu.advance(n) for n in (1, 99, 150, 50))

@@ -8,10 +8,10 @@ import pytest
 
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
-from ins_sim.core.dtg_study import (curve, gyro_at, half_peak_to_peak, stability_limits, table)
-from ins_sim.core.dtg_study_settings import DtgStudySettings
-from ins_sim.core.tuned_gyro import PRESETS
-from ins_sim.core.tuned_gyro_report import report
+from ins_sim.studies.tuned_gyro import curve, gyro_at, half_peak_to_peak, stability_limits, table
+from ins_sim.settings.tuned_gyro_study import DtgStudySettings
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
+from ins_sim.core.sensors.tuned_gyro.report import report
 
 CONFIG = Path(__file__).resolve().parents[1] / 'config'
 FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from ins_sim.core.catalogue import build, flatten
-from ins_sim.core.error_settings import AccelerometerErrors, GyroErrors, Sampling, Temperature
-from ins_sim.core.presets import ACCELEROMETER, GYRO, preset, PRESETS, triads
-from ins_sim.core.sampling import Sampler
-from ins_sim.core.triad_errors import TriadErrors
-from ins_sim.core.triad_model import DEG, KEYS, triad_model, white_variance
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.settings.instrument_errors import (AccelerometerErrors, GyroErrors, Sampling,
+                                                Temperature)
+from ins_sim.settings.presets import ACCELEROMETER, GYRO, preset, PRESETS, triads
+from ins_sim.core.sensors.imu.sampling import Sampler
+from ins_sim.core.sensors.imu.triad_errors import TriadErrors
+from ins_sim.core.numerics.units import DEG
+from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model, white_variance
 
 DT = 0.01
 QUANTILE = 1e-6

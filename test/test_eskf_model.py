@@ -2,13 +2,15 @@
 
 import math
 
-from ins_sim.core import attitude, earth, eskf_model as model
-from ins_sim.core.corrected_strapdown import CorrectedStrapdown
-from ins_sim.core.errors import position_error
+from ins_sim.core.aiding.filters import eskf_model
+from ins_sim.core.attitude import matrix, quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.aiding.corrected_strapdown import CorrectedStrapdown
+from ins_sim.core.navigation.errors import position_error
 import numpy as np
 import pytest
 
-SPIN = earth.ROTATION_RATE
+SPIN = ellipsoid.ROTATION_RATE
 LAT, LON, HEIGHT = math.radians(55.0), math.radians(37.0), 500.0
 STEP_S, STEPS = 0.01, 10
 # what is moved, so far that the difference is not rounding and so little that it is linear
@@ -39,7 +41,7 @@ def fly(ins, omega, force):
     path, mean = np.zeros(2), np.zeros(3)
     for k in range(1, STEPS + 1):
         before = ins.v_b
-        mean += np.array(attitude.rotate(ins.q_nb, force)) / STEPS
+        mean += np.array(quaternion.rotate(ins.q_nb, force)) / STEPS
         ins.advance(k * 10_000_000, omega, force, ())
         path += 0.5 * STEP_S * (np.array(before[:2]) + ins.v_b[:2])
     return path, mean
@@ -48,7 +50,7 @@ def fly(ins, omega, force):
 def difference(one, other):
     """Return dp, dV, phi of a solution less another."""
     a, b = one.solution, other.solution
-    turned = attitude.logarithm(attitude.multiply(a[4], attitude.conjugate(b[4])))
+    turned = quaternion.logarithm(quaternion.multiply(a[4], quaternion.conjugate(b[4])))
     return np.concatenate([position_error(*a[:3], *b[:3]), np.subtract(a[3], b[3]), turned])
 
 
@@ -63,17 +65,17 @@ def test_transition_is_the_derivative_of_the_strapdown(velocity, yaw, omega):
 
     A wrong sign of any term would be twice its part of the entry; see FLOORS and GRAIN.
     """
-    q_nb = attitude.multiply(attitude.exponential((0.0, 0.0, yaw)),
-                             attitude.exponential((0.02, -0.05, 0.0)))
+    q_nb = quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
+                               quaternion.exponential((0.02, -0.05, 0.0)))
     force = (0.4, -0.6, 9.9)
     nominal = start(velocity, q_nb)
     v_start, q_start = nominal.v, nominal.q_nb
     _, mean = fly(nominal, omega, force)
     dt = STEP_S * STEPS
-    q_mid = attitude.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, nominal.q_nb)))
+    q_mid = quaternion.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, nominal.q_nb)))
     v_mid = tuple(0.5 * (a + b) for a, b in zip(v_start, nominal.v))
-    f = model.dynamics(LAT, HEIGHT, v_mid, model.matrix(q_mid), mean, SPIN)
-    phi = model.transition(f, dt)
+    f = eskf_model.dynamics(LAT, HEIGHT, v_mid, matrix.matrix(q_mid), mean, SPIN)
+    phi = eskf_model.transition(f, dt)
     worst = 0.0
     for k, size in enumerate(SIZES):
         change = np.zeros(15)
@@ -83,7 +85,7 @@ def test_transition_is_the_derivative_of_the_strapdown(velocity, yaw, omega):
         measured = np.concatenate([
             (difference(plus, nominal) - difference(minus, nominal)) / (2.0 * size),
             (ways[0] - ways[1]) / (2.0 * size)])
-        expected = np.concatenate([phi[0:9, k], phi[model.ETA, k]])
+        expected = np.concatenate([phi[0:9, k], phi[eskf_model.ETA, k]])
         identity = np.eye(17)[k, [*range(9), 15, 16]]
         apart, part = np.abs(measured - expected) * size, np.abs(expected - identity) * size
         bound = GRAIN * part + FLOORS
@@ -95,12 +97,12 @@ def test_transition_is_the_derivative_of_the_strapdown(velocity, yaw, omega):
 def test_meter_matrix_is_the_derivative_of_its_prediction():
     """H of mean, mu, kx, kz against central differences; bound: rounding over the step."""
     mean, mu, kx, kz, t = np.array((201.0, -7.0)), 0.006, 0.01, -0.03, 10.0
-    _, h = model.meter_matrix(mean, mu, kx, kz, t)
+    _, h = eskf_model.meter_matrix(mean, mu, kx, kz, t)
 
     def read(x):
-        return model.meter_matrix(mean + x[:2] / t, mu + x[2], kx + x[3], kz + x[4], t)[0]
+        return eskf_model.meter_matrix(mean + x[:2] / t, mu + x[2], kx + x[3], kz + x[4], t)[0]
 
-    columns = [15, 16, model.MU, model.KX, model.KZ]
+    columns = [15, 16, eskf_model.MU, eskf_model.KX, eskf_model.KZ]
     for k, column in enumerate(columns):
         x = np.zeros(5)
         x[k] = 1e-4
@@ -111,22 +113,22 @@ def test_meter_matrix_is_the_derivative_of_its_prediction():
 
 def test_gnss_matrix_is_the_derivative_of_the_antenna():
     """H of the antenna's position and velocity against differences of attitude and rate."""
-    q_nb = attitude.exponential((0.1, -0.2, 0.7))
+    q_nb = quaternion.exponential((0.1, -0.2, 0.7))
     lever, omega = np.array((2.0, -1.0, 0.5)), np.array((0.1, -0.2, 0.3))
-    h = model.gnss_matrix(model.matrix(q_nb), lever, omega)
+    h = eskf_model.gnss_matrix(matrix.matrix(q_nb), lever, omega)
 
     def antenna(phi, bias):
-        q = attitude.multiply(attitude.exponential(tuple(phi)), q_nb)
+        q = quaternion.multiply(quaternion.exponential(tuple(phi)), q_nb)
         # a gyro bias estimated too large makes the rate too small
         rate = omega - bias
-        return np.concatenate([attitude.rotate(q, tuple(lever)),
-                               attitude.rotate(q, tuple(np.cross(rate, lever)))])
+        return np.concatenate([quaternion.rotate(q, tuple(lever)),
+                               quaternion.rotate(q, tuple(np.cross(rate, lever)))])
 
     for k in range(3):
         x = np.zeros(3)
         x[k] = 1e-5
-        for columns, one, other in ((model.PHI, antenna(x, 0 * x), antenna(-x, 0 * x)),
-                                    (model.BG, antenna(0 * x, x), antenna(0 * x, -x))):
+        for columns, one, other in ((eskf_model.PHI, antenna(x, 0 * x), antenna(-x, 0 * x)),
+                                    (eskf_model.BG, antenna(0 * x, x), antenna(0 * x, -x))):
             np.testing.assert_allclose((one - other) / 2e-5, h[:, columns][:, k], atol=1e-9)
-    np.testing.assert_array_equal(h[0:3, model.P], np.eye(3))
-    np.testing.assert_array_equal(h[3:6, model.V], np.eye(3))
+    np.testing.assert_array_equal(h[0:3, eskf_model.P], np.eye(3))
+    np.testing.assert_array_equal(h[3:6, eskf_model.V], np.eye(3))

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from studies import MOTION_2, settings
 
-from ins_sim.core.faults import seconds, StreamFault
-from ins_sim.core.instants import period_ns
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigator import Navigator
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.navigation.live import Navigator
 
 DT = period_ns(100.0)
 

@@ -5,7 +5,7 @@ from functools import partial
 import os
 
 from ins_sim import parameter_files, resources
-from ins_sim.core.filter_study import Case, fly
+from ins_sim.studies.filters import Case, fly
 from ins_sim.report.filter_study import row
 import numpy as np
 import pytest

@@ -7,18 +7,21 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core import attitude, earth, strapdown
-from ins_sim.core.comparison import compare, rows
-from ins_sim.core.free_navigation import FreeNavigation, increments
-from ins_sim.core.initial_state import Sources
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigate import navigate
-from ins_sim.core.navigate_settings import NavigateSettings, NAVIGATE
-from ins_sim.core.recorded_imu import gaps, ordered, RecordedImu
-from ins_sim.core.reference import Reference, Track
-from ins_sim.core.settings import MotionGeneratorSettings
-from ins_sim.core.catalogue import build
-from ins_sim.core.simulation import sense
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid, frames
+from ins_sim.core.navigation import mechanization
+from ins_sim.core.postprocessing.comparison import compare, rows
+from ins_sim.core.navigation.mechanization import increments
+from ins_sim.core.navigation.strapdown import FreeNavigation
+from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.postprocessing.navigate import navigate
+from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
+from ins_sim.core.postprocessing.imu_record import gaps, ordered, RecordedImu
+from ins_sim.core.postprocessing.reference import Reference, Track
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.catalogue import build
+from ins_sim.core.simulation.inertial import sense
 from ins_sim import parameter_files
 
 SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
@@ -123,7 +126,7 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
 
     Bound: the error of the offline strapdown on the same samples, times 1.01 for another start.
     """
-    from ins_sim.core.simulation import simulate
+    from ins_sim.core.simulation.inertial import simulate
     shown = []
     for mode in ('rotation_vector', 'integrated'):
         chosen = parameter_files.read([], [
@@ -187,9 +190,9 @@ def test_a_gap_restarts_from_a_standstill_behind_it():
     t_ns = stamps(50.0, 60.0, 0.0)
     t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
     n = len(t_ns)
-    rate = (0.0, earth.ROTATION_RATE * math.cos(lat), earth.ROTATION_RATE * math.sin(lat))
+    rate = (0.0, ellipsoid.ROTATION_RATE * math.cos(lat), ellipsoid.ROTATION_RATE * math.sin(lat))
     imu = RecordedImu(t_ns, np.tile(rate, (n, 1)),
-                      np.tile([0.0, 0.0, earth.gravity(math.sin(lat), 0.0)], (n, 1)),
+                      np.tile([0.0, 0.0, ellipsoid.gravity(math.sin(lat), 0.0)], (n, 1)),
                       np.full((n, 4), np.nan))
     reference = Reference('fix', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
     got = run(imu, reference, on_gap='restart', initial__attitude='align',
@@ -201,7 +204,7 @@ def test_a_gap_restarts_from_a_standstill_behind_it():
 
 
 def _degrees(q_nb):
-    from ins_sim.core.angles import to_compass
+    from ins_sim.core.attitude.angles import to_compass
     return [math.degrees(float(a)) for a in to_compass(q_nb)]
 
 
@@ -270,10 +273,10 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
     within the gradient of gravity, 1 + (2 g / R) t^2 / 12.
     """
     lat, b = 0.7, 0.01
-    g = earth.gravity(math.sin(lat), 0.0)
+    g = ellipsoid.gravity(math.sin(lat), 0.0)
     t_ns = stamps(20.0, 300.0, 0.0)
     n = len(t_ns)
-    rate = (0.0, earth.ROTATION_RATE * math.cos(lat), earth.ROTATION_RATE * math.sin(lat))
+    rate = (0.0, ellipsoid.ROTATION_RATE * math.cos(lat), ellipsoid.ROTATION_RATE * math.sin(lat))
     # heading 90 deg in compass terms is q = identity in ENU
     imu = RecordedImu(t_ns, np.tile(rate, (n, 1)), np.tile([0.0, 0.0, g + b], (n, 1)),
                       np.full((n, 4), np.nan))
@@ -282,7 +285,7 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
                           Track(t_ns, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
     free = run(imu, reference).comparisons[0].position.values[-1, 2]
     damped = run(imu, reference, vertical__channel='damped').comparisons[0].position.values[:, 2]
-    growth = 1.0 + 2.0 * g / earth.SEMI_MAJOR * 300.0 ** 2 / 12.0
+    growth = 1.0 + 2.0 * g / ellipsoid.SEMI_MAJOR * 300.0 ** 2 / 12.0
     assert abs(free / (0.5 * b * 300.0 ** 2) - growth) < 1e-3
     # a triple pole at -1/20 s: after 300 s = 15 time constants, e^-15 (15^2 / 2) b 20^2
     assert abs(damped[-1]) < 4.0 * math.exp(-15.0) * 112.5 * b * 400.0
@@ -312,8 +315,8 @@ def test_the_rows_are_the_errors_at_their_instants():
 def test_heading_error_is_clockwise():
     """A solution turned right by 1 deg shows +1 deg."""
     imu, reference = recorded(stamps(100.0, 1.0))
-    turned = attitude.multiply(attitude.exponential((0.0, 0.0, math.radians(-1.0))),
-                               reference.attitude.values.T)
+    turned = quaternion.multiply(quaternion.exponential((0.0, 0.0, math.radians(-1.0))),
+                                 reference.attitude.values.T)
     wrong = replace(reference, attitude=Track(imu.t_ns, np.stack(turned, axis=-1)))
     got = run(imu, wrong)
     shown = compare(got.states, reference)
@@ -333,11 +336,11 @@ def test_free_navigation_is_the_kernel_of_the_strapdown():
     state = (float(truth.lat[0]), float(truth.lon[0]), float(truth.height[0]),
              tuple(truth.v_n[0].tolist()), tuple(truth.q_nb[0].tolist()))
     samples = [(tuple(w), tuple(f)) for w, f in zip(imu.omega.tolist(), imu.f.tolist())]
-    nav = FreeNavigation('instant', earth.ROTATION_RATE, int(imu.t_ns[0]), *samples[0], state)
+    nav = FreeNavigation('instant', ellipsoid.ROTATION_RATE, int(imu.t_ns[0]), *samples[0], state)
     nav.step(int(imu.t_ns[1]), *samples[1])
     _, u = increments('instant', *samples, 0.01, 0.01)
-    q_ib = strapdown.inertial_attitude(state[0], state[1], state[4])
-    lat, lon, height, v, _ = strapdown.step(
-        q_ib, *state[:4], u, 0.01, earth.ROTATION_RATE, earth.ROTATION_RATE * 0.005,
-        strapdown.FREE, ())
+    q_ib = frames.inertial_attitude(state[0], state[1], state[4])
+    lat, lon, height, v, _ = mechanization.step(
+        q_ib, *state[:4], u, 0.01, ellipsoid.ROTATION_RATE, ellipsoid.ROTATION_RATE * 0.005,
+        mechanization.FREE, ())
     assert nav.solution()[:4] == (lat, lon, height, v)

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.errors import position_error
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.fixes import VALID
-from ins_sim.core.gnss import Gnss
-from ins_sim.core.kinematics import rate_on_earth
-from ins_sim.core.gnss_settings import GnssSettings
-from ins_sim.core.motions import make_motion
-from ins_sim.core.settings import MotionGeneratorSettings
+from ins_sim.settings.catalogue import build
+from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.timeseries.fixes import VALID
+from ins_sim.core.sensors.gnss import Gnss
+from ins_sim.core.earth.rates import rate_on_earth
+from ins_sim.settings.gnss import GnssSettings
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.settings.motion import MotionGeneratorSettings
 
 SECOND = 1_000_000_000
 DT = SECOND // 100

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.signal import welch
 
-from ins_sim.core.gusts import Gusts, HIGHEST, LINES, LOWEST
+from ins_sim.core.motion.route.gusts import Gusts, HIGHEST, LINES, LOWEST
 
 SIGMA, LENGTH, AIRSPEED = 0.5, 500.0, 200.0
 TAU = LENGTH / AIRSPEED

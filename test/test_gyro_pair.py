@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from studies import DEG_PER_HOUR, MOTION_2, settings
 
-from ins_sim.core import attitude
-from ins_sim.core.gyro_pair import (ARRANGEMENTS, CHANNELS, COVARIANCE_FACTORS, geometry,
-                                    GyroPair)
-from ins_sim.core.motions import make_motion
-from ins_sim.core.orientation import Orientation
-from ins_sim.core.prediction import channel_drift
-from ins_sim.core.tuned_gyro import PRESETS
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.sensors.tuned_gyro.pair import (ARRANGEMENTS, CHANNELS, COVARIANCE_FACTORS,
+                                                  geometry, GyroPair)
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.attitude.integration import Orientation
+from ins_sim.core.prediction.drift import channel_drift
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 
 TACTICAL = PRESETS['tactical']
 DT = 1e-3
@@ -165,11 +165,11 @@ def test_drift_of_motion_2_is_the_predicted_one(preset):
         true.step((start, mid, mid, end), DT)
         found.advance(tuple(DT * w for w in reading), DT)
         if k + 1 in (settle, settle + count):
-            offs.append(attitude.logarithm(attitude.multiply(
-                found.q, attitude.conjugate(true.q))))
+            offs.append(quaternion.logarithm(quaternion.multiply(
+                found.q, quaternion.conjugate(true.q))))
     # from the inertial frame of the start to n
     q_start = tuple(motion.at(t[:1]).q_nb[0].tolist())
-    measured = np.array(attitude.rotate(q_start, np.subtract(offs[1], offs[0]) / (count * DT)))
+    measured = np.array(quaternion.rotate(q_start, np.subtract(offs[1], offs[0]) / (count * DT)))
     error = np.linalg.norm(measured - predicted) / np.linalg.norm(predicted)
     print(f'\n{preset}: predicted {predicted * DEG_PER_HOUR} deg/h, measured '
           f'{measured * DEG_PER_HOUR}, off by {error:.1e}; '

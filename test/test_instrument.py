@@ -7,12 +7,12 @@ import pytest
 from studies import MOTION_2, settings
 
 from ins_sim import parameter_files, resources
-from ins_sim.core.imu_stream import make_imu, StreamImu
-from ins_sim.core.instrument import reported_variances, with_errors
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import sense, simulate
+from ins_sim.core.sensors.imu.stream import make_imu, StreamImu
+from ins_sim.core.sensors.imu.with_errors import reported_variances, with_errors
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import sense, simulate
 from ins_sim.messages import topics
 
 NOISY = {**MOTION_2, 'source': 'stream', 'seed': 5,

@@ -5,12 +5,12 @@ import math
 
 from aided_flights import circle, perfect_fixes, samples_of
 from hypothesis import given, settings as hypothesis_settings, strategies as st
-from ins_sim.core import kalman
-from ins_sim.core.aided_navigator import AidedNavigator, GNSS, METER
-from ins_sim.core.aided_settings import AidedNavigatorSettings, FILTERS
-from ins_sim.core.catalogue import build
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.fixes import GnssFix, no_gnss_fix
+from ins_sim.core.aiding import kalman
+from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
+from ins_sim.settings.aided_navigator import AidedNavigatorSettings, FILTERS
+from ins_sim.settings.catalogue import build
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix
 import numpy as np
 import pytest
 

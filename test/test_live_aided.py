@@ -5,12 +5,12 @@ import subprocess
 import sys
 
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.core.aided_simulation import simulate_aided
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.meter_on_truth import body_velocity
-from ins_sim.core.motions import make_motion
-from ins_sim.core.orthodrome import Route
-from ins_sim.core.simulation import simulate
+from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.earth.rates import body_velocity
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one
 from live import Chain, Listener

@@ -2,7 +2,7 @@
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
-from ins_sim.core.presets import preset
+from ins_sim.settings.presets import preset
 from ins_sim.messages import topics
 from live import Chain
 import numpy as np

@@ -2,8 +2,8 @@
 
 import time
 
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
 from ins_sim.messages import topics
 from ins_sim.messages.convert import truth_blocks
 from live import Chain, Listener
@@ -25,7 +25,7 @@ class Source:
         self.chain = Chain(domain, folder)
         self.listener = Listener(domain, (topics.IMU_RAW, topics.INS_ODOMETRY))
         self.diagnostics = self.listener.diagnostics()
-        from ins_sim.ros.qos import publisher
+        from ins_sim.ros.transport.qos import publisher
         self._out = [(t, t.writer(), publisher(self.listener.node, t, 2000).publish)
                      for t in (topics.TRUTH_ODOMETRY, topics.TRUTH_IMU)]
         settings = studies.settings(PARAMETERS).motion_generator

@@ -1,8 +1,8 @@
 """The node gnss by itself: its fixes are those of the core, bit for bit, when they are due."""
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.gnss import Gnss
-from ins_sim.core.gnss_settings import GnssSettings
+from ins_sim.settings.catalogue import build
+from ins_sim.core.sensors.gnss import Gnss
+from ins_sim.settings.gnss import GnssSettings
 from ins_sim.messages import topics
 from ins_sim.messages.gnss_fixes import GnssPairs, GnssWriter
 from live import Chain

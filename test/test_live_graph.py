@@ -3,9 +3,9 @@
 import subprocess
 import sys
 
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.presets import preset
-from ins_sim.core.simulation import simulate
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.settings.presets import preset
+from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import topics
 from ins_sim.messages.convert import error_blocks, state_blocks
 from live import Chain, Listener

@@ -1,8 +1,8 @@
 """The node velocity_meter by itself: its records are the fixes of the core, bit for bit."""
 
-from ins_sim.core.catalogue import build
-from ins_sim.core.velocity_meter import VelocityMeter
-from ins_sim.core.velocity_meter_settings import VelocityMeterSettings
+from ins_sim.settings.catalogue import build
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
+from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.messages import topics, velocity_record
 from live import Chain
 import numpy as np

@@ -7,7 +7,7 @@ import time
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
-from ins_sim.ros.repairs import use_profile, VARIABLE
+from ins_sim.ros.transport.repairs import use_profile, VARIABLE
 from live import Chain
 import pytest
 

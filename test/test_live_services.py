@@ -100,7 +100,7 @@ def test_a_missing_consumer_is_named_with_code_4(chain):
 def test_pause_step_reset_and_status(chain, ros_domain):
     from std_msgs.msg import String
     from std_srvs.srv import SetBool, Trigger
-    from ins_sim.ros.qos import latched
+    from ins_sim.ros.transport.qos import latched
     listener = Listener(ros_domain, (topics.TRUTH_IMU,))
     states = []
     try:
@@ -158,7 +158,7 @@ def test_nodes_start_as_cheaply_as_a_bare_node(chain):
     code = ('import rclpy, sys; from time import process_time as now; rclpy.init(); '
             'from nav_msgs.msg import Odometry; node = rclpy.create_node("x"); '
             'node.create_publisher(Odometry, "y", 10); start = now(); '
-            'from ins_sim.ros.{0}_node import {1}; {1}(); print(now() - start); '
+            'from ins_sim.ros.nodes.{0} import {1}; {1}(); print(now() - start); '
             'bad = {{"scipy", "matplotlib", "numba", "rosbags"}} & set(sys.modules); '
             'assert not bad, bad')
     for name, cls in (('motion_generator', 'MotionGeneratorNode'),

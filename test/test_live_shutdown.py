@@ -19,7 +19,7 @@ SIGNALS = {'SIGINT': (signal.SIGINT,), 'SIGINT twice': (signal.SIGINT, signal.SI
 PARAMETERS = {'rate_hz': 200.0, 'duration_s': 0.0}
 # makes the handlers anew each time one has made the process deaf
 HANDLERS = """
-from ins_sim.ros.runtime import Stop
+from ins_sim.ros.process.runtime import Stop
 Stop().install()
 print('ready', flush=True)
 for _ in range(5000):
@@ -73,7 +73,7 @@ def test_signals_in_the_moment_of_a_change_of_handlers():
 def test_a_node_that_hangs_in_its_end_ends():
     """Stuck in C with the interpreter locked, as Fast DDS may be: exit code as it was to be."""
     code = ('import ctypes\n'
-            'from ins_sim.ros.last_resort import exit_within\n'
+            'from ins_sim.ros.process.last_resort import exit_within\n'
             'exit_within(1, 3)\n'
             'ctypes.PyDLL(None).sleep(60)\n')
     start = time.monotonic()

@@ -3,10 +3,10 @@
 from functools import lru_cache
 
 from hypothesis import example, given, settings, strategies as st
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigator import Navigator
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.navigation.live import Navigator
 import numpy as np
 import pytest
 import studies

@@ -4,14 +4,15 @@ from dataclasses import replace
 import math
 
 from ins_sim import parameter_files, resources
-from ins_sim.core.aided_run import aid, with_truth
-from ins_sim.core.gnss import Gnss
-from ins_sim.core.mounting_calibration import azimuth_error, calibrate, least_squares, mounting_sum
-from ins_sim.core.motions import make_motion
-from ins_sim.core.records import Truth
-from ins_sim.core.simulation import sense
-from ins_sim.core.meter_on_truth import MeterOnTruth
-from ins_sim.core.velocity_meter import VelocityMeter
+from ins_sim.core.simulation.aided_run import aid, with_truth
+from ins_sim.core.sensors.gnss import Gnss
+from ins_sim.core.aiding.mounting_calibration import (azimuth_error, calibrate, least_squares,
+                                                      mounting_sum)
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.timeseries.histories import Truth
+from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 import numpy as np
 import pytest
 

@@ -13,13 +13,14 @@ from scipy.spatial.transform import Rotation
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
-from ins_sim.core import attitude, earth
-from ins_sim.core.angles import from_compass
-from ins_sim.core.catalogue import flatten
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigate_settings import NAVIGATE, NavigateSettings
-from ins_sim.core.simulation import sense
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.attitude.angles import from_compass
+from ins_sim.settings.catalogue import flatten
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
+from ins_sim.core.simulation.inertial import sense
 from ins_sim.messages import convert, topics
 
 SECOND = 1_000_000_000
@@ -159,15 +160,15 @@ def car(tmp_path, bias=0.002, with_fix=True, frame='imu_link'):
     t, v, way, pushed = drive()
     t_ns = np.round(t * 1e9).astype(np.int64)
     lat0, n = math.radians(50.0), len(t)
-    r_n, r_e = earth.radii(math.sin(lat0))
+    r_n, r_e = ellipsoid.radii(math.sin(lat0))
     lat = lat0 + way[:, 1] / r_n
     lon = way[:, 0] / (r_e * math.cos(lat0))
     rng = np.random.default_rng(2)
     q_nb = tuple(from_compass(0.0, 0.0, math.radians(70.0))[0].tolist())
-    turning = attitude.rotate_back(q_nb, (0.0, earth.ROTATION_RATE * math.cos(lat0),
-                                          earth.ROTATION_RATE * math.sin(lat0)))
+    turning = quaternion.rotate_back(q_nb, (0.0, ellipsoid.ROTATION_RATE * math.cos(lat0),
+                                            ellipsoid.ROTATION_RATE * math.sin(lat0)))
     omega = turning + np.array([0.0, 0.0, bias]) + 1e-3 * rng.standard_normal((n, 3))
-    f = np.stack([pushed * 1.0, np.zeros(n), np.full(n, earth.gravity(math.sin(lat0), 0.0))],
+    f = np.stack([pushed * 1.0, np.zeros(n), np.full(n, ellipsoid.gravity(math.sin(lat0), 0.0))],
                  axis=1) + 0.02 * rng.standard_normal((n, 3))
     recorded = {('/imu', IMU): imu_messages(t_ns, omega, f, frame=frame)}
     if with_fix:

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from ins_sim.cli.main import main
-from ins_sim.core import csv_columns
-from ins_sim.core.angles import to_compass
+from ins_sim.io import csv_imu
+from ins_sim.core.attitude.angles import to_compass
 
 # From the public launch file that plays this bag, robot_localization's
 # test/test_ekf_localization_node_bag1.test: the IMU "was intentionally rotated +90 degrees about
@@ -76,13 +76,13 @@ def test_husky_levelled_without_a_word_on_its_mounting(shared_data, tmp_path, ca
 
     Against the mounting as stated: the slope of the ground at the standstill, 5 deg at most.
     """
-    from ins_sim.core import attitude, mounting
+    from ins_sim.core.attitude import angles, quaternion
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out',
                         'mounting.source:=level', 'mounting.rpy_deg:=[0.0, 0.0, -90.0]')
     capsys.readouterr()
-    stated = mounting.from_rpy(math.radians(90.0), 0.0, math.radians(-90.0))
-    off = attitude.logarithm(attitude.multiply(
-        tuple(summary['figures']['mounting_xyzw']), attitude.conjugate(stated)))
+    stated = angles.from_rpy(math.radians(90.0), 0.0, math.radians(-90.0))
+    off = quaternion.logarithm(quaternion.multiply(
+        tuple(summary['figures']['mounting_xyzw']), quaternion.conjugate(stated)))
     assert np.linalg.norm(off) < math.radians(5.0)
 
 
@@ -132,8 +132,8 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
             ('fogmems_imu.csv.gz', folder / 'fogmems_fogins_reference.csv', 0.9),
             ('umn_thor_fl75_imu.csv.gz',
              shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz', 0.8)):
-        imu = csv_columns.read_imu(folder / imu)
-        track = csv_columns.read_reference(reference).attitude
+        imu = csv_imu.read_imu(folder / imu)
+        track = csv_imu.read_reference(reference).attitude
         assert imu.f[:, 2].mean() < -9.0
         flu = imu.turned((1.0, 0.0, 0.0, 0.0))
         inside = (track.t_ns > imu.t_ns[0]) & (track.t_ns < imu.t_ns[-1])
@@ -157,7 +157,7 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     (the reference is an on-board estimate that is corrected at 1 Hz).
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
-    track = csv_columns.read_reference(flight)
+    track = csv_imu.read_reference(flight)
     start_ns = 200_019_999_000
     lat, lon, height = track.position.at([start_ns])[0]
     roll, pitch, heading = np.degrees(to_compass(np.array(track.attitude_at(start_ns))))

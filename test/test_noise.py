@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, kstest
 
-from ins_sim.core.noise import BLOCK, LEVELS, Processes, stream
+from ins_sim.core.numerics.noise import BLOCK, LEVELS, Processes, stream
 
 QUANTILE = 1e-6
 

@@ -5,9 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from ins_sim.core import attitude
-from ins_sim.core.orientation import (bortz_factor, dcm_of, KINDS, Orientation, quaternion_of,
-                                      roll, shorter)
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import roll
+from ins_sim.core.attitude.integration import bortz_factor, KINDS, Orientation
+from ins_sim.core.attitude.matrix import dcm_of, quaternion_of
+from ins_sim.core.attitude.quaternion import shorter
 
 SPIN, WOBBLE, TURN = 1.0, 0.01, 0.7
 
@@ -19,8 +21,8 @@ def rate(t):
 
 def truth(t):
     """Return q of that motion: exp(t (w(0) + TURN e_z)) exp(-TURN t e_z)."""
-    return attitude.multiply(attitude.exponential((WOBBLE * t, 0.0, (SPIN + TURN) * t)),
-                             attitude.exponential((0.0, 0.0, -TURN * t)))
+    return quaternion.multiply(quaternion.exponential((WOBBLE * t, 0.0, (SPIN + TURN) * t)),
+                               quaternion.exponential((0.0, 0.0, -TURN * t)))
 
 
 def run(kind, duration, dt):
@@ -66,7 +68,7 @@ def test_quaternion_is_exact_for_a_constant_rate():
     w = (0.3, -0.8, 1.1)
     algorithm = Orientation('quaternion')
     algorithm.advance(tuple(1.3 * a for a in w), 1.3)
-    np.testing.assert_allclose(algorithm.q, attitude.exponential(tuple(1.3 * a for a in w)),
+    np.testing.assert_allclose(algorithm.q, quaternion.exponential(tuple(1.3 * a for a in w)),
                                atol=1e-15)
 
 
@@ -82,7 +84,7 @@ def test_readings_alone_and_a_kept_state(kind):
     algorithm.state = kept
     algorithm.advance((0.001, 0.002, 0.003), 0.01)
     assert algorithm.state == once
-    expected = attitude.multiply(tuple(start), attitude.exponential((0.001, 0.002, 0.003)))
+    expected = quaternion.multiply(tuple(start), quaternion.exponential((0.001, 0.002, 0.003)))
     np.testing.assert_allclose(algorithm.dcm, dcm_of(expected), atol=1e-12)
 
 
@@ -102,8 +104,8 @@ def test_shorter_is_the_same_rotation():
         theta = (0.6 * d, 0.0, 0.8 * d)
         short = shorter(theta)
         assert math.hypot(*short) <= math.pi
-        np.testing.assert_allclose(dcm_of(attitude.exponential(short)),
-                                   dcm_of(attitude.exponential(theta)), atol=1e-14)
+        np.testing.assert_allclose(dcm_of(quaternion.exponential(short)),
+                                   dcm_of(quaternion.exponential(theta)), atol=1e-14)
 
 
 def test_quaternion_of_a_dcm():
@@ -113,7 +115,7 @@ def test_quaternion_of_a_dcm():
         q /= np.linalg.norm(q)
         back = np.array(quaternion_of(dcm_of(tuple(q.tolist()))))
         assert min(abs(back - q).max(), abs(back + q).max()) < 1e-14
-    assert roll(dcm_of(attitude.exponential((0.2, 0.0, 0.0)))) == pytest.approx(0.2)
+    assert roll(dcm_of(quaternion.exponential((0.2, 0.0, 0.0)))) == pytest.approx(0.2)
 
 
 def test_unknown_algorithm():

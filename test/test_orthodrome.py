@@ -11,11 +11,11 @@ from hypothesis import assume, given, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core import earth
-from ins_sim.core.orthodrome import FLATTENING2, Leg, Route, unit_vector
-from ins_sim.core.route_settings import TurningPoints
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.great_circle import FLATTENING2, Leg, Route, unit_vector
+from ins_sim.settings.route import TurningPoints
 
-R0 = earth.MEAN_RADIUS
+R0 = ellipsoid.MEAN_RADIUS
 LATITUDES = st.floats(-1.56, 1.56)
 LONGITUDES = st.floats(-math.pi, math.pi)
 

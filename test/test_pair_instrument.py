@@ -9,16 +9,16 @@ from scipy.integrate import solve_ivp
 from scipy.stats import chi2
 from studies import settings, streamed
 
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.gyro_pair import CHANNELS, COVARIANCE_FACTORS, GyroPair
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.instrument import reported_variances
-from ins_sim.core.motions import make_motion
-from ins_sim.core.pair_instrument import make_pair, PairInstrument, parameters
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import sense
-from ins_sim.core.triad_model import DEG_H, STANDARD_GRAVITY as G
-from ins_sim.core.tuned_gyro import PRESETS, state_space
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.sensors.tuned_gyro.pair import CHANNELS, COVARIANCE_FACTORS, GyroPair
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.sensors.tuned_gyro.instrument import make_pair, PairInstrument, parameters
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY as G
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
 
 DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
 ERRORS, OUT = 'gyro.dtg.errors.', 'gyro.errors.'
@@ -351,6 +351,6 @@ def test_bad_gyros_are_refused(key, value, says):
 def test_channels_have_the_names_of_the_settings():
     """The choices of the fault are the channels."""
     from dataclasses import fields
-    from ins_sim.core.dtg_settings import DtgFault
+    from ins_sim.settings.tuned_gyro import DtgFault
     choices = {f.name: f.metadata['choices'] for f in fields(DtgFault)}['channel']
     assert choices == ('none', *CHANNELS)

@@ -3,9 +3,9 @@
 import math
 
 from aided_flights import circle, perfect_fixes, samples_of, straight
-from ins_sim.core.aided_navigator import AidedNavigator, METER
-from ins_sim.core.aided_settings import AidedNavigatorSettings
-from ins_sim.core.catalogue import build
+from ins_sim.core.aiding.navigator import AidedNavigator, METER
+from ins_sim.settings.aided_navigator import AidedNavigatorSettings
+from ins_sim.settings.catalogue import build
 import numpy as np
 import pytest
 

@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from ins_sim import parameter_files, resources
-from ins_sim.core.catalogue import build, flatten, values_of
-from ins_sim.core.node_settings import ALL_NAMES
-from ins_sim.core.settings import NODES
-from ins_sim.core.simulation import simulate
+from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.by_node import ALL_NAMES
+from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.inertial import simulate
 
 ROOT = Path(__file__).resolve().parent.parent
 # those of other commands are in test_dtg_study and test_navigate_command

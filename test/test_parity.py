@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from studies import settings
 
-from ins_sim.core.motions import make_motion
-from ins_sim.core.pair_instrument import PairInstrument
-from ins_sim.core.parity import ParityTest, windows
-from ins_sim.core.presets import preset
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import sense
-from ins_sim.core.triad_model import DEG_H
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
+from ins_sim.core.sensors.tuned_gyro.parity import ParityTest, windows
+from ins_sim.settings.presets import preset
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.numerics.units import DEG_H
 
 DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
 FAULT = {'gyro.dtg.fault.start_s': 10.0, 'gyro.dtg.fault.end_s': 20.0}

@@ -48,7 +48,7 @@ def test_an_hour_offline(benchmark):
 def test_a_node_imports_nothing_heavy(node):
     """No SciPy, Numba or matplotlib on the way of a node's start."""
     pytest.importorskip('rclpy')
-    code = (f'import sys, ins_sim.ros.{node}_node\n'
+    code = (f'import sys, ins_sim.ros.nodes.{node}\n'
             'heavy = {"scipy", "numba", "matplotlib", "rosbags", "rich"}\n'
             'print(sorted(heavy & set(sys.modules)))')
     found = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,

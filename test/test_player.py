@@ -96,7 +96,7 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
     path = mixed_bag(tmp_path / 'bag')
     talker = Talker(ros_domain)
     try:
-        from ins_sim.ros.queue import HandQueue
+        from ins_sim.ros.transport.backlog import HandQueue
         queue = HandQueue(talker.node, topics.Topic('imu', topics.IMU), 1000)
         clock = HandQueue(talker.node, topics.CLOCK_TOPIC, 1000)
         player = chain.start_verb('play', path, '--start', '0.5', '--duration', '1.0', '--clock',

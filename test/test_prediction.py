@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, settings
 
-from ins_sim.core.motions import make_motion
-from ins_sim.core.prediction import channel_drift, delay_response, mean_drift, predict
-from ins_sim.core.simulation import simulate
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.prediction.drift import channel_drift, delay_response, mean_drift
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.simulation.inertial import simulate
 
 RANDOM = [5, 17, 42]
 

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ins_sim.core import attitude, recording, recording_quality, settings
-from ins_sim.core.motions import make_motion
-from ins_sim.core.recording import RecordedMotion
-from ins_sim.core.recording_faults import seconds
-from ins_sim.core.recording_file import read_rows, REQUIRED
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.motion.recorded import quality, spline
+from ins_sim.settings.place import Datum, Earth
+from ins_sim.settings.motion import MotionSettings, Recording
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.recorded.spline import RecordedMotion
+from ins_sim.core.numerics.instants import seconds_text
+from ins_sim.io.csv_flight import read_poses, read_rows, REQUIRED
 
 FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.csv.gz': 'refuse',
            'uavaero_proto_flt09.csv': 'cut'}
@@ -30,8 +33,8 @@ def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, headin
 
 
 def load(path, rotation=True, **keys):
-    return RecordedMotion(settings.Recording(path=str(path), **keys),
-                          settings.Earth(rotation=rotation))
+    return RecordedMotion(read_poses(path), Recording(path=str(path), **keys),
+                          Earth(rotation=rotation))
 
 
 def recorder_angles(q):
@@ -59,8 +62,8 @@ def same(a, b):
 def flown(tmp_path_factory):
     """Return a recorded motion with every degree of freedom, and 20 s of it."""
     path = tmp_path_factory.mktemp('flown') / 'aggressive.csv'
-    motion = make_motion(settings.MotionSettings(kind='aggressive'), settings.Datum(),
-                         settings.Earth())
+    motion = make_motion(MotionSettings(kind='aggressive'), Datum(),
+                         Earth())
     return load(record(path, motion, 20.0, 20.0)), motion
 
 
@@ -158,8 +161,8 @@ def test_ten_hours_of_instants_take_seconds(shared_data):
 
 def test_recorded_closed_form_converges(tmp_path):
     """Pose errs by h^6 and h^4, so force by h^4 and rate by h^3: halving h divides by 16 and 8."""
-    motion = make_motion(settings.MotionSettings(kind='aggressive'), settings.Datum(),
-                         settings.Earth())
+    motion = make_motion(MotionSettings(kind='aggressive'), Datum(),
+                         Earth())
     t_ns = np.linspace(0.0, 30e9, 997).astype(np.int64)
     errors = []
     for rate in (2.5, 5.0):
@@ -236,8 +239,8 @@ def test_exponential_series_is_the_rotation_and_its_rate(largest):
     r = rng.standard_normal((3, 500))
     r *= largest * rng.random(500) / np.sqrt((r * r).sum(0))
     w = rng.standard_normal((3, 500))
-    terms = recording._terms(np.stack([0.0 * r, r]), np.ones(500))
-    q = np.array([x.c for x in recording._exponential(r, w, terms)])
+    terms = spline._terms(np.stack([0.0 * r, r]), np.ones(500))
+    q = np.array([x.c for x in spline._exponential(r, w, terms)])
     expected = Rotation.from_rotvec(r.T).as_quat()
     expected *= np.sign((expected * q[:, 0].T).sum(1))[:, None]
     assert np.abs(q[:, 0].T - expected).max() < 1e-15
@@ -245,8 +248,8 @@ def test_exponential_series_is_the_rotation_and_its_rate(largest):
     d = 1e-5
     ends = [Rotation.from_rotvec((r + k * d * w).T) for k in (-1, 1)]
     rate = (ends[0].inv() * ends[1]).as_rotvec() / (2.0 * d)
-    mine = 2.0 * np.array(attitude.multiply(attitude.conjugate(tuple(q[:, 0])),
-                                            tuple(q[:, 1])))[:3].T
+    mine = 2.0 * np.array(quaternion.multiply(quaternion.conjugate(tuple(q[:, 0])),
+                                              tuple(q[:, 1])))[:3].T
     assert np.abs(rate - mine).max() < 1e-8
 
 
@@ -285,7 +288,7 @@ def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
     path = tmp_path / 'r.csv'
     path.write_text('\n'.join(lines))
     assert np.array_equal(np.diff(read_rows(path).t_ns), np.full(100, 10 ** 8))
-    assert seconds(read_rows(path).t_ns[0]) == '1700000000'
+    assert seconds_text(read_rows(path).t_ns[0]) == '1700000000'
 
 
 # The domain.
@@ -310,8 +313,8 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
     height = np.round(100.0 + 3.0 * np.sin(0.005 * t) + 2.0 * np.sin(0.0037 * t + 1.0)
                       + 0.3 * rng.standard_normal(4000), 1)
     motion = load(write(tmp_path / 'r.csv', t, height=height, digits='.15g'))
-    predicted = recording_quality.rounding_noise((0.0, 0.0, math.sqrt(0.09 * 12.0 + 0.01)), 1.0,
-                                                 100.0, 0.1, 0.0)[2]
+    predicted = quality.rounding_noise((0.0, 0.0, math.sqrt(0.09 * 12.0 + 0.01)), 1.0,
+                                       100.0, 0.1, 0.0)[2]
     # Noise and rounding together: 0.09 + 0.01 / 12 m^2 of white height noise.
     up = motion.at(motion._knots[50:-50]).f_ib_b[:, 2]
     assert np.std(up) == pytest.approx(predicted, rel=0.05)
@@ -340,6 +343,6 @@ def test_spline_gain_is_the_gain_of_the_spline():
     from scipy.interpolate import make_interp_spline
     t = np.arange(201.0)
     impulse = make_interp_spline(t, (t == 100.0).astype(float), k=5)
-    assert recording_quality.spline_gain() == pytest.approx(
+    assert quality.spline_gain() == pytest.approx(
         math.sqrt((impulse(t, nu=2) ** 2).sum()), rel=1e-9)
-    assert recording_quality.spline_gain(10.0) < 0.1 * recording_quality.spline_gain()
+    assert quality.spline_gain(10.0) < 0.1 * quality.spline_gain()

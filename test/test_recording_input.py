@@ -8,9 +8,10 @@ from hypothesis import given, settings as profile, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core import settings
-from ins_sim.core.recording import RecordedMotion
-from ins_sim.core.recording_file import read_rows, REQUIRED, USED
+from ins_sim.settings.place import Earth
+from ins_sim.settings.motion import Recording
+from ins_sim.core.motion.recorded.spline import RecordedMotion
+from ins_sim.io.csv_flight import read_poses, read_rows, REQUIRED, USED
 
 HEADER = ','.join(REQUIRED)
 
@@ -29,14 +30,14 @@ def save(path, table, header=HEADER):
 def refusal(path, **keys):
     """Return the sentence with which the file is refused."""
     with pytest.raises(ValueError) as caught:
-        RecordedMotion(settings.Recording(path=str(path), **keys), settings.Earth())
+        RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
     sentence = str(caught.value)
     assert '\n' not in sentence and len(sentence) < 900
     return sentence
 
 
 def accepted(path, **keys):
-    return RecordedMotion(settings.Recording(path=str(path), **keys), settings.Earth())
+    return RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
 
 
 @pytest.fixture(scope='module')

@@ -3,9 +3,9 @@
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, stamp_of
-from ins_sim.ros.gaps import Gaps
-from ins_sim.ros.playing import Beginning, Options, Playing
-from ins_sim.ros.run_clock import RunClock
+from ins_sim.ros.transport.gaps import Gaps
+from ins_sim.ros.recording.playing import Beginning, Options, Playing
+from ins_sim.ros.recording.run_clock import RunClock
 import pytest
 
 PACK = topics.IMU_RAW.writer().pack

@@ -8,10 +8,11 @@ from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.core import attitude, earth
-from ins_sim.core.angles import to_compass
-from ins_sim.core.flights import STANDARD_GRAVITY
-from ins_sim.core.records import Truth
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid, frames
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.numerics.units import STANDARD_GRAVITY
+from ins_sim.core.timeseries.histories import Truth
 
 AIRSPEED = 200.0
 # central differences of sixth order: first and second derivative
@@ -21,8 +22,8 @@ SECOND = np.array((2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0)) / 180.0
 
 def local(truth):
     """Return q_en (4, n)."""
-    return attitude.local_level(np.sin(truth.lat / 2), np.cos(truth.lat / 2),
-                                np.sin(truth.lon / 2), np.cos(truth.lon / 2))
+    return frames.local_level(np.sin(truth.lat / 2), np.cos(truth.lat / 2),
+                              np.sin(truth.lon / 2), np.cos(truth.lon / 2))
 
 
 @pytest.mark.parametrize('groups, h_s, v_bound, f_bound, rate_bound', [
@@ -42,27 +43,27 @@ def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
     t = t[np.abs(t[:, None] - joints).min(axis=1) > 3.1 * h_s]
     t_ns, h_ns = np.round(t * 1e9).astype(np.int64), round(h_s * 1e9)
     around = [motion.at(t_ns + k * h_ns) for k in range(-3, 4)]
-    r = np.array([earth.ecef(*(f(a) for a in (x.lat, x.lon) for f in (np.sin, np.cos)), x.height)
-                  for x in around])
+    r = np.array([ellipsoid.ecef(*(f(a) for a in (x.lat, x.lon) for f in (np.sin, np.cos)),
+                                 x.height) for x in around])
     v_e = np.tensordot(FIRST, r, 1) / h_s
     a_e = np.tensordot(SECOND, r, 1) / h_s ** 2
     truth = around[3]
     q_en = local(truth)
-    spin = (0.0, 0.0, earth.ROTATION_RATE)
-    v = np.abs(np.array(attitude.rotate(q_en, truth.v_n.T)) - v_e).max()
-    f_n = np.array(attitude.rotate_back(q_en, a_e + 2.0 * np.array(attitude.cross(spin, v_e))))
-    f_n[2] += earth.gravity(np.sin(truth.lat), truth.height)
-    f = np.abs(np.array(attitude.rotate(truth.q_nb.T, truth.f_ib_b.T)) - f_n).max()
+    spin = (0.0, 0.0, ellipsoid.ROTATION_RATE)
+    v = np.abs(np.array(quaternion.rotate(q_en, truth.v_n.T)) - v_e).max()
+    f_n = np.array(quaternion.rotate_back(q_en, a_e + 2.0 * np.array(quaternion.cross(spin, v_e))))
+    f_n[2] += ellipsoid.gravity(np.sin(truth.lat), truth.height)
+    f = np.abs(np.array(quaternion.rotate(truth.q_nb.T, truth.f_ib_b.T)) - f_n).max()
 
-    q_eb = [attitude.multiply(local(x), x.q_nb.T) for x in around]
+    q_eb = [quaternion.multiply(local(x), x.q_nb.T) for x in around]
 
     def mean_rate(k):
-        turned = np.array(attitude.multiply(attitude.conjugate(q_eb[3 - k]), q_eb[3 + k])).T
-        return np.array([attitude.logarithm(q) for q in turned.tolist()]) / (2 * k * h_s)
+        turned = np.array(quaternion.multiply(quaternion.conjugate(q_eb[3 - k]), q_eb[3 + k])).T
+        return np.array([quaternion.logarithm(q) for q in turned.tolist()]) / (2 * k * h_s)
 
     # fourth order by Richardson; the Earth turns as well
     omega = (4.0 * mean_rate(1) - mean_rate(2)) / 3.0 + np.stack(
-        attitude.rotate_back(q_eb[3], spin), axis=-1)
+        quaternion.rotate_back(q_eb[3], spin), axis=-1)
     rate = np.abs(omega - truth.omega_ib_b).max()
     print(f'\n{len(t)} instants: velocity {v:.2e} m/s, specific force {f:.2e} m/s^2, '
           f'rate {rate:.2e} rad/s')
@@ -132,7 +133,7 @@ def test_turns_are_coordinated_at_their_rate():
         rate = np.gradient(np.unwrap(heading), 0.01)
         hold = (t_ns * 1e-9 > start + 5.1) & (t_ns * 1e-9 < end - 5.1)
         lon_rate = np.gradient(truth.lon, 0.01)
-        bank = np.arctan(AIRSPEED * (rate - (2.0 * earth.ROTATION_RATE + lon_rate) * np.sin(
+        bank = np.arctan(AIRSPEED * (rate - (2.0 * ellipsoid.ROTATION_RATE + lon_rate) * np.sin(
             truth.lat)) / STANDARD_GRAVITY)
         print(f'\nturn of {math.degrees(heading[-1] - heading[0]):.2f} deg: rate '
               f'{np.degrees(rate[hold]).min():.4f} to {np.degrees(rate[hold]).max():.4f} deg/s, '

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from ins_sim import parameter_files, resources
-from ins_sim.core import earth
-from ins_sim.core.angles import to_compass
-from ins_sim.core.motions import make_motion
-from ins_sim.core.orthodrome import FLATTENING2
-from ins_sim.core.node_settings import AIDING
-from ins_sim.core.settings import NODES
-from ins_sim.core.simulation import simulate
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.earth.great_circle import FLATTENING2
+from ins_sim.settings.by_node import AIDING
+from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.inertial import simulate
 
 # file, lengths of the legs (km), turns (deg); all begin at 55 N 37 E on a course of 30 deg
 FLIGHTS = [('route_flight', (160, 160, 160, 160), (60, -90, 60)),
@@ -34,7 +34,7 @@ def motion_of(settings):
 
 def corners(lengths, turns):
     """Return the turning points (lat, lon), deg with six decimals: the script of the files."""
-    geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(earth.MEAN_RADIUS, 0.0)
+    geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(ellipsoid.MEAN_RADIUS, 0.0)
     points, course = [(55.0, 37.0)], COURSE
     for length, turn in zip(lengths, (*turns, 0)):
         centric = math.degrees(math.atan(FLATTENING2 * math.tan(math.radians(points[-1][0]))))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from ins_sim import parameter_files
-from ins_sim.core.simulation import simulate
+from ins_sim.core.simulation.inertial import simulate
 
 
 def points(lat, lon):

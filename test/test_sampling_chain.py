@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from studies import MOTION_2, settings
 
-from ins_sim.core.orientation_study import compare
-from ins_sim.core.sampling import SampleClock
-from ins_sim.core.simulation import simulate
+from ins_sim.studies.orientation import compare
+from ins_sim.core.navigation.sample_clock import SampleClock
+from ins_sim.core.simulation.inertial import simulate
 
 DISTURBED = {**MOTION_2, 'sampling.latency_us': 1500.0, 'sampling.jitter_us': 900.0, 'seed': 5}
 NOMINAL = {'imu_time': 'nominal', 'imu_latency_us': 1500.0}

@@ -10,17 +10,20 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
 from ins_sim import parameter_files, resources
-from ins_sim.core import attitude, earth, mounting, self_alignment
-from ins_sim.core.angles import from_compass, to_compass
-from ins_sim.core.catalogue import build
-from ins_sim.core.initial_state import Sources
-from ins_sim.core.motions import make_motion
-from ins_sim.core.navigate import navigate
-from ins_sim.core.navigate_settings import Alignment, NavigateSettings
-from ins_sim.core.recorded_imu import RecordedImu
-from ins_sim.core.simulation import sense
+from ins_sim.core.attitude import angles, quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.navigation import alignment
+from ins_sim.core.postprocessing import mounting
+from ins_sim.core.attitude.angles import from_compass, to_compass
+from ins_sim.settings.catalogue import build
+from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.postprocessing.navigate import navigate
+from ins_sim.settings.navigate import Alignment, NavigateSettings
+from ins_sim.core.postprocessing.imu_record import RecordedImu
+from ins_sim.core.simulation.inertial import sense
 
-OMEGA = earth.ROTATION_RATE
+OMEGA = ellipsoid.ROTATION_RATE
 DEG_H = math.radians(1.0) / 3600.0
 
 
@@ -28,8 +31,8 @@ def resting(q_nb, lat, count=600, rate_hz=10.0, bias=(np.zeros(3), np.zeros(3)),
             seed=0):
     """Return the RecordedImu of an IMU at rest in b with biases and white noise."""
     rng = np.random.default_rng(seed)
-    rate = attitude.rotate_back(q_nb, (0.0, OMEGA * math.cos(lat), OMEGA * math.sin(lat)))
-    force = attitude.rotate_back(q_nb, (0.0, 0.0, earth.gravity(math.sin(lat), 0.0)))
+    rate = quaternion.rotate_back(q_nb, (0.0, OMEGA * math.cos(lat), OMEGA * math.sin(lat)))
+    force = quaternion.rotate_back(q_nb, (0.0, 0.0, ellipsoid.gravity(math.sin(lat), 0.0)))
     t_ns = np.arange(count, dtype=np.int64) * round(1e9 / rate_hz)
     return RecordedImu(t_ns, rate + bias[0] + noise[0] * rng.standard_normal((count, 3)),
                        force + bias[1] + noise[1] * rng.standard_normal((count, 3)),
@@ -38,7 +41,7 @@ def resting(q_nb, lat, count=600, rate_hz=10.0, bias=(np.zeros(3), np.zeros(3)),
 
 def errors(q, q_true):
     """Return tilt and heading error of q_nb, rad."""
-    e = attitude.logarithm(attitude.multiply(q, attitude.conjugate(q_true)))
+    e = quaternion.logarithm(quaternion.multiply(q, quaternion.conjugate(q_true)))
     return math.hypot(e[0], e[1]), abs(e[2])
 
 
@@ -55,7 +58,7 @@ def test_any_mounting_navigates_alike(turn, lat, heading, how):
     q_nb = tuple(from_compass(0.2, -0.1, heading)[0].tolist())
     rotation = Rotation.from_euler('xyz', turn, degrees=True)
     q_bs = tuple(rotation.as_quat().tolist())
-    imu = resting(q_nb, lat).turned(attitude.conjugate(q_bs))
+    imu = resting(q_nb, lat).turned(quaternion.conjugate(q_bs))
     chosen = build(NavigateSettings, {
         'mounting.source': how, 'alignment.longest_s': 10.0, 'initial.position': 'given',
         'initial.latitude_deg': math.degrees(lat),
@@ -65,7 +68,7 @@ def test_any_mounting_navigates_alike(turn, lat, heading, how):
     tilt, azimuth = errors(tuple(got.states[0].q_nb[-1].tolist()), q_nb)
     assert got.figures['heading_source'] == 'gyrocompass'
     assert tilt < 1e-13 and azimuth < 1e-11 / math.cos(lat)
-    assert abs(got.states[0].lat[-1] - lat) * earth.SEMI_MAJOR < 1e-6
+    assert abs(got.states[0].lat[-1] - lat) * ellipsoid.SEMI_MAJOR < 1e-6
 
 
 UNIT = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: 0.1 < np.linalg.norm(v))
@@ -90,10 +93,10 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
     b_a = size[0] * np.array(force) / np.linalg.norm(force)
     b_g = size[1] * DEG_H * np.array(rate) / np.linalg.norm(rate)
     imu = resting(q_nb, lat, bias=(b_g, b_a))
-    still = self_alignment.find_standstill(imu, Alignment())
-    compass = self_alignment.gyrocompass(still, lat)
+    still = alignment.find_standstill(imu, Alignment())
+    compass = alignment.gyrocompass(still, lat)
     tilt, azimuth = errors(compass.q_nb, q_nb)
-    g = earth.gravity(math.sin(lat), 0.0)
+    g = ellipsoid.gravity(math.sin(lat), 0.0)
     tilt_bound = math.asin(size[0] / (g - size[0]))
     first = size[1] * DEG_H / (OMEGA * math.cos(lat)) + math.tan(abs(lat)) * size[0] / g
     # the horizontal part of a rotation vector of length d is d/2 / sin(d/2) times the tilt
@@ -107,8 +110,8 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
 def test_level_takes_the_given_heading(roll, pitch, heading):
     """Of a perfect force and a heading the attitude comes back whole."""
     q_nb = from_compass(roll, pitch, heading)[0]
-    force = np.array(attitude.rotate_back(q_nb, (0.0, 0.0, 9.8)))
-    back = to_compass(np.array(self_alignment.level(force, heading)))
+    force = np.array(quaternion.rotate_back(q_nb, (0.0, 0.0, 9.8)))
+    back = to_compass(np.array(alignment.level(force, heading)))
     turn = Rotation.from_quat(q_nb).inv() * Rotation.from_quat(from_compass(*back)[0])
     assert turn.magnitude() < 1e-12
 
@@ -116,7 +119,7 @@ def test_level_takes_the_given_heading(roll, pitch, heading):
 def test_a_vertical_forward_axis_has_no_heading():
     """It is said, not computed."""
     with pytest.raises(ValueError, match='forward axis is within 1 deg of the vertical'):
-        self_alignment.level(np.array([9.8, 0.01, 0.0]), 0.0)
+        alignment.level(np.array([9.8, 0.01, 0.0]), 0.0)
 
 
 def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
@@ -131,9 +134,9 @@ def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
     squares, sizes = [], []
     for seed in range(200):
         imu = resting(q_nb, lat, count=2000, rate_hz=100.0, noise=(1e-5, 1e-3), seed=seed)
-        still = self_alignment.find_standstill(imu, Alignment())
-        compass = self_alignment.gyrocompass(still, lat)
-        e = attitude.logarithm(attitude.multiply(compass.q_nb, attitude.conjugate(q_nb)))[2]
+        still = alignment.find_standstill(imu, Alignment())
+        compass = alignment.gyrocompass(still, lat)
+        e = quaternion.logarithm(quaternion.multiply(compass.q_nb, quaternion.conjugate(q_nb)))[2]
         squares.append((e / compass.sigma) ** 2)
         sizes.append(compass.sigma)
     mean = np.mean(squares) * 17.0 / 19.0
@@ -163,15 +166,15 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
                       for n in ('t_ns', 'omega', 'f'))
     truth = motion.at(t_ns)
     imu = RecordedImu(t_ns, omega, f, np.full((len(t_ns), 4), np.nan))
-    still = self_alignment.find_standstill(imu, Alignment(longest_s=120.0))
+    still = alignment.find_standstill(imu, Alignment(longest_s=120.0))
     lat = float(truth.lat[0])
-    compass = self_alignment.gyrocompass(still, lat)
-    assert self_alignment.trusted(compass, still, lat, math.radians(2.0))
+    compass = alignment.gyrocompass(still, lat)
+    assert alignment.trusted(compass, still, lat, math.radians(2.0))
     tilt, azimuth = errors(compass.q_nb, tuple(truth.q_nb[0].tolist()))
     used = slice(still.first, still.last)
     b_a = np.linalg.norm((f - truth.f_ib_b)[used].mean(axis=0))
     b_g = np.linalg.norm((omega - truth.omega_ib_b)[used].mean(axis=0))
-    level = b_a / earth.gravity(math.sin(lat), 0.0)
+    level = b_a / ellipsoid.gravity(math.sin(lat), 0.0)
     bound = b_g / (OMEGA * math.cos(lat)) + math.tan(lat) * level
     with capsys.disabled():
         print(f'\nnavigation-grade IMU at rest {(still.end_ns - still.start_ns) * 1e-9:.0f} s: '
@@ -193,18 +196,18 @@ def test_gyros_too_coarse_are_not_trusted(bias, trust):
     lat = math.radians(50.0)
     imu = resting((0.0, 0.0, 0.0, 1.0), lat, bias=(np.array([0.0, 0.0, bias * DEG_H]),
                                                    np.zeros(3)))
-    still = self_alignment.find_standstill(imu, Alignment())
-    compass = self_alignment.gyrocompass(still, lat)
-    assert self_alignment.trusted(compass, still, lat, math.radians(2.0)) == trust
+    still = alignment.find_standstill(imu, Alignment())
+    compass = alignment.gyrocompass(still, lat)
+    assert alignment.trusted(compass, still, lat, math.radians(2.0)) == trust
 
 
 def test_the_bias_is_the_mean_rate_less_that_of_the_earth():
     """Exactly what was put in comes out, at any attitude."""
     lat, q_nb = -0.5, tuple(from_compass(2.0, 0.3, 4.0)[0].tolist())
     bias = np.array([1e-3, -2e-3, 3e-3])
-    still = self_alignment.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
-                                           Alignment())
-    found = self_alignment.gyro_bias(still, q_nb, lat, OMEGA)
+    still = alignment.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
+                                      Alignment())
+    found = alignment.gyro_bias(still, q_nb, lat, OMEGA)
     assert np.abs(found - bias).max() < 1e-15
 
 
@@ -226,22 +229,22 @@ def test_the_standstill_is_found_where_it_is():
     """First one long enough, no longer than asked, and never a window that moves."""
     imu = moving([3.0, 4.0, 20.0, 5.0, 40.0])
     limits = Alignment()
-    still = self_alignment.find_standstill(imu, limits)
+    still = alignment.find_standstill(imu, limits)
     assert (still.start_ns, still.last - still.first) == (7_000_000_000, 1000)
-    assert self_alignment.find_standstill(imu, Alignment(longest_s=8.0)).windows == 8
-    assert self_alignment.find_standstill(imu, limits, longest=True).start_ns == 32_000_000_000
+    assert alignment.find_standstill(imu, Alignment(longest_s=8.0)).windows == 8
+    assert alignment.find_standstill(imu, limits, longest=True).start_ns == 32_000_000_000
     with pytest.raises(ValueError, match='no stationary interval of 50 s in 72 s: the longest '
                                          'has 40 s'):
-        self_alignment.find_standstill(imu, Alignment(shortest_s=50.0, longest_s=60.0))
+        alignment.find_standstill(imu, Alignment(shortest_s=50.0, longest_s=60.0))
 
 
 def test_uniform_motion_is_no_standstill_where_the_reference_moves():
     """No IMU tells rest from uniform motion; the speed of the reference does."""
     imu = moving([20.0])
     with pytest.raises(ValueError, match='in 20 quiet windows the reference moves faster'):
-        self_alignment.find_standstill(imu, Alignment(), lambda t: np.full(len(t), 11.0))
-    still = self_alignment.find_standstill(imu, Alignment(),
-                                           lambda t: np.where(t < 5e9, 11.0, np.nan))
+        alignment.find_standstill(imu, Alignment(), lambda t: np.full(len(t), 11.0))
+    still = alignment.find_standstill(imu, Alignment(),
+                                      lambda t: np.where(t < 5e9, 11.0, np.nan))
     assert still.start_ns == 5_000_000_000
 
 
@@ -249,7 +252,7 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
     """Turned in between within a gap: both sides are quiet, the means differ."""
     imu = moving([20.0])
     force = np.where((imu.t_ns >= 10_000_000_000)[:, None], [1.0, 0.0, 9.75], imu.f)
-    still = self_alignment.find_standstill(replace(imu, f=force), Alignment())
+    still = alignment.find_standstill(replace(imu, f=force), Alignment())
     assert still.windows == 10
 
 
@@ -258,15 +261,15 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
 def test_levelling_the_mounting_brings_the_force_up(force, yaw):
     """And by the shortest turn: its axis is level."""
     q = mounting.levelled(np.array(force), yaw)
-    up = np.array(attitude.rotate(q, tuple(force))) / np.linalg.norm(force)
+    up = np.array(quaternion.rotate(q, tuple(force))) / np.linalg.norm(force)
     assert np.abs(up - [0.0, 0.0, 1.0]).max() < 1e-12
-    shortest = attitude.logarithm(mounting.levelled(np.array(force), 0.0))
+    shortest = quaternion.logarithm(mounting.levelled(np.array(force), 0.0))
     assert abs(shortest[2]) < 1e-9
 
 
 def test_mounting_angles_are_those_of_urdf():
     """Fixed axes x, y, z: SciPy's 'xyz'."""
-    q = mounting.from_rpy(0.3, -0.7, 2.0)
+    q = angles.from_rpy(0.3, -0.7, 2.0)
     assert np.abs(np.array(q) - Rotation.from_euler('xyz', [0.3, -0.7, 2.0]).as_quat()).max() \
         < 1e-15
 

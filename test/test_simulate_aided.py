@@ -5,8 +5,8 @@ import json
 from aided_runs import command, FLIGHT, flown, settings
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
-from ins_sim.core.aided_navigator import GNSS, METER
-from ins_sim.core.aided_run import aid, Reported, with_truth
+from ins_sim.core.aiding.navigator import GNSS, METER
+from ins_sim.core.simulation.aided_run import aid, Reported, with_truth
 from ins_sim.report import aided, aided_figure
 import numpy as np
 import pytest
@@ -266,7 +266,7 @@ def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys)
         raise KeyboardInterrupt
 
     if where == 'aiding':
-        monkeypatch.setattr('ins_sim.core.aided_navigator.AidedNavigator.step', interrupt)
+        monkeypatch.setattr('ins_sim.core.aiding.navigator.AidedNavigator.step', interrupt)
     else:
         monkeypatch.setattr(aided_figure, 'save', interrupt)
     assert command(tmp_path, '--force', flight=flight) == 130

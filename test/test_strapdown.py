@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from studies import MOTION_1, MOTION_2, Pool, settings
 
-from ins_sim.core import attitude, strapdown
-from ins_sim.core.simulation import simulate
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.navigation import mechanization
+from ins_sim.core.simulation.inertial import simulate
 
 WOBBLE = {'motion.kind': 'sinusoids', 'motion.sinusoids.angle_deg': [20.0, 15.0, 25.0],
           'motion.sinusoids.position_m': [2.0, 3.0, 1.0],
@@ -66,12 +67,12 @@ def test_exact_increments_at_large_angles():
     for _ in range(100):
         w, f = rng.normal(size=3), rng.normal(size=3)
         nodes, weights = np.polynomial.legendre.leggauss(20)
-        exact = sum(0.5 * c * np.array(attitude.rotate(
-            attitude.exponential(tuple(0.5 * (x + 1) * w)), tuple(f)))
+        exact = sum(0.5 * c * np.array(quaternion.rotate(
+            quaternion.exponential(tuple(0.5 * (x + 1) * w)), tuple(f)))
             for x, c in zip(nodes, weights))
         # equal samples before and now: no coning and no sculling between them
         zero = (0.0, 0.0, 0.0)
-        phi, u = strapdown.two_sample_increments(tuple(w), tuple(f), zero, zero)
+        phi, u = mechanization.two_sample_increments(tuple(w), tuple(f), zero, zero)
         np.testing.assert_allclose(phi, w)
         np.testing.assert_allclose(u, exact, rtol=1e-12, atol=1e-13)
 

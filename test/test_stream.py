@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from studies import DEG_PER_HOUR, MOTION_2, settings
 
-from ins_sim.core import attitude
-from ins_sim.core.imu import MotionImu
-from ins_sim.core.instants import period_ns
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.motions import make_motion
-from ins_sim.core.records import ImuSamples
-from ins_sim.core.simulation import navigate, sense, simulate
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.sensors.imu.ideal import MotionImu
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import navigate, sense, simulate
 
 LATE = {'gyro.delay_us.x': 1.0, 'gyro.delay_us.y': 0.5, 'gyro.delay_us.z': 0.0}
 MIXED = {**LATE, 'gyro.delay_us.z': -1.0}
@@ -94,10 +94,10 @@ def test_slerp_would_be_seen():
     late = frame.attitude(motion.at(t - 1000)).tolist()
     errors = []
     for k in range(1, 100):
-        turn = attitude.logarithm(attitude.multiply(attitude.conjugate(q[k - 1]), q[k]))
-        slerp = attitude.multiply(q[k], attitude.exponential([-x * 1e-4 for x in turn]))
-        off = attitude.logarithm(attitude.multiply(attitude.conjugate(late[k]), slerp))
-        true = attitude.logarithm(attitude.multiply(attitude.conjugate(q[k]), late[k]))
+        turn = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(q[k - 1]), q[k]))
+        slerp = quaternion.multiply(q[k], quaternion.exponential([-x * 1e-4 for x in turn]))
+        off = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(late[k]), slerp))
+        true = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(q[k]), late[k]))
         errors.append(np.linalg.norm(off) / np.linalg.norm(true))
     assert max(errors) > 1e-2
 

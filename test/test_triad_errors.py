@@ -10,12 +10,12 @@ import pytest
 from scipy.linalg import expm
 from scipy.stats import chi2
 
-from ins_sim.core.error_settings import AccelerometerErrors, GyroErrors, Temperature
-from ins_sim.core.presets import PRESETS, triads
-from ins_sim.core.triad_errors import drawn, FLICKER_SIGMA, FLICKER_TIMES, temperature_off, \
-    TriadErrors
-from ins_sim.core.triad_model import DEG, DEG_H, FLICKER_FLOOR, noise_variance, STANDARD_GRAVITY, \
-    triad_model, UG
+from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors, Temperature
+from ins_sim.settings.presets import PRESETS, triads
+from ins_sim.core.sensors.imu.triad_errors import drawn, FLICKER_SIGMA, FLICKER_TIMES, TriadErrors
+from ins_sim.core.sensors.imu.triad_model import temperature_off
+from ins_sim.core.numerics.units import DEG, DEG_H, STANDARD_GRAVITY, UG
+from ins_sim.core.sensors.imu.triad_model import FLICKER_FLOOR, noise_variance, triad_model
 from ins_sim.report.allan import gauss_markov_variance
 
 DT = 0.01

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from studies import FLIGHT, MOTION_2, settings
 
-from ins_sim.bags import recorded_truth, simulated
+from ins_sim.io import bag_truth, simulated
 from ins_sim.bags.bag_writer import BagWriter
-from ins_sim.bags.motions import make_motion
-from ins_sim.bags.reading import read_errors
+from ins_sim.io.motion import read_motion
+from ins_sim.io.published import read_errors
 from ins_sim.bags.windows import write_windows
 from ins_sim.cli.main import main
-from ins_sim.core import attitude
-from ins_sim.core.imu_stream import make_imu
-from ins_sim.core.map_frame import MapFrame
-from ins_sim.core.recording import PAD_S, RecordedMotion
-from ins_sim.core.simulation import sense, simulate
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
+from ins_sim.core.simulation.inertial import sense, simulate
 from ins_sim.messages import convert, topics
 
 SECOND = 1_000_000_000
@@ -29,7 +29,7 @@ def record(path, values, length_s, rate_hz=100.0, only=topics.TRUTH, prefix='', 
     """Write the truth of a closed form from motion time 0 on; change: of {Topic: [t_ns, x]}."""
     chosen = settings(values)
     generator = chosen.motion_generator
-    motion = make_motion(generator)
+    motion = read_motion(generator)
     t_ns = np.arange(round(length_s * rate_hz) + 1) * round(SECOND / rate_hz)
     truth = motion.at(t_ns)
     window = {topic: [t_ns.copy(), x] for topic, x in convert.truth_blocks(
@@ -76,7 +76,7 @@ def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
     bag = tmp_path / 'bag'
     simulated.write(bag, settings(values, duration_s=length_s + 2.0 * PAD_S), run, topics.TRUTH)
     again = recorded(bag, values, duration_s=length_s)
-    errors = simulate(again, twin=False, motion=make_motion(again.motion_generator)).errors
+    errors = simulate(again, twin=False, motion=read_motion(again.motion_generator)).errors
     off = np.abs(errors.position - run.errors.position).max()
     drift = np.linalg.norm(errors.drift[-1] - run.errors.drift[-1])
     size = np.linalg.norm(run.errors.drift[-1])
@@ -101,13 +101,14 @@ def test_between_the_samples_the_attitude_errs_by_the_fourth_order(rate_hz, tmp_
     values = {'motion.kind': 'aggressive'}
     motion = record(tmp_path / 'bag', values, 60.0, rate_hz)
     chosen = recorded(tmp_path / 'bag', values).motion_generator
-    poses = recorded_truth.read_poses(tmp_path / 'bag', 'auto', chosen.datum)
-    bare = RecordedMotion(chosen.motion.recording, chosen.earth, replace(poses, omega_nb_b=None))
+    poses = bag_truth.read_poses(tmp_path / 'bag', 'auto', chosen.datum)
+    bare = RecordedMotion(replace(poses, omega_nb_b=None), chosen.motion.recording, chosen.earth)
     t_ns = np.arange(0, 54 * SECOND, SECOND // 73)
-    wanted, found, splined = motion.at(t_ns + 3 * SECOND), make_motion(chosen).at(t_ns), \
+    wanted, found, splined = motion.at(t_ns + 3 * SECOND), read_motion(chosen).at(t_ns), \
         bare.at(t_ns)
-    angle, spline = (2.0 * np.linalg.norm(attitude.multiply(
-        attitude.conjugate(x.q_nb.T), wanted.q_nb.T)[:3], axis=0).max() for x in (found, splined))
+    angle, spline = (2.0 * np.linalg.norm(quaternion.multiply(
+        quaternion.conjugate(x.q_nb.T), wanted.q_nb.T)[:3], axis=0).max()
+        for x in (found, splined))
     fourth = sum(math.radians(a) * (2.0 * math.pi * f) ** 4
                  for a, f in ((25.0, 1 / 7), (6.0, 1 / 5), (5.0, 1 / 6)))
     bound = 2.0 * fourth / rate_hz ** 4 / 384.0
@@ -120,7 +121,7 @@ def test_what_was_recorded_comes_out_at_its_stamps(tmp_path):
     """At the samples: to the rounding of degrees, of quaternions, and of sums of 1e-16."""
     values = STUDIES['aggressive']
     motion = record(tmp_path / 'bag', values, 60.0)
-    again = make_motion(recorded(tmp_path / 'bag', values).motion_generator)
+    again = read_motion(recorded(tmp_path / 'bag', values).motion_generator)
     t_ns = np.arange(-300, 5401) * (SECOND // 100)
     x, y = again.at(t_ns), motion.at(t_ns + 3 * SECOND)
     assert again.end_s == pytest.approx(54.0) and again.warnings == []
@@ -135,7 +136,7 @@ def test_a_paced_imu_senses_the_bag(output, tmp_path):
     values = {**STUDIES['aggressive'], 'output': output, 'input': output}
     record(tmp_path / 'bag', values, 16.0)
     chosen = recorded(tmp_path / 'bag', values, duration_s=5.0)
-    motion = make_motion(chosen.imu_sensor)
+    motion = read_motion(chosen.imu_sensor)
     imu, frame = make_imu(chosen.imu_sensor, motion), MapFrame(chosen.imu_sensor.datum, True)
     truth = motion.at(np.arange(501) * (SECOND // 100))
     readings = [r for sample in zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
@@ -155,7 +156,7 @@ def test_odometry_alone_needs_the_datum(tmp_path):
     chosen = recorded(tmp_path / 'bag', values, **{
         'motion.recording.topic': 'robot/ground_truth/odometry'})
     t_ns = np.arange(0, 24 * SECOND, SECOND // 7)
-    x, y = make_motion(chosen.motion_generator).at(t_ns), motion.at(t_ns + 3 * SECOND)
+    x, y = read_motion(chosen.motion_generator).at(t_ns), motion.at(t_ns + 3 * SECOND)
     # 1e-9 m in 6.4e6 m
     assert np.abs(x.lat - y.lat).max() < 1e-15 and np.abs(x.height - y.height).max() < 1e-8
     assert np.abs(x.q_nb - y.q_nb).max() < 1e-10
@@ -165,7 +166,7 @@ def test_a_namespace_and_a_file_of_a_bag(tmp_path):
     """The only topic that ends in truth/odometry is found; two must be told apart."""
     record(tmp_path / 'bag', MOTION_2, 10.0, prefix='/left/')
     chosen = recorded(tmp_path / 'bag' / 'bag_0.mcap', MOTION_2)
-    assert make_motion(chosen.motion_generator).end_s == pytest.approx(4.0)
+    assert read_motion(chosen.motion_generator).end_s == pytest.approx(4.0)
 
 
 def two_namespaces(path):
@@ -280,7 +281,7 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
 
     record(tmp_path / 'bag', MOTION_2, 30.0, change=lose)
     chosen = recorded(tmp_path / 'bag', MOTION_2, **{'motion.recording.on_gap': 'cut'})
-    motion = make_motion(chosen.motion_generator)
+    motion = read_motion(chosen.motion_generator)
     # the first stamp of all three is 0.02 s, the last before the gap 8.99 s
     assert motion.zero_ns == 3_020_000_000 and motion.end_s == pytest.approx(8.99 - 3.0 - 3.02)
     assert 'gaps' in motion.warnings[0]
@@ -290,7 +291,7 @@ def test_a_topic_without_a_bag_is_refused(tmp_path):
     """A CSV file has no topics."""
     chosen = recorded(tmp_path / 'x.csv', MOTION_2, **{'motion.recording.topic': 'odom'})
     with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is no bag"):
-        make_motion(chosen.motion_generator)
+        read_motion(chosen.motion_generator)
 
 
 @pytest.mark.live
@@ -301,12 +302,12 @@ def test_nodes_play_and_sense_the_bag(ros_domain, tmp_path):
     The bound is that of the offline closure.
     """
     pytest.importorskip('rclpy')
-    from ins_sim.core.settings import Pacing
+    from ins_sim.settings.node import Pacing
     from ins_sim.ros.session import Session
     values = {**STUDIES['aggressive'], 'duration_s': 20.0, 'time.epoch_s': 100}
     record(tmp_path / 'truth', values, 26.0)
     chosen = recorded(tmp_path / 'truth', values)
-    offline = simulate(chosen, twin=False, motion=make_motion(chosen.motion_generator)).errors
+    offline = simulate(chosen, twin=False, motion=read_motion(chosen.motion_generator)).errors
     pacing = Pacing(real_time_factor=0.0, lock_step=True, required=('strapdown', 'recorder'))
     chosen = replace(chosen, motion_generator=replace(chosen.motion_generator, pacing=pacing))
     with Session(chosen, tmp_path, tmp_path / 'bag', 'truth_bag') as session:

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ins_sim.core.tuned_gyro import loop_gains, PRESETS, state_space, TunedGyroParameters
-from ins_sim.core.tuned_gyro_report import report
-from ins_sim.core.tuned_gyro_step import TunedGyro
+from ins_sim.core.sensors.tuned_gyro.rotor import (loop_gains, PRESETS, state_space,
+                                                   TunedGyroParameters)
+from ins_sim.core.sensors.tuned_gyro.report import report
+from ins_sim.core.sensors.tuned_gyro.stepping import TunedGyro
 
 PAPER, DAMPED, TACTICAL = (PRESETS[k] for k in ('paper', 'paper_damped', 'tactical'))
 STABLE = {'paper_damped': DAMPED, 'tactical': TACTICAL,
@@ -216,7 +217,7 @@ def test_modes_are_used_where_they_are_apart(monkeypatch):
         modal = TunedGyro(p, 1e-3)
         found = modal.advance(u)
         with monkeypatch.context() as patch:
-            patch.setattr('ins_sim.core.tuned_gyro_step.modes', lambda space: None)
+            patch.setattr('ins_sim.core.sensors.tuned_gyro.stepping.modes', lambda space: None)
             full = TunedGyro(p, 1e-3)
         assert modal.modal and not full.modal
         np.testing.assert_allclose(found, full.advance(u), rtol=0, atol=1e-12)

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from ins_sim.core.faults import StreamFault
-from ins_sim.core.velocity_meter import CALM, NO_ANGLE, NO_INS, VelocityMeter, WAIT_NS
-from ins_sim.core.velocity_meter_surrogate import sigmas
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.sensors.velocity_meter.meter import (CALM, NO_ANGLE, NO_INS, VelocityMeter,
+                                                       WAIT_NS)
+from ins_sim.core.sensors.velocity_meter.surrogate import sigmas
 
 V = 200.0
 MODES = ('signal', 'surrogate')

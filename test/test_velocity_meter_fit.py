@@ -7,11 +7,11 @@ from meter_studies import meter_settings
 import numpy as np
 import pytest
 
-from ins_sim.core.fixes import VALID
-from ins_sim.core.velocity_meter_fit import (auto_peak, cross_peak, delay_velocity,
-                                             log_quadratic, read, slowness)
-from ins_sim.core.velocity_meter_layout import geometry
-from ins_sim.core.velocity_meter_signal import Field
+from ins_sim.core.timeseries.fixes import VALID
+from ins_sim.core.sensors.velocity_meter.reading import (auto_peak, cross_peak, delay_velocity,
+                                                         log_quadratic, read, slowness)
+from ins_sim.core.sensors.velocity_meter.antennas import geometry
+from ins_sim.core.sensors.velocity_meter.pulses import Field
 
 V = 250.0
 

@@ -5,10 +5,10 @@ import math
 from meter_studies import meter_settings
 import pytest
 
-from ins_sim.core.catalogue import build, flatten
-from ins_sim.core.velocity_meter import VelocityMeter
-from ins_sim.core.velocity_meter_settings import (Antennas, DropOuts, Limits, Signal, Surrogate,
-                                                  VelocityMeterSettings)
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
+from ins_sim.settings.velocity_meter import (Antennas, DropOuts, Limits, Signal, Surrogate,
+                                             VelocityMeterSettings)
 
 
 @pytest.mark.parametrize('group, values, says', [

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from ins_sim.core.velocity_meter import VelocityMeter
-from ins_sim.core.velocity_meter_fit import PAIRS
-from ins_sim.core.velocity_meter_signal import Correlator, Field
-from ins_sim.core.velocity_meter_surrogate import sigmas
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
+from ins_sim.core.sensors.velocity_meter.reading import PAIRS
+from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
+from ins_sim.core.sensors.velocity_meter.surrogate import sigmas
 
 V = 250.0
 # the two published sigmas agree with the print when they are within this part of it

@@ -4,11 +4,11 @@ from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
-from ins_sim.core.aided_settings import AidedNavigatorSettings
-from ins_sim.core.navigate_settings import NAVIGATE
-from ins_sim.core.node_settings import ALL_NODES
-from ins_sim.core.presets import PRESETS
-from ins_sim.core.settings import MotionGeneratorSettings
+from ins_sim.settings.aided_navigator import AidedNavigatorSettings
+from ins_sim.settings.navigate import NAVIGATE
+from ins_sim.settings.by_node import ALL_NODES
+from ins_sim.settings.presets import PRESETS
+from ins_sim.settings.motion import MotionGeneratorSettings
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
 # of an instrument and the navigator: a file over this one sets them in its section /** as well,
@@ -16,7 +16,7 @@ SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
 AGREED = ('window', 'gnss')
 HEAD = """\
 # Every parameter of the nodes with its default.  Written by tools/make_config.py from
-# ins_sim/core/settings.py; a test keeps it in step.  Overlays beside this file hold the studies:
+# ins_sim/settings; a test keeps it in step.  Overlays beside this file hold the studies:
 #   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
 """
 
@@ -75,8 +75,8 @@ def preset_document(preset):
     """Return the overlay of an instrument preset."""
     out = [f'# Instrument errors of a {preset.datasheet}.', '#']
     out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
-    out += ['# Written by tools/make_config.py from ins_sim/core/presets.py.', '/**/imu_sensor:',
-            '  ros__parameters:']
+    out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
+            '/**/imu_sensor:', '  ros__parameters:']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
     if 'output' in preset.values:
         out += ['', '/**/strapdown:', '  ros__parameters:',
@@ -87,7 +87,7 @@ def preset_document(preset):
 def navigate_document():
     """Return the file of the command navigate."""
     out = ['# Every parameter of "ins_sim navigate" with its default.  Written by',
-           '# tools/make_config.py from ins_sim/core/navigate_settings.py.']
+           '# tools/make_config.py from ins_sim/settings/navigate.py.']
     for name, cls in NAVIGATE.items():
         out += [f'/**/{name}:', '  ros__parameters:', *lines(cls, 4)]
     return '\n'.join(out) + '\n'

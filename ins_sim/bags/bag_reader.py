@@ -7,13 +7,13 @@ import re
 
 import numpy as np
 
+from ins_sim.messages import columns
+from ins_sim.settings.suggest import nearest
 from . import metadata
 from .mcap_reader import McapReader
 from .piece import in_log_order
 from .sqlite_reader import SqliteReader
 from .storages import SUFFIXES
-from ..core.catalogue import nearest
-from ..messages import columns
 
 READERS = {'mcap': McapReader, 'sqlite3': SqliteReader}
 

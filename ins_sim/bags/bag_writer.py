@@ -6,7 +6,8 @@ import shutil
 
 import numpy as np
 
-from . import mcap_format as form, mcap_writer, metadata, qos, sqlite_writer
+from . import mcap_format as form
+from . import mcap_writer, metadata, qos, sqlite_writer
 from .compression import NAMES
 from .definitions import define
 from .piece import Channel

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ins_sim.messages.cdr import LAYOUTS
 from .bag_writer import BagWriter
-from ..messages.cdr import LAYOUTS
 
 
 def write_windows(path, chosen, windows, storage='mcap', compression='none', replace=False):

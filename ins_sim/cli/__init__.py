@@ -1,0 +1,1 @@
+"""The command ``ins_sim``: ``main`` chooses the verb, one file holds each verb."""

@@ -6,15 +6,15 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from .. import parameter_files, resources
-from ..bags.reading import read_imu
-from ..bags.storages import is_bag
-from ..core.gyro_pair import COVARIANCE_FACTORS
-from ..core.instants import period_ns
-from ..core.instrument import with_errors
-from ..core.records import ImuSamples
-from ..core.resting_record import resting_record
-from ..report import allan, allan_figure, noise_terms, storage
+from ins_sim import parameter_files, resources
+from ins_sim.bags.storages import is_bag
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.with_errors import with_errors
+from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.io.published import read_imu
+from ins_sim.report import allan, allan_figure, noise_terms, storage
+from ins_sim.studies.at_rest import resting_record
 
 MARK = 'allan.json'
 DURATION_S = 10800.0

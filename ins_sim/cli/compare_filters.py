@@ -10,11 +10,13 @@ import signal
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from .. import parameter_files, resources
-from ..core.aided_settings import FILTERS
-from ..core.filter_study import Case, fly, run_settings
-from ..core.motions import check_length, make_motion
-from ..report import filter_study as report, storage
+from ins_sim import parameter_files, resources
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import check_length
+from ins_sim.report import filter_study as report
+from ins_sim.report import storage
+from ins_sim.settings.aided_navigator import FILTERS
+from ins_sim.studies.filters import Case, fly, run_settings
 
 MARK = 'comparison.json'
 

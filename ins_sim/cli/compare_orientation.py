@@ -6,12 +6,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
+from ins_sim.core.attitude.integration import KINDS
+from ins_sim.io.motion import read_motion
+from ins_sim.report.summary import DEG_PER_HOUR
+from ins_sim.report.table import number
+from ins_sim.studies.orientation import compare
 from . import settings as chosen_settings
-from ..bags.motions import make_motion
-from ..core.orientation import KINDS
-from ..core.orientation_study import compare
-from ..report.summary import DEG_PER_HOUR
-from ..report.table import number
 
 
 def run(chosen):
@@ -23,7 +23,7 @@ def run(chosen):
                   console=console, transient=True) as progress:
         task = progress.add_task('', total=len(KINDS))
         results = compare(settings, lambda done: progress.update(task, completed=done),
-                          make_motion(settings.motion_generator))
+                          read_motion(settings.motion_generator))
     table = Table(title=chosen_settings.title(settings))
     table.add_column('figure')
     table.add_column('unit')

@@ -2,8 +2,8 @@
 
 from rich.console import Console
 
+from ins_sim.io.convert import convert
 from . import settings as chosen_settings
-from ..bags.conversion import convert
 
 
 def run(chosen):

@@ -9,13 +9,13 @@ import sys
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from ins_sim import parameter_files, resources
+from ins_sim.core.prediction.predict import predict
+from ins_sim.io.motion import read_motion
+from ins_sim.io.published import read_errors
+from ins_sim.report import figure, storage, summary, table
+from ins_sim.settings.node import Pacing
 from . import settings as chosen_settings
-from .. import parameter_files, resources
-from ..bags.motions import make_motion
-from ..bags.reading import read_errors
-from ..core.prediction import predict
-from ..core.settings import Pacing
-from ..report import figure, storage, summary, table
 
 EVERY = 10
 
@@ -55,7 +55,7 @@ def _settings(name, duration_s, assignments=()):
         [*assignments, f'output_every:={EVERY}', f'duration_s:={duration_s}'])
     generator = settings.motion_generator
     if generator.motion.kind == 'recording':
-        motion = make_motion(generator)
+        motion = read_motion(generator)
         generator = replace(generator, duration_s=float(int(min(duration_s, motion.end_s))))
     pacing = Pacing(real_time_factor=0.0, lock_step=True, required=('strapdown', 'recorder'))
     return replace(settings, motion_generator=replace(generator, pacing=pacing))
@@ -76,7 +76,7 @@ def _part(name, settings, folder, console):
 
 
 def _run(name, settings, work, folder, console):
-    from ..ros.session import Session
+    from ins_sim.ros.session import Session
     title = chosen_settings.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
@@ -87,7 +87,7 @@ def _run(name, settings, work, folder, console):
         with Session(settings, work, work / 'bag', namespace) as session:
             counts = session.run(lambda t_s: progress.update(task, completed=t_s))
     errors = read_errors(work / 'bag', namespace)
-    prediction = predict(settings, make_motion(settings.motion_generator))
+    prediction = predict(settings, read_motion(settings.motion_generator))
     figure.save(work / 'errors.png', title, errors, prediction)
     table.show(title, summary.rows(settings, errors, None, prediction), console)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'

@@ -1,8 +1,8 @@
 """Verb dtg-report: what the tuned gyros of the parameters are good for."""
 
-from ..core.instants import period_ns
-from ..core.pair_instrument import parameters
-from ..core.tuned_gyro_report import report
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.tuned_gyro.instrument import parameters
+from ins_sim.core.sensors.tuned_gyro.report import report
 from . import settings as chosen_settings
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from .. import parameter_files, resources
-from ..core import dtg_study as study
-from ..core.dtg_study_settings import DtgStudySettings
-from ..report import dtg_study as report
+from ins_sim import parameter_files, resources
+from ins_sim.report import dtg_study as report
+from ins_sim.settings.tuned_gyro_study import DtgStudySettings
+from ins_sim.studies import tuned_gyro as study
 
 NODE = 'dtg_study'
 SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')

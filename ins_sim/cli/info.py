@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ..bags.bag_reader import open_bag
-from ..messages.cdr import SECOND
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.messages.cdr import SECOND
 
 
 def run(chosen):

@@ -6,8 +6,8 @@ import signal
 import sys
 import warnings
 
-from .. import __version__
-from ..core.aided_settings import FILTERS
+from ins_sim import __version__
+from ins_sim.settings.aided_navigator import FILTERS
 
 ROS_ARGS = '--ros-args'
 NODE_VERBS = ('record', 'play')

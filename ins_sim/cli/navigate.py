@@ -3,11 +3,11 @@
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from .. import parameter_files, resources
-from ..bags import imu_source
-from ..core.navigate import navigate
-from ..core.navigate_settings import NAVIGATE
-from ..report import navigation, storage
+from ins_sim import parameter_files, resources
+from ins_sim.core.postprocessing.navigate import navigate
+from ins_sim.io import imu
+from ins_sim.report import navigation, storage
+from ins_sim.settings.navigate import NAVIGATE
 
 
 def run(chosen):
@@ -15,7 +15,7 @@ def run(chosen):
     paths = [resources.parameter_file(name) for name in chosen.params_file]
     settings = parameter_files.read_nodes(paths, chosen.param, NAVIGATE)['navigate']
     storage.check_free(chosen.output, chosen.force, navigation.MARK)
-    sources = imu_source.read(chosen.recording, settings)
+    sources = imu.read(chosen.recording, settings)
     console = Console()
     with Progress(TextColumn('navigating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
                   TimeRemainingColumn(), console=console, transient=True) as progress:

@@ -1,7 +1,7 @@
 """Verb play: a bag as live topics."""
 
-from ..ros.player import play
-from ..ros.playing import Options
+from ins_sim.ros.main import run as run_node
+from ins_sim.ros.recording.playing import Options
 
 
 def run(chosen):
@@ -10,4 +10,4 @@ def run(chosen):
         None if chosen.topics is None else tuple(chosen.topics), chosen.rate, chosen.start,
         chosen.duration, chosen.loop, chosen.wait, chosen.clock, tuple(chosen.lock_step),
         chosen.window, chosen.timeout)
-    return play(chosen.bag, options, chosen.ros_args)
+    return run_node('player', chosen.ros_args, path=chosen.bag, options=options)

@@ -4,16 +4,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ins_sim.core.prediction.predict import predict
+from ins_sim.io.motion import read_motion
+from ins_sim.report import summary, table
 from . import settings as chosen_settings
-from ..bags.motions import make_motion
-from ..core.prediction import predict
-from ..report import summary, table
 
 
 def run(chosen):
     """Predict and show; return the exit code."""
     settings = chosen_settings.read(chosen)
-    prediction = predict(settings, make_motion(settings.motion_generator))
+    prediction = predict(settings, read_motion(settings.motion_generator))
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
     shown = Table(title=chosen_settings.title(settings))

@@ -2,7 +2,7 @@
 
 import json
 
-from ..ros.recorder import main
+from ins_sim.ros.main import recorder
 
 
 def run(chosen):
@@ -18,4 +18,4 @@ def run(chosen):
         if value != []:
             # JSON is YAML, and quotes what YAML would take for something else
             words += ['-p', f'{name}:={json.dumps(value, ensure_ascii=False)}']
-    return main(words)
+    return recorder(words)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .. import parameter_files, resources
+from ins_sim import parameter_files, resources
 
 
 def read(chosen):

@@ -3,14 +3,15 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress, TextColumn, BarColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from ins_sim.core.prediction.drift import NoPrediction
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.simulation.inertial import simulate
+from ins_sim.io.motion import read_motion
+from ins_sim.report import storage, summary, table
 from . import settings as chosen_settings
-from ..bags.motions import make_motion
-from ..core.aided_simulation import simulate_aided
-from ..core.prediction import NoPrediction, predict
-from ..core.simulation import simulate
-from ..report import storage, summary, table
 
 
 def run(chosen):
@@ -20,7 +21,7 @@ def run(chosen):
     write_bag = _bag_writer(chosen, settings)
     title = chosen_settings.title(settings)
     console = Console()
-    motion = make_motion(settings.motion_generator)
+    motion = read_motion(settings.motion_generator)
     try:
         prediction = predict(settings, motion)
     except NoPrediction as reason:
@@ -53,7 +54,7 @@ def _watch(progress, name):
 
 
 def _report(settings, flown, result):
-    from ..report import aided
+    from ins_sim.report import aided
     return aided.Report(settings, flown, aided.rows(settings, flown, result.states, result.errors))
 
 
@@ -64,7 +65,8 @@ def _bag_writer(chosen, settings):
             if getattr(chosen, name) not in (None, 'mcap', 'none'):
                 raise ValueError(f'--{name} is given without --bag; expected the folder of a bag')
         return None
-    from ..bags import bag_writer, digest, simulated
+    from ins_sim.bags import bag_writer, digest
+    from ins_sim.io import simulated
     wanted = simulated.select(settings, chosen.topics, chosen.aided)
     bag_writer.check(chosen.bag, chosen.storage, chosen.compression, chosen.force)
 

@@ -7,9 +7,9 @@ functions give the runs of a single message as tuples of floats.
 
 import math
 
-from ins_sim.core import attitude
 import numpy as np
 
+from ins_sim.core.attitude import quaternion
 from . import topics
 
 # of what is published on aided/sigma/*
@@ -64,7 +64,7 @@ def aided_error_blocks(errors):
 def odometry_one(frame, solution, omega):
     """Return the runs of ins/odometry: solution (lat, lon, height, v_n, q_nb), gyro reading."""
     r_m, q_mb, v_b = frame.pose_one(*solution)
-    turn = attitude.rotate_back(q_mb, frame.omega_ie_m)
+    turn = quaternion.rotate_back(q_mb, frame.omega_ie_m)
     return (*r_m, *q_mb), (*v_b, omega[0] - turn[0], omega[1] - turn[1], omega[2] - turn[2])
 
 
@@ -85,10 +85,10 @@ def aided_odometry_one(frame, solution, omega, sigmas):
     if sigmas is None:
         return pose, _UNKNOWN, twist, _UNKNOWN
     q_nb = solution[4]
-    q_mn = attitude.multiply(pose[3:], attitude.conjugate(q_nb))
+    q_mn = quaternion.multiply(pose[3:], quaternion.conjugate(q_nb))
     position, velocity, turned = sigmas
     return (pose, _blocks(_turned(q_mn, position), _turned(q_mn, turned)), twist,
-            _blocks(_turned(attitude.conjugate(q_nb), velocity), _UNKNOWN[:9]))
+            _blocks(_turned(quaternion.conjugate(q_nb), velocity), _UNKNOWN[:9]))
 
 
 _UNKNOWN = (0.0,) * 36
@@ -96,8 +96,8 @@ _UNKNOWN = (0.0,) * 36
 
 def _turned(q, sigmas):
     """Return C diag(sigmas^2) C^T for the quaternion q of C, row by row."""
-    axes = [attitude.rotate(q, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0),
-                                                  (0.0, 0.0, 1.0))]
+    axes = [quaternion.rotate(q, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0),
+                                                    (0.0, 0.0, 1.0))]
     return [sum(s * s * axis[i] * axis[k] for s, axis in zip(sigmas, axes))
             for i in range(3) for k in range(3)]
 
@@ -117,7 +117,7 @@ def aided_fix_one(solution, sigmas):
 
 
 def _rate_in_map(frame, q_mb, omega):
-    turn = attitude.rotate_back(np.moveaxis(q_mb, -1, 0), frame.omega_ie_m)
+    turn = quaternion.rotate_back(np.moveaxis(q_mb, -1, 0), frame.omega_ie_m)
     return omega - np.stack(turn, axis=-1)
 
 

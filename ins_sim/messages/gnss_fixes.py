@@ -3,8 +3,7 @@
 from collections import deque
 import math
 
-from ins_sim.core.fixes import GnssFix, no_gnss_fix, OUTAGE
-
+from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 from . import topics
 
 # fixes or velocities that wait for their other half

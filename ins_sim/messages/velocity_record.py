@@ -6,8 +6,7 @@ end of the window, its instants stamps in ns, its floats by repr, so that they c
 bit.
 """
 
-from ins_sim.core.fixes import VALID, VelocityFix
-
+from ins_sim.core.timeseries.fixes import VALID, VelocityFix
 from . import diagnostic_array, topics
 from .diagnostic_array import Status
 

@@ -1,0 +1,1 @@
+"""Tables for the terminal, figures, and folders of a run."""

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from rich.table import Table
 
+from ins_sim import parameter_files
+from ins_sim.core.aiding.mounting_calibration import calibrate
+from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
+from ins_sim.core.numerics.units import DEG
+from ins_sim.core.simulation.aided import AidedSettings
+from ins_sim.core.simulation.aided_run import AidedRun
 from . import aided_arrays, aided_figure
-from .. import parameter_files
-from ..core.aided_navigator import AidedNavigator, GNSS, METER
-from ..core.aided_run import AidedRun
-from ..core.aided_simulation import AidedSettings
-from ..core.mounting_calibration import calibrate
-from ..core.triad_model import DEG
 from .consistency import mean_interval, THREE_SIGMA
 
 FIGURE = 'aided.png'

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..core.aided_navigator import GNSS, METER
+from ins_sim.core.aiding.navigator import GNSS, METER
 
 VELOCITY_COLUMNS = ('start_ns', 'end_ns', 'cycles', 'velocity', 'sigma', 'tan_alpha', 'tau', 'g',
                     'status', 'arrival_ns')
@@ -12,9 +12,11 @@ GNSS_COLUMNS = ('t_ns', 'lat', 'lon', 'height', 'v_n', 'position_sigma', 'veloci
 
 def arrays(flown):
     """
-    Return {name: array} of an AidedRun: aided_<record>_<field> as ``core.records`` has them,
-    velocity_meter_<field> and gnss_<field> as ``core.fixes``, one row a fix, and judged_<field>,
-    what became of each: source, t_ns, nis (NaN: not weighed), freedom, taken, reason.
+    Return the arrays of an AidedRun by name.
+
+    aided_<record>_<field>: as in ``core.timeseries.histories``; velocity_meter_<field> and
+    gnss_<field>: as in ``core.timeseries.fixes``, one row per fix; judged_<field>: what the
+    filter did with each fix: source, t_ns, nis (NaN: not weighed), freedom, taken, reason.
     """
     found = {}
     for name in ('truth', 'states', 'errors'):

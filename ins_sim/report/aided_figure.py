@@ -9,7 +9,7 @@ import numpy as np  # noqa: E402
 
 from .consistency import largest  # noqa: E402
 from .figure import COLOURS, MOST_POINTS  # noqa: E402
-from ..core.aided_navigator import GNSS, METER  # noqa: E402
+from ins_sim.core.aiding.navigator import GNSS, METER  # noqa: E402
 
 SOURCES = {METER: ('tab:purple', 'velocity meter'), GNSS: ('tab:cyan', 'GNSS')}
 PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),

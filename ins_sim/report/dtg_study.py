@@ -8,7 +8,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from rich.markup import escape  # noqa: E402
 from rich.table import Table  # noqa: E402
 
-from ..core.dtg_study_settings import SWEEPS  # noqa: E402
+from ins_sim.settings.tuned_gyro_study import SWEEPS  # noqa: E402
 
 
 def title(settings):

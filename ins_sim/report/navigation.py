@@ -16,10 +16,10 @@ from rich.table import Table  # noqa: E402
 from . import storage  # noqa: E402
 from .figure import MOST_POINTS  # noqa: E402
 from .table import number  # noqa: E402
-from .. import parameter_files  # noqa: E402
-from ..core.comparison import rows  # noqa: E402
-from ..core.errors import position_error  # noqa: E402
-from ..core.reference import Track  # noqa: E402
+from ins_sim import parameter_files  # noqa: E402
+from ins_sim.core.postprocessing.comparison import rows  # noqa: E402
+from ins_sim.core.navigation.errors import position_error  # noqa: E402
+from ins_sim.core.postprocessing.reference import Track  # noqa: E402
 
 MARK = 'nav.npz'
 OTHERS = ('tab:orange', 'tab:purple')

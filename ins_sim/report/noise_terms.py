@@ -6,9 +6,9 @@ import math
 import numpy as np
 from rich.table import Table
 
+from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model
+from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from . import allan
-from ..core.error_settings import AccelerometerErrors, GyroErrors
-from ..core.triad_model import KEYS, triad_model
 
 AXES = ('x', 'y', 'z')
 # A channel that scatters by less than this part of its size holds rounding, not noise.

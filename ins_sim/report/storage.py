@@ -11,9 +11,9 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from ins_sim import parameter_files
+from ins_sim.core.timeseries.histories import ImuSamples
 from . import figure
-from .. import parameter_files
-from ..core.records import ImuSamples
 
 MARK = 'summary.json'
 ARRAYS = 'run.npz'
@@ -66,8 +66,8 @@ def write(folder, settings, run, rows, prediction, title, force=False, aided=Non
     """
     Write a Run, and what was predicted of it or None, into a folder that appears when complete.
 
-    run.npz holds every array as <record>_<field> (SI, shapes as in ``core.records``).  aided: the
-    ``aided.Report`` on this run, which goes into the same files, or None.
+    run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
+    aided: the ``aided.Report`` on this run, which goes into the same files, or None.
     """
     with whole(folder, force) as work:
         arrays = {}

@@ -104,8 +104,8 @@ def parity(sensor, imu):
     """Return the lines about the parity of tuned gyros; sensor: ImuSensorSettings."""
     if imu.parity is None:
         return []
-    from ..core.pair_instrument import PairInstrument
-    from ..core.parity import windows
+    from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
+    from ins_sim.core.sensors.tuned_gyro.parity import windows
     found = windows(sensor, PairInstrument(sensor), imu)
     beyond = found[found[:, 3] > 0.0]
     if not len(beyond):

@@ -8,8 +8,7 @@ import time
 from ins_sim import graph, parameter_files
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
-
-from .repairs import use_profile
+from .transport.repairs import use_profile
 
 RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
@@ -50,7 +49,7 @@ class Session:
     def _start(self):
         import rclpy
 
-        from .bag_recorder import BagRecorder
+        from .recording.bag_recorder import BagRecorder
         use_profile()
         os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         self._context = rclpy.Context()

@@ -1,0 +1,1 @@
+"""Filters of the aided navigator; ``base`` is their interface, ``eskf`` the default."""

@@ -1,0 +1,173 @@
+"""
+The aided navigator on live streams: IMU, truth and fixes, whatever the order they come in.
+
+A sample waits until every fix that is due by it is known, so that a live run gives the numbers of
+the offline run.  What is due the settings say: both instruments report every window, and every
+instant, valid or not.
+"""
+
+from bisect import insort
+from collections import defaultdict
+import math
+
+from ins_sim.core.navigation.errors import level_errors
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.streams.matching import MatchedStreams
+from ins_sim.core.streams.restarts import Runs
+from .fix_checks import check_ahead, check_gnss, check_velocity
+from .navigator import AidedNavigator, GNSS, METER
+
+# further than lock-step or a busy machine lets the IMU lag behind the instruments
+AHEAD_NS = 60_000_000_000
+
+
+class FixSchedule:
+    """Which fixes are due; settings: AidedNavigatorSettings; sources: that are waited for."""
+
+    def __init__(self, settings, sources):
+        window_ns = settings.window.cycles * period_ns(settings.rate_hz)
+        gnss_ns = period_ns(settings.gnss.rate_hz)
+        # period; how long after the first sample the first fix may be; latency
+        periods = {METER: (window_ns, window_ns, round(1e6 * settings.window.latency_ms)),
+                   GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
+        self._periods = {source: periods[source] for source in sources}
+        # runs: the samples are the first, a source the second
+        self._newest, self._runs = {}, defaultdict(Runs)
+        self.silent = set()
+        self.begin()
+
+    def begin(self):
+        """Count from the next sample on; what has come stays known."""
+        self._first = {}
+
+    def missing(self, t_ns):
+        """Return the sources whose fix is due by the sample t_ns and has not come."""
+        late = []
+        for source, (step_ns, lead_ns, latency_ms) in self._periods.items():
+            # a window is reported that was seen from its start
+            first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
+            due_ns = (t_ns - latency_ms) // step_ns * step_ns
+            if due_ns >= first_ns and source not in self.silent and (
+                    self._runs[source].lead or self._newest.get(source, -math.inf) < due_ns):
+                late.append(source)
+        return late
+
+    def of_the_past(self, source, t_ns):
+        """Return whether a fix goes on with the run before that of the samples."""
+        return self._runs[source].lead > 0 and t_ns > self._newest[source]
+
+    def came(self, source, t_ns, sample_ns):
+        """
+        Take note of a fix, valid or not; return whether it is not a repeated one.
+
+        sample_ns: where the samples are, or None.
+        """
+        self.silent.discard(source)
+        newest_ns, runs = self._newest.get(source), self._runs[source]
+        self._newest[source] = t_ns
+        # the instant of the last fix again: that of the new run if the samples have begun one
+        if t_ns == newest_ns and runs.lead <= 0:
+            return False
+        if newest_ns is not None and t_ns <= newest_ns:
+            runs.second_jumps(t_ns, sample_ns)
+        return True
+
+    def jump_back(self, t_ns):
+        """Follow the samples back to t_ns; return the sources still to follow."""
+        for source, newest_ns in self._newest.items():
+            self._runs[source].first_jumps(t_ns, newest_ns)
+        return {source for source, runs in self._runs.items() if runs.lead > 0}
+
+    def give_up(self, source):
+        """Wait for a source no longer, until it delivers again."""
+        self.silent.add(source)
+        self._runs.pop(source, None)
+
+
+class AidedStream(MatchedStreams):
+    """
+    An AidedNavigator on live streams; outputs are (t_ns, solution, errors, sigmas).
+
+    errors as of errors.level_errors; sigmas as of the filter, or None.  ``taken`` collects what
+    became of the fixes; the owner empties it.
+    """
+
+    def __init__(self, settings):
+        self.taken, self._fixes = [], []
+        self._schedule = FixSchedule(settings, AidedNavigator(settings).sources)
+        super().__init__(settings)
+
+    def begin(self):
+        """Forget the solution.  Fixes are no state: those that have come stay."""
+        self.navigator = AidedNavigator(self._settings)
+        self._schedule.begin()
+
+    @property
+    def navigates(self):
+        """Return whether there is a solution."""
+        return self.navigator.navigates
+
+    @property
+    def awaited(self):
+        """Return the sources that the oldest sample waits for."""
+        return self._schedule.missing(self._imu[0][0]) if self._imu else []
+
+    @property
+    def silent(self):
+        """Return the sources that are waited for no longer."""
+        return sorted(self._schedule.silent)
+
+    def go_on_without(self, source):
+        """Wait no longer for a source until it delivers again; return the outputs."""
+        self._schedule.give_up(source)
+        return self.match()
+
+    def push_imu(self, t_ns, omega, f):
+        """Take the IMU sample of stamp t_ns (motion time)."""
+        if self._last_ns is not None and t_ns < self._last_ns:
+            behind = self._schedule.jump_back(t_ns)
+            self._fixes = [entry for entry in self._fixes if entry[1] not in behind]
+        return super().push_imu(t_ns, omega, f)
+
+    def push_fix(self, source, fix):
+        """
+        Take a fix of METER or GNSS, on time or late; return the outputs.
+
+        Raises StreamFault for a fix that cannot be one; it is dropped, and nothing waits for it:
+        match() then goes on.  A repeated one is passed over, and one that jumps back begins a new
+        history of its source.
+        """
+        if self._schedule.of_the_past(source, fix.t_ns):
+            return []
+        if self._last_ns is not None:
+            # before it counts as the newest of its source
+            check_ahead(source, fix.t_ns, self._last_ns, AHEAD_NS)
+        if not self._schedule.came(source, fix.t_ns, self._last_ns):
+            return []
+        self._fixes = [entry for entry in self._fixes
+                       if entry[1] != source or entry[2].t_ns < fix.t_ns]
+        if source == METER and fix.cycles != self._settings.window.cycles:
+            # with other windows there is none to wait for
+            self._schedule.silent.add(source)
+        if source == METER:
+            check_velocity(fix, self._settings.window.cycles, self._dt_ns)
+        else:
+            check_gnss(fix)
+        insort(self._fixes, (fix.arrival_ns, source, fix), key=lambda entry: entry[:2])
+        return self.match()
+
+    def held(self, t_ns):
+        """Return whether a fix is due that has not come."""
+        return bool(self._schedule.missing(t_ns))
+
+    def advance(self, t_ns, omega, f, truth):
+        """Take matched samples, and the fixes that are there by then; return the outputs."""
+        while self._fixes and self._fixes[0][0] <= t_ns:
+            _, source, fix = self._fixes.pop(0)
+            self.navigator.take(source, fix)
+        taken = self.navigator.step(t_ns, omega, f, truth)
+        if taken is None:
+            return []
+        self.taken.extend(taken)
+        solution = self.navigator.solution
+        return [(t_ns, solution, level_errors(solution, truth), self.navigator.filter.sigmas())]

@@ -1,0 +1,170 @@
+"""
+The mounting error of the velocity meter and the azimuth error of the INS, while GNSS works.
+
+Both by hand, beside the filter's own estimates: the azimuth from what a turn does to the velocity
+of a free INS, the sum of both from the lateral velocity (equation 27).  Senses are made one (spec
+section 3): mu > 0 for antennas turned left, dpsi > 0 for a computed heading too far clockwise.
+"""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.earth.rates import body_velocity
+from ins_sim.core.timeseries.histories import NavStates
+
+# no quadratic follows the errors of a free INS for longer
+SPAN_NS = 600_000_000_000
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """
+    Estimates and their standard deviations, from the residuals as if they were white.
+
+    What of a free INS no quadratic follows is not in that of dpsi: at mid grade 0.7 arcmin.
+
+    dpsi: azimuth error, rad; total: mu + dpsi by equation (27), rad; fitted, k_z: mu + dpsi and
+    the lateral scale error by least squares.
+    """
+
+    dpsi: float
+    dpsi_sigma: float
+    total: float
+    fitted: float
+    fitted_sigma: float
+    k_z: float
+    k_z_sigma: float
+
+    @property
+    def two_manoeuvres(self):
+        """Return mu of equation (27) and the turn, rad."""
+        return self.total - self.dpsi
+
+    @property
+    def least_squares(self):
+        """Return mu of the least squares and the turn, rad, and its standard deviation."""
+        return self.fitted - self.dpsi, math.hypot(self.fitted_sigma, self.dpsi_sigma)
+
+
+def calibrate(states, gnss, meter):
+    """
+    Return the Mounting of NavStates of a free INS, a list of GnssFix and one of VelocityFix.
+
+    The INS at every cycle; invalid fixes are left out, and so are windows without GNSS at both
+    ends.  Raises ValueError where there are too few fixes, or no turn.
+    """
+    fixes = _about_the_turn([fix for fix in gnss if fix.valid
+                             and states.t_ns[0] <= fix.t_ns <= states.t_ns[-1]])
+    if len(fixes) < 10:
+        raise ValueError(f'{len(fixes)} GNSS fixes; expected at least 10 for the azimuth')
+    t_ns = np.array([fix.t_ns for fix in fixes])
+    v_gnss = np.array([fix.v_n[:2] for fix in fixes])
+    at = np.searchsorted(states.t_ns, t_ns)
+    if (states.t_ns[at] != t_ns).any():
+        raise ValueError('the INS has no solution at some GNSS fixes; expected one at every cycle')
+    dpsi, dpsi_sigma = azimuth_error((t_ns - t_ns[0]) * 1e-9, states.v_n[at, :2], v_gnss)
+    read, computed = _windows(states, t_ns, v_gnss, meter)
+    return Mounting(dpsi, dpsi_sigma, mounting_sum(read, computed),
+                    *least_squares(read, computed))
+
+
+def _about_the_turn(fixes):
+    """Return the fixes of the SPAN_NS in which the velocity changes most."""
+    best, most = fixes, -1.0
+    for first in range(0, len(fixes), max(1, len(fixes) // 50)):
+        end_ns = fixes[first].t_ns + SPAN_NS
+        span = [fix for fix in fixes[first:] if fix.t_ns <= end_ns]
+        spread = float(np.var([fix.v_n[:2] for fix in span], axis=0).sum())
+        if spread > most:
+            best, most = span, spread
+        if fixes[-1].t_ns <= end_ns:
+            break
+    return best
+
+
+def azimuth_error(t_s, v_ins, v_gnss):
+    """
+    Return the azimuth error dpsi and its standard deviation, rad.
+
+    t_s (n,) s; v_ins, v_gnss (n, 2) East, North, m/s, in which the vehicle turns.  The error of a
+    free INS is a quadratic in time, for tilt and gyros, and -dpsi times the change of e_up x V;
+    least squares over all.  Raises ValueError where the velocity does not turn.
+    """
+    spread = np.linalg.svd(v_gnss - v_gnss.mean(axis=0), compute_uv=False) / math.sqrt(len(t_s))
+    if spread[0] < 0.05 * np.linalg.norm(v_gnss, axis=1).mean():
+        raise ValueError(f'the velocity changes by {spread[0]:.3g} m/s; expected a turn, in which '
+                         'the azimuth error shows')
+    scale = t_s / max(t_s[-1], 1.0)
+    powers = np.stack([np.ones_like(scale), scale, scale ** 2], axis=1)
+    rows = np.zeros((len(t_s), 2, 7))
+    rows[:, 0, 0:3] = rows[:, 1, 3:6] = powers
+    # -dpsi e_up x V = dpsi (V_N, -V_E)
+    rows[:, 0, 6], rows[:, 1, 6] = v_gnss[:, 1], -v_gnss[:, 0]
+    x, sigma = _fit(rows.reshape(-1, 7), (v_ins - v_gnss).reshape(-1))
+    return float(x[6]), float(sigma[6])
+
+
+def mounting_sum(read, computed):
+    """
+    Return mu + dpsi, rad, by equation (27): sum(V_z - V_z1N) / sum(V_x).
+
+    read, computed (n, 2): forward and right velocity by the meter, and that of GNSS resolved by
+    the INS, m/s.
+    """
+    return float((read[:, 1] - computed[:, 1]).sum() / read[:, 0].sum())
+
+
+def least_squares(read, computed):
+    """
+    Return mu + dpsi (rad), its sigma, k_z and its sigma: the form that survives wind.
+
+    Least squares of V_z - V_z1N on [V_x, V_z1N] (spec section 3); as in ``mounting_sum``.  The
+    instrument turns first and scales then, so that the first coefficient is (1 + k_z)(mu + dpsi).
+    """
+    rows = np.stack([read[:, 0], computed[:, 1]], axis=1)
+    x, sigma = _fit(rows, read[:, 1] - computed[:, 1])
+    scale = 1.0 + x[1]
+    return float(x[0] / scale), float(sigma[0] / scale), float(x[1]), float(sigma[1])
+
+
+def _fit(rows, values):
+    """Return the least-squares solution and its standard deviations from the residuals."""
+    x, *_ = np.linalg.lstsq(rows, values, rcond=None)
+    left = values - rows @ x
+    variance = left @ left / max(1, len(values) - rows.shape[1])
+    return x, np.sqrt(variance * np.diagonal(np.linalg.inv(rows.T @ rows)))
+
+
+def _windows(states, t_ns, v_gnss, meter):
+    """Return the meter's and the computed mean velocities (n, 2), forward and right."""
+    inside = (states.t_ns >= t_ns[0]) & (states.t_ns <= t_ns[-1])
+    now = states.t_ns[inside]
+    v_n = np.stack([np.interp(now, t_ns, v_gnss[:, 0]), np.interp(now, t_ns, v_gnss[:, 1]),
+                    states.v_n[inside, 2]], axis=1)
+    v_b = body_velocity(NavStates(now, states.lat[inside], states.lon[inside],
+                                  states.height[inside], v_n, states.q_nb[inside]))
+    steps = 0.5 * (v_b[1:, :2] + v_b[:-1, :2]) * (np.diff(now) * 1e-9)[:, np.newaxis]
+    path = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+    read, computed = [], []
+    for fix in meter:
+        if not (fix.valid and fix.start_ns >= now[0] and fix.end_ns <= now[-1]
+                and _covered(fix, t_ns)):
+            continue
+        a, b = np.searchsorted(now, (fix.start_ns, fix.end_ns))
+        mean = (path[b] - path[a]) / ((now[b] - now[a]) * 1e-9)
+        read.append((fix.velocity[0], -fix.velocity[1]))
+        computed.append((mean[0], -mean[1]))
+    if len(read) < 3:
+        raise ValueError(f'{len(read)} windows of the velocity meter while GNSS works; expected '
+                         'at least 3')
+    return np.array(read), np.array(computed)
+
+
+def _covered(fix, t_ns):
+    """Return whether GNSS works all through a window: no gap in its fixes."""
+    step = int(np.diff(t_ns).min())
+    first, last = np.searchsorted(t_ns, (fix.start_ns, fix.end_ns), side='right')
+    span = t_ns[max(0, first - 1):last + 1]
+    return len(span) < 2 or int(np.diff(span).max()) == step

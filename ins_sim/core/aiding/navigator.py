@@ -1,0 +1,243 @@
+"""
+The aided navigator: a strapdown, and a filter that takes fixes on time or late.
+
+A fix that comes late is taken where it belongs: the snapshot before it is restored, the fix
+taken, and the samples since then advanced again.
+"""
+
+from bisect import insort
+from collections import deque, namedtuple
+from dataclasses import replace
+import math
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.instants import period_ns, seconds
+from ins_sim.core.numerics.noise import stream
+from ins_sim.core.streams.faults import StreamFault
+from .corrected_strapdown import CorrectedStrapdown
+from .filters.base import FreeFilter, NO_FIX, refused
+from .filters.eskf import ErrorStateFilter
+from .filters.fixed_gain import ConventionalFilter, PaperCorrectedFilter, PaperFilter
+from .filters.window_kalman import WindowFilter
+from .fix_checks import check_ahead, check_gnss, check_velocity
+
+KINDS = {'free': FreeFilter, 'conventional': ConventionalFilter, 'paper': PaperFilter,
+         'paper_corrected': PaperCorrectedFilter, 'window_kf': WindowFilter,
+         'eskf': ErrorStateFilter}
+SNAPSHOT_NS = 1_000_000_000
+METER, GNSS = 'velocity_meter', 'gnss'
+
+# A fix that was given, and what became of it: source, its instant ns, and gain_filters.Result.
+Taken = namedtuple('Taken', 'source t_ns result')
+_Entry = namedtuple('_Entry', 'source fix')
+_Snapshot = namedtuple('_Snapshot', 't_ns ins filter window_start_ns')
+
+
+class AidedNavigator:
+    """
+    Strapdown and filter of one IMU.
+
+    settings: AidedNavigatorSettings; run: of the ensemble, which draws other initial errors.
+    Give it samples by ``step`` and fixes, in any order, by ``take``: a fix counts from its
+    arrival_ns on.  ``filter`` has sigmas() and estimates; ``sources``: the instruments that aid.
+    Raises ValueError on settings that do not go together.
+    """
+
+    def __init__(self, settings, run=0):
+        if settings.gnss_model.use and not KINDS[settings.filter].takes_gnss:
+            raise ValueError(f'gnss_model.use is true with filter {settings.filter}; expected '
+                             'filter eskf, which alone takes GNSS')
+        if settings.filter == 'paper' and settings.gain > 1.0:
+            raise ValueError(f'gain is {settings.gain:g} with filter paper; expected at most 1, '
+                             'beyond which it is unstable')
+        for name, latency_ms in (('window', settings.window.latency_ms),
+                                 ('gnss', settings.gnss.latency_ms)):
+            if latency_ms > 1e3 * settings.buffer_s:
+                raise ValueError(f'{name}.latency_ms is {latency_ms:g} ms; expected at most '
+                                 f'buffer_s, {settings.buffer_s:g} s: such fixes come too late')
+        self._settings, self._run = settings, run
+        self._dt_ns = period_ns(settings.rate_hz)
+        self._window_ns = settings.window.cycles * self._dt_ns
+        self._buffer_ns = round(settings.buffer_s * 1e9)
+        self._after_ns = round(settings.initial.after_s * 1e9)
+        used = {METER: settings.meter_model.use and settings.filter != 'free',
+                GNSS: settings.gnss_model.use}
+        self.sources = tuple(source for source, use in used.items() if use)
+        self._altimeter = settings.vertical.channel == 'altimeter'
+        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._first_ns = self._ins = self.filter = None
+        self._pending, self._samples, self._log = [], deque(), []
+        self._snapshots = deque()
+
+    @property
+    def navigates(self):
+        """Return whether there is a solution."""
+        return self._ins is not None
+
+    @property
+    def solution(self):
+        """Return lat, lon, height, v_n, q_nb at the last sample."""
+        return self._ins.solution
+
+    def step(self, t_ns, omega, f, truth):
+        """
+        Take the reading that ends at t_ns; return a list of Taken, or None before the start.
+
+        omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb), which starts the
+        solution, with the initial errors, and then is the altimeter.
+        """
+        vertical = (truth[2], truth[3][2]) if self._altimeter else ()
+        if self._ins is None:
+            if self._first_ns is None:
+                self._first_ns = t_ns
+            if t_ns < self._first_ns + self._after_ns:
+                return None
+            self._start(t_ns, omega, f, truth)
+        else:
+            self._samples.append((t_ns, omega, f, vertical))
+            self._advance(*self._samples[-1])
+            # a sum is finite only if all of it is
+            if not math.isfinite(sum(self._ins.v) + self._ins.lat + self._ins.height):
+                raise StreamFault(f'the solution at {seconds(t_ns)} is no number any more; '
+                                  'expected finite readings', restart=True)
+        self._keep()
+        return self._due()
+
+    def take(self, source, fix):
+        """
+        Keep a fix until the samples reach its arrival_ns.
+
+        source: METER or GNSS.  Raises StreamFault, in one sentence, for a fix that cannot be
+        one: from the future, with another window, without a positive variance, NaN.
+        """
+        if source == METER:
+            check_velocity(fix, self._settings.window.cycles, self._dt_ns)
+        else:
+            check_gnss(fix)
+        if self._ins is not None:
+            check_ahead(source, fix.t_ns, self._ins.t_ns, self._dt_ns + self._buffer_ns)
+        insort(self._pending, _Entry(source, fix), key=_arrival)
+
+    def _start(self, t_ns, omega, f, truth):
+        lat, lon, height, v, q_nb = truth
+        draw = stream(self._settings.seed, self._run, 'aided.initial', 7).normal(0)
+        initial = self._settings.initial
+        tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
+        error = quaternion.exponential((tilt * draw[4], tilt * draw[5], azimuth * draw[6]))
+        place = lat, lon, height, v, quaternion.multiply(error, q_nb)
+        self._ins = CorrectedStrapdown(t_ns, omega, f, self._dt_ns * 1e-9, place, self._spin,
+                                       self._settings.input == 'integrated')
+        p, s = initial.position_sigma_m, initial.velocity_sigma_m_s
+        self._ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
+                          velocity=(-s * draw[2], -s * draw[3], 0.0))
+        self.filter = KINDS[self._settings.filter](self._settings, self._ins)
+        self._window_start_ns = t_ns
+
+    def _advance(self, t_ns, omega, f, vertical):
+        ins, filter_ = self._ins, self.filter
+        if ins.t_ns // self._window_ns != self._window_start_ns // self._window_ns:
+            # lazily, so that a fix of the window that ends now still finds it
+            filter_.close()
+            self._window_start_ns = ins.t_ns
+        before, last_ns = (ins.q_nb, ins.v_b, ins.v), ins.t_ns
+        u = ins.advance(t_ns, omega, f, vertical)
+        filter_.step(ins, before, u, (t_ns - last_ns) * 1e-9)
+
+    def _keep(self):
+        """Take a snapshot now and then; forget what is older than the buffer."""
+        self._snapshot()
+        oldest_ns = self._ins.t_ns - self._buffer_ns
+        while len(self._snapshots) > 1 and self._snapshots[1].t_ns <= oldest_ns:
+            self._snapshots.popleft()
+        start_ns = self._snapshots[0].t_ns
+        while self._samples and self._samples[0][0] <= start_ns:
+            self._samples.popleft()
+        while self._log and self._log[0].fix.t_ns <= start_ns - self._dt_ns:
+            self._log.pop(0)
+
+    def _snapshot(self):
+        """Take a snapshot, before the fixes of this instant, unless the last one is young."""
+        ins = self._ins
+        if not self._snapshots or ins.t_ns - self._snapshots[-1].t_ns >= SNAPSHOT_NS:
+            self._snapshots.append(_Snapshot(ins.t_ns, ins.copy(), self.filter.copy(),
+                                             self._window_start_ns))
+
+    def _due(self):
+        """Take the fixes that have arrived by now."""
+        taken = []
+        while self._pending and self._pending[0].fix.arrival_ns <= self._ins.t_ns:
+            entry = self._pending.pop(0)
+            result = self._unfit(entry) or self._insert(entry)
+            self._check()
+            taken.append(Taken(entry.source, entry.fix.t_ns, result))
+        return taken
+
+    def _unfit(self, entry):
+        """Return the Result of a fix that is not to be taken, or None."""
+        fix = entry.fix
+        if not fix.valid:
+            return refused(f'{NO_FIX}: {fix.status}')
+        if entry.source not in self.sources:
+            return refused(f'{entry.source} is not used')
+        if fix.t_ns < self._snapshots[0].t_ns:
+            late = (self._ins.t_ns - fix.t_ns) * 1e-9
+            return refused(f'the fix is {late:.3f} s old; expected at most buffer_s, '
+                           f'{self._settings.buffer_s:g} s, and none before the start')
+        if any(_instant(other) == _instant(entry) for other in reversed(self._log)
+               if other.fix.t_ns >= fix.t_ns):
+            return refused(f'the fix at {seconds(fix.t_ns)} has come before')
+        return None
+
+    def _insert(self, entry):
+        insort(self._log, entry, key=_instant)
+        if entry.fix.t_ns > self._ins.t_ns - self._dt_ns and self._log[-1] is entry:
+            return self._apply(entry)
+        return self._replay(entry)
+
+    def _replay(self, wanted):
+        """Restore the snapshot before a fix, and advance again with it; return its Result."""
+        now_ns, result = self._ins.t_ns, None
+        while self._snapshots[-1].t_ns > wanted.fix.t_ns:
+            self._snapshots.pop()
+        start = self._snapshots[-1]
+        self._ins, self.filter = start.ins.copy(), start.filter.copy()
+        self._window_start_ns = start.window_start_ns
+        log = deque(e for e in self._log if e.fix.t_ns > start.t_ns - self._dt_ns)
+        samples = deque(s for s in self._samples if s[0] > start.t_ns)
+        while True:
+            while log and log[0].fix.t_ns <= self._ins.t_ns:
+                entry = log.popleft()
+                outcome = self._apply(entry)
+                result = outcome if entry is wanted else result
+            if not samples:
+                return result
+            self._advance(*samples.popleft())
+            if self._ins.t_ns < now_ns:
+                self._snapshot()
+
+    def _apply(self, entry):
+        fix, ins = entry.fix, self._ins
+        if entry.source == GNSS:
+            return self.filter.gnss(ins, fix, ins.rate_to_earth,
+                                    self._settings.gnss_model.lever_arm_m)
+        if self._window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
+            return refused('the solution does not cover its window')
+        forward, left = fix.velocity
+        known = self._settings.meter_model.bias_x_m_s / fix.cycles
+        return self.filter.velocity(ins, replace(fix, velocity=(forward - known, left)))
+
+    def _check(self):
+        """Raise StreamFault if the covariance is none any more."""
+        if not self.filter.healthy:
+            raise StreamFault(f'the covariance of filter {self._settings.filter} at '
+                              f'{seconds(self._ins.t_ns)} is not positive definite; expected '
+                              'errors that the model can follow', restart=True)
+
+
+def _instant(entry):
+    return entry.fix.t_ns, entry.source
+
+
+def _arrival(entry):
+    return entry.fix.arrival_ns, entry.source, entry.fix.t_ns

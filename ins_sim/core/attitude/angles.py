@@ -1,0 +1,66 @@
+"""Angles of attitude: roll, pitch and compass heading of q_nb, rotations about axes, and back."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics import taylor
+from . import quaternion
+
+
+def from_compass(roll, pitch, heading):
+    """
+    Return q_nb (n, 4) of (n,) roll (right side down), pitch (nose up), heading (clockwise).
+
+    It is ``attitude.from_angles`` with psi = -heading.
+    """
+    angles = (-np.asarray(heading, dtype=float), pitch, roll)
+    q = from_angles(*(taylor.Series(np.atleast_1d(np.asarray(a, dtype=float))[None])
+                      for a in angles))
+    return np.stack([x.value for x in q], axis=-1)
+
+
+def to_compass(q_nb):
+    """Return roll, pitch, heading (0 to 2 pi) of q_nb (..., 4)."""
+    q = np.moveaxis(np.asarray(q_nb, dtype=float), -1, 0)
+    zero, one = np.zeros_like(q[0]), np.ones_like(q[0])
+    # the vertical in b gives roll and pitch, the forward axis in n the heading
+    up = quaternion.rotate_back(q, (zero, zero, one))
+    east, north, _ = quaternion.rotate(q, (one, zero, zero))
+    pitch = np.arctan2(up[0], np.hypot(up[1], up[2]))
+    return np.arctan2(up[1], up[2]), pitch, np.arctan2(east, north) % (2.0 * np.pi)
+
+
+def about_axis(axis, angle):
+    """Return the quaternion Series of a rotation by the angle Series about axis 0, 1 or 2."""
+    s, c = taylor.sincos(angle * 0.5)
+    zero = s * 0.0
+    return tuple(s if k == axis else zero for k in range(3)) + (c,)
+
+
+def from_angles(psi, theta, gamma):
+    """
+    Return q_nb (FLU to ENU) of Series psi (counter-clockwise), theta, gamma.
+
+    The paper's C = Rz(psi) Rx(theta) Ry(gamma) acts on (right, forward, up); on (forward, left,
+    up) it is Rz(psi + 90 deg) Ry(-theta) Rx(gamma).
+    """
+    sz, cz = taylor.sincos((psi + 0.5 * math.pi) * 0.5)
+    sy, cy = taylor.sincos(theta * -0.5)
+    sx, cx = taylor.sincos(gamma * 0.5)
+    cyx, syx, cysx, sycx = cy * cx, sy * sx, cy * sx, sy * cx
+    return (cz * cysx - sz * sycx, cz * sycx + sz * cysx, sz * cyx - cz * syx,
+            cz * cyx + sz * syx)
+
+
+def from_rpy(roll, pitch, yaw):
+    """Return q_bs of roll, pitch, yaw about the fixed axes x, y, z (URDF), floats, rad."""
+    return quaternion.multiply(
+        quaternion.exponential((0.0, 0.0, yaw)),
+        quaternion.multiply(quaternion.exponential((0.0, pitch, 0.0)),
+                            quaternion.exponential((roll, 0.0, 0.0))))
+
+
+def roll(c):
+    """Return gamma of C_nb = Rz Ry(-theta) Rx(gamma), nine floats, rad."""
+    return math.atan2(c[7], c[8])

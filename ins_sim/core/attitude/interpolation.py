@@ -1,0 +1,64 @@
+"""
+Interpolation of sampled motion: Hermite and Newton polynomials, and quaternions between samples.
+
+``hermite`` and ``newton`` reconstruct a continuous motion from streamed truth without looking
+ahead
+(docs/theory.md, "Delayed channels").
+"""
+
+import numpy as np
+
+from . import quaternion
+
+
+def hermite(h, d, w_start, w_end):
+    """
+    Return the vectors c1, c2, c3 of r(s) = c1 s + c2 s^2 + c3 s^3, q(s) = q_start exp(r(s)).
+
+    h: interval, s; d: rotation vector from q_start to q_end, rad; w: rate of b relative to the
+    frame of q, resolved in b, rad/s.  The end rate passes through the inverse right Jacobian of
+    the rotation vector to second order.  Components may be floats or arrays.
+    """
+    dw = quaternion.cross(d, w_end)
+    ddw = quaternion.cross(d, dw)
+    a = (h * w_start[0], h * w_start[1], h * w_start[2])
+    b = (h * (w_end[0] + dw[0] / 2.0 + ddw[0] / 12.0),
+         h * (w_end[1] + dw[1] / 2.0 + ddw[1] / 12.0),
+         h * (w_end[2] + dw[2] / 2.0 + ddw[2] / 12.0))
+    c2 = (3.0 * d[0] - 2.0 * a[0] - b[0], 3.0 * d[1] - 2.0 * a[1] - b[1],
+          3.0 * d[2] - 2.0 * a[2] - b[2])
+    c3 = (a[0] + b[0] - 2.0 * d[0], a[1] + b[1] - 2.0 * d[1], a[2] + b[2] - 2.0 * d[2])
+    return a, c2, c3
+
+
+def newton(last, value, r1, r2, r3):
+    """
+    Return the divided differences d0..d3 at a new sample, newest first.
+
+    last: those at the sample before; value: the new vector; r1, r2, r3: reciprocals of the times
+    back to the last three samples, 1/s, zero where there is none (the order then is lower).
+    """
+    x, y, z = value
+    d = [value]
+    for (a, b, c), r in zip(last, (r1, r2, r3)):
+        x, y, z = (x - a) * r, (y - b) * r, (z - c) * r
+        d.append((x, y, z))
+    return d
+
+
+def newton_value(differences, s0, s1, s2):
+    """Return the cubic of ``newton``; s0, s1, s2: time since the last three samples, s."""
+    (a0, b0, c0), (a1, b1, c1), (a2, b2, c2), (a3, b3, c3) = differences
+    return (a0 + s0 * (a1 + s1 * (a2 + s2 * a3)), b0 + s0 * (b1 + s1 * (b2 + s2 * b3)),
+            c0 + s0 * (c1 + s1 * (c2 + s2 * c3)))
+
+
+def continuous(q):
+    """Return (n, 4) quaternions with the signs that make neighbours differ least."""
+    dot = (q[1:] * q[:-1]).sum(axis=1)
+    return q * np.concatenate([[1.0], np.cumprod(np.where(dot < 0.0, -1.0, 1.0))])[:, None]
+
+
+def middle(q_start, q_end):
+    """Return the attitude half-way between two that are near."""
+    return quaternion.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, q_end)))

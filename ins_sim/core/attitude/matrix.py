@@ -1,0 +1,42 @@
+"""Rotation matrices: conversion from and to quaternions, and the cross-product matrix."""
+
+import math
+
+import numpy as np
+
+
+def dcm_of(q):
+    """Return C_nb as nine floats, row by row, of a unit quaternion q_nb."""
+    x, y, z, w = q
+    return (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+
+
+def quaternion_of(c):
+    """Return the unit quaternion of nine floats C_nb, row by row (Shepperd 1978)."""
+    trace = c[0] + c[4] + c[8]
+    squares = (1.0 + 2.0 * c[0] - trace, 1.0 + 2.0 * c[4] - trace, 1.0 + 2.0 * c[8] - trace,
+               1.0 + trace)
+    k = squares.index(max(squares))
+    if k == 0:
+        q = (squares[0], c[1] + c[3], c[2] + c[6], c[7] - c[5])
+    elif k == 1:
+        q = (c[1] + c[3], squares[1], c[5] + c[7], c[2] - c[6])
+    elif k == 2:
+        q = (c[2] + c[6], c[5] + c[7], squares[2], c[3] - c[1])
+    else:
+        q = (c[7] - c[5], c[2] - c[6], c[3] - c[1], squares[3])
+    norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
+
+
+def skew(v):
+    """Return the matrix of v x."""
+    x, y, z = v
+    return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+
+
+def matrix(q_nb):
+    """Return C_nb (3, 3)."""
+    return np.array(dcm_of(q_nb)).reshape(3, 3)

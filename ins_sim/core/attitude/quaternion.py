@@ -1,0 +1,90 @@
+"""Quaternions and rotation vectors, scalar last (x, y, z, w), of floats or arrays."""
+
+import math
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+
+
+def multiply(p, q):
+    """Return p q: q_ac = multiply(q_ab, q_bc)."""
+    px, py, pz, pw = p
+    qx, qy, qz, qw = q
+    return (pw * qx + px * qw + py * qz - pz * qy,
+            pw * qy - px * qz + py * qw + pz * qx,
+            pw * qz + px * qy - py * qx + pz * qw,
+            pw * qw - px * qx - py * qy - pz * qz)
+
+
+def conjugate(q):
+    """Return the inverse of a unit quaternion."""
+    return -q[0], -q[1], -q[2], q[3]
+
+
+def cross(a, b):
+    """Return a x b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def rotate(q, v):
+    """Return C v for the quaternion q of C: v + 2 w (u x v) + 2 u x (u x v)."""
+    x, y, z, w = q
+    a, b, c = v
+    tx = 2.0 * (y * c - z * b)
+    ty = 2.0 * (z * a - x * c)
+    tz = 2.0 * (x * b - y * a)
+    return (a + w * tx + y * tz - z * ty,
+            b + w * ty + z * tx - x * tz,
+            c + w * tz + x * ty - y * tx)
+
+
+def rotate_back(q, v):
+    """Return C^T v for the quaternion q of C."""
+    x, y, z, w = q
+    return rotate((-x, -y, -z, w), v)
+
+
+def exponential(phi):
+    """Return the quaternion of a rotation vector, floats, rad."""
+    x, y, z = phi
+    a2 = x * x + y * y + z * z
+    if a2 < 1e-8:
+        s, c = 0.5 - a2 / 48.0, 1.0 - a2 / 8.0
+    else:
+        a = math.sqrt(a2)
+        s, c = math.sin(0.5 * a) / a, math.cos(0.5 * a)
+    return x * s, y * s, z * s, c
+
+
+def logarithm(q):
+    """
+    Return the rotation vector (at most pi long) of a quaternion of any norm, floats, rad.
+
+    The atan2 form: the acos(trace) form loses half the digits (spec: 1.35 m in an hour at 1 kHz).
+    """
+    x, y, z, w = q
+    if w < 0.0:
+        x, y, z, w = -x, -y, -z, -w
+    n2 = x * x + y * y + z * z
+    if n2 < 1e-300:
+        s = 2.0
+    else:
+        n = math.sqrt(n2)
+        s = 2.0 * math.atan2(n, w) / n
+    return x * s, y * s, z * s
+
+
+def normalise(q):
+    """Return q with its norm, one to within 1e-8, corrected to one by a Newton step."""
+    x, y, z, w = q
+    s = 1.5 - 0.5 * (x * x + y * y + z * z + w * w)
+    return x * s, y * s, z * s, w * s
+
+
+def shorter(theta):
+    """Return the same rotation by at most pi: theta (1 - 2 pi / d) where d > pi."""
+    x, y, z = theta
+    d2 = x * x + y * y + z * z
+    if d2 <= math.pi * math.pi:
+        return theta
+    s = 1.0 - 2.0 * math.pi / math.sqrt(d2)
+    return x * s, y * s, z * s

@@ -1,0 +1,34 @@
+"""Angular rates of the local level frame and of the body on the Earth; velocity in the body."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from . import ellipsoid
+
+
+def rate_of_n(lat, height, v_n, earth_rotation):
+    """
+    Return omega_in_n (n, 3), rad/s, of lat (n,) rad, height (n,) m, v_n (n, 3) m/s.
+
+    Groves 5.44, in ENU; without rotation of the Earth it is omega_en_n.
+    """
+    s, c = np.sin(lat), np.cos(lat)
+    r_n, r_e = ellipsoid.radii(s)
+    spin = ellipsoid.ROTATION_RATE if earth_rotation else 0.0
+    lon_rate = v_n[:, 0] / ((r_e + height) * c)
+    return np.stack((-v_n[:, 1] / (r_n + height), (spin + lon_rate) * c, (spin + lon_rate) * s),
+                    axis=-1)
+
+
+def rate_on_earth(lat, q_nb, omega_ib_b, spin):
+    """Return the rate of b relative to an Earth of that spin, resolved in b, floats, rad/s."""
+    turn = quaternion.rotate_back(q_nb, (0.0, spin * math.cos(lat), spin * math.sin(lat)))
+    return omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2]
+
+
+def body_velocity(record):
+    """Return C_bn v_n (n, 3), m/s, of a record with q_nb and v_n."""
+    return np.stack(quaternion.rotate_back(np.moveaxis(record.q_nb, -1, 0),
+                                           np.moveaxis(record.v_n, -1, 0)), axis=-1)

@@ -1,0 +1,75 @@
+"""Three flights of an hour in closed form: cruise, racetrack and an aggressive one."""
+
+import math
+
+from ins_sim.core.attitude import angles
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics.units import STANDARD_GRAVITY
+
+TWO_PI = 2.0 * math.pi
+# (angle, amplitude in deg, cycles per s times 2 pi = factor of p, phase) added to the base angles
+CRUISE_WOBBLE = {
+    'gamma': ((1.0, 0.31, 0.0), (0.5, 0.73, 1.1), (0.2, 1.37, 0.4)),
+    'theta': ((0.4, 0.19, 0.7), (0.3, 0.57, 2.1), (0.1, 1.91, 1.3)),
+    'psi': ((0.5, 0.31, 0.9), (0.2, 0.47, 0.2), (0.1, 1.37, 1.9))}
+AGGRESSIVE_WOBBLE = {'gamma': ((25.0, 1 / 7, 0.0),), 'theta': ((6.0, 1 / 5, 1.0),),
+                     'psi': ((5.0, 1 / 6, 2.0),)}
+CROSS_TRACK = ((6000.0, 500.0, 60.0), (-15000.0, 1300.0, 90.0), (12000.0, 2200.0, 90.0),
+               (-4000.0, 3000.0, 60.0))
+
+
+def _cruise(t):
+    """Return E, N, h: along-track speed and height by tanh steps, four side steps."""
+    climb, slow = (t - 300.0) / 80.0, (t - 3200.0) / 80.0
+    s = t * 100.0 + (taylor.log_cosh(climb) - taylor.log_cosh(slow)) * (65.0 * 80.0)
+    s = s - 65.0 * 80.0 * (math.log(math.cosh(300.0 / 80.0)) - math.log(math.cosh(3200.0 / 80.0)))
+    c = sum((taylor.tanh((t - tk) / width) * (0.5 * step) + 0.5 * step
+             for step, tk, width in CROSS_TRACK), t.constant(0.0))
+    sin, cos = math.sin(math.radians(300.0)), math.cos(math.radians(300.0))
+    h = (taylor.tanh((t - 600.0) / 250.0) - taylor.tanh((t - 3000.0) / 250.0)) * 4900.0 + 200.0
+    return s * sin + c * cos, s * cos - c * sin, h
+
+
+def _racetrack(t):
+    s, c = taylor.sincos(t * (TWO_PI / 400.0))
+    return (1.0 - c) * 15000.0, s * 6000.0, t.constant(6000.0)
+
+
+def _aggressive(t):
+    s1, c1 = taylor.sincos(t * (TWO_PI / 200.0))
+    s2, c2 = taylor.sincos(t * (TWO_PI / 55.0))
+    h = (taylor.sin(t * (TWO_PI / 90.0)) * 1200.0 + taylor.sin(t * (TWO_PI / 37.0)) * 300.0
+         + 5000.0)
+    return ((1.0 - c1) * 8000.0 + (1.0 - c2) * 1200.0, s1 * 8000.0 + s2 * 1200.0, h)
+
+
+def _flight(path, trim_deg, wobble):
+    """Return the maker of a pose: coordinated base angles plus trim and wobble."""
+    def at_datum(datum):
+        lat0, lon0 = math.radians(datum.latitude_deg), math.radians(datum.longitude_deg)
+
+        def pose(t):
+            east, north, height = path(t)
+            v_east, v_north = east.derivative(), north.derivative()
+            speed = taylor.sqrt(v_east * v_east + v_north * v_north)
+            psi = taylor.atan2(v_east, v_north)
+            theta = taylor.atan2(height.derivative(), speed)
+            gamma = taylor.atan2(speed * psi.derivative(), t.constant(STANDARD_GRAVITY))
+            added = {name: sum((taylor.sin(t * (TWO_PI * f) + phase) * math.radians(a)
+                                for a, f, phase in terms), t.constant(0.0))
+                     for name, terms in wobble.items()}
+            q_nb = angles.from_angles(-(psi + added['psi']),
+                                      theta + added['theta'] + math.radians(trim_deg),
+                                      gamma + added['gamma'])
+            return (north / ellipsoid.MEAN_RADIUS + lat0,
+                    east / (ellipsoid.MEAN_RADIUS * math.cos(lat0)) + lon0, height, q_nb)
+
+        return pose
+
+    return at_datum
+
+
+FLIGHTS = {'cruise': _flight(_cruise, 3.0, CRUISE_WOBBLE),
+           'racetrack': _flight(_racetrack, 3.0, CRUISE_WOBBLE),
+           'aggressive': _flight(_aggressive, 0.0, AGGRESSIVE_WOBBLE)}

@@ -1,0 +1,1 @@
+"""Motion through recorded poses: spline, faults and quality of the recording."""

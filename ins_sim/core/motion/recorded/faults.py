@@ -1,0 +1,156 @@
+"""Faults of a recording: gaps, stamps that do not advance and impossible jumps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.instants import seconds_text
+
+# A missing row makes an interval of 2 medians; half an interval is left for jitter.
+GAP_MEDIANS = 2.5
+# A position jump is what the interval adds beyond the median velocity of the five intervals about
+# it.  It is impossible beyond 50 g held for the interval (no aircraft) or 1000 m/s (a change of
+# velocity no aircraft has in one interval), whichever is less.  Below 20 m it is taken for the
+# correction step of an on-board filter: ``recording_quality`` reports it.
+JUMP_M = 20.0
+JUMP_M_S2 = 500.0
+JUMP_M_S = 1000.0
+# An attitude jump is impossible beyond 400 deg/s (the fastest aerobatic roll is about 420) more
+# than its neighbours; below 45 deg it is taken for a correction step.  Beyond 120 deg from row to
+# row the way round is a guess whatever the rate.
+TURN_DEG_S = 400.0
+TURN_DEG = 45.0
+AMBIGUOUS_DEG = 120.0
+NAMED_AT_MOST = 8
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something wrong between row index and row index + 1."""
+
+    index: int
+    kind: str
+    what: str
+
+
+def displacements(lat, lon, height):
+    """Return (n - 1, 3) east, north, up from row to row, m; lat, lon in rad."""
+    mean = 0.5 * (lat[1:] + lat[:-1])
+    meridian, transverse = ellipsoid.radii(np.sin(mean))
+    level = 0.5 * (height[1:] + height[:-1])
+    return np.stack([np.diff(lon) * (transverse + level) * np.cos(mean),
+                     np.diff(lat) * (meridian + level), np.diff(height)], axis=-1)
+
+
+def excess(steps, dt):
+    """
+    Return (n,) how far each step goes beyond the median rate of the five steps about it.
+
+    steps (n, 3) and dt (n,) s.  A step or a spike of up to two intervals stands out; a smooth
+    motion leaves only its third derivative.
+    """
+    from scipy.ndimage import median_filter
+    rate = steps / dt[:, None]
+    if len(dt) < 5:
+        usual = np.median(rate, axis=0) if len(dt) > 2 else rate
+    else:
+        # At the ends the median of three, and a straight line on to the last.
+        usual = median_filter(rate, size=(5, 1))
+        usual[1], usual[-2] = np.median(rate[:3], axis=0), np.median(rate[-3:], axis=0)
+        usual[0], usual[-1] = 2.0 * usual[1] - usual[2], 2.0 * usual[-2] - usual[-3]
+    return np.sqrt((((rate - usual) * dt[:, None]) ** 2).sum(axis=1))
+
+
+def median_interval(dt):
+    """Return the median of the intervals that advance, s; 0 if none does."""
+    return float(np.median(dt[dt > 0.0])) if np.any(dt > 0.0) else 0.0
+
+
+def find_faults(rows, turns):
+    """
+    Return the Faults of RecordedRows in the order of the rows.
+
+    turns (n - 1, 3): rotation vectors from row to row, rad.
+    """
+    dt = np.diff(rows.t_ns) * 1e-9
+    faults, median = [], median_interval(dt)
+    for k in np.flatnonzero(dt <= 0.0).tolist():
+        what = 'repeated' if dt[k] == 0.0 else f'{seconds_text(rows.t_ns[k])} goes back to'
+        faults.append(Fault(k, 'stamps', f'{what} {seconds_text(rows.t_ns[k + 1])} s'))
+    for k in np.flatnonzero(dt > GAP_MEDIANS * median).tolist():
+        faults.append(Fault(k, 'gaps', f'{seconds_text(rows.t_ns[k])} s ({dt[k]:.3g} s long)'))
+    steps = displacements(np.radians(rows.lat_deg), np.radians(rows.lon_deg), rows.height_m)
+    angle = np.degrees(np.sqrt((turns ** 2).sum(axis=1)))
+    for first, last in _between([fault.index for fault in faults], len(dt)):
+        part = slice(first, last)
+        faults += _jumps(rows.t_ns, first, dt[part], excess(steps[part], dt[part]),
+                         np.degrees(excess(turns[part], dt[part])), angle[part])
+    return sorted(faults, key=lambda fault: fault.index)
+
+
+def _between(indices, n):
+    """Return the (first, last) ranges of the n intervals that hold none of the indices."""
+    bounds = [-1, *sorted(set(indices)), n]
+    return [(a + 1, b) for a, b in zip(bounds, bounds[1:]) if b > a + 1]
+
+
+def _jumps(t_ns, first, dt, far, turned, angle):
+    """Return the jumps among contiguous intervals from first on."""
+    far_limit = np.maximum(JUMP_M, np.minimum(JUMP_M_S2 * dt * dt, JUMP_M_S * dt))
+    jumped = far > far_limit
+    spun = (turned > np.maximum(TURN_DEG, TURN_DEG_S * dt)) | (angle > AMBIGUOUS_DEG)
+    faults = []
+    for k in np.flatnonzero(jumped | spun).tolist():
+        size = (f'{far[k]:.3g} m beyond its neighbours' if jumped[k] else
+                f'{angle[k]:.3g} deg of rotation')
+        faults.append(Fault(first + k, 'jumps',
+                            f'{seconds_text(t_ns[first + k])} s ({size}, in {dt[k]:.3g} s)'))
+    return faults
+
+
+def describe(faults, median_s):
+    """Return one clause that names all kinds of fault with their times, up to a handful each."""
+    titles = {'stamps': 'stamps that do not advance (',
+              'gaps': f'gaps over {GAP_MEDIANS:g} times the median interval of {median_s:.4g} s '
+                      '(after t_s = ',
+              'jumps': 'impossible jumps (after t_s = '}
+    clauses = []
+    for kind, title in titles.items():
+        named = [fault.what for fault in faults if fault.kind == kind]
+        if named:
+            more = len(named) - NAMED_AT_MOST
+            clauses.append(f'{len(named)} {title}' + ', '.join(named[:NAMED_AT_MOST])
+                           + (f' and {more} more' if more > 0 else '') + ')')
+    return ' and '.join(clauses)
+
+
+def unbroken_part(rows, turns, start_s, on_gap):
+    """
+    Return (slice of the rows to use, list of warnings).
+
+    start_s: recorder time of motion time zero since the first row, s; on_gap: 'refuse' raises
+    ValueError with the times of all faults, 'cut' keeps the part between faults that holds
+    start_s.
+    """
+    faults = find_faults(rows, turns)
+    if not faults:
+        return slice(0, len(rows.t_ns)), []
+    dt = np.diff(rows.t_ns) * 1e-9
+    found = describe(faults, median_interval(dt))
+    if on_gap != 'cut':
+        raise ValueError(f'{rows.path} has {found}; expected an unbroken recording '
+                         "(motion.recording.on_gap = 'cut' keeps the part that holds start_s)")
+    since = (rows.t_ns - rows.t_ns[0]) * 1e-9
+    parts = [(a, b) for a, b in _between([fault.index for fault in faults], len(dt))]
+    holding = [(a, b) for a, b in parts if since[a] <= start_s < since[b]]
+    longest = max(parts, key=lambda p: since[p[1]] - since[p[0]], default=None)
+    hint = ('' if longest is None else f'the longest unbroken part is {since[longest[0]]:.4g} to '
+            f'{since[longest[1]]:.4g} s after the first row')
+    if not holding:
+        raise ValueError(f'{rows.path} has {found} and motion.recording.start_s = {start_s:g} s '
+                         f'lies in no part between them; {hint or "no two rows belong together"}')
+    first, last = holding[0]
+    return slice(first, last + 1), [
+        f'{rows.path} has {found}; cut there, {since[first]:.6g} to {since[last]:.6g} s after '
+        f'the first row is kept, and {hint}']

@@ -1,0 +1,141 @@
+"""
+What a recording does to the specific force: rounding noise and correction steps, in sentences.
+
+Differentiating rounded positions at a high rate twice makes metres per second squared of noise;
+the numbers here say how many.
+"""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.instants import seconds_text
+from .faults import displacements, excess
+
+# Below 10 mg nobody sees the noise beside the motion of a vehicle.
+WORTH_SAYING_M_S2 = 0.1
+
+# A correction step: the acceleration or rate it implies within its interval, more than most
+# vehicles have, and how far it stands out of the ordinary (1.4826 median |x| is the sigma of a
+# normal x; 8 sigma never happens by chance).
+STEP_M_S2 = 20.0
+STEP_DEG_S = 100.0
+STEP_SIGMAS = 8.0
+
+# rms gains of the second difference (sqrt 6) and of half the fourth difference (sqrt 70 / 2) for
+# white noise: binomial coefficients 1 2 1 and 1 4 6 4 1.
+SECOND_GAIN = math.sqrt(6.0)
+FOURTH_GAIN = 0.5 * math.sqrt(70.0)
+
+
+def spline_gain(window=0.0):
+    """
+    Return the rms gain from white noise of positions to the acceleration of their spline.
+
+    In units of 1/dt^2, for the interpolating spline of degree 5 at uniform knots:
+    D(w) = (-1 + 2/3 cos w + 1/3 cos 2w) / ((66 + 52 cos w + 2 cos 2w) / 120), from the values of
+    the quintic B-spline and of its second derivative at the knots (de Boor).  window: length of
+    the boxcar that smoothed the positions, in dt.  Without one the gain is 4.798.
+    """
+    w = (np.arange(4096) + 0.5) * (math.pi / 4096)
+    d = ((-1.0 + 2.0 / 3.0 * np.cos(w) + np.cos(2.0 * w) / 3.0)
+         / ((66.0 + 52.0 * np.cos(w) + 2.0 * np.cos(2.0 * w)) / 120.0))
+    return float(np.sqrt(np.mean((d * np.sinc(window * w / (2.0 * math.pi))) ** 2)))
+
+
+def rounding_noise(resolution, lat, height, interval_s, smoothing_s):
+    """
+    Return the acceleration noise that rounded positions imply: east, north, up, m/s^2 rms.
+
+    resolution: rounding steps (deg, deg, m) of lat, lon, height; a step q has the standard
+    deviation q / sqrt(12); lat (rad) and height (m) scale degrees to metres.
+    """
+    meridian, transverse = ellipsoid.radii(math.sin(lat))
+    step_m = (math.radians(resolution[1]) * (transverse + height) * math.cos(lat),
+              math.radians(resolution[0]) * (meridian + height), resolution[2])
+    gain = spline_gain(smoothing_s / interval_s) / interval_s ** 2
+    return np.array([q / math.sqrt(12.0) * gain for q in step_m])
+
+
+def sample_noise(t, lat, lon, height):
+    """
+    Return the rms and the robust (median-based) noise of the second differences, (2, 3) m/s^2.
+
+    East, north, up.  What a second difference has beyond the mean of its two neighbours is noise
+    (a smooth motion leaves its fourth derivative), scaled by the gains for white noise.
+    """
+    dt = np.diff(t)
+    velocity = displacements(lat, lon, height) / dt[:, None]
+    second = np.diff(velocity, axis=0) / (0.5 * (dt[1:] + dt[:-1]))[:, None]
+    beyond = second[1:-1] - 0.5 * (second[2:] + second[:-2])
+    rms = np.sqrt(np.mean(beyond ** 2, axis=0))
+    robust = 1.4826 * np.median(np.abs(beyond), axis=0)
+    return np.stack([rms, robust]) * (SECOND_GAIN / FOURTH_GAIN)
+
+
+def _stand_out(size, least):
+    return np.flatnonzero(size > np.maximum(least, STEP_SIGMAS * 1.4826 * np.median(size)))
+
+
+def _count(items, name):
+    return f'{len(items)} {name}' + ('s' if len(items) != 1 else '')
+
+
+def _cadence(t, steps):
+    """Return ', about one every x s', where there is such a beat."""
+    if len(steps) < 4:
+        return ''
+    # A step over two intervals is one step.
+    apart = np.diff(t[steps])
+    apart = apart[apart > 2.5 * np.median(np.diff(t))]
+    return f', one about every {np.median(apart):.3g} s' if len(apart) > 2 else ''
+
+
+def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s):
+    """
+    Return sentences on the noise and the steps of a recording as it will be splined.
+
+    start_ns: stamp of the first row; t (n,) s since it; lat, lon (n,) rad; height (n,) m; turns
+    (n - 1, 3): rotation vectors from row to row, rad; smoothing_s: the boxcar already applied.
+    """
+    dt = np.diff(t)
+    interval_s = float(np.median(dt))
+    sentences = []
+    far = excess(displacements(lat, lon, height), dt)
+    steps = _stand_out(far, STEP_M_S2 * interval_s ** 2)
+    if len(steps):
+        worst = steps[np.argmax(far[steps])]
+        sentences.append(
+            f'{path}: {_count(steps, "position step")}{_cadence(t, steps)}, the largest '
+            f'{far[worst]:.3g} m after t_s = {seconds_text(start_ns + round(t[worst] * 1e9))}; '
+            f'the spline makes about {far[worst] / dt[worst] ** 2:.2g} m/s^2 of it')
+    turned = np.degrees(excess(turns, dt))
+    steps = _stand_out(turned, STEP_DEG_S * interval_s)
+    if len(steps):
+        worst = steps[np.argmax(turned[steps])]
+        at = seconds_text(start_ns + round(t[worst] * 1e9))
+        sentences.append(
+            f'{path}: {_count(steps, "attitude step")}{_cadence(t, steps)}, '
+            f'the largest {turned[worst]:.3g} deg after t_s = {at}')
+    rounding = rounding_noise(resolution, float(lat.mean()), float(height.mean()), interval_s,
+                              smoothing_s)
+    rms, robust = sample_noise(t, lat, lon, height)
+    # Few decimals are no noise where the values need no more: the scatter has to be there too
+    # (white noise scatters by half the force noise).
+    rounding[rms < 0.1 * rounding] = 0.0
+    if rounding.max() >= WORTH_SAYING_M_S2:
+        sentences.append(
+            f'{path}: positions rounded to {resolution[0]:.1g} deg, {resolution[1]:.1g} deg, '
+            f'{resolution[2]:.1g} m and differentiated twice at {1.0 / interval_s:.4g} Hz put '
+            f'{_enu(rounding)} m/s^2 rms of noise (east, north, up) into the specific force; '
+            'motion.recording.smoothing_s lowers it')
+    if rms.max() >= WORTH_SAYING_M_S2:
+        sentences.append(
+            f'{path}: the second differences of its positions scatter from row to row by '
+            f'{_enu(rms)} m/s^2 rms (east, north, up), {_enu(robust)} m/s^2 without the outliers')
+    return sentences
+
+
+def _enu(values):
+    return '/'.join(f'{value:.2g}' for value in values)

@@ -1,0 +1,292 @@
+"""
+Recorded flight as a motion: splines through the recorder's samples (spec/delays section 6).
+
+Attitude relative to local ENU is a C2 rotation spline on the recorder's own times (SciPy's
+RotationSpline: the rotation vector within an interval is a cubic), positions are interpolating
+splines of degree 5.  Never slerp or linear: they bias the drift by up to 51 %.  Where the rate was
+recorded too, the attitude is the cubic through attitude and rate at both ends of an interval.
+
+SciPy solves for the coefficients; the polynomials are evaluated here, elementwise, in the time
+since the interval's first sample.  So the result of an instant does not depend on which others
+are asked for with it, and int64 nanoseconds lose nothing far from zero.
+"""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.interpolation import hermite
+from ins_sim.core.numerics import taylor
+from ins_sim.core.timeseries.histories import Truth
+from . import quality
+from ..truth import truth_from_pose
+from .faults import median_interval, unbroken_part
+
+# Splines have end effects and delayed channels look back: nobody flies the ends.
+PAD_S = 3.0
+DEGREE = 5
+FEWEST_ROWS = 8
+
+# -3 dB of a boxcar of T seconds: sin(x)/x = 1/sqrt(2) at x = pi f T, so f T = 0.4429.
+BOXCAR_3DB = 0.4429
+
+# A recorded rate is no rate of the recorded attitude if it differs from its differences by more
+# than the trapezium rule does (a twelfth of the square of the angle between samples), and by more
+# than what comes of rounding.
+RATE_PART = 0.1
+RATE_RAD_S = 1e-3
+
+# Blocks keep the temporaries in the cache; instants are independent, so the size is free.
+BLOCK = 16384
+
+# cos sqrt(x) and sin sqrt(x) / sqrt(x) as power series of x, highest first.  x = (angle / 2)^2
+# is small between two samples, so a few terms reach rounding: no sine, no branch at zero.
+_COS = [(-1.0) ** n / math.factorial(2 * n) for n in range(19, -1, -1)]
+_SINC = [(-1.0) ** n / math.factorial(2 * n + 1) for n in range(19, -1, -1)]
+
+
+class RecordedMotion:
+    """
+    A recorded flight, valid from -3 s to end_s + 3 s of motion time.
+
+    Motion time 0 is recorder time start_s after the first row; the recording must reach 3 s
+    further on both sides (end effects of the splines; history of delayed channels).  end_s: last
+    motion time to be used, s; zero_ns: the recorder's stamp of motion time 0.  warnings: what was
+    cut, smoothed or found noisy, in sentences.  period_s: None, for the callers that treat all
+    motions alike.
+    """
+
+    period_s = None
+    end_name = 'the end of the recording'
+
+    def __init__(self, poses, recording, earth):
+        """
+        Check and spline a recording.
+
+        poses: RecordedPoses; recording: settings.motion.Recording; earth: settings.place.Earth.
+        Raises ValueError, one sentence, on a record that cannot be used (``faults``) or a start
+        outside it.
+        """
+        self.path = recording.path
+        self._earth_rotation = earth.rotation
+        rows = poses
+        q, rate = rows.q_nb, rows.omega_nb_b
+        part, self.warnings = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
+        self.zero_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
+        self._knots = rows.t_ns[part] - self.zero_ns
+        self._check_extent(recording, int(rows.t_ns[0]))
+        pad_ns = round(PAD_S * 1e9)
+        self._span = (-pad_ns, int(self._knots[-1]))
+        self.end_s = (self._span[1] - pad_ns) * 1e-9
+
+        # Only differences are splined: 0.8 rad of latitude would leave 1e-9 m of rounding, which
+        # a second derivative at 50 Hz turns into 1e-5 m/s^2.
+        t = (self._knots - self._knots[0]) * 1e-9
+        position = np.stack([np.radians(rows.lat_deg[part]), np.radians(rows.lon_deg[part]),
+                             rows.height_m[part]])
+        self._origin = position[:, 0].copy()
+        position -= self._origin[:, None]
+        q = q[part]
+        if recording.smoothing_s:
+            # the rates are those of the motion that was not smoothed
+            position, q, rate = *_smoothed(t, position, q, recording.smoothing_s), None
+            self.warnings += self._smoothing_report(recording.smoothing_s, t)
+        self._base = q
+        self._position = _position_spline(t, position)
+        if rate is None:
+            self._rotation = _rotation_spline(t, q)
+        else:
+            _check_rates(rows.path, t, q, rate[part])
+            self._rotation = _rotation_cubics(t, q, rate[part])
+        self._terms = _terms(self._rotation, np.diff(t))
+        lat, lon, height = position + self._origin[:, None]
+        self.warnings += quality.describe(
+            rows.path, int(self._knots[0]) + self.zero_ns, t, lat, lon, height, _turns(q),
+            rows.resolution, recording.smoothing_s)
+
+    def _check_extent(self, recording, zero_ns):
+        """Refuse a recording too short for two pads, and a start outside it."""
+        knots = self._knots
+        length_s = (knots[-1] - knots[0]) * 1e-9
+        if len(knots) < FEWEST_ROWS or length_s <= 2.0 * PAD_S:
+            raise ValueError(f'{recording.path} holds {len(knots)} rows over {length_s:g} s'
+                             f'{" in the part kept" if recording.on_gap == "cut" else ""}; '
+                             f'expected at least {FEWEST_ROWS} rows over more than '
+                             f'{2.0 * PAD_S:g} s, {PAD_S:g} s of which at each end are the pad')
+        if knots[0] > -PAD_S * 1e9 or knots[-1] <= PAD_S * 1e9:
+            first = recording.start_s + knots[0] * 1e-9
+            raise ValueError(f'motion.recording.start_s is {recording.start_s:g} s; expected '
+                             f'{first + PAD_S:.6g} to {first + length_s - PAD_S:.6g} s, inside '
+                             f'{recording.path} by {PAD_S:g} s')
+
+    def _smoothing_report(self, window_s, t):
+        report = (f'{self.path}: smoothed with a boxcar of {window_s:g} s, which removes motion '
+                  f'above {BOXCAR_3DB / window_s:.3g} Hz (-3 dB)')
+        if window_s < 2.0 * median_interval(np.diff(t)):
+            report += '; a window below two intervals does next to nothing'
+        if window_s > 2.0 * PAD_S:
+            report += (f'; it narrows towards the ends, within {0.5 * window_s:g} s of the first '
+                       'and the last row')
+        return [report]
+
+    def at(self, t_ns):
+        """
+        Return the Truth at motion times t_ns (n,) int64.
+
+        Raises ValueError outside -3 s .. end_s + 3 s.
+        """
+        t_ns = np.asarray(t_ns, dtype=np.int64)
+        first, last = self._span
+        if t_ns.size and (t_ns.min() < first or t_ns.max() > last):
+            bad = int(t_ns.min() if t_ns.min() < first else t_ns.max())
+            raise ValueError(f'motion time {bad * 1e-9:.9g} s is outside the recording '
+                             f'{self.path}; expected {-PAD_S:g} to {last * 1e-9:.9g} s')
+        if len(t_ns) <= BLOCK:
+            return self._at(t_ns)
+        return Truth.concatenate(self._at(t_ns[k:k + BLOCK])
+                                 for k in range(0, len(t_ns), BLOCK))
+
+    def _at(self, t_ns):
+        interval = np.searchsorted(self._knots, t_ns, side='right') - 1
+        interval = np.minimum(interval, len(self._knots) - 2)
+        h = (t_ns - self._knots[interval]) * 1e-9
+        value, rate, half = _horner2(self._position[:, :, interval], h)
+        value += self._origin[:, None]
+        lat, lon, height = (taylor.Series(np.array([value[k], rate[k], half[k]]))
+                            for k in range(3))
+        step = _exponential(*_horner(self._rotation[:, :, interval], h), self._terms)
+        base = self._base[interval]
+        q_nb = quaternion.multiply(tuple(base[:, k] for k in range(4)), step)
+        return truth_from_pose(t_ns, lat, lon, height, q_nb, self._earth_rotation)
+
+
+def _horner(c, x):
+    """Return the value and the first derivative at x of the polynomial c, highest first."""
+    p, d = c[0] + 0.0 * x, 0.0
+    for coefficient in c[1:]:
+        d = d * x + p
+        p = p * x + coefficient
+    return p, d
+
+
+def _horner2(c, x):
+    """Return the value, the first and half the second derivative: Taylor coefficients."""
+    p, d, e = c[0], 0.0, 0.0
+    for coefficient in c[1:]:
+        e = e * x + d
+        d = d * x + p
+        p = p * x + coefficient
+    return p, d, e
+
+
+def _terms(c, dt):
+    """Return how many terms of _COS and _SINC reach rounding for rotation vectors c, (4, 3, m)."""
+    power = dt ** np.arange(len(c) - 1, -1, -1)[:, None]
+    bound = (np.abs(c) * power[:, None, :]).sum(axis=0)
+    x = 0.25 * float((bound * bound).sum(axis=0).max())
+    return next((n for n in range(2, len(_COS))
+                 if x ** n < 1e-17 * math.factorial(2 * n - 1)), len(_COS))
+
+
+def _exponential(r, r_rate, terms):
+    """
+    Return the quaternion Series of order 1 of a rotation vector (3, n), rad, and its rate.
+
+    (S(x) u, C(x)) with u = r / 2, x = u . u, S = sinc and C = cos of sqrt x; C' = -S u . u'.
+    terms: how many of both power series are taken.
+    """
+    u, w = 0.5 * r, 0.5 * r_rate
+    x = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
+    dot = u[0] * w[0] + u[1] * w[1] + u[2] * w[2]
+    c = _horner(_COS[-terms:], x)[0]
+    s, slope = _horner(_SINC[-terms:], x)
+    s_rate = slope * (2.0 * dot)
+    return tuple(taylor.Series(np.array([s * u[k], s_rate * u[k] + s * w[k]]))
+                 for k in range(3)) + (taylor.Series(np.array([c, -s * dot])),)
+
+
+def _turns(q):
+    """Return (n - 1, 3) rotation vectors from row to row, rad."""
+    from scipy.spatial.transform import Rotation
+    rotation = Rotation.from_quat(q)
+    return (rotation[:-1].inv() * rotation[1:]).as_rotvec()
+
+
+def _smoothed(t, position, q, window_s):
+    """
+    Return positions (3, n) and quaternions (n, 4) averaged over the window centred on each row.
+
+    The average is the integral of the interpolating spline, so uneven stamps do no harm; towards
+    the ends the window narrows to stay centred.  Attitude: the normalised mean of quaternions of
+    continuous sign, which is the mean rotation to third order in the spread and, unlike the mean
+    of angles, knows no pitch of 90 deg (Markley et al., "Averaging Quaternions", 2007).
+    """
+    from scipy.interpolate import make_interp_spline
+    half = np.minimum(0.5 * window_s, np.minimum(t - t[0], t[-1] - t))
+    inner = slice(1, -1)
+    low, high = t[inner] - half[inner], t[inner] + half[inner]
+
+    def mean(values, degree):
+        integral = make_interp_spline(t, values, k=degree).antiderivative()
+        result = values.copy()
+        result[inner] = (integral(high) - integral(low)) / (high - low)[:, None]
+        return result
+
+    q = mean(q, 3)
+    norm = np.sqrt((q * q).sum(axis=1))
+    if norm.min() < 0.5:
+        # Uniform rotation by an angle A gives 4 sin(A/4) / A: 0.5 is a turn of 434 deg.
+        raise ValueError(f'motion.recording.smoothing_s is {window_s:g} s, in which the vehicle '
+                         'turns more than once; expected a window shorter than its turns')
+    return mean(position.T, DEGREE).T, q / norm[:, None]
+
+
+def _position_spline(t, position):
+    """
+    Return coefficients (6, 3, intervals), highest first, about the start of each interval.
+
+    The polynomials are those through value, first and second derivative of the spline at both
+    ends of an interval, so that neighbours meet to rounding: higher derivatives of the spline,
+    taken at one end, leave steps of 1e-9 m/s, which made 1 mm in ten minutes of cruise at 100 Hz.
+    """
+    from scipy.interpolate import make_interp_spline
+    spline = make_interp_spline(t, position.T, k=DEGREE)
+    p, v, a = position, *(spline(t, nu=k).T for k in (1, 2))
+    h = np.diff(t)
+    # what the parabola from the start leaves at the end, in units of position
+    far = np.diff(p) - (v[:, :-1] + 0.5 * a[:, :-1] * h) * h
+    faster = (np.diff(v) - a[:, :-1] * h) * h
+    bent = 0.5 * np.diff(a) * h * h
+    return np.array([(6.0 * far - 3.0 * faster + bent) / h ** 5,
+                     (-15.0 * far + 7.0 * faster - 2.0 * bent) / h ** 4,
+                     (10.0 * far - 4.0 * faster + bent) / h ** 3,
+                     0.5 * a[:, :-1], v[:, :-1], p[:, :-1]])
+
+
+def _rotation_spline(t, q):
+    """Return local coefficients (4, 3, intervals) of the rotation vector within an interval."""
+    from scipy.spatial.transform import Rotation, RotationSpline
+    spline = RotationSpline(t, Rotation.from_quat(q))
+    return np.ascontiguousarray(np.moveaxis(spline.interpolator.c, 1, 2))
+
+
+def _rotation_cubics(t, q, rate):
+    """Return the same from the rates (n, 3), rad/s, at both ends of each interval."""
+    h = np.diff(t)
+    c1, c2, c3 = (np.array(c) for c in hermite(h, _turns(q).T, rate[:-1].T, rate[1:].T))
+    return np.array([c3 / h ** 3, c2 / h ** 2, c1 / h, np.zeros_like(c1)])
+
+
+def _check_rates(path, t, q, rate):
+    """Refuse rates (n, 3), rad/s, that are not those of the attitude: another frame, or zeros."""
+    turning = _turns(q) / np.diff(t)[:, None]
+    off = _rms(turning - 0.5 * (rate[1:] + rate[:-1]))
+    if off > max(RATE_RAD_S, RATE_PART * _rms(turning)):
+        raise ValueError(f'{path}: the angular velocity differs by {off:.3g} rad/s rms from the '
+                         f'turning of the attitude, {_rms(turning):.3g} rad/s; expected that of '
+                         'the body, resolved in its axes')
+
+
+def _rms(vectors):
+    return math.sqrt(np.mean((vectors * vectors).sum(axis=1)))

@@ -1,0 +1,1 @@
+"""Flights along great circles with coordinated turns, wind, gusts and a weaving heading."""

@@ -1,0 +1,159 @@
+"""
+The track of a vehicle in a steady wind, along great circles and in turns.
+
+State: geodetic latitude and longitude, and the heading of the air velocity, whose size and height
+are constant.  On the sphere of ``orthodrome`` the velocity V = (V_E, V_N) has the components
+
+    p = m_E V_E,  q = m_N V_N,  m_E = 1/((R_E + h) D),  m_N = (1 - e^2)/((R_N + h) D^2),
+    D^2 = cos^2 lat + (1 - e^2)^2 sin^2 lat                                        (rad/s)
+
+and a great circle is flown where the course atan2(p, q) turns by sin(lat_c) lon'.  The heading
+that does it, and any turn beyond it, follow by differentiating p and q.
+"""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.great_circle import FLATTENING2
+from ins_sim.core.numerics import taylor
+
+# of the expansions about the knots: what is left out is below rounding (docs/design/route.md)
+ORDER = 10
+STEP_M = 2000.0
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_K = 1.0 - FLATTENING2 ** 2
+
+
+def _metric(sin_lat, cos_lat, height):
+    """Return m_E, m_N (1/m), and how their logarithms change with latitude."""
+    r_n, r_e = ellipsoid.radii(sin_lat)
+    d2 = 1.0 - _K * (sin_lat * sin_lat)
+    w2 = 1.0 - ellipsoid.ECCENTRICITY2 * (sin_lat * sin_lat)
+    sc = sin_lat * cos_lat
+    bend, slope = sc * (ellipsoid.ECCENTRICITY2 / w2), sc * (_K / d2)
+    return (1.0 / ((r_e + height) * d2 ** 0.5), FLATTENING2 / ((r_n + height) * d2),
+            slope - bend * r_e / (r_e + height), 2.0 * slope - 3.0 * bend * r_n / (r_n + height))
+
+
+class Flow:
+    """Flight at a height (m) and an airspeed (m/s) in a wind (East, North, m/s)."""
+
+    def __init__(self, height, airspeed, wind):
+        self.height, self.airspeed, self.wind = height, airspeed, wind
+
+    def rates(self, sin_lat, cos_lat, sin_psi, cos_psi, turn):
+        """
+        Return lat', lon', psi' (rad/s) where the heading turns by turn beyond a great circle.
+
+        Floats, or Series of the same instants.
+        """
+        a_e, a_n = sin_psi * self.airspeed, cos_psi * self.airspeed
+        v_e, v_n = a_e + self.wind[0], a_n + self.wind[1]
+        r_n, r_e = ellipsoid.radii(sin_lat)
+        lat_rate, lon_rate = v_n / (r_n + self.height), v_e / ((r_e + self.height) * cos_lat)
+        m_e, m_n, by_e, by_n = _metric(sin_lat, cos_lat, self.height)
+        p, q = v_e * m_e, v_n * m_n
+        sin_c = sin_lat * FLATTENING2 / (1.0 - _K * (sin_lat * sin_lat)) ** 0.5
+        straight = ((p * p + q * q) * sin_c * lon_rate - p * q * (by_e - by_n) * lat_rate) / (
+            m_e * q * a_n + m_n * p * a_e)
+        return lat_rate, lon_rate, straight + turn
+
+    def course(self, lat, psi):
+        """Return the course on the sphere, rad, floats."""
+        m_e, m_n, _, _ = _metric(math.sin(lat), math.cos(lat), self.height)
+        return math.atan2((self.airspeed * math.sin(psi) + self.wind[0]) * m_e,
+                          (self.airspeed * math.cos(psi) + self.wind[1]) * m_n)
+
+    def on_leg(self, leg, x):
+        """Return lat, lon, heading (rad) and X' (m/s) on an orthodrome.Leg at x (n,), m."""
+        lat, lon = leg.from_xz(x, np.zeros_like(x))
+        chi = leg.course(lat, lon)
+        m_e, m_n, _, _ = _metric(np.sin(lat), np.cos(lat), self.height)
+        east, north = np.sin(chi) / m_e, np.cos(chi) / m_n
+        size = np.sqrt(east * east + north * north)
+        east, north = east / size, north / size
+        w_e, w_n = self.wind
+        # wind triangle: the air velocity takes off what the wind has across the track
+        across, along = w_e * north - w_n * east, w_e * east + w_n * north
+        speed = np.sqrt(self.airspeed ** 2 - across * across) + along
+        psi = np.arctan2(speed * east - w_e, speed * north - w_n)
+        return lat, lon, psi, ellipsoid.MEAN_RADIUS * speed / size
+
+
+class Piece:
+    """
+    Knots of a part of the track.
+
+    t (m,): s from its start; lat, lon, psi (m,): rad; turn (m, j): Taylor coefficients of the
+    turn's rate at each; length_s.
+    """
+
+    def __init__(self, t, lat, lon, psi, turn, length_s):
+        self.t, self.lat, self.lon, self.psi = t, lat, lon, psi
+        self.turn, self.length_s = turn, length_s
+
+
+def leg_piece(flow, leg, first, last):
+    """
+    Return the Piece along a leg from X = first to last, m.
+
+    The time is the integral of dX/X', by Gauss and Legendre with eight points every two
+    kilometres: exact to rounding, as X' changes over thousands.
+    """
+    count = max(1, math.ceil((last - first) / STEP_M))
+    x = np.linspace(first, last, count + 1)
+    half = 0.5 * (last - first) / count
+    inner = (x[:-1, None] + half) + half * _NODES
+    speed = flow.on_leg(leg, inner.ravel())[3].reshape(inner.shape)
+    t = np.concatenate([[0.0], np.cumsum(half * (_WEIGHTS / speed).sum(axis=1))])
+    lat, lon, psi, _ = flow.on_leg(leg, x[:-1])
+    return Piece(t[:-1], lat, lon, psi, np.zeros((count, 1)), float(t[-1]))
+
+
+class Track:
+    """The pieces one after the other, from time zero; flow: a Flow."""
+
+    def __init__(self, flow, pieces):
+        starts = np.concatenate([[0.0], np.cumsum([p.length_s for p in pieces])])
+        self.end_s = float(starts[-1])
+        self._t = np.concatenate([p.t + start for p, start in zip(pieces, starts)])
+        lat, lon, psi = (np.concatenate([getattr(p, name) for p in pieces])
+                         for name in ('lat', 'lon', 'psi'))
+        turn = np.zeros((ORDER, len(lat)))
+        first = 0
+        for p in pieces:
+            turn[:p.turn.shape[1], first:first + len(p.t)] = p.turn.T
+            first += len(p.t)
+        # longitude and heading go on from knot to knot, so that quaternions keep their sign
+        self._coefficients = _expand(flow, lat, np.unwrap(lon), np.unwrap(psi), turn)
+
+    def at(self, t):
+        """
+        Return the Series, of order 2, of lat, lon and heading (rad) at times t (n,), s.
+
+        Before zero and after the end it goes on along the first and the last leg.
+        """
+        index = np.clip(np.searchsorted(self._t, t, side='right') - 1, 0, None)
+        x = t - self._t[index]
+        a = self._coefficients[:, :, index]
+        c0, c1, c2 = a[ORDER], np.zeros_like(a[0]), np.zeros_like(a[0])
+        for k in range(ORDER - 1, -1, -1):
+            c2 = c2 * x + c1
+            c1 = c1 * x + c0
+            c0 = c0 * x + a[k]
+        return tuple(taylor.Series(np.stack(rows)) for rows in zip(c0, c1, c2))
+
+
+def _expand(flow, lat, lon, psi, turn):
+    """Return the Taylor coefficients of lat, lon, psi at the knots, (ORDER + 1, 3, m)."""
+    c = np.zeros((ORDER + 1, 3, len(lat)))
+    c[0] = lat, lon, psi
+    for k in range(ORDER):
+        lat_k, psi_k = (taylor.Series(c[:k + 1, i]) for i in (0, 2))
+        rates = flow.rates(*taylor.sincos(lat_k), *taylor.sincos(psi_k),
+                           taylor.Series(turn[:k + 1]))
+        for i, rate in enumerate(rates):
+            c[k + 1, i] = rate.c[k] / (k + 1)
+    return c

@@ -1,0 +1,1 @@
+"""Numerical tools without physics: Taylor series, noise by index, instants and units."""

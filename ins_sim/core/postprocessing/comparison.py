@@ -1,0 +1,117 @@
+"""Errors of a recorded navigation at the stamps of a reference."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.navigation.errors import position_error
+from .reference import Track
+
+AFTER_S = (10.0, 30.0, 60.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """
+    Solution less reference, resolved in East, North, Up: Tracks of (n, 3), or None.
+
+    name: of the reference; position m; velocity m/s; attitude: rotation vector from the
+    reference to the solution, rad (Up: counter-clockwise).
+    """
+
+    name: str
+    position: Track | None
+    velocity: Track | None
+    attitude: Track | None
+
+
+@dataclass(frozen=True)
+class ErrorRow:
+    """
+    Errors a time after the start, None where unknown.
+
+    after_s; horizontal_m, vertical_m (up), speed_m_s (length of the horizontal velocity error),
+    tilt_deg, heading_deg (clockwise).
+    """
+
+    after_s: float
+    horizontal_m: float | None
+    vertical_m: float | None
+    speed_m_s: float | None
+    tilt_deg: float | None
+    heading_deg: float | None
+
+
+def compare(states, reference):
+    """
+    Return the Comparison of a list of NavStates, one a segment, with a Reference, or None.
+
+    Between its samples the solution is a straight line, its attitude a constant turn.  None
+    where the reference has no stamp within a segment.
+    """
+    tracks = []
+    for kind, errors in (('position', _position), ('velocity', _velocity),
+                         ('attitude', _attitude)):
+        track = getattr(reference, kind)
+        parts = [] if track is None else [_within(s, track, errors) for s in states]
+        parts = [p for p in parts if len(p.t_ns)]
+        tracks.append(Track(np.concatenate([p.t_ns for p in parts]),
+                            np.concatenate([p.values for p in parts])) if parts else None)
+    return None if tracks == [None] * 3 else Comparison(reference.name, *tracks)
+
+
+def _within(states, track, errors):
+    inside = (track.t_ns >= states.t_ns[0]) & (track.t_ns <= states.t_ns[-1])
+    t_ns, values = track.t_ns[inside], track.values[inside]
+    if len(states.t_ns) < 2 or not len(t_ns):
+        return Track(t_ns[:0], np.empty((0, 3)))
+    return Track(t_ns, errors(states, t_ns, values))
+
+
+def _position(states, t_ns, values):
+    own = Track(states.t_ns, np.stack([states.lat, np.unwrap(states.lon), states.height], -1))
+    return np.array([position_error(*a, *b) for a, b in zip(_drawn(own, t_ns).tolist(),
+                                                            values.tolist())])
+
+
+def _velocity(states, t_ns, values):
+    return _drawn(Track(states.t_ns, states.v_n), t_ns) - values
+
+
+def _attitude(states, t_ns, values):
+    from scipy.spatial.transform import Rotation, Slerp
+    own = Slerp((states.t_ns - states.t_ns[0]) * 1e-9, Rotation.from_quat(states.q_nb))(
+        (t_ns - states.t_ns[0]) * 1e-9).as_quat()
+    return np.array([quaternion.logarithm(quaternion.multiply(a, quaternion.conjugate(b)))
+                     for a, b in zip(own.tolist(), values.tolist())])
+
+
+def _drawn(track, t_ns):
+    """Return the values at stamps within the track, whatever the steps."""
+    start = track.t_ns[0]
+    return np.stack([np.interp(t_ns - start, track.t_ns - start, v) for v in track.values.T], -1)
+
+
+def rows(comparison, start_ns, end_ns):
+    """Return the ErrorRows AFTER_S the start, as far as the solution goes, and at its end."""
+    length_s = (end_ns - start_ns) * 1e-9
+    return [_row(comparison, start_ns, after) for after in
+            (*(a for a in AFTER_S if a < length_s), length_s)]
+
+
+def _row(comparison, start_ns, after_s):
+    """Return the errors at the stamps next to an instant, within a second of it."""
+    def at(track):
+        if track is None:
+            return None
+        off = np.abs(track.t_ns - (start_ns + round(after_s * 1e9)))
+        k = int(np.argmin(off))
+        return track.values[k].tolist() if off[k] <= 1_000_000_000 else None
+
+    place, v, turn = (at(t) for t in (comparison.position, comparison.velocity,
+                                      comparison.attitude))
+    return ErrorRow(
+        after_s, place and math.hypot(*place[:2]), place and place[2], v and math.hypot(*v[:2]),
+        turn and math.degrees(math.hypot(*turn[:2])), turn and -math.degrees(turn[2]))

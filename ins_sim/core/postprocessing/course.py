@@ -1,0 +1,53 @@
+"""The heading at a standstill from the way that a reference goes afterwards."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.navigation.strapdown import FreeNavigation
+
+
+def headings(imu, state, kind, spin):
+    """
+    Yield stamp and heading, ns and rad, behind the first sample of a RecordedImu.
+
+    state: (lat, lon, height, v_n, q_nb) at that sample; kind, spin: as in FreeNavigation.
+    """
+    samples = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()))
+    nav = FreeNavigation(kind, spin, *next(samples), state)
+    for sample in samples:
+        nav.step(*sample)
+        yield sample[0], float(to_compass(np.array(nav.solution()[4]))[2])
+
+
+def course(turning, displacements, start_ns, distance_m, search_s):
+    """
+    Return the heading at the start, rad, and how it was found; or None and why not.
+
+    turning: of ``headings`` from heading zero; displacements: of Reference.displacements.  Each
+    way from stamp to stamp is turned back by what the heading has changed since the start; the
+    sum then points along the heading at the start, if the vehicle goes forwards.  The noise of
+    positions cancels in the sum but for that of its ends.
+    """
+    if displacements is None:
+        return None, 'has no way to show a course'
+    middles, ways = displacements
+    j = int(np.searchsorted(middles, start_ns))
+    way, parts = 0j, []
+    for t_ns, turned in turning:
+        if t_ns > start_ns + round(search_s * 1e9):
+            break
+        while j < len(middles) and middles[j] <= t_ns:
+            east, north = ways[j]
+            parts.append(complex(north, east) * complex(math.cos(turned), -math.sin(turned)))
+            way += parts[-1]
+            j += 1
+        if abs(way) >= distance_m:
+            across = np.imag(np.array(parts) * (way.conjugate() / abs(way)))
+            scatter = math.degrees(float(np.sqrt((across ** 2).sum())) / abs(way))
+            return math.atan2(way.imag, way.real), (
+                f'over {abs(way):.1f} m until {(t_ns - start_ns) * 1e-9:.1f} s after the start, '
+                f'scatter {scatter:.2g} deg')
+    return None, (f'moves {abs(way):.3g} m on one course within {search_s:g} s '
+                  f'(alignment.course_distance_m {distance_m:g})')

@@ -1,0 +1,95 @@
+"""A recorded IMU, whatever its rate and faults: samples in order, counted losses, gaps."""
+
+from bisect import bisect_left
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.timeseries.histories import Record
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedImu(Record):
+    """
+    Samples as they were recorded, in the frame s of the sensor or in b.
+
+    t_ns (n,) int64 stamps; omega (n, 3) rad/s; f (n, 3) specific force, m/s^2; q_ns (n, 4) the
+    orientation in the messages, NaN where there is none.
+    """
+
+    t_ns: np.ndarray
+    omega: np.ndarray
+    f: np.ndarray
+    q_ns: np.ndarray
+
+    @property
+    def step_ns(self):
+        """Return the median step of the stamps, ns."""
+        return float(np.median(np.diff(self.t_ns)))
+
+    def turned(self, q_bs):
+        """Return the same samples in b; q_bs maps s to b."""
+        def turn(vectors):
+            return np.stack(quaternion.rotate(q_bs, vectors.T), axis=-1)
+
+        q_nb = quaternion.multiply(self.q_ns.T, quaternion.conjugate(q_bs))
+        return RecordedImu(self.t_ns, turn(self.omega), turn(self.f), np.stack(q_nb, axis=-1))
+
+    def less_bias(self, bias):
+        """Return the same samples with a rate (3,), rad/s, taken off the gyros."""
+        return replace(self, omega=self.omega - bias)
+
+
+@dataclass(frozen=True)
+class Losses:
+    """How many samples were dropped: not finite; with a stamp repeated or out of order."""
+
+    not_finite: int
+    out_of_order: int
+
+
+def ordered(imu):
+    """
+    Return the samples that are finite and rise in stamp, and the Losses.
+
+    Of stamps out of order the fewest possible are dropped (longest rising subsequence; Fredman,
+    Discrete Mathematics 11, 1975): one stamp far ahead costs one sample, not all that follow.
+
+    Raises ValueError where fewer than two samples are left.
+    """
+    finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
+    good = imu[finite]
+    kept = good
+    if len(good) and (np.diff(good.t_ns) <= 0).any():
+        kept = good[_rising(good.t_ns.tolist())]
+    losses = Losses(int((~finite).sum()), len(good) - len(kept))
+    if len(kept) < 2:
+        raise ValueError(f'the IMU has {len(imu)} samples, {losses.not_finite} of them not finite '
+                         f'and {losses.out_of_order} out of order; expected at least two good '
+                         'ones')
+    return kept, losses
+
+
+def _rising(stamps):
+    """Return the indices of a longest strictly rising subsequence."""
+    ends, tails, before = [], [], []
+    for k, stamp in enumerate(stamps):
+        place = bisect_left(tails, stamp)
+        before.append(ends[place - 1] if place else -1)
+        if place == len(tails):
+            tails.append(stamp)
+            ends.append(k)
+        else:
+            tails[place], ends[place] = stamp, k
+    indices, k = [], ends[-1]
+    while k >= 0:
+        indices.append(k)
+        k = before[k]
+    return indices[::-1]
+
+
+def gaps(t_ns, factor):
+    """Return the indices k whose step to k + 1 is longer than factor times the median step."""
+    steps = np.diff(t_ns)
+    return np.flatnonzero(steps > factor * np.median(steps))

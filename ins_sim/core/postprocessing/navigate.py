@@ -1,0 +1,192 @@
+"""Navigate on a recording: clean, mount, begin, step, compare; every departure is a note."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import angles
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation.strapdown import FreeNavigation, runs_away
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.timeseries.histories import NavStates
+from ins_sim.settings.navigate import check_used
+from . import mounting
+from .comparison import compare
+from .imu_record import gaps, ordered
+from .initial_state import Starter
+
+# A solution of one step shows nothing.
+FEWEST = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Navigation:
+    """
+    The result: states: NavStates of each segment; references: what it was compared with;
+    comparisons: one a reference; notes: what was found and done, in sentences; figures: the same
+    as numbers, {name: value}.
+    """
+
+    states: list
+    references: list
+    comparisons: list
+    notes: list
+    figures: dict
+
+
+def navigate(settings, sources, progress=None):
+    """
+    Return the Navigation of NavigateSettings over Sources.
+
+    progress: called with the fraction done.  Raises ValueError in one sentence where there is
+    nothing to begin with.
+    """
+    check_used(settings)
+    imu, losses = ordered(sources.imu)
+    step_ns = imu.step_ns
+    broken = gaps(imu.t_ns, settings.gap_factor)
+    notes = [f'{len(imu)} samples of {sources.name} in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.3f} '
+             f's, median step {step_ns * 1e-6:.6g} ms; dropped: {losses.not_finite} not finite, '
+             f'{losses.out_of_order} out of order; {len(broken)} gaps', *sources.notes]
+    figures = {'samples': len(imu), 'step_ms': step_ns * 1e-6, 'not_finite': losses.not_finite,
+               'out_of_order': losses.out_of_order, 'gaps': len(broken)}
+    first, last = _span(settings, imu)
+    q_bs = _mounting(settings, sources, imu, first, notes)
+    figures['mounting_xyzw'] = list(q_bs)
+    imu = imu.turned(q_bs)
+    begin = Starter(settings, sources, imu, broken).begin(first, last)
+    notes += begin.notes
+    figures.update(begin.figures)
+    if begin.bias is not None:
+        imu = imu.less_bias(begin.bias)
+    if settings.duration_s:
+        stop_ns = imu.t_ns[begin.index] + round(settings.duration_s * 1e9)
+        last = min(last, int(np.searchsorted(imu.t_ns, stop_ns, side='right')))
+    run = _Run(settings, sources, imu, step_ns, notes, progress)
+    states = run.segments(begin, broken, last, Starter(settings, sources, imu, broken))
+    if not states:
+        raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
+                         f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or an '
+                         'earlier start')
+    references = [] if sources.reference is None else [sources.reference]
+    if sources.odometry is not None:
+        lat, lon, height, _, q_nb = begin.state
+        laid = sources.odometry.laid_on(int(imu.t_ns[begin.index]), lat, lon, height, q_nb)
+        if laid is None:
+            notes.append(f'{sources.odometry.name} is not there at the start: not compared')
+        else:
+            references.append(laid)
+    pairs = [(r, compare(states, r)) for r in references]
+    pairs = [(r, c) for r, c in pairs if c is not None]
+    return Navigation(states, [r for r, _ in pairs], [c for _, c in pairs], notes, figures)
+
+
+def _span(settings, imu):
+    """Return the index of the first sample to use and the count of all."""
+    first = int(np.searchsorted(imu.t_ns, imu.t_ns[0] + round(settings.start_s * 1e9)))
+    if len(imu) - first < FEWEST:
+        raise ValueError(f'start_s is {settings.start_s:g} s and the IMU has '
+                         f'{len(imu)} samples in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.6g} s; '
+                         f'expected at least {FEWEST} samples behind the start')
+    return first, len(imu)
+
+
+def _mounting(settings, sources, imu, first, notes):
+    """Return q_bs and note where it comes from."""
+    wanted = settings.mounting
+    roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
+    if wanted.source == 'level':
+        still = alignment.find_standstill(imu[first:], settings.alignment)
+        notes.append('mounting: levelled by the specific force of the standstill')
+        return mounting.levelled(still.force, yaw)
+    if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):
+        base, frame = wanted.base_frame, sources.frame
+        q_bs = mounting.chain(sources.transforms, base, frame) if frame != base else None
+        if q_bs is not None:
+            notes.append(f'mounting: /tf_static from {base} to {frame}')
+            return q_bs
+        if wanted.source == 'tf' and frame != base:
+            raise ValueError(f'{sources.name} has no /tf_static; expected mounting.source given '
+                             f'with mounting.rpy_deg, or level, for frame {frame!r}')
+    text = ', '.join(f'{a:g}' for a in wanted.rpy_deg)
+    notes.append(f'mounting: roll, pitch, yaw {text} deg as given')
+    return angles.from_rpy(roll, pitch, yaw)
+
+
+class _Run:
+    """Steps through the samples, from gap to gap."""
+
+    def __init__(self, settings, sources, imu, step_ns, notes, progress):
+        self._s, self._imu, self._step_ns, self._notes = settings, imu, step_ns, notes
+        self._progress = progress
+        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._damped = settings.vertical.channel == 'damped'
+        self._heights = np.full(len(imu), np.nan)
+        if self._damped:
+            track = None if sources.reference is None else sources.reference.position
+            if track is None:
+                raise ValueError('vertical.channel is damped and no reference has a height; '
+                                 'expected vertical.channel free')
+            self._heights = track.at(imu.t_ns)[:, 2]
+
+    def segments(self, begin, broken, last, starter):
+        """Return the NavStates of each segment, and note what was done at each gap."""
+        states, bridged = [], 0
+        while True:
+            cut = broken[(broken >= begin.index) & (broken < last - 1)]
+            bridging = self._s.on_gap == 'bridge'
+            end = last if bridging or not len(cut) else int(cut[0]) + 1
+            part, whole = self._segment(begin, end, set(cut.tolist()) if bridging else ())
+            if len(part.t_ns) >= FEWEST:
+                states.append(part)
+            bridged += len(cut) if bridging else 0
+            if end == last or not whole:
+                break
+            a, b = self._imu.t_ns[end - 1], self._imu.t_ns[end]
+            gap = f'gap of {(b - a) * 1e-9:.6g} s from {seconds(a)}'
+            if self._s.on_gap == 'stop':
+                self._notes.append(f'{gap}: the solution ends there (on_gap stop)')
+                break
+            try:
+                begin = starter.begin(end, last, again=True)
+            except ValueError as error:
+                self._notes.append(f'{gap}: no restart: {error}')
+                break
+            self._notes.append(f'{gap}: restarted')
+            self._notes += begin.notes
+        if bridged:
+            self._notes.append(f'{bridged} gaps bridged by straight lines of rate and force')
+        return states
+
+    def _segment(self, begin, end, bridges):
+        """Return the NavStates from a Beginning to end (not included); whether it got there."""
+        imu, k = self._imu, begin.index
+        rows = zip(imu.t_ns[k:end].tolist(), imu.omega[k:end].tolist(), imu.f[k:end].tolist(),
+                   self._heights[k:end].tolist())
+        t_ns, omega, f, held = next(rows)
+        held = begin.state[2] if math.isnan(held) else held
+        nav = FreeNavigation(
+            self._s.input, self._spin, t_ns, omega, f, begin.state,
+            self._s.vertical.time_constant_s if self._damped else None)
+        stamps, solutions, whole = [t_ns], [nav.solution()], True
+        for j, (t_ns, omega, f, height) in enumerate(rows, k + 1):
+            # without a newer height of the reference the last one stands
+            held = held if math.isnan(height) else height
+            if j - 1 in bridges:
+                nav.bridge(t_ns, omega, f, self._step_ns, held)
+            else:
+                nav.step(t_ns, omega, f, held)
+            solution = nav.solution()
+            if runs_away(solution):
+                self._notes.append(f'the solution runs away at {seconds(t_ns)} and ends there: '
+                                   'the initial values or the units of the IMU cannot be right')
+                whole = False
+                break
+            stamps.append(t_ns)
+            solutions.append(solution)
+            if self._progress is not None and j % 1000 == 0:
+                self._progress((j - k) / (len(imu) - k))
+        lat, lon, height, v_n, q_nb = map(np.array, zip(*solutions))
+        return NavStates(np.array(stamps, dtype=np.int64), lat, lon, height, v_n, q_nb), whole

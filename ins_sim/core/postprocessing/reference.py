@@ -1,0 +1,144 @@
+"""What a solution is compared with: position, velocity and attitude, each at its own stamps."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.navigation.errors import position_error
+
+# A value is drawn between two stamps no further apart than this.
+LONGEST_STEP_S = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Values (n, k) at rising stamps t_ns (n,) int64."""
+
+    t_ns: np.ndarray
+    values: np.ndarray
+
+    def at(self, t_ns):
+        """
+        Return the values at stamps (m,), drawn straight between neighbours, (m, k).
+
+        NaN before the first and behind the last stamp, and where the neighbours are more than
+        LONGEST_STEP_S apart.
+        """
+        t_ns = np.asarray(t_ns, dtype=np.int64)
+        after = np.clip(np.searchsorted(self.t_ns, t_ns), 1, max(1, len(self.t_ns) - 1))
+        if len(self.t_ns) < 2:
+            return np.where((t_ns == self.t_ns[0])[:, None], self.values[:1], np.nan)
+        step = self.t_ns[after] - self.t_ns[after - 1]
+        part = ((t_ns - self.t_ns[after - 1]) / step)[:, None]
+        value = (1.0 - part) * self.values[after - 1] + part * self.values[after]
+        held = (part[:, 0] >= 0.0) & (part[:, 0] <= 1.0) & (step <= LONGEST_STEP_S * 1e9)
+        # a stamp that is there is exact whatever the neighbours
+        held |= (part[:, 0] == 0.0) | (part[:, 0] == 1.0)
+        return np.where(held[:, None], value, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """
+    A reference in n.
+
+    name; position: Track of lat, lon (rad, continuous), height (m); velocity: Track of v_n, m/s;
+    attitude: Track of q_nb, its signs continuous; each may be None.
+    """
+
+    name: str
+    position: Track | None = None
+    velocity: Track | None = None
+    attitude: Track | None = None
+
+    def velocity_at(self, t_ns):
+        """Return v_n at stamps, (m, 3), NaN where unknown."""
+        if self.velocity is None:
+            return np.full((len(t_ns), 3), np.nan)
+        return self.velocity.at(t_ns)
+
+    def attitude_at(self, t_ns):
+        """Return q_nb at one stamp as a tuple, or None."""
+        if self.attitude is None:
+            return None
+        q = self.attitude.at([t_ns])[0]
+        return None if np.isnan(q).any() else tuple((q / np.linalg.norm(q)).tolist())
+
+    def displacements(self):
+        """
+        Return the way from stamp to stamp: t_ns (m,) the middles, East and North (m, 2), m.
+
+        From the velocity where there is one, else from the position; None where there is
+        neither.
+        """
+        if self.velocity is not None and len(self.velocity.t_ns) > 1:
+            t_ns, v = self.velocity.t_ns, self.velocity.values[:, :2]
+            dt = np.diff(t_ns)[:, None] * 1e-9
+            way = 0.5 * dt * (v[1:] + v[:-1])
+        elif self.position is not None and len(self.position.t_ns) > 1:
+            t_ns, p = self.position.t_ns, self.position.values
+            way = np.array([position_error(*b, *a)[:2] for a, b in zip(p.tolist(),
+                                                                       p[1:].tolist())])
+        else:
+            return None
+        return (t_ns[1:] + t_ns[:-1]) // 2, way
+
+
+@dataclass(frozen=True, eq=False)
+class Odometry:
+    """
+    Poses in a frame of unknown place and heading, whose z is up.
+
+    name, frame; t_ns (n,); r (n, 3) m; q (n, 4) from b to the frame, its signs continuous; v_b
+    (n, 3) m/s in b.
+    """
+
+    name: str
+    frame: str
+    t_ns: np.ndarray
+    r: np.ndarray
+    q: np.ndarray
+    v_b: np.ndarray
+
+    def velocity_b(self):
+        """Return the Track of v_b."""
+        return Track(self.t_ns, self.v_b)
+
+    def as_enu(self):
+        """Return the Reference without position whose frame is taken for East, North, Up."""
+        v = quaternion.rotate(self.q.T, self.v_b.T)
+        return Reference(self.name, velocity=Track(self.t_ns, np.stack(v, axis=-1)),
+                         attitude=Track(self.t_ns, self.q))
+
+    def laid_on(self, t_ns, lat, lon, height, q_nb):
+        """
+        Return the Reference with place and heading of the solution at t_ns; None if not there.
+
+        The frame is turned about the vertical by the difference of the headings, and its plane
+        is tangent there: to the side of it by d it is d^2 / 2R too high.
+        """
+        own = self.as_enu().attitude_at(t_ns)
+        if own is None:
+            return None
+        origin = Track(self.t_ns, self.r).at([t_ns])[0]
+        headings = to_compass(np.array([own, q_nb]))[2]
+        turn = quaternion.exponential((0.0, 0.0, float(headings[0] - headings[1])))
+        r = quaternion.rotate(turn, (self.r - origin).T)
+        r_n, r_e = ellipsoid.radii(math.sin(lat))
+        position = (lat + r[1] / (r_n + height),
+                    lon + r[0] / ((r_e + height) * math.cos(lat)), height + r[2])
+        q = quaternion.multiply(turn, tuple(self.q.T))
+        v = quaternion.rotate(q, self.v_b.T)
+        return Reference(f'{self.name} laid on the start',
+                         *(Track(self.t_ns, np.stack(x, axis=-1)) for x in (position, v, q)))
+
+
+def rising(t_ns, *arrays):
+    """Return stamps and arrays in the order of the stamps, repeated and NaN ones left out."""
+    good = np.all([np.isfinite(a).all(axis=1) for a in arrays], axis=0)
+    t_ns, first = np.unique(t_ns[good], return_index=True)
+    return t_ns, *(a[good][first] for a in arrays)

@@ -1,0 +1,158 @@
+"""The drift that late channels cause, by the linear theory (docs/theory.md, "Prediction")."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth.rates import rate_of_n
+from ins_sim.core.sensors.tuned_gyro.instrument import make_pair
+
+SUBSAMPLES = 8
+STEP_S = 0.1
+PER_PERIOD = 4096
+
+
+def _nanoseconds(t_s):
+    return np.round(t_s * 1e9).astype(np.int64)
+
+
+def _columns(vectors):
+    return tuple(np.moveaxis(vectors, -1, 0))
+
+
+def _to_n(truth, vectors_b):
+    return np.stack(quaternion.rotate(_columns(truth.q_nb), _columns(vectors_b)), axis=-1)
+
+
+def drift_density(truth, omega_in_n, tau):
+    """
+    Return R (w x T w) and R T w (n, 3): integrand and boundary term of the attitude error.
+
+    tau (3,): delays of the gyro channels x, y, z, s.  The reading errs by -T w', so that the
+    attitude error grows by nu = -R T w' = -d/dt(R T w) + R (w_nb x T w).  The rate w under T is
+    that of b in i; the one that turns R is that of b in n (spec/delays section 5 neglects the
+    difference, the rotation of the Earth).
+    """
+    omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
+    late = truth.omega_ib_b * np.asarray(tau)
+    density = np.stack(quaternion.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)),
+                       -1)
+    return _to_n(truth, density), _to_n(truth, late)
+
+
+def mean_drift(motion, tau, earth_rotation, start_s, span_s):
+    """
+    Return the mean drift (3,) in East, North, Up, rad/s, to first order in the delays tau (3,), s.
+
+    Over one period where the motion has one (the trapezium rule then is spectrally accurate),
+    else over the span.
+    """
+    length = motion.period_s or span_s
+    count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
+    truth = motion.at(_nanoseconds(start_s + length * np.arange(count) / count))
+    omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, earth_rotation)
+    density, _ = drift_density(truth, omega_in, tau)
+    return density.mean(axis=0)
+
+
+def late_attitude_error(truth, omega_in_n, tau, step_s):
+    """
+    Return beta (n, 3), rad: the boundary term and the running integral of ``drift_density``.
+
+    truth (n,): at steps of step_s; tau (3,): delays, s.
+    """
+    density, late = drift_density(truth, omega_in_n, tau)
+    running = np.cumsum(0.5 * step_s * (density[1:] + density[:-1]), axis=0)
+    return late[0] - late + np.concatenate([np.zeros((1, 3)), running])
+
+
+class NoPrediction(ValueError):
+    """The linear theory does not hold for the settings."""
+
+
+def exact_pair(gyro, step_s):
+    """Return the GyroPair of settings.Gyro by the exact method; NoPrediction if it is unstable."""
+    try:
+        return make_pair(replace(gyro, dtg=replace(gyro.dtg, method='exact',
+                                                   on_unstable='refuse')), step_s)
+    except ValueError as error:
+        raise NoPrediction(f'no prediction: {error}') from None
+
+
+def pair_attitude_error(motion, gyro, tau, t):
+    """
+    Return beta (n, 3), rad, of two tuned gyros: the integral of R (reading - rate).
+
+    gyro: settings.Gyro; tau (3,): delays, s; t (n,): motion times, s.  The rotors are run over the
+    rates of the motion; the mean rate of a step is Simpson's.
+    """
+    step_s = (t[-1] - t[0]) / (len(t) - 1)
+    halves = t[0] + 0.5 * step_s * np.arange(2 * len(t) - 1)
+    late = np.stack([motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
+                     for i, d in enumerate(tau)], axis=-1)
+    pair = exact_pair(gyro, step_s)
+    pair.settle(late[0])
+    reading, _ = pair.advance(np.stack((late[:-1:2], late[1::2], late[2::2]), axis=1))
+    truth = motion.at(_nanoseconds(halves))
+    w = truth.omega_ib_b
+    growth = _to_n(truth[1::2], reading - (w[:-1:2] + 4.0 * w[1::2] + w[2::2]) / 6.0)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(step_s * growth, axis=0)])
+
+
+def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
+    """
+    Return the mean drift (3,), rad/s, of a periodic motion through linear channels.
+
+    responses: three functions, the complex frequency response H_i of an angular frequency array,
+    rad/s; or one function that returns the response (n, 3, 3) of channels that see each other's
+    axes (``sensors.tuned_gyro.pair``).  <nu> = sum_i sum_k Re(r_ik conj[sum_j (H_ij(k w0) - 1_ij)
+    w_jk]), r_i column i of R (docs/theory.md, "Prediction").
+
+    Raises ValueError for a motion without a period.
+    """
+    if motion.period_s is None:
+        raise ValueError('the drift through channels is the sum over a Fourier series; expected '
+                         'a periodic motion')
+    t = start_s + motion.period_s * np.arange(count) / count
+    truth = motion.at(_nanoseconds(t))
+    harmonic = 2.0 * np.pi / motion.period_s * np.fft.fftfreq(count, 1.0 / count)
+    w = np.fft.fft(truth.omega_ib_b, axis=0) / count
+    if callable(responses):
+        error = ((responses(harmonic) - np.eye(3)) * w[:, None, :]).sum(axis=-1)
+    else:
+        error = np.stack([(h(harmonic) - 1.0) * w[:, i] for i, h in enumerate(responses)], axis=-1)
+    drift = np.zeros(3)
+    for i in range(3):
+        unit = np.zeros((count, 3))
+        unit[:, i] = 1.0
+        r = np.fft.fft(_to_n(truth, unit), axis=0) / count
+        drift += (r * np.conj(error[:, i])[:, None]).sum(axis=0).real
+    return drift
+
+
+def delay_response(tau):
+    """Return the frequency response exp(-j w tau) of a delay, s."""
+    return lambda omega: np.exp(-1j * omega * tau)
+
+
+def two_axis_resonances(motion, tau):
+    """
+    Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
+
+    (19) of the paper: psi' = 2 gamma', and the one it misses: psi' = -2 gamma' (spec/delays
+    section 4).  tau (3,): delays of x, y, z, s; the paper's tau1 is y, tau3 is z.
+    """
+    if motion.kind != 'two_axis':
+        return []
+    theta, psi, gamma = (math.radians(a) for a in (motion.theta_deg, motion.psi_deg,
+                                                   motion.gamma_deg))
+    found = []
+    for sign, name in ((1.0, "psi' = 2 gamma'"), (-1.0, "psi' = -2 gamma'")):
+        rate = sign * 2.0 * motion.two_axis.gamma_rate_rad_s
+        phase = psi - sign * 2.0 * gamma
+        size = sign * 0.125 * rate * rate * (tau[1] - tau[2]) * math.cos(theta) * (
+            1.0 - sign * math.sin(theta))
+        found.append((name, rate, size * np.array((math.cos(phase), math.sin(phase), 0.0))))
+    return found

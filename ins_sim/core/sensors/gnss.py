@@ -1,0 +1,176 @@
+"""
+GNSS: position and velocity of the antenna at whole periods of motion time, with their errors.
+
+Every error is a function of seed and the index of the fix, its motion time over the period, so
+that nothing depends on what was asked before.
+"""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.rates import rate_on_earth
+from ins_sim.core.numerics.instants import period_ns, seconds
+from ins_sim.core.streams.faults import check_finite, check_interval, check_unit, StreamFault
+from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
+
+
+class Gnss:
+    """
+    The GNSS receiver of GnssSettings as a consumer of streamed truth: samples in, fixes out.
+
+    Raises ValueError where the settings do not go together.
+    """
+
+    def __init__(self, settings, run=0):
+        self._settings, self._run = settings, run
+        self._dt_ns = period_ns(settings.rate_hz)
+        self.period_ns = period_ns(settings.gnss.rate_hz)
+        if self.period_ns % self._dt_ns:
+            raise ValueError(f'gnss.rate_hz is {settings.gnss.rate_hz:g} Hz, a period of '
+                             f'{self.period_ns * 1e-9:.9g} s; expected a multiple of the period '
+                             f'of rate_hz, {self._dt_ns * 1e-9:.9g} s: a fix needs a sample of '
+                             'the truth')
+        self.latency_ns = round(1e6 * settings.gnss.latency_ms)
+        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._outages = _spans('outages', settings.outages.start_s, settings.outages.end_s)
+        jump = settings.jump
+        self._jumps = _spans('jump', (jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
+        errors, reported = settings.errors, settings.reported
+        self._position_sigma = tuple(
+            math.sqrt(noise * noise + drift * drift) if given < 0.0 else given
+            for noise, drift, given in zip(errors.position_noise_m, errors.position_drift_m,
+                                           reported.position_sigma_m))
+        self._velocity_sigma = tuple(noise if given < 0.0 else given for noise, given in zip(
+            errors.velocity_noise_m_s, reported.velocity_sigma_m_s))
+        self._errors = None
+        self.forced = False
+        self.reset()
+
+    def reset(self):
+        """Forget the stream; the next sample is the first."""
+        self._last_ns = None
+        self._alone = False
+
+    def force_outage(self, forced):
+        """Let no fix be one from now on, or let the schedule decide again."""
+        self.forced = forced
+
+    def push(self, t_ns, truth):
+        """
+        Take one truth sample (motion time) and return the fixes of it, one or none.
+
+        truth: lat, lon (rad), height (m), v_n (m/s), q_nb and the rate of b relative to the Earth,
+        resolved in b (rad/s).  Raise StreamFault on NaN, repeated or backwards stamps, gaps and a
+        step over the instant of a fix; the first sample may be repeated, and is answered again.
+        """
+        lat, lon, height, v_n, q_nb, rate = truth
+        check_finite('truth', t_ns, (lat, lon, height), v_n, q_nb, rate)
+        check_unit('truth', t_ns, q_nb)
+        last_ns = self._last_ns
+        first = last_ns is None or (self._alone and t_ns == last_ns)
+        if not first:
+            # denser truth than expected does no harm
+            if not 0 < t_ns - last_ns <= self._dt_ns:
+                check_interval('truth', t_ns, last_ns, self._dt_ns, 0.2)
+            due_ns = t_ns // self.period_ns * self.period_ns
+            if last_ns < due_ns < t_ns:
+                raise StreamFault(f'truth steps from {seconds(last_ns)} to {seconds(t_ns)} over '
+                                  f'{seconds(due_ns)}; expected a sample there, the instant of '
+                                  'a fix', restart=True)
+        self._last_ns, self._alone = t_ns, first
+        return [] if t_ns % self.period_ns else [self.fix(t_ns, truth)]
+
+    def fixes(self, truth):
+        """
+        Return the fixes of a Truth record, or of a piece of one, as push gives them one by one.
+
+        Raises ValueError for an instant of a fix without a sample, and for NaN.
+        """
+        index, rest = np.divmod(truth.t_ns, self.period_ns)
+        over = np.flatnonzero((np.diff(index) > 0) & ((rest[1:] > 0) | (np.diff(index) > 1)))
+        if len(over):
+            raise ValueError(f'truth steps from {seconds(truth.t_ns[over[0]])} to '
+                             f'{seconds(truth.t_ns[over[0] + 1])} over the instant of a fix; '
+                             'expected a sample there')
+        at = truth[np.flatnonzero(rest == 0)]
+        found = []
+        for t_ns, lat, lon, height, v_n, q_nb, omega in zip(
+                at.t_ns.tolist(), at.lat.tolist(), at.lon.tolist(), at.height.tolist(),
+                at.v_n.tolist(), at.q_nb.tolist(), at.omega_ib_b.tolist()):
+            rate = rate_on_earth(lat, q_nb, omega, self._spin)
+            check_finite('truth', t_ns, (lat, lon, height), v_n, q_nb, rate)
+            found.append(self.fix(t_ns, (lat, lon, height, v_n, q_nb, rate)))
+        return found
+
+    def fix(self, t_ns, truth):
+        """
+        Return the fix at t_ns, the instant of one; truth as push takes it.
+
+        The antenna of the lever arm l is C l from the place of b and moves by C (omega x l)
+        relative to it; velocity and errors are resolved in n at the place of b.
+        """
+        arrival_ns = t_ns + self.latency_ns
+        if self.forced or _inside(t_ns, self._outages):
+            return no_gnss_fix(t_ns, OUTAGE, arrival_ns)
+        lat, lon, height, v_n, q_nb, rate = truth
+        if self._errors is None:
+            self._errors = _Errors(self._settings, self._run, self.period_ns)
+        off, slip = self._errors.at(t_ns // self.period_ns)
+        if _inside(t_ns, self._jumps):
+            off = _sum(off, self._settings.jump.offset_m)
+        lever = self._settings.lever_arm_m
+        off = _sum(off, quaternion.rotate(q_nb, lever))
+        v_n = _sum(_sum(v_n, quaternion.rotate(q_nb, quaternion.cross(rate, lever))), slip)
+        lat, lon, height = ellipsoid.displaced(lat, lon, height, off)
+        return GnssFix(t_ns, lat, math.remainder(lon, 2.0 * math.pi), height, v_n,
+                       self._position_sigma, self._velocity_sigma, arrival_ns=arrival_ns)
+
+
+class _Errors:
+    """Errors of position (m) and velocity (m/s) by the index of the fix."""
+
+    def __init__(self, settings, run, dt_ns):
+        # with the first fix: NumPy's generators cost the start of a node nothing
+        from ins_sim.core.numerics.noise import BLOCK, Processes, stream
+        errors, seed = settings.errors, settings.seed
+        self._sigmas = errors.position_noise_m, errors.velocity_noise_m_s
+        self._streams = [stream(seed, run, f'gnss.{name}', 3) for name in ('position', 'velocity')]
+        self._block, self._drifts_of = BLOCK, None
+        self._processes = None
+        if any(errors.position_drift_m):
+            self._processes = Processes(seed, run, 'gnss.position_drift', errors.position_drift_m,
+                                        (errors.position_drift_time_s,) * 3, dt_ns * 1e-9)
+
+    def at(self, index):
+        """Return both errors as tuples by East, North, Up."""
+        position, velocity = ([s * n for s, n in zip(sigma, stream.normal(index))]
+                              for sigma, stream in zip(self._sigmas, self._streams))
+        if self._processes is not None:
+            block, row = divmod(index, self._block)
+            if block != self._drifts_of:
+                self._drifts, self._drifts_of = self._processes.block(block).tolist(), block
+            position = _sum(position, self._drifts[row])
+        return position, velocity
+
+
+def _sum(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def _inside(t_ns, spans):
+    return any(start <= t_ns < end for start, end in spans)
+
+
+def _spans(name, starts, ends):
+    """Return pairs of ns; raise ValueError where the lists do not go together."""
+    if len(starts) != len(ends):
+        raise ValueError(f'{name}.start_s has {len(starts)} entries and {name}.end_s {len(ends)}; '
+                         'expected as many')
+    for start, end in zip(starts, ends):
+        if end <= start:
+            raise ValueError(f'{name}.end_s is {end:g} s with {name}.start_s {start:g} s; '
+                             'expected a later end')
+    return tuple((round(1e9 * start), round(1e9 * end)) for start, end in zip(starts, ends))

@@ -1,0 +1,1 @@
+"""The IMU: ideal increments of late channels, errors of the triads, sampling."""

@@ -1,0 +1,194 @@
+"""
+The ideal inertial measurement unit whose channels are late.
+
+See docs/theory.md, "Delayed channels".
+"""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.settings.imu import delays_ns
+
+# Gauss-Legendre, three points on [0, 1]
+NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
+WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
+
+
+def rotation_increment(q_start, q_end, dq_earth):
+    """
+    Return the rotation vector from the inertial attitude at the start to that at the end, rad.
+
+    q_start, q_end: q_mb; dq_earth: rotation of m in i over the interval.
+    """
+    return quaternion.logarithm(quaternion.multiply(quaternion.conjugate(q_start),
+                                                    quaternion.multiply(dq_earth, q_end)))
+
+
+def velocity_increment(q_start, forces_m, node_rotations):
+    """
+    Return Q_ib(start)^-1 times the mean of Q_ib f_b over the interval, m/s^2.
+
+    forces_m: specific force in m at the three Gauss nodes; node_rotations: rotations of m in i
+    from the start to the nodes.
+    """
+    (w1, w2, w3), (f1, f2, f3), (r1, r2, r3) = WEIGHTS, forces_m, node_rotations
+    a, b, c = quaternion.rotate(r1, f1), quaternion.rotate(r2, f2), quaternion.rotate(r3, f3)
+    mean = (w1 * a[0] + w2 * b[0] + w3 * c[0], w1 * a[1] + w2 * b[1] + w3 * c[1],
+            w1 * a[2] + w2 * b[2] + w3 * c[2])
+    return quaternion.rotate_back(q_start, mean)
+
+
+class Triads:
+    """
+    The channels of both triads: which distinct delay each has, and what one step reads.
+
+    gyro_delays, accel_delays: the distinct delays, ns; the inputs of a step come in their order.
+    """
+
+    def __init__(self, settings):
+        self.dt_ns = period_ns(settings.rate_hz)
+        self.integrated = settings.output == 'integrated'
+        gyro, accel = delays_ns(settings.gyro.delay_us), delays_ns(settings.accelerometer.delay_us)
+        self.gyro_delays, self.accel_delays = tuple(sorted(set(gyro))), tuple(sorted(set(accel)))
+        # attitudes are needed at both kinds of delay; each distinct one is evaluated once
+        self.attitude_delays = tuple(sorted(set(gyro) | set(accel)))
+        self._gyro = tuple(self.gyro_delays.index(d) for d in gyro)
+        self._accel = tuple(self.accel_delays.index(d) for d in accel)
+        self._gyro_at = tuple(self.attitude_delays.index(d) for d in self.gyro_delays)
+        self._accel_at = tuple(self.attitude_delays.index(d) for d in self.accel_delays)
+        dt = self.dt_ns * 1e-9
+        self.pair, self.rate_nodes = None, NODES
+        if settings.gyro.model == 'dtg':
+            from ..tuned_gyro.instrument import PairInstrument
+            self.pair = PairInstrument(settings)
+            self.rate_nodes = self.pair.nodes
+        self.begin()
+        self._per_dt = 1.0 / dt
+        self.frame = MapFrame(settings.datum, settings.earth.rotation)
+        turn = self.frame.omega_ie_m
+        self._dq_earth = quaternion.exponential(tuple(w * dt for w in turn))
+        self._node_rotations = tuple(quaternion.exponential(tuple(w * dt * s for w in turn))
+                                     for s in NODES)
+
+    def begin(self):
+        """Let the rotors of tuned gyros, if any, be settled at the start of the next step."""
+        self._settled = False
+
+    def rotated(self, q_start, q_end, forces_m):
+        """
+        Return omega, f, None of one step of the output ``rotation_vector``.
+
+        q_start, q_end: q_mb at each attitude delay; forces_m: for each accelerometer delay, the
+        specific force in m at the three Gauss nodes.
+        """
+        phi = [rotation_increment(q_start[k], q_end[k], self._dq_earth) for k in self._gyro_at]
+        u = [velocity_increment(q_start[k], f, self._node_rotations)
+             for k, f in zip(self._accel_at, forces_m)]
+        (g0, g1, g2), (a0, a1, a2), n = self._gyro, self._accel, self._per_dt
+        return ((phi[g0][0] * n, phi[g1][1] * n, phi[g2][2] * n),
+                (u[a0][0], u[a1][1], u[a2][2]), None)
+
+    def instant(self, t_ns, omega, f):
+        """Return omega, f, parity or None of rate and specific force at an instant."""
+        if self.pair is None:
+            return omega, f, None
+        rate, parity = self.pair.first(t_ns, omega, f)
+        return rate, f, parity
+
+    def integrals(self, t_ns, rates, forces_b):
+        """
+        Return omega, f, parity or None of one step, ending at t_ns, of the output ``integrated``.
+
+        rates, forces_b: for each gyro and each accelerometer delay, the vector in b at
+        ``rate_nodes`` and at the Gauss nodes.
+        """
+        force = self._pick_means(forces_b, self._accel)
+        if self.pair is None:
+            return self._pick_means(rates, self._gyro), force, None
+        # an axis is late at the input of the rotors, which are linear
+        x, y, z = self._gyro
+        late = [(a[0], b[1], c[2]) for a, b, c in zip(rates[x], rates[y], rates[z])]
+        if not self._settled:
+            self.pair.settle(late[0])
+            self._settled = True
+        omega, parity = self.pair.step(t_ns, late, force)
+        return omega, force, parity
+
+    @staticmethod
+    def _pick_means(nodes, picks):
+        w1, w2, w3 = WEIGHTS
+        return tuple(w1 * nodes[k][0][i] + w2 * nodes[k][1][i] + w3 * nodes[k][2][i]
+                     for i, k in enumerate(picks))
+
+
+class MotionImu:
+    """
+    The IMU fed by a motion that can be evaluated anywhere (closed form or recording).
+
+    settings: ImuSensorSettings; motion: has at(t_ns) -> Truth; first_ns: motion time of sample 0;
+    triads: of the same settings, to be used instead of new ones.
+    """
+
+    def __init__(self, settings, motion, first_ns, triads=None):
+        self._triads = Triads(settings) if triads is None else triads
+        self._triads.begin()
+        self._motion = motion
+        self._first_ns = first_ns
+        self._frozen = settings.history == 'frozen'
+        self._q_start = None
+        self.next_ns = first_ns
+        self.dt_ns = self._triads.dt_ns
+
+    def advance(self, count):
+        """Return the next count samples as ImuSamples; any cutting gives the same bits."""
+        triads = self._triads
+        t_ns = self.next_ns + triads.dt_ns * np.arange(count, dtype=np.int64)
+        self.next_ns += triads.dt_ns * count
+        if triads.integrated:
+            rates = self._at_nodes(t_ns, triads.gyro_delays, self._rates, triads.rate_nodes)
+            forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_b)
+            readings = []
+            for t, w, f in zip(t_ns.tolist(), rates, forces):
+                readings.append(triads.integrals(t, w, f))
+                if t == self._first_ns:
+                    # the run begins here, as on a stream, which knows nothing of before
+                    triads.begin()
+        else:
+            if self._q_start is None:
+                before = t_ns[:1] - triads.dt_ns
+                self._q_start = [self._attitudes(before - d)[0] for d in triads.attitude_delays]
+            ends = zip(*(self._attitudes(t_ns - d) for d in triads.attitude_delays))
+            forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_m)
+            readings = []
+            for q_end, f in zip(ends, forces):
+                readings.append(triads.rotated(self._q_start, q_end, f))
+                self._q_start = q_end
+        return ImuSamples.of_readings(t_ns, readings)
+
+    def _truth(self, t_ns):
+        return self._motion.at(np.maximum(t_ns, self._first_ns) if self._frozen else t_ns)
+
+    def _attitudes(self, t_ns):
+        return self._triads.frame.attitude(self._truth(t_ns)).tolist()
+
+    def _forces_m(self, t_ns):
+        truth = self._truth(t_ns)
+        q_mb = np.moveaxis(self._triads.frame.attitude(truth), -1, 0)
+        return np.stack(quaternion.rotate(q_mb, np.moveaxis(truth.f_ib_b, -1, 0)), -1).tolist()
+
+    def _rates(self, t_ns):
+        return self._truth(t_ns).omega_ib_b.tolist()
+
+    def _forces_b(self, t_ns):
+        return self._truth(t_ns).f_ib_b.tolist()
+
+    def _at_nodes(self, t_ns, delays, values, nodes=NODES):
+        """Yield for each step, for each delay, the values at the nodes of [0, 1]."""
+        dt_ns = self._triads.dt_ns
+        offsets = [round(dt_ns * (s - 1.0)) for s in nodes]
+        return zip(*(zip(*(values(t_ns + (o - d)) for o in offsets)) for d in delays))

@@ -1,0 +1,59 @@
+"""How samples leave the IMU: latency, jitter of the stamps and drop-outs."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+
+from ins_sim.settings.catalogue import check
+from ins_sim.settings.instrument_errors import Sampling
+
+# Stamps move by less than half a period, five standard deviations, so that they keep their order.
+SIGMAS = 5.0
+
+
+class Sampler:
+    """
+    The stamps of the samples that get through.
+
+    settings: Sampling; dt_ns: sampling period, ns.  A function of (seed, run, name, index): a
+    drop-out or a jitter does not depend on what was asked before.  Raises ValueError where the
+    settings do not fit.
+    """
+
+    def __init__(self, settings, seed, run, name, dt_ns):
+        for f in fields(Sampling):
+            check(f'{name}.{f.name}', getattr(settings, f.name), f)
+        most_us = dt_ns * 1e-3 / (2.0 * SIGMAS)
+        if settings.jitter_us > most_us:
+            raise ValueError(f'{name}.jitter_us is {settings.jitter_us:g} us; expected at most '
+                             f'{most_us:g} us, a tenth of the sampling period')
+        self._dt_ns = dt_ns
+        self._latency_ns = round(1000.0 * settings.latency_us)
+        self._jitter_ns = 1000.0 * settings.jitter_us
+        self._most_ns = (dt_ns - 1) // 2
+        self._lost = settings.drop_out_probability
+        self.perfect = not (self._latency_ns or self._jitter_ns or self._lost)
+        if not self.perfect:
+            # NumPy's generators cost the start of a node with perfect stamps nothing
+            from ins_sim.core.numerics.noise import stream
+            self._jitters = stream(seed, run, f'{name}.jitter')
+            self._drop_outs = stream(seed, run, f'{name}.drop_out')
+
+    def stamp(self, index, t_ns):
+        """Return the stamp of sample index, taken at t_ns, or None where it is lost."""
+        if self.perfect:
+            return t_ns
+        if self._lost and self._drop_outs.uniform(index) < self._lost:
+            return None
+        if self._jitter_ns:
+            shift = round(self._jitter_ns * self._jitters.normal(index))
+            t_ns += max(-self._most_ns, min(self._most_ns, shift))
+        return t_ns + self._latency_ns
+
+    def take(self, imu):
+        """Return the ImuSamples that get through, with their stamps."""
+        if self.perfect:
+            return imu
+        stamps = [self.stamp(t_ns // self._dt_ns, t_ns) for t_ns in imu.t_ns.tolist()]
+        kept = [k for k, stamp_ns in enumerate(stamps) if stamp_ns is not None]
+        return replace(imu[kept], t_ns=np.array([stamps[k] for k in kept], dtype=np.int64))

@@ -1,0 +1,141 @@
+"""The IMU as a consumer of streamed truth: samples in, samples out."""
+
+import math
+
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.streams.faults import check_finite, StreamFault
+from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
+from .ideal import MotionImu, NODES, Triads
+from .with_errors import ErringImu, with_errors
+
+BLOCK = 256
+
+
+def make_imu(settings, motion=None):
+    """
+    Return the IMU that ImuSensorSettings name; every kind has push(...) and reset().
+
+    motion: the motion to evaluate with source motion; not used with source stream.
+    """
+    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings, motion)
+    errors = with_errors(settings)
+    return imu if errors is None else ErringImu(imu, errors)
+
+
+class StreamImu:
+    """
+    The IMU that knows the motion only from the stream.
+
+    Its instants are t_first + j dt.  Sample 0 has no interval behind it: it carries the rate and
+    the specific force of the first instant.  A sample is sent when the truth covers it, so
+    negative delays make it late.
+    """
+
+    def __init__(self, settings):
+        self._frozen = settings.history == 'frozen'
+        self._triads = Triads(settings)
+        self.pair = self._triads.pair
+        self.reset()
+        dt_ns, delays = self._triads.dt_ns, self._triads.attitude_delays
+        self._node_ns = [round(dt_ns * (s - 1.0)) for s in NODES]
+        self._rate_node_ns = [round(dt_ns * (s - 1.0)) for s in self._triads.rate_nodes]
+        self._lead_ns = max(0, -min(delays))
+
+    def reset(self):
+        """Forget everything; the next sample is the first."""
+        triads = self._triads
+        triads.begin()
+        wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
+        delays = triads.attitude_delays
+        reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
+        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted)
+        self._next_ns = None
+        self._q_start = None
+
+    def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """
+        Take one truth sample (motion time) and return the readings it completes.
+
+        Return a list of (t_ns, omega, f, parity or None).  Raise StreamFault as TruthBuffer.push
+        does; the first sample may be repeated, and is answered again.
+        """
+        buffer = self._buffer
+        if not (buffer.count_is_one and t_ns == buffer.newest_ns):
+            buffer.push(t_ns, q_mb, omega_ib_b, f_ib_b)
+        if buffer.count_is_one:
+            self._next_ns = t_ns + self._triads.dt_ns
+            return [(t_ns, *self._triads.instant(t_ns, omega_ib_b, f_ib_b))]
+        readings = []
+        while self._next_ns + self._lead_ns <= t_ns:
+            readings.append((self._next_ns, *self._read(self._next_ns)))
+            self._next_ns += self._triads.dt_ns
+        return readings
+
+    def _read(self, t_ns):
+        triads, buffer = self._triads, self._buffer
+        if triads.integrated:
+            rates = self._nodes(t_ns, triads.gyro_delays, RATE, self._rate_node_ns)
+            return triads.integrals(t_ns, rates, self._nodes(t_ns, triads.accel_delays, FORCE_B,
+                                                             self._node_ns))
+        if self._q_start is None:
+            self._q_start = [buffer.attitude(t_ns - triads.dt_ns - d)
+                             for d in triads.attitude_delays]
+        q_end = [buffer.attitude(t_ns - d) for d in triads.attitude_delays]
+        forces = self._nodes(t_ns, triads.accel_delays, FORCE_M, self._node_ns)
+        reading = triads.rotated(self._q_start, q_end, forces)
+        self._q_start = q_end
+        return reading
+
+    def _nodes(self, t_ns, delays, field, offsets):
+        cubic = self._buffer.cubic
+        return [[cubic(t_ns + o - d, field) for o in offsets] for d in delays]
+
+
+class PacedImu:
+    """The IMU that evaluates the motion of its own parameters; the stream only paces it."""
+
+    def __init__(self, settings, motion):
+        self._settings = settings
+        self._motion = motion
+        self._triads = Triads(settings)
+        self.pair = self._triads.pair
+        self.reset()
+
+    def reset(self):
+        """Forget everything; the next stamp is the first instant."""
+        self._imu = None
+        self._ready = []
+
+    def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """Return the readings up to the stamp t_ns, as StreamImu.push does."""
+        check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
+        if self._imu is None:
+            self._imu = MotionImu(self._settings, self._motion, t_ns, self._triads)
+            self._first = []
+            self._first_ns = self._last_ns = t_ns
+        if t_ns < self._last_ns:
+            raise StreamFault(f'truth jumps back from {seconds(self._last_ns)} to '
+                              f'{seconds(t_ns)}; expected rising stamps', restart=True)
+        if t_ns == self._last_ns and self._first:
+            return self._first if t_ns == self._first_ns else []
+        self._last_ns = t_ns
+        readings = []
+        while (self._ready or self._compute()) and self._ready[-1][0] <= t_ns:
+            readings.append(self._ready.pop())
+        if not self._first:
+            self._first = readings
+        return readings
+
+    def _compute(self):
+        """Compute a block ahead, never past the end of the motion; return whether there is one."""
+        imu, end_s = self._imu, self._motion.end_s
+        left = BLOCK
+        if end_s != math.inf:
+            left = min(BLOCK, (round(end_s * 1e9) - imu.next_ns) // imu.dt_ns + 1)
+        if left <= 0:
+            return False
+        block = imu.advance(left)
+        parity = [None] * left if block.parity is None else block.parity.tolist()
+        self._ready = list(zip(block.t_ns.tolist(), map(tuple, block.omega.tolist()),
+                               map(tuple, block.f.tolist()), parity))[::-1]
+        return True

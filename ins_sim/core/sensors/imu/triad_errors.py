@@ -1,0 +1,238 @@
+"""The errors of a triad of gyros or accelerometers, sample by sample."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.noise import BLOCK, Processes, stream
+from .triad_model import temperature_off, triad_model
+
+ZERO = (0.0, 0.0, 0.0)
+# Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
+# variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
+FLICKER_TIMES = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
+FLICKER_SIGMA = math.sqrt(math.log(10.0) / math.pi)
+
+
+class TriadErrors:
+    """
+    What one triad makes of its inputs.
+
+    settings: GyroErrors or AccelerometerErrors; name: of the random streams and in messages;
+    dt_s: sampling period, s; temperature: settings Temperature, or None for the reference.
+
+    The random terms are functions of (seed, run, name, index).  What is carried from sample to
+    sample is ``state``: the last index, the lags and the remainders of the pulses.  At any other
+    than the next index the lags start settled and the remainders at zero.  Raises ValueError
+    where the settings do not fit.
+    """
+
+    def __init__(self, settings, seed, run, name, dt_s, temperature=None):
+        model = triad_model(settings, dt_s, name)
+        self._dt, self._per_dt = dt_s, 1.0 / dt_s
+        self._geometry = _geometry(model, seed, run, name)
+        self._response = _response(model, seed, run, name)
+        self._by_force = _if_any(model.g_linear, model.g_quadratic)
+        self._by_temperature = _if_any(model.temperature_bias, model.temperature_scale)
+        self._temperature = temperature
+        if temperature is None or _never_off(temperature):
+            self._by_temperature = None
+        self._lags = tuple(_lag(f, model.order, dt_s) for f in model.bandwidth_hz)
+        if not any(model.bandwidth_hz):
+            self._lags = None
+        self._noise = make_noise(model, seed, run, name, dt_s)
+        self._noise_of = None
+        self._rows = ()
+        self._range = tuple(s or math.inf for s in model.saturation)
+        if not any(model.saturation):
+            self._range = None
+        self._quantum = _if_any(model.quantum)
+        self.perfect = not any((self._geometry, self._response, self._by_force, self._lags,
+                                self._by_temperature, self._noise, self._range, self._quantum))
+        self.state = (None, None, ZERO)
+
+    def step(self, index, value, force, t_s):
+        """
+        Return the reading of sample index.
+
+        value: mean input over the sampling interval, rad/s or m/s^2; force: specific force,
+        m/s^2; both three floats by body axis.  t_s: motion time.
+        """
+        if self.perfect:
+            return value
+        last, lagged, carried = self.state
+        following = last is not None and index == last + 1
+        x, y, z = value
+        if self._geometry is not None:
+            a, b, c, d, e, f, g, h, i = self._geometry
+            x, y, z = a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+        x0, y0, z0 = x, y, z
+        if self._response is not None:
+            (sx, sy, sz), (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._response
+            x += x0 * (sx + x0 * (bx + x0 * cx)) + abs(x0) * ax
+            y += y0 * (sy + y0 * (by + y0 * cy)) + abs(y0) * ay
+            z += z0 * (sz + z0 * (bz + z0 * cz)) + abs(z0) * az
+        if self._by_force is not None:
+            (lx, ly, lz), (qx, qy, qz) = self._by_force
+            fx, fy, fz = force
+            x += fx * (lx + fx * qx)
+            y += fy * (ly + fy * qy)
+            z += fz * (lz + fz * qz)
+        if self._by_temperature is not None:
+            (bx, by, bz), (sx, sy, sz) = self._by_temperature
+            warm = temperature_off(self._temperature, t_s)
+            x += warm * (bx + x0 * sx)
+            y += warm * (by + y0 * sy)
+            z += warm * (bz + z0 * sz)
+        if self._lags is not None:
+            lx, ly, lz = lagged if following else ((x, 0.0), (y, 0.0), (z, 0.0))
+            mx, my, mz = self._lags
+            x, lx = _pass(mx, lx, x)
+            y, ly = _pass(my, ly, y)
+            z, lz = _pass(mz, lz, z)
+            lagged = lx, ly, lz
+        if self._noise is not None:
+            if index // BLOCK != self._noise_of:
+                self._noise_of = index // BLOCK
+                self._rows = self._noise(self._noise_of).tolist()
+            nx, ny, nz = self._rows[index % BLOCK]
+            x, y, z = x + nx, y + ny, z + nz
+        if self._range is not None:
+            rx, ry, rz = self._range
+            x = rx if x > rx else -rx if x < -rx else x
+            y = ry if y > ry else -ry if y < -ry else y
+            z = rz if z > rz else -rz if z < -rz else z
+        if self._quantum is not None:
+            (qx, qy, qz), = self._quantum
+            rx, ry, rz = carried if following else ZERO
+            dt, per_dt = self._dt, self._per_dt
+            if qx:
+                x, rx = _pulses(x * dt + rx, qx, per_dt)
+            if qy:
+                y, ry = _pulses(y * dt + ry, qy, per_dt)
+            if qz:
+                z, rz = _pulses(z * dt + rz, qz, per_dt)
+            carried = rx, ry, rz
+        self.state = index, lagged, carried
+        return x, y, z
+
+    def advance(self, first, values, forces, t_s):
+        """
+        Return the readings (n, 3) of the samples first to first + n - 1, as step gives them.
+
+        values, forces (n, 3); t_s (n,).  Any cutting gives the same bits.
+        """
+        if self.perfect:
+            return values
+        samples = zip(values.tolist(), forces.tolist(), t_s.tolist())
+        return np.array([self.step(k, *sample) for k, sample in enumerate(samples, first)])
+
+
+def _never_off(temperature):
+    return (temperature.constant_c == temperature.reference_c and temperature.ramp_c_h == 0.0
+            and temperature.amplitude_c == 0.0)
+
+
+def _if_any(*terms):
+    return terms if any(any(term) for term in terms) else None
+
+
+def drawn(seed, run, name, sigma):
+    """Return the numbers of standard deviations sigma that are drawn once a run."""
+    normals = stream(seed, run, name, 3, 1).normal(0)
+    return tuple(s * n for s, n in zip(sigma, normals))
+
+
+def _geometry(model, seed, run, name):
+    """
+    Return the nine elements that take body axes to the sensitive ones, or None.
+
+    Rows are the unit sensitive axes: those of non-orthogonality in the triad, times the rotation
+    of the body into the triad.
+    """
+    turn = tuple(m + d for m, d in zip(model.misalignment, drawn(
+        seed, run, f'{name}.misalignment', model.misalignment_sigma)))
+    yx, zx, zy = (math.sin(a) for a in model.non_orthogonality)
+    if not any(turn) and not any((yx, zx, zy)):
+        return None
+    back = quaternion.exponential(tuple(-a for a in turn))
+    columns = [quaternion.rotate(back, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0),
+                                                          (0.0, 0.0, 1.0))]
+    rows = ((1.0, 0.0, 0.0), (yx, math.sqrt(1.0 - yx * yx), 0.0),
+            (zx, zy, math.sqrt(1.0 - zx * zx - zy * zy)))
+    return tuple(sum(r * c for r, c in zip(row, column)) for row in rows for column in columns)
+
+
+def _response(model, seed, run, name):
+    scale = tuple(s + d for s, d in zip(model.scale, drawn(seed, run, f'{name}.scale_factor',
+                                                           model.scale_sigma)))
+    return _if_any(scale, model.asymmetry, model.quadratic, model.cubic)
+
+
+def _lag(frequency_hz, order, dt_s):
+    """
+    Return the exact discretisation of a lag over one interval of constant input.
+
+    (a, b, c, d) takes output less input, and its rate, from start to end; (m, n) gives the mean
+    of output less input from both at the start.  First order: w = 2 pi f; second: Butterworth,
+    x'' + sqrt(2) w x' + w^2 x = w^2 u.
+    """
+    w = 2.0 * math.pi * frequency_hz
+    if w == 0.0:
+        return (0.0,) * 6
+    if order == 1:
+        return (math.exp(-w * dt_s), 0.0, 0.0, 0.0, -math.expm1(-w * dt_s) / (w * dt_s), 0.0)
+    h = w * math.sqrt(0.5)
+    decay, c, s = math.exp(-h * dt_s), math.cos(h * dt_s), math.sin(h * dt_s)
+    a, b = decay * (c + s), decay * s / h
+    e, d = -2.0 * h * decay * s, decay * (c - s)
+    mean = -1.0 / (w * w * dt_s)
+    return (a, b, e, d, mean * (e + 2.0 * h * (a - 1.0)), mean * (d - 1.0 + 2.0 * h * b))
+
+
+def _pass(lag, start, u):
+    """Return the mean output over an interval of input u, and (output, its rate) at the end."""
+    a, b, c, d, m, n = lag
+    x, v = start
+    e = x - u
+    return u + (m * e + n * v), (u + (a * e + b * v), c * e + d * v)
+
+
+def _pulses(increment, quantum, per_dt):
+    """Return the reading of the whole pulses in an increment, and what remains."""
+    read = math.floor(increment / quantum + 0.5) * quantum
+    return read * per_dt, increment - read
+
+
+def make_noise(model, seed, run, name, dt_s):
+    """Return the function block number -> (BLOCK, 3) of all additive errors, or None."""
+    fixed = np.array([b + d for b, d in zip(model.bias, drawn(
+        seed, run, f'{name}.turn_on_bias', model.turn_on_sigma))])
+    white = np.array(model.white) / math.sqrt(dt_s)
+    terms = []
+    if any(model.white):
+        normals = stream(seed, run, f'{name}.white', 3).normal_block
+        terms.append(lambda b: white * normals(b))
+    hour = tuple(s / 60.0 if math.isinf(t) else s
+                 for s, t in zip(model.in_run_sigma, model.in_run_time))
+    for term, sigma, time in (('in_run_bias', hour, model.in_run_time),
+                              ('walk', model.walk, (math.inf,) * 3)):
+        if any(sigma):
+            terms.append(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s).block)
+    if any(model.flicker):
+        sigma = np.multiply.outer([FLICKER_SIGMA] * len(FLICKER_TIMES), model.flicker)
+        time = np.repeat(FLICKER_TIMES, 3)
+        flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).block
+        terms.append(lambda b: flicker(b).reshape(BLOCK, -1, 3).sum(axis=1))
+    if not terms and not fixed.any():
+        return None
+
+    def noise(block):
+        total = np.empty((BLOCK, 3))
+        total[:] = fixed
+        for term in terms:
+            total += term(block)
+        return total
+
+    return noise

@@ -1,0 +1,82 @@
+"""
+From the ideal IMU to the instrument: the errors of both triads, applied to its readings.
+
+Errors act on the mean rate and the mean specific force of a sampling interval.  They are a
+function of seed and instant: the index of a sample is its motion time over the period.
+"""
+
+import numpy as np
+
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
+
+
+def with_errors(settings):
+    """
+    Return the InstrumentErrors of ImuSensorSettings, or None where nothing is left to them.
+
+    Raises ValueError where the error terms do not fit together.
+    """
+    gyro = outer_gyro_errors(settings)
+    if gyro == GyroErrors() and settings.accelerometer.errors == AccelerometerErrors():
+        return None
+    return InstrumentErrors(settings, gyro)
+
+
+def outer_gyro_errors(settings):
+    """Return the GyroErrors to apply to body rates: tuned gyros have theirs by channel, inside."""
+    return GyroErrors() if settings.gyro.model == 'dtg' else settings.gyro.errors
+
+
+def reported_variances(settings):
+    """
+    Return the variances of a sample of ImuSensorSettings by axis, (rad/s)^2 and (m/s^2)^2.
+
+    Those of white noise and pulses, or what the settings report in their place.
+    """
+    from .triad_model import white_variance
+    dt = period_ns(settings.rate_hz) * 1e-9
+    force = white_variance(settings.accelerometer.errors, dt, 'accelerometer.errors')
+    if settings.gyro.model == 'dtg':
+        from ..tuned_gyro.instrument import PairInstrument
+        return PairInstrument(settings).variances, force
+    return white_variance(settings.gyro.errors, dt, 'gyro.errors'), force
+
+
+class InstrumentErrors:
+    """The errors of gyros (GyroErrors) and accelerometers of one IMU."""
+
+    def __init__(self, settings, gyro_errors):
+        # NumPy's generators cost a perfect node's start nothing
+        from .triad_errors import TriadErrors
+        self._dt_ns = period_ns(settings.rate_hz)
+        dt = self._dt_ns * 1e-9
+        triads = ((gyro_errors, 'gyro.errors'),
+                  (settings.accelerometer.errors, 'accelerometer.errors'))
+        self._gyro, self._accel = (TriadErrors(errors, settings.seed, 0, name, dt,
+                                               settings.temperature) for errors, name in triads)
+
+    def step(self, t_ns, omega, f):
+        """Return omega, f of the instrument for those of the ideal IMU at motion time t_ns."""
+        index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
+        return (self._gyro.step(index, omega, f, t_s), self._accel.step(index, f, f, t_s))
+
+    def advance(self, imu):
+        """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
+        samples = zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist())
+        omega, f = zip(*(self.step(*sample) for sample in samples))
+        return ImuSamples(imu.t_ns, np.array(omega), np.array(f), imu.parity)
+
+
+class ErringImu:
+    """An IMU with push and reset whose readings pass through InstrumentErrors."""
+
+    def __init__(self, imu, errors):
+        self._imu, self._errors = imu, errors
+        self.reset, self.pair = imu.reset, imu.pair
+
+    def push(self, *sample):
+        """Return the readings that a truth sample completes, as the ideal IMU does."""
+        return [(t_ns, *self._errors.step(t_ns, omega, f), parity)
+                for t_ns, omega, f, parity in self._imu.push(*sample)]

@@ -1,0 +1,218 @@
+"""
+The two tuned gyros of an IMU with their errors: body rates in, body rates and parity out.
+
+In the order of the signal: what disturbs the rotors (moments by specific force, the product of
+rates, hunting, vibration at twice the speed) and their pick-offs; the rotors; an injected fault;
+the read-out of each gyro, which has the errors of a triad along (spin axis, y, z) of its case, the
+spin axis being there for misalignment alone; the combination of the four channels (spec/dtg
+section 6; the model of IEEE Std 813).
+"""
+
+from dataclasses import fields, replace
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics.instants import period_ns, seconds
+from ins_sim.core.numerics.units import DEG_H
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.settings.instrument_errors import GyroErrors
+from ins_sim.settings.tuned_gyro import DtgErrors
+from ..imu.triad_model import noise_variance, reported_variance, triad_model
+from .pair import GyroPair
+from .rotor import PRESETS, TunedGyroParameters
+
+# body axes of (spin, y, z) of each case; cyclic, so that a rotation vector keeps its meaning
+CASES = ((2, 0, 1), (1, 2, 0))
+NAMES = ('gyro.errors.gyro_1', 'gyro.errors.gyro_2')
+
+
+def parameters(dtg):
+    """Return the TunedGyroParameters that settings Dtg name; ValueError for no such instrument."""
+    if dtg.preset != 'custom':
+        return PRESETS[dtg.preset]
+    values = {f.name: getattr(dtg.custom, f.name) for f in fields(dtg.custom)}
+    values['hinge_stiffness_n_m_rad'] = values['hinge_stiffness_n_m_rad'] or None
+    try:
+        return TunedGyroParameters(**values)
+    except ValueError as error:
+        raise ValueError(f'gyro.dtg.custom.{error}') from None
+
+
+def make_pair(gyro, dt_s):
+    """Return the GyroPair of settings.Gyro, without other errors than the speeds of the rotors."""
+    dtg = gyro.dtg
+    p = parameters(dtg)
+    pair = GyroPair(p, dt_s, dtg.arrangement, method=dtg.method, hold=dtg.hold,
+                    on_unstable=dtg.on_unstable)
+    for rotor, ppm in zip(pair.gyros, dtg.errors.speed_ppm):
+        if ppm:
+            rotor.set_speed(p.speed_hz * (1.0 + 1e-6 * ppm))
+    return pair
+
+
+def case_errors(errors, axes):
+    """Return GyroErrors by body axis as those along (spin, y, z) of a case."""
+    values = {}
+    for f in fields(GyroErrors):
+        value = getattr(errors, f.name)
+        # non-orthogonality is by pairs of axes, the first of which is the reference
+        if isinstance(value, tuple) and f.name != 'non_orthogonality_mrad':
+            value = tuple(value[k] for k in axes)
+        values[f.name] = value
+    return GyroErrors(**values)
+
+
+class PairInstrument:
+    """
+    The gyros of ImuSensorSettings whose model is dtg.
+
+    nodes: the instants of a sampling period, as parts of it, at which ``step`` wants the body
+    rate.  Errors are functions of seed and instant; what is carried are the states of rotors,
+    lags, pulses and pick-offs.  Raises ValueError where the settings make no instrument.
+    """
+
+    def __init__(self, settings):
+        self._dt_ns = period_ns(settings.rate_hz)
+        self.dt_s = self._dt_ns * 1e-9
+        dtg = settings.gyro.dtg
+        self._steps = dtg.steps_per_sample
+        self.pair = make_pair(settings.gyro, self.dt_s / self._steps)
+        self.nodes = tuple(0.5 * k / self._steps for k in range(2 * self._steps + 1))
+        self._disturbances = None
+        errors = dtg.errors
+        if replace(errors, speed_ppm=(0.0, 0.0), hunting_hz=DtgErrors().hunting_hz) != DtgErrors():
+            from .pair_errors import RotorErrors
+            self._disturbances = RotorErrors(errors, self.pair, settings.seed, self.dt_s)
+        self._read_out = None
+        # by body axis first, as a sentence about an axis names that of the settings
+        self._reported = triad_model(settings.gyro.errors, self.dt_s,
+                                     'gyro.errors').reported_sigma
+        self._models = tuple(triad_model(case_errors(settings.gyro.errors, axes), self.dt_s,
+                                         'gyro.errors') for axes in CASES)
+        if settings.gyro.errors != GyroErrors():
+            from ..imu.triad_errors import TriadErrors
+            self._read_out = tuple(
+                TriadErrors(case_errors(settings.gyro.errors, axes), settings.seed, 0, name,
+                            self.dt_s, settings.temperature) for axes, name in zip(CASES, NAMES))
+        self._schedule_fault(dtg.fault)
+
+    def _schedule_fault(self, fault):
+        self._fault = None
+        if fault.channel != 'none':
+            self._fault = (fault.channel, fault.bias_deg_h * DEG_H, fault.scale)
+            self._fault_ns = (round(fault.start_s * 1e9), round(fault.end_s * 1e9))
+            self._scheduled = fault.start_s >= 0.0
+
+    @property
+    def has_fault(self):
+        """Return whether a fault is set up, by ``gyro.dtg.fault.channel``."""
+        return self._fault is not None
+
+    def force_fault(self, on):
+        """Inject the fault of the settings now, or take it off, whatever its times."""
+        self._scheduled = False
+        self._set_fault(on)
+
+    def _keep_schedule(self, t_ns):
+        if self._fault is not None and self._scheduled:
+            start, end = self._fault_ns
+            self._set_fault(start <= t_ns < end)
+
+    def _set_fault(self, on):
+        self.pair.clear_faults()
+        if on:
+            self.pair.inject(*self._fault)
+
+    def settle(self, w):
+        """Let the rotors have long turned at the body rate w, rad/s."""
+        self.pair.settle(w)
+        if self._disturbances is not None:
+            self._disturbances.settle(w)
+
+    def first(self, t_ns, w, force):
+        """Return body rates and parity of rotors that are settled at the instant t_ns."""
+        self._keep_schedule(t_ns)
+        return self._finish(t_ns, self.pair.instant(w), w, force)
+
+    def step(self, t_ns, rates, force):
+        """
+        Return mean body rates and parity, rad/s, of the interval that ends at t_ns.
+
+        rates: body rates at ``nodes``; force: mean specific force in b, m/s^2.  Raises StreamFault
+        when unstable rotors that were asked for overflow.
+        """
+        self._keep_schedule(t_ns)
+        steps, channels = self._steps, self.pair.channels
+        disturbances = self._disturbances
+        if disturbances is None:
+            total = channels(*rates[:3])
+            for k in range(2, 2 * steps, 2):
+                more = channels(*rates[k:k + 3])
+                total = tuple([a + b for a, b in zip(total, more)])
+        else:
+            disturbances.begin(t_ns, force)
+            total = (0.0,) * 4
+            for k in range(0, 2 * steps, 2):
+                three = rates[k:k + 3]
+                more = channels(*three, disturbances.step(*three))
+                total = tuple([a + b for a, b in zip(total, more)])
+        if not math.isfinite(sum(total)):
+            raise StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; '
+                              'expected a gyro whose roots decay', restart=True)
+        if steps > 1:
+            total = tuple([a / steps for a in total])
+        return self._finish(t_ns, total, self._mean(rates), force)
+
+    def _mean(self, rates):
+        """Return the mean of the body rates by Simpson's rule; only misalignment needs it."""
+        if self._read_out is None:
+            return None
+        steps = self._steps
+        return tuple([sum(rates[k][i] + 4.0 * rates[k + 1][i] + rates[k + 2][i]
+                          for k in range(0, 2 * steps, 2)) / (6.0 * steps) for i in range(3)])
+
+    def _finish(self, t_ns, y, w, force):
+        """Return body rates and parity of the four channels y through their read-outs."""
+        if self._read_out is not None:
+            index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
+            first, second = self._read_out
+            (spin_1, spin_2), (f_1, f_2) = self.pair.spins(w), self._forces(force)
+            _, a, b = first.step(index, (spin_1, y[0], y[1]), f_1, t_s)
+            _, c, d = second.step(index, (spin_2, y[2], y[3]), f_2, t_s)
+            y = a, b, c, d
+        return self.pair.combine(y)
+
+    def _forces(self, force):
+        """Return the specific force along (spin, y, z) of both cases."""
+        (a, b), (s, t) = self.pair.into_cases(force), self.pair.spins(force)
+        return (s, a.real, a.imag), (t, b.real, b.imag)
+
+    def channel_variances(self, count=1):
+        """
+        Return the variances of the four channels by their noise and pulses, (rad/s)^2.
+
+        Of the mean of count samples: pulses and the noise of the pick-offs are errors of angle, of
+        which only the first and the last are left in it.
+        """
+        found = []
+        for model in self._models:
+            found.extend(noise_variance(model, count * self.dt_s)[1:])
+        if self._disturbances is not None:
+            found = [a + b / count ** 2
+                     for a, b in zip(found, self._disturbances.noise_variances())]
+        return tuple(found)
+
+    def _through(self, out, count=1):
+        """Return the variances of out(combination) by those of the channels."""
+        gains = [out(self.pair.combine(row)) for row in np.eye(4).tolist()]
+        return (np.square(gains).T @ self.channel_variances(count)).tolist()
+
+    @property
+    def variances(self):
+        """Variances of a sample by body axis to report, (rad/s)^2."""
+        return reported_variance(self._through(lambda read: read[0]), self._reported)
+
+    def parity_variance(self, count=1):
+        """Return the variance of the mean of count parities by the noise, (rad/s)^2."""
+        return self._through(lambda read: (read[1],), count)[0]

@@ -1,0 +1,84 @@
+"""Figures of merit of a tuned gyro: roots, bandwidth, margin, and the steps that RK4 allows."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from .rotor import state_space
+from .stability import bisect, GRID, rk4_window
+
+
+@dataclass(frozen=True)
+class TunedGyroReport:
+    """
+    Figures of an instrument; the frequencies are those of the direct response of an axis.
+
+    roots: 1/s, least stable first.  time_constant_s: T = H / c, the lag at low frequency of the
+    open loop (None in closed loop).  bandwidth_hz: at -3 dB.  peak, peak_hz: largest gain below
+    it.  margin: 1 - A c^2 / (H c f + k2 f^2) in open loop, stable above 0 (None in closed loop).
+    decay_1_s: of the slowest root, stable above 0.  rk4_window_s: steps that RK4 allows, or None.
+    """
+
+    roots: tuple
+    time_constant_s: float | None
+    bandwidth_hz: float
+    peak: float
+    peak_hz: float
+    margin: float | None
+    decay_1_s: float
+    rk4_window_s: tuple | None
+
+    @property
+    def stable(self):
+        """Every root decays."""
+        return self.decay_1_s > 0.0
+
+    def lines(self):
+        """Return the report as lines of text."""
+        found = ['roots ' + ', '.join(f'{s.real:.6g}{s.imag:+.6g}j' for s in self.roots) + ' 1/s: '
+                 + ('stable' if self.stable else 'UNSTABLE')]
+        if self.time_constant_s is not None:
+            found.append(f'time constant {self.time_constant_s:.6g} s')
+            found.append(f'stability margin {self.margin:.4g} (stable above 0)')
+        found.append(f'-3 dB at {self.bandwidth_hz:.5g} Hz')
+        found.append(f'peak {self.peak:.5g} at {self.peak_hz:.4g} Hz')
+        window = self.rk4_window_s
+        found.append('RK4 decays for no step' if window is None else
+                     f'RK4 decays for steps of {1e3 * window[0]:.4g} to {1e3 * window[1]:.4g} ms')
+        return found
+
+
+def report(parameters, speed_hz=None):
+    """Return the TunedGyroReport of TunedGyroParameters, at the nominal speed unless given."""
+    p, space = parameters, state_space(parameters, speed_hz)
+
+    def gain(hz):
+        return np.abs(space.axis_responses(2.0 * math.pi * hz)[0])
+
+    # one decade below the slowest root to twice the fastest
+    sizes = np.abs(space.roots) / (2.0 * math.pi)
+    grid = np.geomspace(0.1 * sizes.min(), 2.0 * sizes.max(), GRID)
+    gains = gain(grid)
+    below = np.flatnonzero(gains < math.sqrt(0.5))
+    end = int(below[0]) if len(below) else GRID - 1
+    bandwidth = bisect(lambda hz: gain(hz) >= math.sqrt(0.5), grid[max(end - 1, 0)], grid[end])
+    top = int(gains[:end + 1].argmax())
+    if 0 < top < end:
+        left, right = grid[top - 1], grid[top + 1]
+        peak_hz = bisect(lambda hz: gain(hz * (1.0 + 1e-5)) > gain(hz), left, right)
+        peak_hz = float(np.clip(peak_hz, left, right))
+        peak = float(gain(peak_hz))
+    else:
+        peak, peak_hz = float(gain(0.0)) if p.loop == 'open' else 1.0, 0.0
+    lag = margin = None
+    if p.loop == 'open':
+        omega = 2.0 * math.pi * (p.speed_hz if speed_hz is None else speed_hz)
+        c = p.rotating_damping_n_m_s * omega + p.cross_feedback_n_m_rad
+        h, f = p.axial_inertia * omega, p.damping
+        lag = h / c
+        holding = h * c * f + p.stiffness(speed_hz) * f * f
+        margin = (1.0 - p.transverse_inertia * c * c / holding if holding > 0.0 else -math.inf)
+    roots = space.roots
+    return TunedGyroReport(roots, lag, float(bandwidth), peak, peak_hz, margin, -roots[0].real,
+                           rk4_window(roots))

@@ -1,0 +1,83 @@
+"""Stability of the numerical integration of a tuned gyro, and the gain of its pick-off."""
+
+import numpy as np
+
+# The grid of the searches, refined by bisection to the precision of the floats.
+GRID = 4000
+
+
+def bisect(holds, inside, outside):
+    """Return where a condition that holds inside stops to hold, between the two floats."""
+    for _ in range(100):
+        middle = 0.5 * (inside + outside)
+        if middle in (inside, outside):
+            break
+        if holds(middle):
+            inside = middle
+        else:
+            outside = middle
+    return inside
+
+
+def rk4_amplification(z):
+    """Return the factor of one RK4 step, z = root x step (floats or arrays)."""
+    return 1.0 + z * (1.0 + z * (0.5 + z * (1.0 / 6.0 + z / 24.0)))
+
+
+def rk4_window(roots):
+    """
+    Return the steps (low, high), s, between which RK4 decays; None where it never does.
+
+    low is 0 for a stable instrument; a slightly unstable one is damped by RK4 itself when the step
+    is long enough, as 1 - (w h)^6 / 144.
+    """
+    roots = np.array(roots)
+    fastest = np.abs(roots).max()
+
+    def decays(h):
+        return (np.abs(rk4_amplification(np.multiply.outer(h, roots))) < 1.0).all(axis=-1)
+
+    # RK4 is stable nowhere in the left half plane beyond |z| = 3
+    steps = np.linspace(0.0, 3.0, GRID + 1)[1:] / fastest
+    inside = decays(steps)
+    if not inside.any():
+        return None
+    first = int(inside.argmax())
+    last = first + int(np.append(inside[first:], False).argmin())
+    if first:
+        low = bisect(decays, steps[first], steps[first - 1])
+    else:
+        low = 0.0 if (roots.real < 0.0).all() else bisect(decays, steps[0], 0.0)
+    return float(low), float(bisect(decays, steps[last - 1], steps[last]))
+
+
+def pickoff_gain(rotor, dt_s):
+    """
+    Return the variance of mean readings over that of pick-off noise, (rad/s)^2/rad^2.
+
+    rotor: TunedGyro; the noise is white from one interval dt_s, s, to the next and constant within
+    it.  Stationary solution of the discrete Lyapunov equation of the state and the last noise, by
+    Smith's doubling, to which the scale of the states does not matter.
+    """
+    table, added = rotor.matrices
+    n = len(added) - 1
+    # columns: state at the start of the interval, noise in it, its jump
+    x, read = np.eye(n, n + 2, dtype=complex), np.zeros(n + 2, dtype=complex)
+    steps = round(dt_s / rotor.dt_s)
+    for k in range(steps):
+        push = np.zeros((n + 1, n + 2), dtype=complex)
+        push[:, n] = added[:, 1]
+        if k == 0:
+            push[:, n + 1] = added[:, 2]
+        push += table[:, :n] @ x
+        x = push[:n]
+        read += push[n] / steps
+    carry = np.zeros((n + 1, n + 1), dtype=complex)
+    carry[:n, :n], carry[:n, n] = x[:, :n], -x[:, n + 1]
+    drive = np.append(x[:, n] + x[:, n + 1], 1.0)
+    out = np.append(read[:n], -read[n + 1])
+    spread, power = np.outer(drive, drive.conj()), carry
+    while power.any():
+        spread = spread + power @ spread @ power.conj().T
+        power = power @ power
+    return float((out @ spread @ out.conj()).real + abs(read[n] + read[n + 1]) ** 2)

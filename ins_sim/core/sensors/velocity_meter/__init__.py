@@ -1,0 +1,7 @@
+"""
+The correlation velocity meter: signals of three antennas, correlation functions and their fits.
+
+Start with ``meter``. ``pulses`` simulates the signals, ``surrogate`` replaces them by the errors
+of
+the window mean, and ``reading`` turns correlation functions into a velocity.
+"""

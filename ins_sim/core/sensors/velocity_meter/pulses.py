@@ -1,0 +1,219 @@
+"""
+Mode signal of the velocity meter: the field at three antennas, and its correlation functions.
+
+A frozen random field, complex and Gaussian, moves past the phase centres r_i with the velocity v
+in the plane of motion.  With lengths by axis in correlation lengths L = lambda/(4 pi
+sigma_theta), and a decay of the field itself over T_d, signals i and j at times apart by t have
+
+    R_ij(t) = exp(-|r_i - r_j - v t|^2/2 - t^2/(2 T_d^2))
+            = G_ij exp(-w^2 (t - t_i + t_j)^2/2),   w^2 = |v|^2 + 1/T_d^2,  t_i = r_i.v/w^2
+    G_ij = exp(-(p_i - p_j)^2/2 - (t_i - t_j)^2 w^2/(2 |v|^2 T_d^2)),  p_i the part across v
+
+so that signal i is a mixture, by a constant factor of G, of three independent processes of one
+spectrum, ahead by t_i.  Source: spec/velocity_meter 2.
+"""
+
+import math
+from typing import NamedTuple
+
+from numpy import fft
+import numpy as np
+
+from ins_sim.core.numerics.noise import stream
+from ins_sim.core.timeseries.fixes import VALID
+from ins_sim.settings.velocity_meter import lag_s, samples
+from .antennas import geometry
+from .reading import PAIRS, read, Reading, secant
+
+# the spectrum is cut, and the delays are parted, at this many standard deviations
+SIGMAS = 5.0
+# added to the diagonal of G, which is singular where two antennas follow one another
+JITTER = 1e-9
+# 0.3 s and 100 MB a cycle
+MOST_MODES = 1 << 20
+
+
+def power_of_two(n):
+    """Return the power of two that is at least n."""
+    return 1 << (n - 1).bit_length()
+
+
+class Shape(NamedTuple):
+    """Of the field at the antennas: leads t_i, s, (3,), rate w, 1/s, and mixture G, (3, 3)."""
+
+    leads: np.ndarray
+    rate: float
+    mixture: np.ndarray
+
+
+class Field:
+    """
+    The signals of the three antennas in one navigation cycle.
+
+    settings: VelocityMeterSettings.  ``length`` samples a lag apart: those of the cycle and,
+    for the later antenna of a pair, as many more as the correlator has lags to go.  Raises
+    ValueError where a cycle takes too many.
+    """
+
+    def __init__(self, settings):
+        beam, signal, limits = settings.beam, settings.signal, settings.limits
+        self._geometry = geometry(settings.antennas)
+        self._lengths = tuple(beam.wavelength_m / (4.0 * math.pi * sigma) for sigma in
+                              (beam.sigma_theta_x_rad, beam.sigma_theta_z_rad))
+        self._decay = 1.0 / signal.decay_time_s if signal.decay_time_s else 0.0
+        self._noise = 10.0 ** (-0.05 * signal.snr_db) / math.sqrt(2.0)
+        self.lag_s = lag_s(settings)
+        self.length = samples(settings) + signal.lags - 1
+        # one period of the synthesis holds the samples and the longest correlation
+        reach = (2.0 * self._geometry.kappa * self._geometry.x0
+                 + SIGMAS * max(self._lengths)) / limits.speed_min_m_s
+        self._period = power_of_two(self.length + math.ceil(reach / self.lag_s))
+        # sideslip of 45 deg at the greatest forward speed is the fastest that is measured
+        fastest = math.hypot(math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths),
+                             self._decay)
+        bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
+        if bands * self._period > MOST_MODES:
+            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz with '
+                             f'signal.pulses_per_lag {signal.pulses_per_lag}: a cycle takes '
+                             f'{bands * self._period} modes of the field; expected at most '
+                             f'{MOST_MODES}')
+        modes = np.arange(bands * self._period) - bands * self._period // 2
+        self._place = modes[:self._period] % self._period
+        self._omega = 2.0 * np.pi / (self._period * self.lag_s) * modes
+        self.width = 6 * (len(modes) + self.length)
+
+    def shape(self, speed, v_z, tan_alpha):
+        """
+        Return the Shape at a velocity.
+
+        speed: along the trace of X1 in the plane of motion, v_z: along Z1, m/s; tan_alpha: true
+        angle of attack, which shortens X0 to X0 cos(alpha) in that plane.
+        """
+        g, (l_x, l_z) = self._geometry, self._lengths
+        x0 = g.kappa * g.x0 / secant(tan_alpha)
+        centres = np.array(((x0, 0.0), (0.0, g.s2 * g.kappa * g.y0), (-x0, 0.0))) / self._lengths
+        u_x, u_z = speed / l_x, v_z / l_z
+        along_2 = u_x * u_x + u_z * u_z
+        rate_2 = along_2 + self._decay * self._decay
+        leads = (centres[:, 0] * u_x + centres[:, 1] * u_z) / rate_2
+        across = (centres[:, 1] * u_x - centres[:, 0] * u_z) / math.sqrt(along_2)
+        apart, late = across[:, None] - across, leads[:, None] - leads
+        lost = (self._decay * self._decay * rate_2 / along_2) * late * late
+        return Shape(leads, math.sqrt(rate_2), np.exp(-0.5 * (apart * apart + lost)))
+
+    def signals(self, normals, speed, v_z, tan_alpha):
+        """Return the complex amplitudes (3, length) made of ``width`` normal numbers."""
+        leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
+        modes = len(self._omega)
+        parts = normals[:6 * modes].view(complex).reshape(3, modes)
+        spectrum = np.exp(-0.25 * (self._omega / rate) ** 2)
+        spectrum /= math.sqrt(2.0) * math.sqrt(float((spectrum * spectrum).sum()))
+        parts = np.linalg.cholesky(mixture + JITTER * np.eye(3)) @ (parts * spectrum)
+        parts *= np.exp(1j * leads[:, None] * self._omega)
+        # what lies beyond the band of the samples is seen inside it
+        folded = np.empty((3, self._period), dtype=complex)
+        folded[:, self._place] = parts.reshape(3, -1, self._period).sum(axis=1)
+        noise = normals[6 * modes:].view(complex).reshape(3, self.length)
+        return (fft.ifft(folded, norm='forward')[:, :self.length]
+                + self._noise * noise)
+
+    def correlations(self, lags, speed, v_z, tan_alpha, detection):
+        """Return the five functions that are expected without noise, (5, lags) by PAIRS."""
+        leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
+        t = self.lag_s * np.arange(lags)
+        rows = [mixture[i, j] * np.exp(-0.5 * (rate * (t - leads[i] + leads[j])) ** 2)
+                for i, j in PAIRS]
+        return np.array(rows) ** 2 if detection == 'power' else np.array(rows)
+
+
+class Sums(NamedTuple):
+    """
+    What a window adds up over its cycles.
+
+    products (5, lags): of values, by PAIRS; means (3, lags): of the values that stand in them,
+    by antenna and lag; power (3,): mean squared amplitude.
+    """
+
+    products: np.ndarray
+    means: np.ndarray
+    power: np.ndarray
+
+
+class Correlator:
+    """
+    Two cross- and three autocorrelation functions, averaged over cycles.
+
+    Every lag has as many products as the cycle has samples, for the correlator goes on beyond
+    its end.  Powers are correlated less their mean and over it: that of the window, or that of
+    each cycle, which costs the functions a pedestal of about a correlation time over the cycle.
+    """
+
+    def __init__(self, settings):
+        self._powers = settings.signal.detection == 'power'
+        self._by_cycle = settings.signal.normalisation == 'cycle'
+        self._lags, self._count = settings.signal.lags, samples(settings)
+        self._size = power_of_two(self._count + self._lags - 1)
+        self._earlier, self._later = (list(side) for side in zip(*PAIRS))
+
+    def sums(self, signals):
+        """Return the Sums of one cycle; signals: complex amplitudes (3, length)."""
+        values = power = signals.real ** 2 + signals.imag ** 2
+        forward, back = fft.rfft, fft.irfft
+        if not self._powers:
+            values, forward, back = signals, fft.fft, fft.ifft
+        mean = power.mean(axis=1)
+        if self._by_cycle:
+            scale = mean if self._powers else np.sqrt(mean)
+            values, mean = values / scale[:, None], np.ones(3)
+        early = forward(values[:, :self._count], self._size).conj()
+        products = early[self._earlier] * forward(values, self._size)[self._later]
+        ends = values.cumsum(axis=1)
+        starts = np.concatenate((np.zeros((3, 1)), ends), axis=1)[:, :self._lags]
+        return Sums(back(products, self._size)[:, :self._lags] / self._count,
+                    (ends[:, self._count - 1:] - starts) / self._count, mean)
+
+    def functions(self, total, cycles):
+        """Return the functions, real, (5, lags), of the Sums of so many cycles."""
+        products, means, power = (part / cycles for part in total)
+        p, q = power[self._earlier, None], power[self._later, None]
+        if not self._powers:
+            return abs(products) / np.sqrt(p * q)
+        early, late = means[self._earlier, :1], means[self._later]
+        return (products - early * q - p * late + p * q) / (p * q)
+
+
+class SignalWindows:
+    """
+    Sums and readings of windows by correlation functions.
+
+    Each cycle has a field of its own.  One that went on would tie neighbours only over the delay
+    and a correlation time, 0.4 and 0.2 ms of a cycle of 10 ms at 250 m/s.  settings:
+    VelocityMeterSettings; run: which of an ensemble.
+    """
+
+    def __init__(self, settings, run):
+        self._cycles, self._limits = settings.window.cycles, settings.limits
+        self._geometry, self._lag_s = geometry(settings.antennas), lag_s(settings)
+        self._field, self._correlator = Field(settings), Correlator(settings)
+        self._normals = stream(settings.seed, run, 'velocity_meter.signal', self._field.width, 1)
+
+    def add(self, total, index, v_last, v):
+        """
+        Return the sum with the cycle that ends at index periods, its velocity being the mean.
+
+        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        """
+        x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
+        signals = self._field.signals(self._normals.normal_block(index)[0], math.hypot(x, y), z,
+                                      -y / x)
+        one = self._correlator.sums(signals)
+        return one if total is None else Sums(*(a + b for a, b in zip(total, one)))
+
+    def read(self, total, index, tan_alpha):
+        """Return the Reading of a window."""
+        functions = self._correlator.functions(total, self._cycles)
+        reading = read(functions, self._lag_s, self._geometry, tan_alpha)
+        low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
+        if reading.status == VALID and not low <= reading.v_x <= high:
+            return Reading('measured speed outside the limits')
+        return reading

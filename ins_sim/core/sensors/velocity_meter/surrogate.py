@@ -1,0 +1,66 @@
+"""
+Mode surrogate of the velocity meter: the window mean with the errors of the real instrument.
+
+Its coefficients are those of the simulated signals at 250 m/s (spec/velocity_meter 2).
+"""
+
+import math
+
+from ins_sim.core.numerics.noise import stream
+from ins_sim.core.timeseries.fixes import VALID
+from .reading import Reading, secant
+
+
+def sigmas(surrogate, cycles, beta):
+    """
+    Return the standard deviations of V_x1 and V_z1 over N cycles, m/s.
+
+    surrogate: settings; beta: sideslip, rad.  sigma_x/sqrt(N) sqrt(1 + (slip_x beta)^2), and
+    sqrt(sigma_z^2 + (slip_z beta)^2)/sqrt(N).
+    """
+    root = math.sqrt(cycles)
+    return (surrogate.sigma_x_m_s * math.hypot(1.0, surrogate.slip_x * beta) / root,
+            math.hypot(surrogate.sigma_z_m_s, surrogate.slip_z_m_s * beta) / root)
+
+
+class SurrogateWindows:
+    """
+    Sums and readings of windows by trapezoids over the instants of their cycles.
+
+    settings: VelocityMeterSettings; run: which of an ensemble.
+    """
+
+    def __init__(self, settings, run):
+        self._surrogate, self._cycles = settings.surrogate, settings.window.cycles
+        beam = settings.beam
+        self._scale_x = 1.0 + self._surrogate.k_x
+        self._scale_z = (1.0 + self._surrogate.k_z) * (
+            beam.sigma_theta_z_rad / beam.sigma_theta_x_rad) ** 2
+        self._normals = stream(settings.seed, run, 'velocity_meter.surrogate', 2)
+
+    def add(self, total, index, v_last, v):
+        """
+        Return the sum with the cycle that ends at index periods.
+
+        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        """
+        x, y, z = total or (0.0, 0.0, 0.0)
+        return (x + 0.5 * (v_last[0] + v[0]), y + 0.5 * (v_last[1] + v[1]),
+                z + 0.5 * (v_last[2] + v[2]))
+
+    def read(self, total, index, tan_alpha):
+        """
+        Return the Reading of the window that ends at index periods.
+
+        tan_alpha: tangent of what is taken for the angle of attack.  A wrong one scales both
+        components by (cos taken / cos true)^2, as with signals.
+        """
+        v_x, v_y, v_z = (part / self._cycles for part in total)
+        scale = (secant(v_y / v_x) / secant(tan_alpha)) ** 2
+        sigma_x, sigma_z = sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
+        # each cycle has its own noise, so that long windows average that of the short ones
+        cycles = self._normals.normals(index - self._cycles + 1, self._cycles)
+        n_x, n_z = (cycles.sum(axis=0) / math.sqrt(self._cycles)).tolist()
+        return Reading(VALID, self._scale_x * scale * v_x
+                       + self._surrogate.bias_x_m_s / self._cycles + sigma_x * n_x,
+                       self._scale_z * scale * v_z + sigma_z * n_z)

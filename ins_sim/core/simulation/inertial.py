@@ -1,0 +1,213 @@
+"""The whole chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import check_length
+from ins_sim.core.navigation.sample_clock import SampleClock
+from ins_sim.core.navigation.strapdown import Strapdown
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.ideal import MotionImu
+from ins_sim.core.sensors.imu.sampling import Sampler
+from ins_sim.core.sensors.imu.stream import StreamImu
+from ins_sim.core.sensors.imu.with_errors import with_errors
+from ins_sim.core.streams.faults import check_interval, StreamFault
+from ins_sim.core.timeseries.histories import ImuSamples, NavErrors, NavStates, Truth
+from ins_sim.settings.imu import DelaysUs, ImuSensorSettings
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.strapdown import StrapdownSettings
+
+BLOCK = 4096
+
+
+@dataclass(frozen=True)
+class Run:
+    """
+    One offline run: the truth, the solution and its errors at the output instants.
+
+    imu holds every reading; twin the errors of the same run with all delays zero (or None);
+    faults a sentence for each gap at which the strapdown started anew.
+    """
+
+    truth: Truth
+    imu: ImuSamples
+    states: NavStates
+    errors: NavErrors
+    twin: NavErrors | None
+    faults: tuple = ()
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of the three stages."""
+
+    motion_generator: MotionGeneratorSettings
+    imu_sensor: ImuSensorSettings
+    strapdown: StrapdownSettings
+
+    def __post_init__(self):
+        """Refuse rates that do not go together; a live strapdown reports them."""
+        sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
+        if sends != expects:
+            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
+                             f'{sends:g} Hz')
+        start_ns, dt_ns = round(1e9 * self.motion_generator.start_s), period_ns(sends)
+        if self.strapdown.imu_time == 'nominal' and start_ns % dt_ns:
+            raise ValueError(f'motion_generator: start_s is {self.motion_generator.start_s:.9g} s '
+                             'with imu_time nominal; expected a multiple of the period of the '
+                             f'IMU, {dt_ns * 1e-9:.9g} s')
+
+    def without_delays(self):
+        """Return the settings of the zero-delay twin; it has the same instrument errors."""
+        imu = self.imu_sensor
+        return replace(self, imu_sensor=replace(
+            imu, gyro=replace(imu.gyro, delay_us=DelaysUs()),
+            accelerometer=replace(imu.accelerometer, delay_us=DelaysUs())))
+
+    @property
+    def delayed(self):
+        """Return whether any channel is late."""
+        imu = self.imu_sensor
+        return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
+
+
+def sense(settings, motion):
+    """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
+    sensor = settings.imu_sensor
+    errors = with_errors(sensor)
+    sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))
+    for block in _ideal(settings, motion):
+        block = sampler.take(block if errors is None else errors.advance(block))
+        if len(block):
+            yield block
+
+
+def truth_blocks(generator, motion):
+    """Yield the Truth at the instants of MotionGeneratorSettings, from the first to the last."""
+    first_ns, steps = round(generator.start_s * 1e9), _steps(generator)
+    for start in range(0, steps + 1, BLOCK):
+        k = np.arange(start, min(start + BLOCK, steps + 1), dtype=np.int64)
+        yield motion.at(first_ns + period_ns(generator.rate_hz) * k)
+
+
+def _ideal(settings, motion):
+    generator, sensor = settings.motion_generator, settings.imu_sensor
+    first_ns = round(generator.start_s * 1e9)
+    steps = _steps(generator)
+    if sensor.source == 'motion':
+        imu = MotionImu(sensor, motion, first_ns)
+        left = steps * period_ns(generator.rate_hz) // imu.dt_ns + 1
+        while left > 0:
+            yield imu.advance(min(BLOCK, left))
+            left -= BLOCK
+        return
+    imu, frame = StreamImu(sensor), MapFrame(sensor.datum, sensor.earth.rotation)
+    for truth in truth_blocks(generator, motion):
+        readings = []
+        for sample in zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
+                          truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):
+            readings.extend(imu.push(*sample))
+        if readings:
+            yield ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
+
+
+def navigate(settings, motion, blocks, faults=None):
+    """
+    Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
+
+    Yield (truth, states, errors) records of the output instants of each block.  A gap is handled
+    as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
+    the list faults, or ValueError is raised.
+    """
+    nav, every, dt_ns = Strapdown(settings), settings.output_every, period_ns(settings.rate_hz)
+    clock = SampleClock(settings, dt_ns)
+    first_ns = last_ns = None
+    for imu in blocks:
+        t_ns = clock.instant(imu.t_ns)
+        truth = motion.at(t_ns)
+        kept, solutions, errors = [], [], []
+        samples = zip(t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), truth.lat.tolist(),
+                      truth.lon.tolist(), truth.height.tolist(), truth.v_n.tolist(),
+                      truth.q_nb.tolist())
+        for k, (now_ns, omega, f, *now) in enumerate(samples):
+            fault = _gap(now_ns, last_ns, dt_ns)
+            if fault is not None:
+                if settings.on_fault == 'stop':
+                    raise ValueError(str(fault))
+                if faults is not None:
+                    faults.append(str(fault))
+                nav = Strapdown(settings)
+            last_ns = now_ns
+            if not nav.step(now_ns, omega, f, now):
+                continue
+            error = nav.errors(now_ns, now)
+            first_ns = now_ns if first_ns is None else first_ns
+            if (now_ns - first_ns + dt_ns // 2) // dt_ns % every == 0:
+                kept.append(k)
+                solutions.append(nav.solution(now_ns))
+                errors.append(error)
+        if kept:
+            yield (truth[kept], NavStates(t_ns[kept], *map(np.array, zip(*solutions))),
+                   NavErrors(t_ns[kept], *map(np.array, zip(*errors))))
+
+
+def _gap(now_ns, last_ns, dt_ns):
+    """Return the StreamFault of an interval that is none, or None."""
+    if last_ns is not None:
+        try:
+            check_interval('imu', now_ns, last_ns, dt_ns, 0.2)
+        except StreamFault as fault:
+            return fault
+    return None
+
+
+def simulate(settings, twin=True, progress=None, motion=None):
+    """
+    Return the Run of Settings.
+
+    twin: also run with all delays zero.  progress: called with the fraction done.  motion: that
+    of the settings, where ``make_motion`` cannot make it (a bag).  Raises ValueError where the
+    settings name no run of finite length.
+    """
+    generator = settings.motion_generator
+    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
+    check_length(generator, motion)
+    twin = twin and settings.delayed
+    total = 1.0 + _steps(generator)
+    total *= period_ns(generator.rate_hz) * (2 if twin else 1)
+
+    def watch(blocks, done):
+        for imu in blocks:
+            yield imu
+            if progress is not None:
+                progress((done + imu.t_ns[-1] - first_ns) / total)
+
+    first_ns = round(generator.start_s * 1e9)
+    imu, faults = [], []
+
+    def keep(blocks):
+        for block in blocks:
+            imu.append(block)
+            yield block
+
+    parts = list(navigate(settings.strapdown, motion, keep(watch(sense(settings, motion), 0)),
+                          faults))
+    if not parts:
+        raise ValueError('the run has no navigation output; expected duration_s longer than '
+                         'initial.after_s')
+    truth, states, errors = (cls.concatenate(p) for cls, p in zip(
+        (Truth, NavStates, NavErrors), zip(*parts)))
+    twin_errors = None
+    if twin:
+        ideal = settings.without_delays()
+        blocks = watch(sense(ideal, motion), total / 2)
+        twin_errors = NavErrors.concatenate(e for _, _, e in navigate(settings.strapdown, motion,
+                                                                      blocks))
+    return Run(truth, ImuSamples.concatenate(imu), states, errors, twin_errors, tuple(faults))
+
+
+def _steps(generator):
+    return round(generator.duration_s * 1e9) // period_ns(generator.rate_hz)

@@ -1,0 +1,59 @@
+"""Faults of a stream of samples, each described in one sentence."""
+
+import math
+
+from ins_sim.core.numerics.instants import seconds
+
+
+class StreamFault(ValueError):
+    """
+    A sample that a stage refuses.
+
+    restart: False when the sample was dropped and the stage is intact; True when the stage must
+    be reset before the sample may be given to it again.
+    """
+
+    def __init__(self, sentence, restart):
+        super().__init__(sentence)
+        self.restart = restart
+
+    def __reduce__(self):
+        """Let it cross from one process to another."""
+        return type(self), (str(self), self.restart)
+
+
+def check_finite(name, t_ns, *vectors):
+    """Raise StreamFault (sample dropped) if a vector of floats holds a NaN or an infinity."""
+    for vector in vectors:
+        if not math.isfinite(sum(vector)):
+            raise StreamFault(f'{name} at {seconds(t_ns)} holds {vector}; expected finite '
+                              'numbers; the sample was dropped', restart=False)
+
+
+def check_unit(name, t_ns, q):
+    """Raise StreamFault (sample dropped) unless the quaternion has unit norm within 1e-3."""
+    n2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
+    if not 0.998 < n2 < 1.002:
+        raise StreamFault(f'{name} at {seconds(t_ns)} has an orientation of norm '
+                          f'{math.sqrt(n2):.6g}; expected 1; the sample was dropped',
+                          restart=False)
+
+
+def check_interval(name, t_ns, last_ns, expected_ns, tolerance):
+    """
+    Raise StreamFault unless t_ns follows last_ns by expected_ns within a relative tolerance.
+
+    A repeated stamp is dropped; a backwards stamp, a gap and another rate call for a restart.
+    """
+    step = t_ns - last_ns
+    if abs(step - expected_ns) <= tolerance * expected_ns:
+        return
+    if step == 0:
+        raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '
+                          'sample was dropped', restart=False)
+    if step < 0:
+        raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
+                          'expected rising stamps', restart=True)
+    what = 'has a gap' if step > expected_ns else 'comes at another rate'
+    raise StreamFault(f'{name} {what} from {seconds(last_ns)} to {seconds(t_ns)}; expected steps '
+                      f'of {expected_ns * 1e-9:.9g} s', restart=True)

@@ -1,0 +1,118 @@
+"""
+Continuous motion from streamed truth, without looking ahead.
+
+See docs/theory.md, "Delayed channels".
+"""
+
+from collections import deque
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.interpolation import hermite, newton, newton_value
+from ins_sim.core.numerics.instants import seconds
+from .faults import check_finite, check_interval, check_unit, StreamFault
+
+# fields of a sample
+FORCE_M, RATE, FORCE_B = 3, 4, 5
+TURN_LIMIT = 2.0
+ZERO = (0.0, 0.0, 0.0)
+
+
+class TruthBuffer:
+    """
+    Ring buffer of streamed truth that answers for any instant it covers.
+
+    frame: MapFrame; reach_ns: how far behind the newest sample it must answer; frozen: the
+    history before the first sample stands still (else it goes on at the first rate and force);
+    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for.
+    """
+
+    def __init__(self, frame, reach_ns, frozen, wanted):
+        self._frame = frame
+        self._reach_ns = reach_ns
+        self._wanted = wanted
+        self._frozen = frozen
+        self._pieces = deque()
+        self._last = deque(maxlen=3)
+        self._cubics = None
+        self._first = None
+        self._step_ns = None
+
+    @property
+    def newest_ns(self):
+        """Return the newest stamp, or None."""
+        return self._last[0][0] if self._last else None
+
+    @property
+    def count_is_one(self):
+        """Return whether only the first sample has come."""
+        return len(self._last) == 1
+
+    def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """
+        Take a sample; raise StreamFault on NaN, repeated or backwards stamps, gaps and turns.
+
+        The step between the first two samples is the step expected of all.
+        """
+        check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
+        check_unit('truth', t_ns, q_mb)
+        turn = quaternion.rotate_back(q_mb, self._frame.omega_ie_m)
+        omega_mb_b = (omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2])
+        f_m = quaternion.rotate(q_mb, f_ib_b)
+        sample = (t_ns, q_mb, omega_mb_b, f_m, omega_ib_b, f_ib_b)
+        if not self._last:
+            self._first = sample
+            self._last.appendleft(sample)
+            self._cubics = {k: [sample[k], ZERO, ZERO, ZERO] for k in self._wanted}
+            return
+        start = self._last[0]
+        step_ns = t_ns - start[0]
+        check_interval('truth', t_ns, start[0], self._step_ns or max(step_ns, 1), 0.2)
+        h = step_ns * 1e-9
+        if h * max(map(abs, omega_mb_b)) > TURN_LIMIT:
+            raise StreamFault(
+                f'truth at {seconds(t_ns)} turns {h * max(map(abs, omega_mb_b)):.3g} rad in one '
+                f'step; expected less than {TURN_LIMIT:g}: raise rate_hz of motion_generator',
+                restart=True)
+        self._step_ns = step_ns
+        back = [1e9 / (t_ns - other[0]) for other in self._last] + [0.0, 0.0]
+        self._cubics = {k: newton(cubic, sample[k], *back[:3])
+                        for k, cubic in self._cubics.items()}
+        self._last.appendleft(sample)
+        times = tuple(other[0] for other in self._last)
+        turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(start[1]), q_mb))
+        curve = hermite(h, turned, start[2], omega_mb_b)
+        self._pieces.append((start[0], t_ns, start[1], 1.0 / step_ns, curve, self._cubics,
+                             times + (t_ns,) * (3 - len(times))))
+        while self._pieces[0][1] < t_ns - self._reach_ns:
+            self._pieces.popleft()
+
+    def _piece(self, t_ns):
+        for piece in reversed(self._pieces):
+            if piece[0] <= t_ns:
+                return piece
+        return self._pieces[0]
+
+    def attitude(self, t_ns):
+        """Return q_mb at t_ns, not later than the newest sample."""
+        first = self._first
+        if t_ns <= first[0]:
+            if self._frozen or t_ns == first[0]:
+                return first[1]
+            s = (t_ns - first[0]) * 1e-9
+            w = first[2]
+            return quaternion.multiply(first[1],
+                                       quaternion.exponential((w[0] * s, w[1] * s, w[2] * s)))
+        start_ns, _, q, per_step, (c1, c2, c3), _, _ = self._piece(t_ns)
+        s = (t_ns - start_ns) * per_step
+        r = (s * (c1[0] + s * (c2[0] + s * c3[0])), s * (c1[1] + s * (c2[1] + s * c3[1])),
+             s * (c1[2] + s * (c2[2] + s * c3[2])))
+        return quaternion.multiply(q, quaternion.exponential(r))
+
+    def cubic(self, t_ns, field):
+        """Return FORCE_M (m/s^2 in m), RATE (omega_ib_b, rad/s) or FORCE_B (f_ib_b, m/s^2)."""
+        if t_ns <= self._first[0]:
+            return self._first[field]
+        piece = self._piece(t_ns)
+        t0, t1, t2 = piece[6]
+        return newton_value(piece[5][field], (t_ns - t0) * 1e-9, (t_ns - t1) * 1e-9,
+                            (t_ns - t2) * 1e-9)

@@ -1,0 +1,118 @@
+"""Records: frozen structs of arrays, one class for a sample, a history and an ensemble."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+
+class Record:
+    """Slicing and joining along the leading (time) axis; a field that is None stays None."""
+
+    def __len__(self):
+        return len(self.t_ns)
+
+    def __getitem__(self, index):
+        return type(self)(**{name: value[index] for name, value in self.arrays().items()})
+
+    def arrays(self):
+        """Return {field: array} of the fields that are there."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
+
+    @classmethod
+    def concatenate(cls, parts):
+        """Join histories in the order given."""
+        parts = [part.arrays() for part in parts]
+        return cls(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+
+
+@dataclass(frozen=True, eq=False)
+class Truth(Record):
+    """
+    True motion at instants.
+
+    t_ns (n,) int64; lat, lon (n,) rad; height (n,) m above the ellipsoid; v_n (n, 3) m/s;
+    q_nb (n, 4); omega_ib_b (n, 3) rad/s; f_ib_b (n, 3) m/s^2.
+    """
+
+    t_ns: np.ndarray
+    lat: np.ndarray
+    lon: np.ndarray
+    height: np.ndarray
+    v_n: np.ndarray
+    q_nb: np.ndarray
+    omega_ib_b: np.ndarray
+    f_ib_b: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class ImuSamples(Record):
+    """
+    Mean reading over the interval (t - dt, t] that ends at the stamp.
+
+    t_ns (n,) int64; omega (n, 3) rad/s and f (n, 3) m/s^2: the increments of the output mode
+    divided by dt (see ``core.sensors.imu.ideal``).  parity (n,) rad/s: of a pair of tuned gyros,
+    else None.
+    """
+
+    t_ns: np.ndarray
+    omega: np.ndarray
+    f: np.ndarray
+    parity: np.ndarray | None = None
+
+    @classmethod
+    def of_readings(cls, t_ns, readings):
+        """Return the record of instants t_ns (n,) and a list of (omega, f, parity or None)."""
+        omega, f, parity = zip(*readings)
+        return cls(np.asarray(t_ns, dtype=np.int64), np.array(omega), np.array(f),
+                   None if parity[0] is None else np.array(parity))
+
+
+@dataclass(frozen=True, eq=False)
+class NavStates(Record):
+    """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
+
+    t_ns: np.ndarray
+    lat: np.ndarray
+    lon: np.ndarray
+    height: np.ndarray
+    v_n: np.ndarray
+    q_nb: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class NavErrors(Record):
+    """
+    Solution less truth, resolved in n: t_ns (n,) and four (n, 3) arrays.
+
+    attitude: rotation vector of the *inertial* attitude error, rad; velocity m/s; position m;
+    drift: least-squares slope of the accumulated attitude error since the start, rad/s.
+    """
+
+    t_ns: np.ndarray
+    attitude: np.ndarray
+    velocity: np.ndarray
+    position: np.ndarray
+    drift: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class AidedErrors(Record):
+    """
+    Errors of an aided solution, solution less truth, resolved in n, and what the filter thinks.
+
+    t_ns (n,); attitude: rotation vector, q_nb = exp(attitude) q_nb_true, rad; velocity m/s;
+    position m; the three sigmas: standard deviations by the filter, all NaN where it has none;
+    estimates: mounting mu (rad), kx, kz of the velocity meter, and their standard deviations,
+    NaN too where there is none.  Each (n, 3).
+    """
+
+    t_ns: np.ndarray
+    attitude: np.ndarray
+    velocity: np.ndarray
+    position: np.ndarray
+    attitude_sigma: np.ndarray
+    velocity_sigma: np.ndarray
+    position_sigma: np.ndarray
+    estimates: np.ndarray
+    estimates_sigma: np.ndarray

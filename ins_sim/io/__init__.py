@@ -1,0 +1,1 @@
+"""Files and bags to objects of the core, and back."""

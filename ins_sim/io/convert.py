@@ -1,0 +1,126 @@
+"""Between bags and CSV files: a recorded flight or truth, and the readings of an IMU."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.bags.bag_writer import check
+from ins_sim.bags.storages import is_bag
+from ins_sim.bags.windows import write_windows
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.messages import convert as blocks
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND
+from . import bag_imu, csv_flight, csv_imu, csv_table, csv_writer
+from .bag_truth import read_poses
+from .topic_choice import choose, short
+
+WINDOW = 4096
+
+
+def convert(source, target, settings, topic=None, storage='mcap', compression='none',
+            force=False):
+    """
+    Write target from source, a CSV file from a bag or a bag from a CSV file; return a sentence.
+
+    settings: MotionGeneratorSettings, of which a flight takes motion.recording, datum, rate_hz and
+    time.epoch_s.  topic: of the bag; None for truth/odometry if there is one, else the only Imu.
+    storage and compression: as of BagWriter; force: replace what is there.  Raises ValueError or
+    OSError in one sentence where source, target or topic will not do.
+    """
+    source, target = Path(source), Path(target)
+    if not source.exists():
+        raise FileNotFoundError(f'{source} does not exist; expected a rosbag2 bag or a CSV file')
+    from_bag, to_csv = is_bag(source), target.name.endswith(csv_table.SUFFIXES)
+    if not from_bag and not source.name.endswith(csv_table.SUFFIXES):
+        raise ValueError(f'{source} is neither a bag nor named '
+                         f'{" or ".join(csv_table.SUFFIXES)}')
+    if from_bag != to_csv:
+        raise ValueError(f'{source} and {target} are both {"bags" if from_bag else "CSV files"}; '
+                         'expected a bag and a CSV file')
+    if from_bag:
+        _check_file(target, force)
+        return _to_csv(source, target, settings.datum, topic)
+    check(target, storage, compression, force)
+    how = dict(storage=storage, compression=compression, replace=force)
+    if csv_imu.IMU[0] in csv_table.read_header(source):
+        return _imu_to_bag(source, target, settings, topic, how)
+    if topic is not None:
+        raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, of which the '
+                         'topics are truth/*; expected none')
+    return _flight_to_bag(source, target, settings, how)
+
+
+def _check_file(path, force):
+    if path.exists() and not force:
+        raise ValueError(f'{path} exists; expected a new file (or --force)')
+    if path.exists() and not path.is_file():
+        raise ValueError(f'{path} is no file; --force replaces only a file')
+
+
+def _to_csv(source, target, datum, topic):
+    with open_bag(source) as bag:
+        types = [topics.ODOMETRY, topics.IMU]
+        wanted = 'auto' if topic is None else topic
+        name = choose(bag, types[:1] if topic is None else types, wanted, '--topic',
+                      topics.TRUTH_ODOMETRY.name, needed=topic is not None)
+        if name is None:
+            if not any(c.type_name == topics.IMU for c in bag.topics.values()):
+                raise ValueError(f'{source} has neither a {short(types[:1])} whose name ends in '
+                                 f'{topics.TRUTH_ODOMETRY.name} nor a {short(types[1:])}; it has '
+                                 f'{", ".join(sorted(bag.topics)) or "no topic"}')
+            name = choose(bag, types[1:], wanted, '--topic', needed=True)
+        if bag.topics[name].type_name == topics.IMU:
+            imu, _, _ = bag_imu.read(bag, name)
+            csv_writer.write_imu(target, imu)
+            return f'{target} with {len(imu)} samples of {name}'
+    poses = read_poses(source, name, datum, '--topic')
+    csv_writer.write_flight(target, poses)
+    return f'{target} with {len(poses.t_ns)} rows of {name}'
+
+
+def _imu_to_bag(source, target, settings, topic, how):
+    imu = csv_imu.read_imu(source)
+    stamps_ns = imu.t_ns + settings.time.epoch_s * SECOND
+    _check_stamps(source, stamps_ns)
+    written = topics.IMU_RAW if topic is None else replace(topics.IMU_RAW, name=topic)
+    values = np.concatenate([imu.omega, imu.f], axis=1)
+    counts = write_windows(target, {topics.IMU_RAW: written}, (
+        {topics.IMU_RAW: (stamps_ns[k:k + WINDOW], values[k:k + WINDOW])}
+        for k in range(0, len(imu), WINDOW)), **how)
+    return _told(target, counts)
+
+
+def _flight_to_bag(source, target, settings, how):
+    """Write the four topics of the truth from the first row, 3 s before start_s, to the last."""
+    recording = replace(settings.motion.recording, path=str(source))
+    motion = RecordedMotion(csv_flight.read_poses(source), recording, settings.earth)
+    frame = MapFrame(settings.datum, settings.earth.rotation)
+    pad_ns, step_ns = round(PAD_S * SECOND), period_ns(settings.rate_hz)
+    t_ns = np.arange(-pad_ns, round(motion.end_s * SECOND) + pad_ns + 1, step_ns, dtype=np.int64)
+    offset_ns = motion.zero_ns + settings.time.epoch_s * SECOND
+    _check_stamps(source, t_ns + offset_ns)
+
+    def windows():
+        for k in range(0, len(t_ns), WINDOW):
+            truth = motion.at(t_ns[k:k + WINDOW])
+            yield {topic: (truth.t_ns + offset_ns, values)
+                   for topic, values in blocks.truth_blocks(frame, truth).items()}
+
+    counts = write_windows(target, {topic: topic for topic in topics.TRUTH}, windows(), **how)
+    return _told(target, counts, *motion.warnings)
+
+
+def _check_stamps(source, stamps_ns):
+    if stamps_ns.min() < 0:
+        raise ValueError(f'{source} begins at {stamps_ns.min() / SECOND:.9g} s; expected 0 s or '
+                         'later in a bag (time.epoch_s is added)')
+
+
+def _told(target, counts, *more):
+    return '\n'.join([f'{target} with ' + ', '.join(
+        f'{count} messages on {name}' for name, count in counts.items()), *more])

@@ -1,0 +1,43 @@
+"""Write the CSV files that ``csv_flight`` and ``csv_imu`` read, without losing a bit."""
+
+import gzip
+from pathlib import Path
+
+import numpy as np
+
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.numerics.instants import seconds
+from . import csv_flight, csv_imu
+
+
+def write_flight(path, poses):
+    """Write RecordedPoses with velocity; what is there is replaced.  Raises OSError."""
+    lon = poses.lon_deg
+    lon = np.where(np.abs(lon) <= 180.0, lon, (lon + 180.0) % 360.0 - 180.0)
+    east, north, up = poses.v_n.T
+    values = (poses.lat_deg, lon, poses.height_m,
+              *(np.degrees(a) for a in to_compass(poses.q_nb)), north, east, -up)
+    _write(path, poses.t_ns, csv_flight.REQUIRED[1:], values)
+
+
+def write_imu(path, imu):
+    """Write RecordedImu without its orientation; what is there is replaced.  Raises OSError."""
+    _write(path, imu.t_ns, csv_imu.IMU, (*imu.omega.T, *imu.f.T))
+
+
+def _write(path, t_ns, names, values):
+    """Write t_s, exact, and columns, each number in the shortest text that gives its bits back."""
+    path = Path(path)
+    stamps = (seconds(t).removesuffix(' s') for t in t_ns.tolist())
+    texts = [stamps, *(map(repr, column.tolist()) for column in values)]
+    lines = [','.join(('t_s', *names)), *(','.join(row) for row in zip(*texts)), '']
+    data = '\n'.join(lines).encode()
+    if path.name.endswith('.gz'):
+        data = gzip.compress(data, mtime=0)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f'.{path.name}.part')
+    try:
+        part.write_bytes(data)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,30 @@
+"""The motion that settings name: in closed form, or read from a CSV file or a bag."""
+
+from ins_sim.bags.storages import is_bag
+from ins_sim.core.motion.factory import make_motion
+
+
+def read_motion(settings):
+    """
+    Return the motion of MotionGeneratorSettings or ImuSensorSettings.
+
+    Raises ValueError or OSError in one sentence on settings or a recording that cannot be used.
+    """
+    motion = settings.motion
+    if motion.kind != 'recording':
+        return make_motion(motion, settings.datum, settings.earth)
+    # Imported lazily: splines need SciPy, and nodes that do not need them start faster.
+    from ins_sim.core.motion.recorded.spline import RecordedMotion
+    return RecordedMotion(_read_poses(motion.recording, settings.datum), motion.recording,
+                          settings.earth)
+
+
+def _read_poses(recording, datum):
+    if is_bag(recording.path):
+        from .bag_truth import read_poses
+        return read_poses(recording.path, recording.topic, datum)
+    from .csv_flight import read_poses
+    if recording.topic != 'auto':
+        raise ValueError(f'motion.recording.topic is {recording.topic!r}, but {recording.path} is '
+                         'no bag; expected auto')
+    return read_poses(recording.path)

@@ -1,0 +1,140 @@
+"""An offline run as a bag: the topics that the nodes would publish, at their own stamps."""
+
+import numpy as np
+
+from ins_sim.bags.windows import write_windows
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.navigation.sample_clock import SampleClock
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
+from ins_sim.core.sensors.tuned_gyro.parity import rows
+from ins_sim.messages import convert, topics
+from ins_sim.messages.cdr import SECOND
+from ins_sim.settings.suggest import nearest
+from .motion import read_motion
+from .simulated_aiding import AidingSource
+
+# samples of the generator that are in memory as messages at once
+WINDOW = 4096
+CLOCK_HZ = 100.0
+
+
+def published(settings, aided=False):
+    """
+    Return the Topics that the nodes of Settings publish, in the order of equal stamps.
+
+    aided: velocity_meter, gnss and aided_navigator too.
+    """
+    clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
+    parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
+    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()))
+
+
+def select(settings, names, aided=False):
+    """
+    Return the Topics of these names, in the order of ``published``; all where names is None.
+
+    aided: as of ``published``.
+
+    Raises ValueError, naming the nearest one, for a topic that the nodes do not publish.
+    """
+    known = {topic.name.lstrip('/'): topic for topic in published(settings, aided)}
+    if names is None:
+        return tuple(known.values())
+    wanted = {name.lstrip('/') for name in names}
+    for name in sorted(wanted):
+        if name not in known:
+            raise ValueError(f'the nodes publish no topic {name!r}; the nearest is '
+                             f'{nearest(name, known)!r}')
+    return tuple(topic for name, topic in known.items() if name in wanted)
+
+
+def write(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
+          progress=None, aided=None):
+    """
+    Write a Run into a bag that appears only if it is whole; return {topic: message count}.
+
+    settings: simulation.Settings; chosen: Topics of ``select``; the rest as of BagWriter;
+    progress: called with the fraction done; aided: AidedSettings and the AidedRun on this run, or
+    None.  A message is logged at its own stamp.
+    """
+    aiding = None
+    if aided is not None:
+        aided_settings, flown = aided
+        aiding = AidingSource(aided_settings, flown, _rates_at(
+            flown.states.t_ns, run.imu.t_ns, run.imu.omega))
+    source = _Source(settings, run, aiding)
+
+    def windows():
+        for first in range(0, source.count, WINDOW):
+            yield source.window(first, min(first + WINDOW, source.count))
+            if progress is not None:
+                progress(min(1.0, (first + WINDOW) / source.count))
+
+    return write_windows(path, {topic: _as_published(topic, settings, aiding)
+                                for topic in chosen},
+                         windows(), storage, compression, replace)
+
+
+def _as_published(topic, settings, aiding):
+    if topic is topics.IMU_RAW:
+        return topics.imu_raw(*reported_variances(settings.imu_sensor))
+    return topic if aiding is None else aiding.as_published(topic)
+
+
+class _Source:
+    """The records of a run, and the truth at every sample of the generator, by windows."""
+
+    def __init__(self, settings, run, aiding):
+        generator = settings.motion_generator
+        self._motion = read_motion(generator)
+        self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
+        strapdown = settings.strapdown
+        self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)
+        self._epoch_ns = generator.time.epoch_s * SECOND
+        self._first_ns, self._dt_ns = round(generator.start_s * SECOND), period_ns(
+            generator.rate_hz)
+        self.count = round(generator.duration_s * SECOND) // self._dt_ns + 1
+        self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
+        clock = SampleClock(strapdown, period_ns(strapdown.rate_hz))
+        self._run, self._aiding = run, aiding
+        self._omega = _rates_at(run.states.t_ns, clock.instant(run.imu.t_ns), run.imu.omega)
+        self._parity = None
+        if run.imu.parity is not None:
+            self._parity = rows(settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu)
+
+    def window(self, first, stop):
+        """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""
+        k = np.arange(first, stop, dtype=np.int64)
+        truth = self._motion.at(self._first_ns + k * self._dt_ns)
+        # whatever is behind the last sample belongs to the last window
+        last = stop == self.count
+        begin = truth.t_ns[0] if first else -np.inf
+        end = np.inf if last else self._first_ns + stop * self._dt_ns
+        run = self._run
+        sensed = _between(run.imu.t_ns, begin, end)
+        solved = _between(run.states.t_ns, begin, end)
+        imu, states, errors = run.imu[sensed], run.states[solved], run.errors[solved]
+        blocks = {topics.CLOCK_TOPIC: (truth.t_ns[k % self._clock_every == 0], None)}
+        for record, values in (
+                (truth, convert.truth_blocks(self._truth_frame, truth)),
+                (imu, convert.imu_block(imu)),
+                (states, convert.state_blocks(self._frame, states, self._omega[solved])),
+                (errors, convert.error_blocks(errors))):
+            blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
+        if self._parity is not None:
+            blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
+        if self._aiding is not None:
+            blocks.update(self._aiding.blocks(begin, end))
+        return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
+
+
+def _between(t_ns, begin, end):
+    return slice(*np.searchsorted(t_ns, (begin, end)).tolist())
+
+
+def _rates_at(t_ns, instants_ns, omega):
+    """Return the readings of the gyros (n, 3) at instants t_ns, zero where there is none."""
+    k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)
+    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], omega[k], 0.0)

@@ -1,0 +1,42 @@
+"""Which topic of a bag is meant, said in one sentence where there is none or more than one."""
+
+from ins_sim.settings.suggest import nearest
+
+
+def choose(bag, types, wanted, key, ending='', needed=False):
+    """
+    Return the name of the topic of one of the types that is meant, or None.
+
+    bag: BagReader; wanted: the name of one, 'auto' for the only one whose name ends as given, or
+    'none' where none is needed; key: what wanted is the value of.  Raises ValueError where 'auto'
+    finds more than one, or none though one is needed, and for a name of no topic, or of one of
+    another type.
+    """
+    if wanted == 'none' and not needed:
+        return None
+    known = sorted(c.name for c in bag.topics.values() if c.type_name in types)
+    if wanted == 'auto':
+        known = [name for name in known if f'/{name}'.endswith(f'/{ending}' if ending else '')]
+        if len(known) > 1:
+            raise ValueError(f'{bag.path} has {len(known)} topics of {short(types)}: '
+                             f'{", ".join(known)}; expected {key} to name one'
+                             + ('' if needed else ', or none'))
+        if needed and not known:
+            where = f' whose name ends in {ending}' if ending else ''
+            raise ValueError(f'{bag.path} has no {short(types)}{where}; it has '
+                             f'{", ".join(sorted(bag.topics)) or "no topic"}')
+        return known[0] if known else None
+    name = wanted if wanted in bag.topics else '/' + wanted.lstrip('/')
+    if name not in bag.topics:
+        what = f'; the nearest is {nearest(name, known)!r}' if known else ''
+        raise ValueError(f'{bag.path} has no topic {wanted!r}, which is {key}{what}')
+    type_name = bag.topics[name].type_name
+    if type_name not in types:
+        raise ValueError(f'{bag.path}: {name}, which is {key}, has type {short([type_name])}; '
+                         f'expected {short(types)}')
+    return name
+
+
+def short(types):
+    """Return type names as people write them: sensor_msgs/Imu or ..."""
+    return ' or '.join(t.replace('/msg/', '/') for t in types)

@@ -1,0 +1,1 @@
+"""Lock-step: the generator goes on only when its consumers have acknowledged."""

@@ -1,0 +1,63 @@
+"""The truth of a run as ready messages, computed a block ahead."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.motion import check_length
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.io.motion import read_motion
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.convert import truth_blocks
+
+BLOCK = 256
+STAMP_END_S = 2**31
+
+
+class TruthSource:
+    """
+    Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
+
+    count: number of samples, or infinity; dt_ns: their spacing.  Raises ValueError on settings
+    that name no motion or a run longer than it.
+    """
+
+    def __init__(self, settings):
+        self._motion = read_motion(settings)
+        self._frame = MapFrame(settings.datum, settings.earth.rotation)
+        self._writers = [(topic, topic.writer()) for topic in topics.TRUTH]
+        self._epoch_ns = settings.time.epoch_s * SECOND
+        self._first_ns = round(settings.start_s * SECOND)
+        self.dt_ns = period_ns(settings.rate_hz)
+        length_s = settings.duration_s
+        if length_s:
+            check_length(settings, self._motion)
+        elif self._motion.end_s < math.inf:
+            length_s = self._motion.end_s - settings.start_s
+        last_s = settings.time.epoch_s + settings.start_s + length_s
+        if last_s >= STAMP_END_S:
+            raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '
+                             f'than {STAMP_END_S} s, which a ROS stamp can hold')
+        self.count = round(length_s * SECOND) // self.dt_ns + 1 if length_s else math.inf
+        self._block, self._start = [], 0
+
+    def stamp_ns(self, k):
+        """Return the stamp of sample k."""
+        return self._epoch_ns + self._first_ns + k * self.dt_ns
+
+    def messages(self, k):
+        """Return the messages of sample k."""
+        if not 0 <= k - self._start < len(self._block):
+            self._fill(k)
+        return self._block[k - self._start]
+
+    def _fill(self, start):
+        k = np.arange(start, min(start + BLOCK, self.count), dtype=np.int64)
+        truth = self._motion.at(self._first_ns + k * self.dt_ns)
+        values = truth_blocks(self._frame, truth)
+        stamps = self._epoch_ns + truth.t_ns
+        self._block = list(zip(*[writer.pack_block(stamps, values[topic])
+                                 for topic, writer in self._writers]))
+        self._start = start

@@ -1,0 +1,53 @@
+"""
+The executables of the package: one table of nodes.
+
+The class of a node is imported only after the signal handlers are installed (``process.runtime``).
+"""
+
+from functools import partial
+from importlib import import_module
+import sys
+
+from .process.runtime import node_main
+
+# executable: (module in ``nodes``, class)
+NODES = {
+    'motion_generator': ('motion_generator', 'MotionGeneratorNode'),
+    'imu_sensor': ('imu_sensor', 'ImuSensorNode'),
+    'strapdown': ('strapdown', 'StrapdownNode'),
+    'velocity_meter': ('velocity_meter', 'VelocityMeterNode'),
+    'gnss': ('gnss', 'GnssNode'),
+    'aided_navigator': ('aided_navigator', 'AidedNavigatorNode'),
+    'recorder': ('recorder', 'RecorderNode'),
+    'player': ('player', 'PlayerNode'),
+}
+
+
+def run(name, args=None, **options):
+    """
+    Run a node of the table as a process and return its exit code.
+
+    args: command line with ROS arguments, by default that of the process; options: further
+    arguments of the class.
+    """
+    return node_main(partial(_load, name), args, **options)
+
+
+def _load(name):
+    module, cls = NODES[name]
+    return getattr(import_module(f'ins_sim.ros.nodes.{module}'), cls)
+
+
+# The entry points of the console scripts. The player needs a bag and is started by "ins_sim play".
+motion_generator = partial(run, 'motion_generator')
+imu_sensor = partial(run, 'imu_sensor')
+strapdown = partial(run, 'strapdown')
+velocity_meter = partial(run, 'velocity_meter')
+gnss = partial(run, 'gnss')
+aided_navigator = partial(run, 'aided_navigator')
+recorder = partial(run, 'recorder')
+
+
+if __name__ == '__main__':
+    # python -m ins_sim.ros.main NODE [--ros-args ...]
+    sys.exit(run(sys.argv[1], sys.argv[1:]))

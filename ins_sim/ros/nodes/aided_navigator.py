@@ -1,0 +1,111 @@
+"""Node aided_navigator: readings of an IMU and fixes in, aided solution and its errors out."""
+
+from ins_sim.core.aiding.live import AidedStream
+from ins_sim.core.aiding.navigator import GNSS, METER
+from ins_sim.core.earth.great_circle import Route
+from ins_sim.messages import topics, velocity_record
+from ins_sim.messages.convert import aided_fix_one, aided_odometry_one, SIGMAS
+from ins_sim.messages.gnss_fixes import GnssPairs
+from ins_sim.settings.aided_navigator import AidedNavigatorSettings
+from ..process.aiding_health import AidingHealth
+from ..transport import qos
+from ..transport.backlog import HandQueue
+from ..transport.patience import MISSING_S
+from .following import NavigatorNode
+
+
+class AidedNavigatorNode(NavigatorNode):
+    """Reads imu/data_raw, truth/odometry and fixes; publishes aided/*."""
+
+    NAME = 'aided_navigator'
+    SETTINGS = AidedNavigatorSettings
+    PUBLISHED = (topics.AIDED_ODOMETRY, *topics.AIDED_ERRORS, topics.AIDED_ORTHODROME)
+
+    def make_navigator(self):
+        """Return the navigator."""
+        self._route = Route.of_points(self.settings.motion.route.points)
+        return AidedStream(self.settings)
+
+    def make_outputs(self):
+        """Make publishers and readers, and the queues of the fixes."""
+        super().make_outputs()
+        self._fix = qos.publisher(self, topics.AIDED_FIX, self.depth)
+        self._fix_pack = topics.AIDED_FIX.writer().pack
+        self._fix_alone = topics.AIDED_FIX_ALONE.writer().pack
+        self._sigmas = [(qos.publisher(self, topic, self.depth), topic.writer().pack)
+                        for topic in topics.AIDED_SIGMAS]
+        self._pairs = GnssPairs(self.epoch_ns, round(1e6 * self.settings.gnss.latency_ms))
+        sources, self._queues = self.stage.navigator.sources, []
+        if METER in sources:
+            self._queues.append((HandQueue(self, topics.METER_RECORD, self.depth), METER,
+                                 lambda data: [velocity_record.read(data, self.epoch_ns)]))
+        if GNSS in sources:
+            # the velocity first, for the fix waits for it
+            self._queues += [(HandQueue(self, topic, self.depth), GNSS, push) for topic, push in (
+                (topics.GNSS_VELOCITY, self._pairs.push_velocity),
+                (topics.GNSS_FIX, self._pairs.push_fix))]
+        self._health = AidingHealth(self.stage)
+        self.monitor.add(self._health.describe)
+
+    def begin_run(self):
+        """Begin on the first leg."""
+        self._leg = 0
+
+    def take(self):
+        """Take the truth and the fixes that have come."""
+        super().take()
+        for queue, source, read in self._queues:
+            while not self.stop and (data := queue.take()) is not None:
+                self._take_fixes(source, read, data)
+
+    def _take_fixes(self, source, read, data):
+        try:
+            fixes = read(data)
+        except ValueError as error:
+            self.fault(str(error))
+            return
+        if source in self.stage.silent:
+            self.get_logger().info(f'{source} delivers again')
+        for fix in fixes:
+            self._health.came(source, fix)
+            self.publish(self.push(self.stage.push_fix, (source, fix)))
+            # where that fix was none, what it held up goes on without it
+            self.publish(self.push(self.stage.match, ()))
+
+    def miss(self):
+        """Say which fix has not come, and go on without its instrument; or the truth."""
+        awaited = self.stage.awaited
+        for source in awaited:
+            self.fault(f'no fix of {source} in {MISSING_S:g} s; expected one for every '
+                       f'{"window" if source == METER else "instant"}: going on without it until '
+                       'it delivers again')
+            self.publish(self.push(self.stage.go_on_without, (source,)))
+        if not awaited:
+            super().miss()
+
+    def publish(self, outputs):
+        """Publish, and take note of what became of the fixes."""
+        self._health.judge(self.stage.taken)
+        super().publish(outputs)
+
+    def messages(self, rate, solution, errors, sigmas):
+        """Return the runs of the topics that every filter has."""
+        return (aided_odometry_one(self.frame, solution, rate, sigmas), *((e,) for e in errors),
+                (self._orthodrome(solution),))
+
+    def publish_one(self, stamp_ns, rate, solution, errors, sigmas):
+        """Publish an output, with three sigma where the filter has them."""
+        super().publish_one(stamp_ns, rate, solution, errors, sigmas)
+        if self._fix.get_subscription_count():
+            pack = self._fix_alone if sigmas is None else self._fix_pack
+            self._fix.publish(pack(stamp_ns, *aided_fix_one(solution, sigmas)))
+        # attitude first, as the errors
+        for (publisher, pack), sigma in zip(self._sigmas, sigmas[::-1] if sigmas else ()):
+            if publisher.get_subscription_count():
+                publisher.publish(pack(stamp_ns, [SIGMAS * s for s in sigma]))
+
+    def _orthodrome(self, solution):
+        lat, lon, height = solution[:3]
+        self._leg = self._route.leg_at(lat, lon, self._leg)
+        x, z = self._route.to_xz(lat, lon, self._leg)
+        return x, height, z

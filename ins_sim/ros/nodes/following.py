@@ -1,0 +1,107 @@
+"""What the nodes that navigate share: readings of an IMU, and the truth that each waits for."""
+
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.messages import topics
+from ..transport import qos
+from ..transport.backlog import HandQueue
+from ..transport.patience import MISSING_S, Patience
+from .stage import StageNode
+
+AT_REST = (0.0, 0.0, 0.0)
+
+
+class NavigatorNode(StageNode):
+    """
+    A node driven by imu/data_raw whose stage is a core.streams.matching.MatchedStreams.
+
+    A subclass has PUBLISHED, its Topics; make_navigator(), and messages(rate, *output) -> the
+    runs of each of these, output being one of the stage without its instant.  It may have more
+    to take, ``take``, and to miss, ``miss``.
+    """
+
+    DRIVER = topics.IMU_RAW
+
+    def make_stage(self):
+        """Return the navigator."""
+        settings = self.settings
+        self.frame = MapFrame(settings.datum, settings.earth.rotation)
+        self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
+        self._rates = {}
+        self._first_ns = self._newest_ns = None
+        return self.make_navigator()
+
+    def make_outputs(self):
+        """Make publishers, readers, writers and the queue of truth."""
+        self._imu_reader = topics.IMU_RAW.reader()
+        # the rate of the body is not needed: pose and velocity only
+        self._truth_reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
+        self._outputs = [(qos.publisher(self, topic, self.depth), topic.writer().pack)
+                         for topic in self.PUBLISHED]
+        # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
+        # message would cost a cycle of the executor.
+        self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
+        self._patience = Patience(self, lambda: self.stage.waiting,
+                                  lambda: self.stage.processed_ns, self.take, self.miss,
+                                  self._settle)
+
+    def instant(self, stamp_ns):
+        """Return the instant of a reading by its stamp, motion time."""
+        return stamp_ns
+
+    def on_message(self, data):
+        """Give one IMU message to the navigator, and what it waits for."""
+        sample = self.read(self._imu_reader, data)
+        if sample is None:
+            return
+        sample = (self.instant(sample[0]), *sample[1:])
+        self._newest_ns = sample[0]
+        self._rates[sample[0]] = sample[1]
+        # the rest first: it may have jumped back as the IMU is about to
+        self.take()
+        self.publish(self.push(self.stage.push_imu, sample))
+        self._patience.wait()
+
+    def take(self):
+        """Take what has come beside the readings."""
+        while not self.stop and (data := self._truth.take()) is not None:
+            sample = self.read(self._truth_reader, data)
+            if sample is not None:
+                self.publish(self.push(self.stage.push_truth, sample))
+
+    def miss(self):
+        """Say what has not come, and go on without."""
+        self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected the '
+                   'truth of every reading')
+        self.stage.rejoin()
+
+    def _settle(self):
+        if self.stage.waiting:
+            self.seen_so_far(self.stage.processed_ns)
+            return
+        self._rates.clear()
+        if self._newest_ns is not None:
+            self.seen(self._newest_ns)
+
+    def publish(self, outputs):
+        """Publish every output_every-th of the stage's outputs, and report what ended them."""
+        while self.stage.faults:
+            self.fault(str(self.stage.faults.pop(0)))
+        for t_ns, *output in outputs:
+            if self._first_ns is None or t_ns < self._first_ns:
+                self._first_ns = t_ns
+                self.begin_run()
+            if (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns % self._every:
+                continue
+            self.publish_one(t_ns + self.epoch_ns, self._rates.get(t_ns, AT_REST), *output)
+            self.monitor.sent += 1
+
+    def begin_run(self):
+        """Start anew at the first instant of a run."""
+
+    def publish_one(self, stamp_ns, rate, *output):
+        """Publish an output; rate: the reading of the gyros at its instant, rad/s."""
+        for (publisher, pack), runs in zip(self._outputs, self.messages(rate, *output)):
+            # asking costs a fifth of packing and publishing what nobody hears
+            if publisher.get_subscription_count():
+                publisher.publish(pack(stamp_ns, *runs))

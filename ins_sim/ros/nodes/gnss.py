@@ -1,0 +1,65 @@
+"""Node gnss: streamed truth in, fixes of a GNSS receiver out."""
+
+from std_srvs.srv import SetBool
+
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.sensors.gnss import Gnss
+from ins_sim.messages import topics
+from ins_sim.messages.gnss_fixes import GnssWriter
+from ins_sim.settings.gnss import GnssSettings
+from ..transport import qos
+from ..transport.arriving import Arriving
+from .stage import StageNode
+
+
+class GnssNode(StageNode):
+    """Reads truth/odometry, publishes gnss/fix and, while there is a fix, gnss/velocity."""
+
+    NAME = 'gnss'
+    SETTINGS = GnssSettings
+    DRIVER = topics.TRUTH_ODOMETRY
+
+    def make_stage(self):
+        """Return the receiver."""
+        settings = self.settings
+        self._frame = MapFrame(settings.datum, settings.earth.rotation)
+        self._receiver = Gnss(settings)
+        return Arriving(self._receiver)
+
+    def make_outputs(self):
+        """Make publishers, reader and writer, and the service that forces an outage."""
+        self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46), (46, 49)))
+        self._writer = GnssWriter(self.epoch_ns)
+        self._fix, self._velocity = (qos.publisher(self, topic, self.depth) for topic in (
+            topics.GNSS_FIX, topics.GNSS_VELOCITY))
+        self._fixes = self._outages = 0
+        self.monitor.add(self._describe)
+        self.create_service(SetBool, '~/outage', self._on_outage)
+
+    def on_message(self, data):
+        """Give one truth message to the receiver and publish the fixes that are there by then."""
+        sample = self.read(self._reader, data)
+        if sample is None:
+            return
+        t_ns, r_m, q_mb, v_b, rate = sample
+        truth = (*self._frame.geodetic_one(r_m, q_mb, v_b), rate)
+        for fix in self.push(self.stage.advance, (t_ns, self._receiver.push, truth)):
+            self._fix.publish(self._writer.fix(fix))
+            if fix.valid:
+                self._velocity.publish(self._writer.velocity(fix))
+            self._fixes += fix.valid
+            self._outages += not fix.valid
+            self.monitor.sent += 1
+        self.seen(t_ns)
+
+    def _describe(self):
+        """Return nothing that is wrong, and the values for /diagnostics."""
+        return '', (('fixes', self._fixes), ('outages', self._outages),
+                    ('outage forced', self._receiver.forced))
+
+    def _on_outage(self, request, response):
+        self._receiver.force_outage(request.data)
+        response.success = True
+        response.message = 'no fix from now on' if request.data else 'fixes by the schedule'
+        self.get_logger().info(response.message)
+        return response

@@ -1,0 +1,91 @@
+"""Node imu_sensor: streamed truth in, readings of the IMU out."""
+
+from std_srvs.srv import SetBool
+
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.numerics.units import DEG_H
+from ins_sim.core.sensors.imu.sampling import Sampler
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.messages import topics
+from ins_sim.settings.imu import ImuSensorSettings
+from ..transport import qos
+from .stage import StageNode
+
+
+class ImuSensorNode(StageNode):
+    """Reads truth/imu, publishes imu/data_raw and, with tuned gyros, imu/parity."""
+
+    NAME = 'imu_sensor'
+    SETTINGS = ImuSensorSettings
+    DRIVER = topics.TRUTH_IMU
+
+    def make_stage(self):
+        """Return the IMU."""
+        settings = self.settings
+        motion = None
+        if settings.source == 'motion':
+            # off the way of a node that hears its motion
+            from ins_sim.io.motion import read_motion
+            motion = read_motion(settings)
+        return make_imu(settings, motion)
+
+    def make_outputs(self):
+        """Make publishers, reader and writers."""
+        settings = self.settings
+        self._dt_ns = period_ns(settings.rate_hz)
+        self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
+        self._publisher = qos.publisher(self, topics.IMU_RAW, self.depth)
+        topic = topics.imu_raw(*reported_variances(settings))
+        self._reader, self._writer = topics.TRUTH_IMU.reader(), topic.writer()
+        self._parity = None
+        if self.stage.pair is not None:
+            self._watch_parity()
+
+    def _watch_parity(self):
+        from ins_sim.core.sensors.tuned_gyro.parity import ParityTest
+        self._parity = ParityTest(self.settings, self.stage.pair)
+        self._parity_publisher = qos.publisher(self, topics.IMU_PARITY, self.depth)
+        self._parity_writer = topics.IMU_PARITY.writer()
+        self.monitor.add(self._describe_parity)
+        if self.stage.pair.has_fault:
+            self.create_service(SetBool, '~/fault', self._on_fault)
+
+    def on_message(self, data):
+        """Give one truth message to the IMU and publish what it completes."""
+        sample = self.read(self._reader, data)
+        if sample is None:
+            return
+        for t_ns, omega, force, parity in self.push(self.stage.push, sample):
+            stamp_ns = self._sampler.stamp(t_ns // self._dt_ns, t_ns)
+            if stamp_ns is None:
+                continue
+            stamp_ns += self.epoch_ns
+            self._publisher.publish(self._writer.pack(stamp_ns, omega, force))
+            self.monitor.sent += 1
+            if parity is not None:
+                self._test_parity(stamp_ns, t_ns, omega, force, parity)
+        self.seen(sample[0])
+
+    def _test_parity(self, stamp_ns, t_ns, omega, force, parity):
+        self._parity.push(t_ns, omega, force, parity)
+        if self._parity_publisher.get_subscription_count():
+            self._parity_publisher.publish(
+                self._parity_writer.pack(stamp_ns, self._parity.row(parity)))
+
+    def _describe_parity(self):
+        """Return what is wrong with the channels, or '', and the values for /diagnostics."""
+        test = self._parity
+        mean, most = test.mean / DEG_H, test.threshold / DEG_H
+        wrong = ''
+        if test.exceeded:
+            wrong = (f'parity of the gyro channels is {mean:.4g} deg/h; expected at most '
+                     f'{most:.4g} deg/h: a channel has a fault')
+        return wrong, (('parity deg/h', f'{mean:.6g}'), ('parity threshold deg/h', f'{most:.6g}'))
+
+    def _on_fault(self, request, response):
+        self.stage.pair.force_fault(request.data)
+        response.success = True
+        response.message = (f'{self.settings.gyro.dtg.fault.channel} '
+                            f'{"has its fault" if request.data else "is healthy"}')
+        return response

@@ -1,0 +1,158 @@
+"""Node motion_generator: the master of time, which publishes the truth."""
+
+import math
+import time
+
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, Trigger
+
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import Reader
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ..lock_step.pacing import LockStep, Pace
+from ..lock_step.truth_source import TruthSource
+from ..process.diagnostics import Monitor
+from ..process.parameters import declare_settings
+from ..process.runtime import EXIT_CONSUMER
+from ..transport import qos
+from ..transport.backlog import HandQueue
+
+SERVE_S = 0.01
+POLL_S = 2e-4
+BURST = 50
+CLOCK_HZ = 100.0
+
+
+class MotionGeneratorNode(Node):
+    """Publishes truth/*, /clock and sim/status; paces by the clock or by sim/ack."""
+
+    NAME = 'motion_generator'
+
+    def __init__(self, stop=None, **kwargs):
+        super().__init__(self.NAME, **kwargs)
+        self._stop = stop
+        self.settings = declare_settings(self, MotionGeneratorSettings)
+        pacing, depth = self.settings.pacing, self.settings.topics.depth
+        self._source = TruthSource(self.settings)
+        self._pace = Pace(pacing.real_time_factor, self._source.dt_ns * 1e-9)
+        self._lock = None
+        if pacing.lock_step or pacing.real_time_factor == 0.0:
+            self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
+            self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
+                topics.HEADER)
+        self._publishers = [qos.publisher(self, topic, depth) for topic in topics.TRUTH]
+        self._publish = [p.publish for p in self._publishers]
+        self._clock_every = 0
+        if self.settings.publish_clock:
+            self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
+            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, depth)
+            self._clock_writer = topics.CLOCK_TOPIC.writer()
+        self._status = self.create_publisher(String, topics.STATUS.name, qos.latched())
+        self.monitor = Monitor(self)
+        self.create_service(SetBool, '~/pause', self._on_pause)
+        self.create_service(Trigger, '~/step', self._on_step)
+        self.create_service(Trigger, '~/reset', self._on_reset)
+        self._paused, self._single, self._next = False, 0, 0
+
+    def run(self, executor, stop):
+        """Publish until the end or until stop is set."""
+        self._announce('running')
+        if not self._lock and not self._publishers[-1].get_subscription_count():
+            self.get_logger().warning(
+                f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
+                '(pacing.lock_step: true waits for the consumers and loses none)')
+        self._pace.anchor(0)
+        served = 0.0
+        while not stop:
+            wait_s = self._advance(stop)
+            now = time.monotonic()
+            if now - served > SERVE_S:
+                executor.spin_once(timeout_sec=0.0)
+                served = now
+            elif wait_s > 0.0:
+                time.sleep(min(wait_s, SERVE_S))
+
+    def _advance(self, stop):
+        """Publish what may be published; return how long there is nothing to do, s."""
+        if self.monitor.state == 'finished':
+            return SERVE_S
+        lock, source = self._lock, self._source
+        allowed = self._pace.allowed() if not self._paused else self._next + self._single
+        if lock:
+            self._take_acks()
+            allowed = min(allowed, lock.allowed())
+            late = lock.overdue(self._next)
+            if late and not self._paused:
+                self.monitor.fault(lock.complaint(late, 'the consumers of pacing.required'),
+                                   fatal=True)
+                stop.request(EXIT_CONSUMER)
+            if lock.repeat_due(self._next):
+                self._send(0)
+        if self._next >= source.count:
+            if not lock or lock.done(source.count):
+                self._finish(stop)
+            return POLL_S
+        allowed = min(allowed, source.count)
+        if self._next >= allowed:
+            due_s = self._pace.wait_s(self._next)
+            quiet = lock is None or self._paused or time.monotonic() - lock.moved > 0.05
+            return max(due_s, 10 * POLL_S if quiet else POLL_S) if lock or self._paused else due_s
+        for k in range(self._next, min(allowed, self._next + BURST)):
+            self._send(k)
+            self._next += 1
+            self._single = max(0, self._single - 1)
+        return 0.0
+
+    def _send(self, k):
+        if self._clock_every and k % self._clock_every == 0:
+            self._clock_publisher.publish(self._clock_writer.pack(self._source.stamp_ns(k)))
+        for publish, message in zip(self._publish, self._source.messages(k)):
+            publish(message)
+        self.monitor.sent += 1
+
+    def _take_acks(self):
+        while (data := self._acks.take()) is not None:
+            stamp_ns, _ = self._ack_reader.read(data)
+            k = (stamp_ns - self._source.stamp_ns(0)) // self._source.dt_ns
+            self._lock.ack(self._ack_reader.strings(data)[0], k, self._next)
+            self.monitor.received += 1
+
+    def _announce(self, state):
+        self.monitor.state = state
+        self._status.publish(String(data=state))
+
+    def _finish(self, stop):
+        self._announce('finished')
+        self.get_logger().info(f'finished after {self._next} samples')
+        if self.settings.exit_at_end:
+            stop.request()
+
+    def _on_pause(self, request, response):
+        self._paused = request.data
+        self._restart_clocks()
+        if self.monitor.state != 'finished':
+            self._announce('paused' if request.data else 'running')
+        response.success, response.message = True, self.monitor.state
+        return response
+
+    def _on_step(self, request, response):
+        response.success = self._paused and self.monitor.state != 'finished'
+        response.message = f'sample {self._next}' if response.success else \
+            f'{self.monitor.state}; expected paused'
+        self._single += response.success
+        return response
+
+    def _on_reset(self, request, response):
+        self._next = self._single = 0
+        if self._lock:
+            self._lock.restart()
+        self._restart_clocks()
+        self._announce('paused' if self._paused else 'running')
+        response.success, response.message = True, 'back at sample 0'
+        return response
+
+    def _restart_clocks(self):
+        self._pace.anchor(self._next)
+        if self._lock:
+            self._lock.moved = time.monotonic()

@@ -1,0 +1,100 @@
+"""What the nodes that follow a stream share: parameters, faults, acknowledgements, reset."""
+
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from ins_sim.core.streams.faults import StreamFault
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND, Writer
+from ..process.diagnostics import Monitor
+from ..process.parameters import declare_settings
+from ..process.runtime import EXIT_FAULT, Stop
+from ..transport import qos
+from ..transport.backlog import DrivingQueue, LINGER_S
+
+
+class StageNode(Node):
+    """
+    A node driven by one topic, which reads no clock and computes from the messages alone.
+
+    A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
+    pushes raise StreamFault, and has ``on_message(bytes)``.
+    """
+
+    def __init__(self, stop=None, **kwargs):
+        super().__init__(self.NAME, **kwargs)
+        self.stop = Stop() if stop is None else stop
+        self.settings = declare_settings(self, self.SETTINGS)
+        self.epoch_ns = self.settings.time.epoch_s * SECOND
+        self.stage = self.make_stage()
+        self.depth = self.settings.topics.depth
+        self._stops = self.settings.on_fault == 'stop'
+        self._ack = Writer(topics.HEADER, self.get_name())
+        self._ack_publisher = qos.ack_publisher(self)
+        self._last_stamp = self._seen_ns = None
+        self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
+        self.make_outputs()
+        self.create_service(Trigger, '~/reset', self._on_reset)
+        self.create_subscription(String, topics.STATUS.name, self._on_status, qos.latched())
+        self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained,
+                                   LINGER_S)
+
+    def _on_data(self, data):
+        if not self.stop:
+            self.monitor.received += 1
+            self.on_message(data)
+
+    def read(self, reader, data):
+        """Return motion time and runs of a message, or None after reporting that it is bad."""
+        try:
+            stamp_ns, *runs = reader.read(data)
+        except ValueError as error:
+            self.fault(str(error))
+            return None
+        return (stamp_ns - self.epoch_ns, *runs)
+
+    def push(self, push, sample):
+        """Return the outputs of a push; report a fault, start anew or stop, as on_fault says."""
+        try:
+            return push(*sample)
+        except StreamFault as fault:
+            self.fault(str(fault))
+            if not fault.restart or self.stop:
+                return []
+        self.stage.reset()
+        try:
+            return push(*sample)
+        except StreamFault as fault:
+            self.fault(str(fault))
+            return []
+
+    def fault(self, sentence):
+        """Report a fault; end the node if on_fault says so."""
+        self.monitor.fault(sentence, fatal=self._stops)
+        if self._stops:
+            self.stop.request(EXIT_FAULT)
+
+    def seen(self, t_ns):
+        """Remember the motion time up to which all is done, for the acknowledgement."""
+        self._seen_ns, self._last_stamp = t_ns, t_ns + self.epoch_ns
+
+    def seen_so_far(self, t_ns):
+        """Remember, once, up to where all is done while what comes behind has to wait."""
+        if t_ns is not None and t_ns != self._seen_ns:
+            self.seen(t_ns)
+
+    def on_drained(self):
+        """Acknowledge once a wake-up."""
+        if self._last_stamp is not None:
+            self._ack_publisher.publish(self._ack.pack(self._last_stamp))
+            self._last_stamp = None
+
+    def _on_status(self, message):
+        # silence of a generator that has paused or finished is no fault
+        self.monitor.awaited = message.data == 'running'
+
+    def _on_reset(self, request, response):
+        self.stage.reset()
+        response.success, response.message = True, 'started anew'
+        return response

@@ -1,0 +1,103 @@
+"""Node velocity_meter: streamed truth in, windows of the correlation velocity meter out."""
+
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
+from ins_sim.messages import topics, velocity_record
+from ins_sim.settings.velocity_meter import VelocityMeterSettings
+from ..transport import qos
+from ..transport.arriving import Arriving
+from ..transport.backlog import HandQueue
+from ..transport.patience import MISSING_S, Patience
+from .stage import StageNode
+
+
+class VelocityMeterNode(StageNode):
+    """
+    Reads truth/odometry, publishes velocity_meter/record and, of a valid fit, .../velocity.
+
+    With attack_angle ``ins`` it reads ins/odometry too, and a window waits for the solution at
+    its end.
+    """
+
+    NAME = 'velocity_meter'
+    SETTINGS = VelocityMeterSettings
+    DRIVER = topics.TRUTH_ODOMETRY
+
+    def make_stage(self):
+        """Return the instrument."""
+        settings = self.settings
+        self._frame = MapFrame(settings.datum, settings.earth.rotation)
+        self._meter = VelocityMeter(settings)
+        return Arriving(self._meter)
+
+    def make_outputs(self):
+        """Make publishers, readers and the queue of the INS."""
+        self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
+        self._record, self._velocity = (qos.publisher(self, topic, self.depth) for topic in (
+            topics.METER_RECORD, topics.METER_VELOCITY))
+        self._pack = topics.METER_VELOCITY.writer().pack
+        self._windows = self._invalid = self._heard = 0
+        self._reason = ''
+        self.monitor.add(self._describe)
+        self._newest_ns, self._dt_ns = None, period_ns(self.settings.rate_hz)
+        self._absent = False
+        self._ins = None
+        if self.settings.attack_angle == 'ins':
+            self._ins_reader = topics.INS_ODOMETRY.reader(((43, 46),))
+            self._ins = HandQueue(self, topics.INS_ODOMETRY, self.depth)
+        self._patience = Patience(self, lambda: self._meter.waits_for_ns is not None,
+                                  lambda: (self._windows, self._heard), self._take_ins,
+                                  self._miss_ins, self._settle)
+
+    def on_message(self, data):
+        """Give one truth message to the instrument, and the solutions that have come."""
+        sample = self.read(self._reader, data)
+        if sample is None:
+            return
+        t_ns, r_m, q_mb, v_b = sample
+        height = self._frame.geodetic_one(r_m, q_mb, v_b)[2]
+        self._publish(self.push(self.stage.advance, (t_ns, self._meter.push_truth, v_b, height)))
+        self._newest_ns = t_ns
+        self._take_ins()
+        if self._absent:
+            self._publish(self.stage.add(self._meter.give_up_ins()))
+        self._patience.wait()
+
+    def _take_ins(self):
+        while self._ins is not None and not self.stop and (data := self._ins.take()) is not None:
+            self._absent = False
+            self._heard += 1
+            sample = self.read(self._ins_reader, data)
+            if sample is not None:
+                self._publish(self.stage.add(self.push(self._meter.push_ins, sample)))
+
+    def _miss_ins(self):
+        self._absent = True
+        self.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected the '
+                   'solution up to the end of every window (attack_angle: none needs none)')
+        self._publish(self.stage.add(self._meter.give_up_ins()))
+
+    def _settle(self):
+        end_ns = self._meter.waits_for_ns
+        if end_ns is not None:
+            self.seen_so_far(end_ns - self._dt_ns)
+        elif self._newest_ns is not None:
+            self.seen(self._newest_ns)
+
+    def _publish(self, fixes):
+        for fix in fixes:
+            self._record.publish(velocity_record.pack(fix, self.epoch_ns))
+            self._windows += 1
+            if fix.valid:
+                t_ns, *runs = velocity_record.velocity_one(fix)
+                self._velocity.publish(self._pack(t_ns + self.epoch_ns, *runs))
+            else:
+                self._invalid += 1
+                self._reason = fix.status
+            self.monitor.sent += 1
+
+    def _describe(self):
+        """Return nothing that is wrong, and the values for /diagnostics."""
+        return '', (('windows', self._windows), ('invalid fits', self._invalid),
+                    ('last reason', self._reason))

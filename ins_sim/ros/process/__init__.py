@@ -1,0 +1,1 @@
+"""A node process: start, parameters, diagnostics, end."""

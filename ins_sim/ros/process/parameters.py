@@ -1,0 +1,61 @@
+"""The catalogue of settings as declared ROS parameters."""
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+
+from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.suggest import unknown
+
+OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
+
+
+def declare_settings(node, cls):
+    """
+    Declare the parameters of a settings class, read-only, and return the settings.
+
+    Raises ValueError, one sentence, on an unknown key, a wrong type or a bad value.  All that
+    was given is checked by the catalogue before it is declared, so that a whole number serves as
+    a float and so that live and offline runs refuse the same things in the same words.
+    """
+    fields = flatten(cls)
+    given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
+    strange = [name for name in given if name not in fields and not name.startswith(OF_ROS)]
+    if strange:
+        # a parameter file may serve all nodes: a key of another node is not a mistake
+        from ins_sim.settings.by_node import ALL_NAMES
+        for name in strange:
+            if name not in ALL_NAMES:
+                raise ValueError(unknown(name, ALL_NAMES))
+    settings = build(cls, {name: _plain(value, fields[name]) for name, value in given.items()
+                           if name in fields})
+    node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,
+                                  _descriptor(fields[name], value))
+                                 for name, value in values_of(settings).items()],
+                            ignore_override=True)
+    return settings
+
+
+def _plain(value, field):
+    if value is None and field.default == ():
+        # what ROS makes of an empty list in a file
+        return ()
+    return value.tolist() if hasattr(value, 'tolist') else value
+
+
+def _descriptor(field, value):
+    facts = field.metadata
+    text = f"{facts['doc']} [{facts['unit']}]" if facts['unit'] else facts['doc']
+    # rclpy takes an empty list for bytes, which only a dynamically typed parameter survives
+    descriptor = ParameterDescriptor(description=text, read_only=True,
+                                     dynamic_typing=value == ())
+    if facts['choices']:
+        descriptor.additional_constraints = 'one of: ' + ', '.join(facts['choices'])
+    if facts['size']:
+        descriptor.additional_constraints = f"{facts['size']} entries"
+    if facts['low'] is not None:
+        low, high = facts['low'], facts['high']
+        if field.type is int:
+            descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=1)]
+        else:
+            descriptor.floating_point_range = [FloatingPointRange(from_value=float(low),
+                                                                  to_value=float(high))]
+    return descriptor

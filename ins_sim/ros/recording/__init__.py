@@ -1,0 +1,1 @@
+"""Recording live topics into bags, and playing bags."""

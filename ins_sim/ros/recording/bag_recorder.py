@@ -1,0 +1,207 @@
+"""Topics into a bag, byte for byte: what came, what was repeated, what was lost."""
+
+from dataclasses import dataclass
+import time
+
+from ins_sim.bags import qos as bag_qos
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND, Writer
+from ..transport import qos
+from ..transport.backlog import HandQueue
+from ..transport.gaps import Gaps
+from ..transport.repairs import REPAIR_S
+from .run_clock import RunClock, stamped
+
+BATCH = 200
+FLUSH_S = 1.0
+# publishers that go on may not hold up the end
+FINISH_S = 2.0
+NAP_S = 0.002
+# messages without a stamp that wait for the first stamp of the run
+WAITING = 1000
+# by which of them a recorder answers in lock-step: the first that it records
+ANSWERED = (topics.TRUTH_IMU, *topics.DATA)
+# what the generator sends with every sample; it ends when the last one is answered
+PACED = topics.TRUTH
+
+
+@dataclass
+class Track:
+    """One topic in recording: its messages in the bag, and the repeated ones that are not."""
+
+    name: str
+    type_name: str
+    queue: HandQueue
+    gaps: Gaps
+    stamped: bool
+    seldom: bool
+    count: int = 0
+    repeated: int = 0
+    last: bytes = None
+    last_ns: int = 0
+    heard_ns: int = 0
+    jumped: bool = False
+
+
+class BagRecorder:
+    """
+    Writes what a node hears into a bag.
+
+    bag: BagWriter; log_time: 'stamp' or 'received' (docs/design/bags.md); report(sentence) is
+    told what is wrong.  The owner calls ``poll`` until nothing more is to come, and closes the
+    bag.  A stamped message equal to the one before it is a repeated sample of lock-step and is
+    written once.  The stamps of the first topic of ANSWERED are acknowledged, no further than all
+    of PACED that are recorded have come, and from when every stamped topic has been heard, one of
+    topics.SELDOM has a publisher, and ``settled`` is true: until then lock-step repeats sample 0.
+    """
+
+    def __init__(self, node, bag, log_time='stamp', depth=10000, report=None):
+        self._node, self._bag, self._depth, self._report = node, bag, depth, report
+        self._by_stamp = log_time == 'stamp'
+        self._clock, self._waiting = RunClock(), []
+        self.tracks = {}
+        self._ack = Writer(topics.HEADER, node.get_name())
+        self._ack_publisher = qos.ack_publisher(node)
+        self._ack_name = node.resolve_topic_name(topics.ACK.name)
+        self._answered, self._silent, self.settled = None, [], True
+        self._answered_ns, self._sent_ns, self._paced = None, None, []
+        self._flushed = time.monotonic()
+
+    def add(self, topic, profile=None, offered=bag_qos.RELIABLE, definition=None, type_hash=''):
+        """
+        Subscribe to a Topic and declare it in the bag; return its Track.
+
+        profile: QoS of the subscription, by default that of our own data; offered: that of the
+        publishers as the bag keeps it; definition and type_hash as BagWriter.add_topic takes
+        them.  Raises ValueError if the type is unknown, ImportError if it is not installed.
+        """
+        name = self._node.resolve_topic_name(topic.name)
+        queue = HandQueue(self._node, topic, self._depth, profile)
+        try:
+            self._bag.add_topic(name, topic.type_name, offered, definition, type_hash)
+        except BaseException:
+            self._node.destroy_subscription(queue.subscription)
+            raise
+        seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
+        # its array is stamped with the time of the run, as that of /diagnostics need not be
+        by_stamp = stamped(topic.type_name) or name == self._node.resolve_topic_name(
+            topics.METER_RECORD.name)
+        track = Track(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
+        self.tracks[name] = track
+        if (track.stamped or seldom) and name != self._ack_name:
+            self._silent.append(track)
+        order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
+        known = [n for n in order if n in self.tracks]
+        self._answered = self.tracks[known[0]] if known else None
+        paced = {self._node.resolve_topic_name(t.name) for t in PACED}
+        self._paced = [t for n, t in self.tracks.items() if n in paced]
+        return track
+
+    def subscribe_anew(self, track, profile):
+        """Replace the subscription of a topic, of which nothing has been heard."""
+        self._node.destroy_subscription(track.queue.subscription)
+        track.queue = HandQueue(self._node, topics.Topic(track.name, track.type_name),
+                                self._depth, profile)
+
+    @property
+    def counts(self):
+        """Return {topic name: messages in the bag}."""
+        return {name: track.count for name, track in self.tracks.items()}
+
+    @property
+    def last_s(self):
+        """Return the stamp of the last answered message, s."""
+        return (self._answered_ns or 0) / SECOND
+
+    def poll(self):
+        """Take what has come; return how many messages."""
+        taken = 0
+        for track in self.tracks.values():
+            take = track.queue.take_with_info
+            for _ in range(BATCH):
+                message = take()
+                if message is None:
+                    break
+                self._on_message(track, *message)
+                taken += 1
+        self._acknowledge()
+        if time.monotonic() - self._flushed > FLUSH_S:
+            self._bag.flush()
+            self._flushed = time.monotonic()
+        return taken
+
+    def _on_message(self, track, data, info):
+        track.gaps.take(info['publication_sequence_number'])
+        received_ns = info['received_timestamp'] or time.time_ns()
+        if not track.stamped:
+            self._write_unstamped(track, data, received_ns)
+            return
+        stamp_ns = self._clock.hear(data, received_ns)
+        if track is self._answered and stamp_ns is not None:
+            # a repeated sample is answered too: the first answer may have been lost
+            self._answered_ns, self._sent_ns = stamp_ns, None
+        if stamp_ns is not None:
+            track.heard_ns = stamp_ns
+        if data == track.last:
+            track.repeated += 1
+            return
+        track.last = data
+        if self._by_stamp and stamp_ns is not None:
+            if stamp_ns < track.last_ns and not track.jumped:
+                self._on_jump(track, stamp_ns)
+            track.last_ns = stamp_ns
+            self._write(track, stamp_ns, data)
+            if self._waiting:
+                self._write_waiting()
+        else:
+            self._write_unstamped(track, data, received_ns)
+
+    def _on_jump(self, track, stamp_ns):
+        track.jumped = True
+        if self._report is not None:
+            self._report(f'{track.name} jumps back from {track.last_ns / SECOND:.9f} s to '
+                         f'{stamp_ns / SECOND:.9f} s; by its stamps it lies among the earlier '
+                         'messages of the bag (record.log_time: received keeps the order)')
+
+    def _write(self, track, log_ns, data):
+        self._bag.write(track.name, log_ns, data)
+        track.count += 1
+
+    def _write_unstamped(self, track, data, received_ns):
+        log_ns = received_ns
+        if self._by_stamp:
+            log_ns = self._clock.now(received_ns)
+            if log_ns is None and len(self._waiting) < WAITING and any(
+                    t.stamped for t in self.tracks.values()):
+                self._waiting.append((track, received_ns, data))
+                return
+        self._write(track, received_ns if log_ns is None else log_ns, data)
+
+    def _write_waiting(self):
+        """Log what came before the first stamp at that stamp; at the end, when it came."""
+        for track, received_ns, data in self._waiting:
+            log_ns = self._clock.now(received_ns)
+            self._write(track, received_ns if log_ns is None else log_ns, data)
+        self._waiting.clear()
+
+    def _acknowledge(self):
+        if self._silent:
+            self._silent = [t for t in self._silent if t.last is None and not (
+                t.seldom and t.queue.subscription.get_publisher_count())]
+        if self._answered_ns is None or not self.settled or self._silent:
+            return
+        # another topic of the same sample may still be on its way, or under repair
+        stamp_ns = min([self._answered_ns, *(t.heard_ns for t in self._paced)])
+        if stamp_ns != self._sent_ns:
+            self._ack_publisher.publish(self._ack.pack(stamp_ns))
+            self._sent_ns = stamp_ns
+
+    def finish(self):
+        """Take what is on its way or in the queues, write all there is, leave the bag open."""
+        repaired = time.monotonic() + REPAIR_S
+        while time.monotonic() < repaired:
+            if not self.poll():
+                time.sleep(NAP_S)
+        while self.poll() and time.monotonic() < repaired + FINISH_S:
+            pass
+        self._write_waiting()

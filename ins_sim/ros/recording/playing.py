@@ -1,0 +1,146 @@
+"""What is played of a bag: topics, span, order.  No ROS is imported."""
+
+from dataclasses import dataclass
+from itertools import chain
+
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND
+from .run_clock import stamped
+
+CLOCK = topics.CLOCK_TOPIC.name
+# what ROS names absolutely stays where it is, whatever the namespace of the player
+ABSOLUTE = {CLOCK, '/rosout', '/parameter_events', '/diagnostics', '/tf', '/tf_static'}
+# whose stamps count as samples in lock-step: that of the last stage first
+DRIVERS = (topics.IMU_RAW, topics.TRUTH_IMU, topics.TRUTH_ODOMETRY)
+
+
+@dataclass(frozen=True)
+class Options:
+    """
+    How a bag is played (``ins_sim play``).
+
+    topics: names, or None for all; rate: bag time per time, 0 = as fast as lock-step allows;
+    start_s, duration_s (None: to the end); loop; wait_s at most for a reader of every topic;
+    clock_hz of /clock, or None; required: consumers of lock-step, window and timeout_s as in
+    pacing.*.
+    """
+
+    topics: tuple | None = None
+    rate: float | None = None
+    start_s: float = 0.0
+    duration_s: float | None = None
+    loop: bool = False
+    wait_s: float = 1.0
+    clock_hz: float | None = None
+    required: tuple = ()
+    window: int = 200
+    timeout_s: float = 30.0
+
+    def __post_init__(self):
+        """Refuse what cannot be."""
+        if self.rate is None:
+            object.__setattr__(self, 'rate', 0.0 if self.required else 1.0)
+        if not 0.0 <= self.rate <= 1e6 or (self.rate == 0.0 and not self.required):
+            raise ValueError(f'--rate is {self.rate:g}; expected more than 0, up to 1e6, or 0 '
+                             'with --lock-step')
+        for name, value, low, high in (
+                ('start', self.start_s, 0.0, 1e10), ('duration', self.duration_s, 0.0, 1e10),
+                ('wait', self.wait_s, 0.0, 1e5), ('clock', self.clock_hz, 1e-3, 1e4),
+                ('window', self.window, 1, 2000), ('timeout', self.timeout_s, 0.1, 1e5)):
+            if value is not None and not low <= value <= high:
+                raise ValueError(f'--{name} is {value:g}; expected {low:g} to {high:g}')
+
+
+class Playing:
+    """
+    The part of a bag that is played.
+
+    channels: of the topics, by name; first_ns: log time at which it begins; driver: name of the
+    topic whose messages are the samples of lock-step, or None.  Raises ValueError and OSError
+    as ``open_bag``, and ValueError where there is nothing to play.
+    """
+
+    def __init__(self, path, options):
+        self.bag = open_bag(path)
+        names = [self.bag.topic(n).name for n in options.topics or self.bag.topics]
+        self.left_out = [n for n in names if (n == CLOCK and options.clock_hz is not None) or (
+            options.required and n.endswith('/' + topics.ACK.name))]
+        spans = self.bag.spans()
+        self.channels = {n: self.bag.topics[n] for n in names if n not in self.left_out}
+        self.counts = {n: spans[n].count for n in self.channels}
+        heard = [spans[n] for n in self.channels if spans[n].count]
+        if not heard:
+            raise ValueError(f'{path} has no message on {", ".join(self.channels) or "a topic"}; '
+                             'expected something to play')
+        begin, end = min(s.first_ns for s in heard), max(s.last_ns for s in heard)
+        self.first_ns = begin + round(options.start_s * SECOND)
+        if self.first_ns > end:
+            raise ValueError(f'--start is {options.start_s:g} s; expected at most '
+                             f'{(end - begin) / SECOND:g} s, the length of {path}')
+        self._last_ns = end if options.duration_s is None else \
+            self.first_ns + round(options.duration_s * SECOND)
+        self.driver = self._find_driver() if options.required else None
+
+    def _find_driver(self):
+        present = [n for n, count in self.counts.items()
+                   if count and stamped(self.channels[n].type_name)]
+        for topic in DRIVERS:
+            for name in present:
+                if name.endswith('/' + topic.name):
+                    return name
+        if not present:
+            raise ValueError(f'{self.bag.path} has no topic with stamps; lock-step expects one')
+        return max(present, key=self.counts.get)
+
+    def messages(self):
+        """Yield (topic, log_ns, data) in the order of the log times."""
+        for message in self.bag.messages(list(self.channels)):
+            if message[1] > self._last_ns:
+                return
+            if message[1] >= self.first_ns:
+                yield message
+
+    def close(self):
+        """Close the bag."""
+        self.bag.close()
+
+
+class Beginning:
+    """
+    The first sample of lock-step, which is repeated until the consumers have answered.
+
+    It is the first message of the driving topic, at s_0, and of every other stamped topic the
+    last one of stamp up to s_0 that comes before the second message of the driver.  early: what
+    is older; repeated; held: what has no stamp or a later one, and follows the answer; rest:
+    iterator of all that comes behind.
+    """
+
+    LONGEST = 10000
+
+    def __init__(self, playing, stamp_of):
+        taken, rest, drivers = [], iter(playing.messages()), 0
+        following = []
+        for message in rest:
+            drivers += message[0] == playing.driver
+            if drivers == 2 or len(taken) == self.LONGEST:
+                following = [message]
+                break
+            taken.append(message)
+        stamps = [stamp_of(m[2]) if stamped(playing.channels[m[0]].type_name) else None
+                  for m in taken]
+        first_ns = next((s for m, s in zip(taken, stamps) if m[0] == playing.driver), None)
+        if first_ns is None:
+            raise ValueError(f'{playing.driver} has no message among the first {len(taken)}; '
+                             'lock-step expects one, perhaps behind another --start')
+        latest = {m[0]: k for k, (m, s) in enumerate(zip(taken, stamps))
+                  if s is not None and s <= first_ns}
+        self.stamp_ns = first_ns
+        self.repeated = [taken[k] for k in sorted(latest.values())]
+        self.early, self.held = [], []
+        for k, (message, stamp) in enumerate(zip(taken, stamps)):
+            if latest.get(message[0]) == k:
+                continue
+            old = stamp is not None and stamp <= first_ns
+            (self.early if old else self.held).append(message)
+        self.rest = chain(following, rest)

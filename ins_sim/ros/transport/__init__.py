@@ -1,0 +1,1 @@
+"""Messages between nodes: quality of service, queues, repairs of lost messages, waiting."""

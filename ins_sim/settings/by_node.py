@@ -1,0 +1,24 @@
+"""
+The settings of every node, by the name of the node.
+
+A node that starts imports only its own settings, because making the classes of all nodes takes
+milliseconds.
+"""
+
+from .aided_navigator import AidedNavigatorSettings
+from .catalogue import flatten
+from .gnss import GnssSettings
+from .imu import ImuSensorSettings
+from .motion import MotionGeneratorSettings
+from .recorder import RecorderSettings
+from .strapdown import StrapdownSettings
+from .velocity_meter import VelocityMeterSettings
+
+NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
+         'strapdown': StrapdownSettings}
+# the instruments that aid, and the navigator that they aid
+AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
+          'aided_navigator': AidedNavigatorSettings}
+# those of a simulation, and the one that watches it
+ALL_NODES = {**NODES, **AIDING, 'recorder': RecorderSettings}
+ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))

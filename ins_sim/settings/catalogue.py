@@ -1,0 +1,121 @@
+"""Settings as flat {dotted name: value}, and back, with the checks of single values."""
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+import math
+
+from .suggest import nearest, unknown
+
+
+def flatten(cls, prefix=''):
+    """Return {dotted name: dataclass field} of a settings class, in the order of declaration."""
+    names = {}
+    for f in fields(cls):
+        if is_dataclass(f.default_factory):
+            names.update(flatten(f.default_factory, f'{prefix}{f.name}.'))
+        else:
+            names[prefix + f.name] = f
+    return names
+
+
+def values_of(settings, prefix=''):
+    """Return {dotted name: value} of a settings object."""
+    values = {}
+    for f in fields(settings):
+        value = getattr(settings, f.name)
+        if is_dataclass(value):
+            values.update(values_of(value, f'{prefix}{f.name}.'))
+        else:
+            values[prefix + f.name] = value
+    return values
+
+
+def build(cls, values):
+    """
+    Return the settings object of a class from {dotted name: value}; missing names take defaults.
+
+    Raises ValueError, in one sentence that names key, value and expectation, on an unknown name,
+    a wrong type, NaN, a value out of range, and on values that do not go together.
+    """
+    known = flatten(cls)
+    checked = {}
+    for name, value in values.items():
+        if name not in known:
+            raise ValueError(unknown(name, known))
+        checked[name] = check(name, value, known[name])
+    settings = _assemble(cls, checked, '')
+    _check_together(settings)
+    return settings
+
+
+def _assemble(cls, values, prefix):
+    arguments = {}
+    for f in fields(cls):
+        name = prefix + f.name
+        if is_dataclass(f.default_factory):
+            arguments[f.name] = _assemble(f.default_factory, values, name + '.')
+        elif name in values:
+            arguments[f.name] = values[name]
+    return cls(**arguments)
+
+
+def check(name, value, f):
+    """Return the value in the type of its field f; raise ValueError on anything unfit."""
+    kind, unit = f.type, f.metadata['unit']
+    if kind in (bool, int, float, str):
+        value = _scalar(name, value, kind)
+        values = (value,)
+    else:
+        if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, '__iter__'):
+            raise ValueError(f'{name} is {value!r}; expected a list')
+        element = kind.__args__[0]
+        value = values = tuple(_scalar(f'{name}[{k}]', v, element) for k, v in enumerate(value))
+        size = f.metadata['size']
+        if size is not None and len(value) != size:
+            raise ValueError(f'{name} has {len(value)} entries; expected {size}')
+    low, high, choices = f.metadata['low'], f.metadata['high'], f.metadata['choices']
+    for v in values:
+        # infinity is a value only where it is the bound
+        if isinstance(v, float) and not math.isfinite(v) and v != high:
+            raise ValueError(f'{name} is {v}; expected a finite number')
+        if choices and v not in choices:
+            raise ValueError(f'{name} is {v!r}; expected one of {", ".join(choices)} (nearest: '
+                             f'{nearest(v, choices)})')
+        if low is not None and not low <= v <= high:
+            raise ValueError(f'{name} is {v:g}{" " + unit if unit else ""}; expected {low:g} to '
+                             f'{high:g}{" " + unit if unit else ""}')
+    return value
+
+
+def _scalar(name, value, kind):
+    if isinstance(value, bool) != (kind is bool):
+        raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
+    if kind is float and isinstance(value, (int, float)):
+        return float(value)
+    if not isinstance(value, kind):
+        raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
+    return value
+
+
+_KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 'a text'}
+
+
+def _check_together(settings):
+    """Check what no single key shows."""
+    values = values_of(settings)
+    window, depth = values.get('pacing.window'), values.get('topics.depth')
+    if window is not None and window > depth:
+        raise ValueError(f'pacing.window is {window}; expected at most topics.depth, {depth}: '
+                         'a queue must hold a window')
+    if values.get('pacing.required') == () and (values['pacing.lock_step']
+                                                or values['pacing.real_time_factor'] == 0.0):
+        raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
+    if values.get('gyro.model') == 'dtg' and values['output'] != 'integrated':
+        raise ValueError(f'output is {values["output"]} with gyro.model dtg; expected integrated: '
+                         'a tuned gyro reads the integral of its rate')
+    if values.get('record.topics') == () and not values['record.all_topics']:
+        raise ValueError('record.topics is empty and record.all_topics false; expected topics to '
+                         'record')
+    if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
+        raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
+                         'file or a bag')

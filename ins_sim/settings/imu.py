@@ -1,0 +1,73 @@
+"""Settings of the node imu_sensor."""
+
+from .field import group, setting, Settings, settings_class
+from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temperature
+from .motion import MotionSettings
+from .node import Time, Topics
+from .place import Datum, Earth
+from .tuned_gyro import Dtg
+
+
+@settings_class
+class DelaysUs(Settings):
+    """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
+
+    x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
+    y: float = setting(0.0, 'delay of the left channel (tau1, right, in the paper)', 'us',
+                       -1e6, 1e6)
+    z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
+
+
+@settings_class
+class Gyro(Settings):
+    """The gyro triad."""
+
+    model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
+                         'integrated)', choices=('ideal', 'dtg'))
+    dtg: Dtg = group(Dtg)
+    delay_us: DelaysUs = group(DelaysUs)
+    errors: GyroErrors = group(GyroErrors)
+
+
+@settings_class
+class Accelerometer(Settings):
+    """The accelerometer triad."""
+
+    delay_us: DelaysUs = group(DelaysUs)
+    errors: AccelerometerErrors = group(AccelerometerErrors)
+
+
+OUTPUTS = ('rotation_vector', 'integrated')
+
+
+@settings_class
+class ImuSensorSettings(Settings):
+    """Node imu_sensor."""
+
+    datum: Datum = group(Datum)
+    earth: Earth = group(Earth)
+    time: Time = group(Time)
+    motion: MotionSettings = group(MotionSettings)
+    gyro: Gyro = group(Gyro)
+    accelerometer: Accelerometer = group(Accelerometer)
+    temperature: Temperature = group(Temperature)
+    sampling: Sampling = group(Sampling)
+    topics: Topics = group(Topics)
+    seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
+                        2147483647)
+    rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
+    source: str = setting('stream', 'where the motion comes from: the streamed truth, or the '
+                          'closed form or recording of motion.* (the stream then only paces)',
+                          choices=('stream', 'motion'))
+    output: str = setting('rotation_vector', 'rotation_vector: mean of the finite rotation and of '
+                          'the inertially rotated velocity increment; integrated: plain '
+                          'integrals of rate and specific force', choices=OUTPUTS)
+    history: str = setting('analytic', 'motion before the first instant: continued backwards '
+                           '(analytic) or held (frozen)', choices=('analytic', 'frozen'))
+    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
+                            'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
+
+
+def delays_ns(delay_us):
+    """Return the delays of the channels x, y, z (settings.DelaysUs) in nanoseconds."""
+    return tuple(round(1000.0 * d) for d in (delay_us.x, delay_us.y, delay_us.z))

@@ -1,0 +1,13 @@
+"""The nearest known name to a misspelt one; imported only when there is an error to report."""
+
+
+def nearest(name, known):
+    """Return the known text that is most like name."""
+    # on the way of an error only, and off the way of a node's start
+    from difflib import get_close_matches
+    return get_close_matches(str(name), sorted(known), n=1, cutoff=0.0)[0]
+
+
+def unknown(name, known):
+    """Return the sentence about an unknown key, naming the nearest known one."""
+    return f'unknown parameter {name!r}; the nearest known one is {nearest(name, known)!r}'

@@ -1,0 +1,1 @@
+"""Studies that repeat a published table or compare algorithms over many runs."""

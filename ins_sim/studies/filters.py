@@ -1,0 +1,97 @@
+"""All filters over the same flights and seeds: how far each is off, and whether it knows."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ins_sim.core.aiding.navigator import METER
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import check_length
+from ins_sim.core.simulation import inertial
+from ins_sim.core.simulation.aided_run import aid, with_truth
+
+STEP_S = 5.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A filter, and the cycles that its velocity meter averages over."""
+
+    filter: str
+    cycles: int
+
+
+@dataclass(frozen=True)
+class Flown:
+    """
+    One filter on one flight, at instants t_s (n,) since the start.
+
+    error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN:
+    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nis: of the fixes of
+    the velocity meter that were weighed; refused: how many were not taken, and the last reason.
+    """
+
+    t_s: np.ndarray
+    error: np.ndarray
+    sigma: np.ndarray
+    azimuth: np.ndarray
+    azimuth_sigma: np.ndarray
+    estimates: np.ndarray
+    nis: np.ndarray
+    refused: int
+    reason: str
+
+    @property
+    def horizontal(self):
+        """Return the horizontal error (n,), m."""
+        return np.hypot(self.error[:, 0], self.error[:, 1])
+
+
+def run_settings(settings, run):
+    """Return AidedSettings of a run of the study: its seeds are those given plus run."""
+    base = settings.simulation
+    generator, sensor = base.motion_generator, base.imu_sensor
+    route = generator.motion.route
+    motion = replace(generator.motion, route=replace(route, gust_seed=route.gust_seed + run))
+    base = replace(base, motion_generator=replace(generator, motion=motion),
+                   imu_sensor=replace(sensor, seed=sensor.seed + run, motion=motion))
+    meter, gnss, navigator = (replace(s, seed=s.seed + run) for s in (
+        settings.velocity_meter, settings.gnss, settings.aided_navigator))
+    return replace(settings, simulation=base, velocity_meter=meter, gnss=gnss,
+                   aided_navigator=navigator)
+
+
+def fly(settings, cases, run):
+    """
+    Return the Flown of each Case on one flight: AidedSettings, its seeds plus run.
+
+    The readings of the IMU are made once.  Raises ValueError as the stages do.
+    """
+    settings = run_settings(settings, run)
+    generator = settings.simulation.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    check_length(generator, motion)
+    blocks = list(with_truth(motion, inertial.sense(settings.simulation, motion)))
+    return [_fly(settings, case, blocks) for case in cases]
+
+
+def _fly(settings, case, blocks):
+    navigator, meter = settings.aided_navigator, settings.velocity_meter
+    window = replace(meter.window, cycles=case.cycles)
+    every = max(1, round(STEP_S * navigator.rate_hz))
+    settings = replace(
+        settings, velocity_meter=replace(meter, window=window),
+        aided_navigator=replace(navigator, filter=case.filter, window=window,
+                                output_every=every,
+                                gnss_model=replace(navigator.gnss_model,
+                                                   use=navigator.gnss_model.use
+                                                   and case.filter == 'eskf')))
+    instruments = settings.instruments()
+    flown = aid(settings.aided_navigator, blocks, *instruments)
+    errors = flown.errors
+    weighed = [t.result for t in flown.taken if t.source == METER]
+    refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
+    return Flown((errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
+                 errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
+                 np.array([r.nis for r in weighed if r.nis is not None]), len(refused),
+                 refused[-1] if refused else '')

@@ -1,0 +1,76 @@
+"""One run navigated with each of the orientation algorithms, side by side."""
+
+from dataclasses import dataclass, replace
+import math
+from time import process_time
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.integration import KINDS, Orientation
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import check_length
+from ins_sim.core.simulation.inertial import navigate, sense
+from ins_sim.core.timeseries.histories import NavErrors, NavStates
+
+TIMED_STEPS = 5000
+
+
+@dataclass(frozen=True)
+class OrientationResult:
+    """
+    What an algorithm makes of a run.
+
+    drift (3,): of the attitude, rad/s; position (3,): largest errors East, North, Up, m; apart:
+    largest angle between its attitude and that of the quaternion, rad; step_s: CPU time of a step.
+    """
+
+    kind: str
+    drift: np.ndarray
+    position: np.ndarray
+    apart: float
+    step_s: float
+
+
+def compare(settings, progress=None, motion=None):
+    """
+    Return an OrientationResult for each of orientation.KINDS, the quaternion first.
+
+    settings: simulation.Settings, whose strapdown.orientation does not matter.  progress: called
+    with the number of algorithms done.  motion: that of the settings, where ``make_motion`` cannot
+    make it (a bag).  Raises ValueError where the settings name no run.
+    """
+    generator = settings.motion_generator
+    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
+    check_length(generator, motion)
+    blocks = list(sense(settings, motion))
+    results, reference = [], None
+    for kind in sorted(KINDS, key=lambda k: k != 'quaternion'):
+        parts = list(navigate(replace(settings.strapdown, orientation=kind), motion, blocks))
+        states = NavStates.concatenate(s for _, s, _ in parts)
+        errors = NavErrors.concatenate(e for _, _, e in parts)
+        reference = states.q_nb if reference is None else reference
+        results.append(OrientationResult(
+            kind, errors.drift[-1], np.abs(errors.position).max(axis=0),
+            _apart(reference, states.q_nb), _step_s(kind)))
+        if progress is not None:
+            progress(len(results))
+    return results
+
+
+def _apart(p, q):
+    """Return the largest angle between attitudes (n, 4), rad."""
+    p, q = np.moveaxis(p, -1, 0), np.moveaxis(q, -1, 0)
+    x, y, z, w = quaternion.multiply(quaternion.conjugate(p), q)
+    return float((2.0 * np.arctan2(np.sqrt(x * x + y * y + z * z), np.abs(w))).max())
+
+
+def _step_s(kind):
+    algorithm, phi = Orientation(kind), (0.002, -0.003, 0.004)
+    best = math.inf
+    for _ in range(3):
+        start = process_time()
+        for _ in range(TIMED_STEPS):
+            algorithm.advance(phi, 0.01)
+        best = min(best, process_time() - start)
+    return best / TIMED_STEPS

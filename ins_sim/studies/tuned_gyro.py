@@ -1,0 +1,151 @@
+"""
+The study of Sapegin, Romanov, Bugaiov 2016: what the lag of two tuned gyros costs in roll.
+
+The base rocks in roll by 10 deg sin(w t).  Its rates go through two gyros, and the readings into
+Poisson's equation and into that of the Euler vector, all by RK4 with one step; half of the peak to
+peak of the roll so found over the last whole period is the amplitude (spec/dtg section 3).  What
+the paper's tables hold and print stands in config/dtg_study_*.yaml.
+"""
+
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude.angles import roll
+from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
+from ins_sim.core.attitude.matrix import dcm_of
+from ins_sim.core.attitude.quaternion import exponential
+from ins_sim.core.sensors.tuned_gyro.pair import GyroPair
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
+from ins_sim.core.sensors.tuned_gyro.stepping import rk4_matrices
+
+
+@dataclass(frozen=True)
+class Cell:
+    """
+    One cell of a table.
+
+    value: rad/s of the base or Hz of the rotor; poisson_deg, euler_vector_deg: amplitude by each
+    algorithm; paper_deg: what the paper prints, or None.
+    """
+
+    value: float
+    poisson_deg: float
+    euler_vector_deg: float
+    paper_deg: float | None
+
+
+def half_peak_to_peak(y):
+    """Return half of the range of samples, each vertex from the parabola through 3 points."""
+    def highest(v):
+        k = min(max(range(len(v)), key=v.__getitem__), len(v) - 2) or 1
+        slope, bend = 0.5 * (v[k + 1] - v[k - 1]), v[k + 1] - 2.0 * v[k] + v[k - 1]
+        return v[k] - (0.5 * slope * slope / bend if bend < 0.0 else 0.0)
+    return 0.5 * (highest(y) + highest([-v for v in y]))
+
+
+def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
+    """
+    Return the amplitudes of roll, deg, recovered by Poisson and by the Euler vector.
+
+    pair: GyroPair at rest, of the step and method; amplitude_deg, rate_rad_s: of the base.  The
+    record is 20 s or three periods, whichever is longer.
+    """
+    period = 2.0 * math.pi / rate_rad_s
+    steps = math.ceil(max(20.0, 3.0 * period) / step_s)
+    first = steps - math.ceil(period / step_s)
+    top = math.radians(amplitude_deg) * rate_rad_s
+    c, theta = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0)
+    found, staged = ([], []), method == 'rk4'
+    u_end = (top, 0.0, 0.0)
+    for k in range(steps):
+        u_start = u_end
+        u_mid = (top * math.cos(rate_rad_s * (k + 0.5) * step_s), 0.0, 0.0)
+        u_end = (top * math.cos(rate_rad_s * (k + 1) * step_s), 0.0, 0.0)
+        if staged:
+            rates = pair.step_stages(u_start, u_mid, u_end)
+        else:
+            rates = (pair.step(u_start, u_mid, u_end)[0],) * 4
+        c, theta = step_poisson(c, rates, step_s), step_euler_vector(theta, rates, step_s)
+        if k >= first:
+            found[0].append(roll(c))
+            found[1].append(roll(dcm_of(exponential(theta))))
+    return tuple(math.degrees(half_peak_to_peak(y)) for y in found)
+
+
+def gyro_at(settings, speed_hz=None):
+    """Return the TunedGyroParameters of DtgStudySettings, tuned at a speed or at its own."""
+    return at_speed(PRESETS[settings.preset], speed_hz or settings.rotor_speed_hz)
+
+
+def at_speed(parameters, speed_hz):
+    """Return the parameters with read-out and hinges made for another speed."""
+    return replace(parameters, speed_hz=speed_hz, hinge_stiffness_n_m_rad=None)
+
+
+def table(settings, progress=None):
+    """
+    Return a Cell for each of the values of DtgStudySettings, with what the paper prints.
+
+    progress: function called after each cell.  Raises ValueError for an unstable gyro.
+    """
+    paper = settings.paper_deg or (None,) * len(settings.values)
+    return _cells(settings, settings.values, paper, progress)
+
+
+def curve(settings, progress=None):
+    """Return a Cell for each of the curve_values of DtgStudySettings, as ``table`` does."""
+    return _cells(settings, settings.curve_values, (None,) * len(settings.curve_values), progress)
+
+
+def _cells(settings, values, paper, progress):
+    step_s, method, cells = 1e-3 * settings.step_ms, settings.method, []
+    for value, printed in zip(values, paper):
+        if settings.sweep == 'base_rate':
+            gyro, rate_rad_s = gyro_at(settings), value
+        else:
+            gyro, rate_rad_s = gyro_at(settings, value), settings.base_rate_rad_s
+        pair = GyroPair(gyro, step_s, method=method)
+        cells.append(Cell(value, *rocking_amplitudes(pair, settings.amplitude_deg, rate_rad_s,
+                                                     step_s, method), printed))
+        if progress:
+            progress()
+    return tuple(cells)
+
+
+def rk4_radius(parameters, speed_hz, step_s):
+    """Return the spectral radius of the matrix of one RK4 step at a speed, tuned there."""
+    space = state_space(at_speed(parameters, speed_hz))
+    n = len(space.g)
+    return float(np.abs(np.linalg.eigvals(rk4_matrices(space, step_s)[0][:n, :n])).max())
+
+
+def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution_hz=1.0,
+                     tolerance_hz=1e-6):
+    """
+    Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
+
+    Walks from the nominal speed by resolution_hz and bisects; None on a side where no limit lies
+    between low_hz and high_hz.  Raises ValueError where the nominal speed itself is unstable.
+    """
+    def decays(hz):
+        return rk4_radius(parameters, hz, step_s) < 1.0
+
+    start = parameters.speed_hz
+    if not decays(start):
+        raise ValueError(f'speed_hz is {start:g}, at which RK4 with {1e3 * step_s:g} ms grows; '
+                         'expected a speed between the limits')
+    limits = []
+    for stride, end in ((-resolution_hz, low_hz), (resolution_hz, high_hz)):
+        inside, outside = start, start + stride
+        while decays(outside) and min(start, end) <= outside <= max(start, end):
+            inside, outside = outside, outside + stride
+        if decays(outside):
+            limits.append(None)
+            continue
+        while abs(outside - inside) > tolerance_hz:
+            middle = 0.5 * (inside + outside)
+            inside, outside = (middle, outside) if decays(middle) else (inside, middle)
+        limits.append(inside)
+    return tuple(limits)
