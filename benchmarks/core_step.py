@@ -22,7 +22,9 @@ from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.settings.imu import ImuSensorSettings
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.settings.strapdown import StrapdownSettings
-from ins_sim.core.simulation.inertial import Settings, simulate
+from ins_sim.core.simulation.inertial import simulate
+from ins_sim.settings.simulation import SimulationSettings
+from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
 from ins_sim.messages.convert import truth_blocks
 
@@ -104,10 +106,11 @@ def tuned_step_us(steps=5000, repeats=5, rate_hz=1000.0):
 def hour_s():
     """Return CPU seconds of one hour of motion 2 at 100 Hz offline, twin left out."""
     late = {'gyro.delay_us.y': 1.0, 'source': 'motion'}
-    settings = Settings(build(MotionGeneratorSettings, {}), build(ImuSensorSettings, late),
-                        build(StrapdownSettings, {}))
+    settings = SimulationSettings(build(MotionGeneratorSettings, {}),
+                                  build(ImuSensorSettings, late), build(StrapdownSettings, {}))
+    motion = read_motion(settings.motion_generator)
     start = process_time()
-    simulate(settings, twin=False)
+    simulate(settings, motion, twin=False)
     return process_time() - start
 
 

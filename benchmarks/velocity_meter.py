@@ -52,7 +52,7 @@ def readings(cycles, windows, beta=0.0, biased=None, **signal):
             functions = correlator.functions([sum(part) for part in parts], cycles)
         else:
             functions = sum(map(correlator.functions_of, signals)) / cycles
-        found.append(fit.read(functions, lag_s(s), geometry(s.antennas), 0.0))
+        found.append(fit.read_correlations(functions, lag_s(s), geometry(s.antennas), 0.0))
     return found
 
 

@@ -10,7 +10,7 @@ import re
 
 import yaml
 
-from ins_sim.core.simulation.inertial import Settings
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
 from ins_sim.settings.catalogue import build, flatten, values_of
 from ins_sim.settings.suggest import nearest, unknown
@@ -20,20 +20,20 @@ ROS_OWN = ('use_sim_time', 'start_type_description_service')
 
 def read(paths, assignments=()):
     """
-    Return simulation.Settings of parameter files, in order, and of NAME:=VALUE assignments.
+    Return SimulationSettings of parameter files, in order, and of NAME:=VALUE assignments.
 
     A file may serve the recorder as well; its section is checked name by name.
 
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
     """
-    return Settings(**read_nodes(paths, assignments, NODES, ALL_NODES))
+    return SimulationSettings(**read_nodes(paths, assignments, NODES, ALL_NODES))
 
 
 def read_aided(paths, assignments=()):
-    """Return aided_simulation.AidedSettings as ``read`` does simulation.Settings."""
-    from ins_sim.core.simulation.aided import AidedSettings
+    """Return AidedSimulationSettings as ``read`` does SimulationSettings."""
     built = read_nodes(paths, assignments, {**NODES, **AIDING}, ALL_NODES)
-    return AidedSettings(Settings(**{node: built.pop(node) for node in NODES}), **built)
+    simulation = SimulationSettings(**{node: built.pop(node) for node in NODES})
+    return AidedSimulationSettings(simulation, **built)
 
 
 def read_nodes(paths, assignments, nodes, known=None):
@@ -136,12 +136,12 @@ def _number(value):
 
 
 def dump(settings):
-    """Return the text of a parameter file with every key of simulation.Settings."""
+    """Return the text of a parameter file with every key of SimulationSettings."""
     return dump_nodes({node: getattr(settings, node) for node in NODES})
 
 
 def dump_aided(settings):
-    """Return the text of a parameter file with every key of aided_simulation.AidedSettings."""
+    """Return the text of a parameter file with every key of AidedSimulationSettings."""
     return dump_nodes({**{node: getattr(settings.simulation, node) for node in NODES},
                        **{node: getattr(settings, node) for node in AIDING}})
 

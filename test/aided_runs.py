@@ -14,13 +14,13 @@ FLIGHT = ('duration_s:=90.0', 'gnss_model.use:=true', 'window.cycles:=100',
 
 
 def settings(*more, flight=FLIGHT):
-    """Return AidedSettings of the flight and more assignments."""
+    """Return AidedSimulationSettings of the flight and more assignments."""
     return parameter_files.read_aided([resources.config(name) for name in FILES],
                                       [*flight, *more])
 
 
 def flown(settings):
-    """Return motion, Run and AidedRun of AidedSettings."""
+    """Return motion, Run and AidedResult of AidedSimulationSettings."""
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(settings.simulation, twin=False, motion=motion)

@@ -6,9 +6,12 @@ import multiprocessing
 from ins_sim.settings.catalogue import build, flatten
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.prediction.predict import predict
 from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.io.motion import read_motion
 from ins_sim.settings.by_node import NODES
-from ins_sim.core.simulation.inertial import sense, Settings, simulate
+from ins_sim.core.simulation.inertial import sense, simulate
+from ins_sim.settings.simulation import SimulationSettings
 
 DEG_PER_HOUR = 206264.806
 
@@ -26,8 +29,9 @@ def settings(values=None, **more):
     known = {node: flatten(cls) for node, cls in NODES.items()}
     unused = set(values) - set().union(*known.values())
     assert not unused, unused
-    return Settings(**{node: build(cls, {k: v for k, v in values.items() if k in known[node]})
-                       for node, cls in NODES.items()})
+    return SimulationSettings(**{
+        node: build(cls, {k: v for k, v in values.items() if k in known[node]})
+        for node, cls in NODES.items()})
 
 
 def streamed(s):
@@ -40,9 +44,19 @@ def streamed(s):
                               truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
 
 
+def run_offline(chosen, twin=True):
+    """Return the SimulationResult of SimulationSettings."""
+    return simulate(chosen, read_motion(chosen.motion_generator), twin)
+
+
+def prediction_of(chosen):
+    """Return the Prediction of SimulationSettings."""
+    return predict(chosen, read_motion(chosen.motion_generator))
+
+
 def run(values, twin=True):
     """Return errors and twin errors (or None) of a run."""
-    result = simulate(settings(values), twin)
+    result = run_offline(settings(values), twin)
     return result.errors, result.twin
 
 

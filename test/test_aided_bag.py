@@ -10,7 +10,7 @@ from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.aiding.live import AidedStream
 from ins_sim.core.earth.frames import MapFrame
-from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import convert, topics, velocity_record
 from ins_sim.messages.cdr import ENCAPSULATION
 from ins_sim.messages.gnss_fixes import GnssPairs
@@ -26,7 +26,7 @@ NAMES = ['/' + topic.name for topic in (*topics.DATA, *topics.AIDING)]
 
 @pytest.fixture(scope='module')
 def run():
-    """Return AidedSettings, Run and AidedRun of a flight."""
+    """Return AidedSimulationSettings, Run and AidedResult of a flight."""
     chosen = settings(*LENGTH)
     return chosen, *flown(chosen)[1:]
 
@@ -51,7 +51,7 @@ def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
     """To the bit: what the node packs of the same solution, one message at a time."""
     chosen, free, solution = run
     navigator = chosen.aided_navigator
-    frame, route = MapFrame(navigator.datum, navigator.earth.rotation), Route.of_points(
+    frame, route = MapFrame(navigator.datum, navigator.earth.rotation), GreatCircleRoute.of_points(
         navigator.motion.route.points)
     rates = dict(zip(free.imu.t_ns.tolist(), free.imu.omega.tolist()))
     states, errors = solution.states, solution.errors

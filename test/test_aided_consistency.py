@@ -10,8 +10,9 @@ from ins_sim.core.attitude import matrix
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
-from ins_sim.studies.filters import Case, fly, run_settings
+from ins_sim.studies.filters import FilterCase, fly_filters, run_settings
 from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.simulation.inertial import sense
 import numpy as np
 import pytest
@@ -77,7 +78,7 @@ def consistency_of(assignments):
     settings = parameter_files.read_aided(
         [resources.config(name) for name in ('default', 'route_flight')],
         ['duration_s:=600.0', *IMU, *assignments])
-    flown, = fly(settings, [Case('eskf', 1000)], 3)
+    flown, = fly_filters(settings, [FilterCase('eskf', 1000)], 3)
     return flown.nis, 8.7 / np.sqrt(1000.0)
 
 
@@ -94,7 +95,7 @@ def consistency(assignments, run):
     settings = run_settings(settings, run)
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    nav, (meter, gnss) = AidedNavigator(settings.aided_navigator), settings.instruments()
+    nav, (meter, gnss) = AidedNavigator(settings.aided_navigator), make_instruments(settings)
     nees, nis = [], []
     for imu in sense(settings.simulation, motion):
         truth = motion.at(imu.t_ns)

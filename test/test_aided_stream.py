@@ -10,11 +10,12 @@ import pytest
 
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER, Taken
 from ins_sim.core.simulation.aided_run import with_truth
-from ins_sim.core.simulation.aided import AidedSettings, simulate_aided
+from ins_sim.core.simulation.aided import make_instruments, simulate_aided
+from ins_sim.settings.simulation import AidedSimulationSettings
 from ins_sim.core.aiding.live import AidedStream, FixSchedule
 from ins_sim.settings.catalogue import build, flatten
 from ins_sim.core.streams.faults import StreamFault
-from ins_sim.core.aiding.filters.base import refused, Result
+from ins_sim.core.aiding.filters.base import FixOutcome, refused
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.motion.factory import make_motion
@@ -33,10 +34,10 @@ VALUES = {'source': 'motion', 'motion.kind': 'route', 'duration_s': 12.0, 'windo
 
 
 def chosen_settings(values):
-    """Return AidedSettings of {dotted name: value}."""
+    """Return AidedSimulationSettings of {dotted name: value}."""
     known = {name: set(flatten(cls)) for name, cls in AIDING.items()}
     simulated = set().union(*(flatten(cls) for cls in NODES.values()))
-    return AidedSettings(
+    return AidedSimulationSettings(
         simulation_settings({k: v for k, v in values.items() if k in simulated}),
         **{name: build(cls, {k: v for k, v in values.items() if k in known[name]})
            for name, cls in AIDING.items()})
@@ -44,14 +45,16 @@ def chosen_settings(values):
 
 @lru_cache(maxsize=None)
 def scene():
-    """Return (AidedSettings, AidedRun offline, events by stream) of a short flight."""
+    """
+    Return (AidedSimulationSettings, AidedResult offline, events by stream) of a short flight.
+    """
     chosen = chosen_settings(VALUES)
     simulation = chosen.simulation
     generator = simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(simulation, twin=False, motion=motion)
     offline = simulate_aided(chosen, motion, run)
-    meter, gnss = chosen.instruments((run.states.t_ns, body_velocity(run.states)))
+    meter, gnss = make_instruments(chosen, (run.states.t_ns, body_velocity(run.states)))
     truth = [t for _, t in with_truth(motion, [run.imu])][0]
     frame = MapFrame(generator.datum, True)
     poses = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
@@ -265,7 +268,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     """/diagnostics: a GNSS jump is a warning with its instant, an outage only a count."""
     stream = AidedStream(chosen_settings(VALUES).aided_navigator)
     health = AidingHealth(stream)
-    gated = Result((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
+    gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
     health.judge([Taken(GNSS, 7 * SECOND, gated),
                   Taken(GNSS, 8 * SECOND, refused('the fix is none: outage'))])
     wrong, values = health.describe()

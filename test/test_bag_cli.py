@@ -9,10 +9,10 @@ from ins_sim.cli.main import main
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import convert, topics
 import numpy as np
 import pytest
+from studies import run_offline
 
 NAMES = {'/' + topic.name for topic in topics.DATA}
 MOTION = ['--params-file', 'motion_2', '--no-twin', '-p', 'duration_s:=5.0']
@@ -33,7 +33,7 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
     shown = capsys.readouterr().out
     assert 'written: ' in shown and f'{11 * 501} messages on 11 topics' in shown.replace('\n', ' ')
     settings = parameter_files.read([resources.config('motion_2')], ['duration_s:=5.0'])
-    run = simulate(settings, twin=False)
+    run = run_offline(settings, twin=False)
     generator = settings.motion_generator
     truth = make_motion(generator.motion, generator.datum, generator.earth).at(
         period_ns(generator.rate_hz) * np.arange(501))

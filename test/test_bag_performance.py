@@ -6,8 +6,8 @@ from time import process_time
 
 from ins_sim import parameter_files, resources
 from ins_sim.io import simulated
-from ins_sim.core.simulation.inertial import simulate
 import pytest
+from studies import run_offline
 
 pytest.importorskip('rosbags')
 ROOT = Path(__file__).resolve().parent.parent
@@ -42,7 +42,7 @@ def test_an_hour_of_all_topics(tmp_path):
     """Simulation and bag together at least a hundred times faster than real time."""
     settings = parameter_files.read([resources.config('motion_2')], ['duration_s:=3600.0'])
     start = process_time()
-    run = simulate(settings, twin=False)
+    run = run_offline(settings, twin=False)
     middle = process_time()
     counts = simulated.write(tmp_path / 'bag', settings, run, simulated.select(settings, None))
     end = process_time()

@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from studies import DEG_PER_HOUR, MOTION_2, settings, streamed
+from studies import DEG_PER_HOUR, MOTION_2, prediction_of, run_offline, settings, streamed
 
 from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.prediction.predict import predict
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import simulate
 
 DTG = {'motion.kind': 'two_axis', 'gyro.model': 'dtg', 'output': 'integrated',
        'input': 'integrated'}
@@ -18,7 +16,7 @@ DTG = {'motion.kind': 'two_axis', 'gyro.model': 'dtg', 'output': 'integrated',
 def test_drift_is_the_predicted_one(arrangement):
     """The transfer function of the gyro in the sum over channels, within 1 % (issue: 1 %)."""
     s = settings({**DTG, 'gyro.dtg.arrangement': arrangement}, duration_s=600.0)
-    prediction, errors = predict(s), simulate(s).errors
+    prediction, errors = prediction_of(s), run_offline(s).errors
     measured = errors.drift[-1]
     off = np.linalg.norm(measured - prediction.drift) / np.linalg.norm(prediction.drift)
     position = np.abs(errors.position[::10] - prediction.position[:len(errors[::10])]).max()
@@ -32,9 +30,10 @@ def test_drift_is_the_predicted_one(arrangement):
 def test_delays_compose_with_the_rotors():
     """A late axis adds its own drift: the difference of two runs is that of the ideal gyro."""
     late = {'gyro.delay_us.y': 500.0}
-    with_rotors = [simulate(settings({**DTG, **v}, duration_s=200.0), twin=False).errors.drift[-1]
-                   for v in (late, {})]
-    ideal = predict(settings({**MOTION_2, **late}, duration_s=200.0)).drift
+    runs = [run_offline(settings({**DTG, **v}, duration_s=200.0), twin=False)
+            for v in (late, {})]
+    with_rotors = [run.errors.drift[-1] for run in runs]
+    ideal = prediction_of(settings({**MOTION_2, **late}, duration_s=200.0)).drift
     added = with_rotors[0] - with_rotors[1]
     print(f'\nadded by 500 us: {added * DEG_PER_HOUR} deg/h, ideal gyro {ideal * DEG_PER_HOUR}')
     # the rotors pass motion of 1 rad/s with a gain within 1e-3 of one

@@ -8,10 +8,11 @@ import pytest
 
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
-from ins_sim.studies.tuned_gyro import curve, gyro_at, half_peak_to_peak, stability_limits, table
+from ins_sim.studies.tuned_gyro import (gyro_at, half_peak_to_peak, stability_limits, study_curve,
+                                        study_table)
 from ins_sim.settings.tuned_gyro_study import DtgStudySettings
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
-from ins_sim.core.sensors.tuned_gyro.report import report
+from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 
 CONFIG = Path(__file__).resolve().parents[1] / 'config'
 FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))
@@ -31,7 +32,7 @@ def read(name, *assignments):
 @pytest.fixture(scope='module')
 def tables():
     """Both tables of the paper, RK4 at 0.75 ms."""
-    return {name: table(read(name)) for name in ('frequency', 'speed')}
+    return {name: study_table(read(name)) for name in ('frequency', 'speed')}
 
 
 def show(cells, unit):
@@ -68,7 +69,7 @@ def test_both_algorithms_agree(tables):
 
 def test_amplitudes_are_those_of_a_first_order_lag(tables):
     """To 1e-3 deg: 10 / sqrt(1 + (w T)^2), as A is small and the gyro settles in 20 s."""
-    lag = report(PRESETS['paper']).time_constant_s
+    lag = tuned_gyro_report(PRESETS['paper']).time_constant_s
     for c in tables['frequency']:
         assert c.poisson_deg == pytest.approx(10.0 / math.hypot(1.0, c.value * lag), abs=1e-3)
 
@@ -76,7 +77,7 @@ def test_amplitudes_are_those_of_a_first_order_lag(tables):
 def test_exact_propagation_of_the_damped_preset(tables):
     """`paper_damped`, physically stable, gives the same tables to 1e-4 deg."""
     cells = [c for name in tables
-             for c in table(read(name, 'preset:=paper_damped', 'method:=exact'))]
+             for c in study_table(read(name, 'preset:=paper_damped', 'method:=exact'))]
     off = max(abs(a.poisson_deg - b.poisson_deg)
               for a, b in zip(cells, (*tables['frequency'], *tables['speed'])))
     print(f'\nexact, paper_damped: off by {off:.1e} deg')
@@ -98,7 +99,7 @@ def test_stability_limits():
 def test_unstable_speeds_are_refused():
     """In a table as in the search."""
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which this gyro grows'):
-        curve(read('speed', 'curve_values:=[340.0]'))
+        study_curve(read('speed', 'curve_values:=[340.0]'))
     with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
         stability_limits(PRESETS['paper'], 2e-3)
 
@@ -107,8 +108,8 @@ def test_progress_is_told_and_the_amplitude_scales():
     """After each cell; a quarter of the rocking is a quarter of what is recovered."""
     told = []
     few = ('values:=[400.0]', 'paper_deg:=[]', 'step_ms:=1.0')
-    (whole,) = table(read('frequency', *few), lambda: told.append(1))
-    (quarter,) = table(read('frequency', *few, 'amplitude_deg:=2.5'), lambda: told.append(1))
+    (whole,) = study_table(read('frequency', *few), lambda: told.append(1))
+    (quarter,) = study_table(read('frequency', *few, 'amplitude_deg:=2.5'), lambda: told.append(1))
     assert len(told) == 2 and whole.paper_deg is None
     assert whole.poisson_deg == pytest.approx(4.0 * quarter.poisson_deg, rel=1e-6)
 

@@ -37,7 +37,14 @@ def truth():
 @pytest.fixture(params=['stream', 'motion'])
 def imu(request):
     """Return the IMU, on the stream and on the closed form."""
-    return make_imu(settings(MOTION_2, source=request.param).imu_sensor)
+    return imu_of(settings(MOTION_2, source=request.param))
+
+
+def imu_of(chosen):
+    """Return the IMU of SimulationSettings."""
+    generator = chosen.motion_generator
+    return make_imu(chosen.imu_sensor,
+                    make_motion(generator.motion, generator.datum, generator.earth))
 
 
 def refused(push, sample, sentence, restart):
@@ -83,7 +90,7 @@ def test_stream_refuses_gaps_jumps_rates_and_norms(truth):
 
 def test_motion_source_refuses_a_jump_back(truth):
     """The closed form only needs stamps that rise."""
-    imu = make_imu(settings(MOTION_2).imu_sensor)
+    imu = imu_of(settings(MOTION_2))
     imu.push(*truth(0)[0])
     imu.push(*truth(5)[0])
     refused(imu.push, truth(1)[0], 'jumps back', True)

@@ -5,8 +5,8 @@ from functools import partial
 import os
 
 from ins_sim import parameter_files, resources
-from ins_sim.studies.filters import Case, fly
-from ins_sim.report.filter_study import row
+from ins_sim.studies.filters import FilterCase, fly_filters
+from ins_sim.report.filter_study import filter_row
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -19,8 +19,8 @@ def flown(names, cases, assignments=()):
     """Return the Rows and the Flown of cases on all flights, on all cores."""
     settings = parameter_files.read_aided([resources.config(name) for name in names], assignments)
     with ProcessPoolExecutor(min(FLIGHTS, os.cpu_count())) as pool:
-        flights = list(zip(*pool.map(partial(fly, settings, cases), range(FLIGHTS))))
-    rows = [row(case, list(f)) for case, f in zip(cases, flights)]
+        flights = list(zip(*pool.map(partial(fly_filters, settings, cases), range(FLIGHTS))))
+    rows = [filter_row(case, list(f)) for case, f in zip(cases, flights)]
     for r, f in zip(rows, flights):
         print(f'{r.filter}, N {r.cycles}: rms at the end {r.end_m:.0f} m, over the flight '
               f'{r.flight_m:.0f} m; by its sigma {r.sigma_m or np.nan:.0f} and '
@@ -49,7 +49,8 @@ def test_fifty_minutes_by_every_filter():
     meter can see, is 0.2 km at the end.
     """
     names = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
-    cases = [Case(name, 1000) for name in names] + [Case('eskf', n) for n in (10, 100, 6000)]
+    cases = [FilterCase(name, 1000) for name in names] + [
+        FilterCase('eskf', n) for n in (10, 100, 6000)]
     rows, flights = flown(('default', 'route_flight', 'grade_mid'), cases)
     by = {(r.filter, r.cycles): r for r in rows}
     low, high = scatter()
@@ -82,7 +83,7 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published):
     navigation and tactical: their figures are ours), and the errors of twelve flights as large.
     """
     rows, flights = flown(
-        ('default', 'gnss_outage_flight', f'grade_{grade}'), [Case('eskf', 1000)],
+        ('default', 'gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],
         ['gnss_model.use:=true', 'outages.start_s:=[600.0]', 'outages.end_s:=[4000.0]',
          'antennas.mounting_yaw_arcmin:=20.0', 'meter_model.mounting_sigma_arcmin:=30.0'])
     eskf, flights = rows[0], flights[0]

@@ -10,7 +10,7 @@ import pytest
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid, frames
 from ins_sim.core.navigation import mechanization
-from ins_sim.core.postprocessing.comparison import compare, rows
+from ins_sim.core.postprocessing.comparison import compare_with_reference, error_rows
 from ins_sim.core.navigation.mechanization import increments
 from ins_sim.core.navigation.strapdown import FreeNavigation
 from ins_sim.core.postprocessing.initial_state import Sources
@@ -18,11 +18,12 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.navigate import navigate
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
 from ins_sim.core.postprocessing.imu_record import gaps, ordered, RecordedImu
-from ins_sim.core.postprocessing.reference import Reference, Track
+from ins_sim.core.postprocessing.reference import Reference, SampledTrack
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.settings.catalogue import build
 from ins_sim.core.simulation.inertial import sense
 from ins_sim import parameter_files
+from studies import run_offline
 
 SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
 MOTION = make_motion(SETTINGS.motion_generator.motion, SETTINGS.motion_generator.datum,
@@ -40,8 +41,9 @@ def stamps(rate_hz, length_s=20.0, start_s=1.0):
 def recorded(t_ns, motion=MOTION):
     """Return RecordedImu and Reference, exact, of the motion at stamps."""
     truth = motion.at(t_ns)
-    reference = Reference('truth', Track(t_ns, np.stack([truth.lat, truth.lon, truth.height], -1)),
-                          Track(t_ns, truth.v_n), Track(t_ns, truth.q_nb))
+    position = np.stack([truth.lat, truth.lon, truth.height], -1)
+    reference = Reference('truth', SampledTrack(t_ns, position),
+                          SampledTrack(t_ns, truth.v_n), SampledTrack(t_ns, truth.q_nb))
     return RecordedImu(t_ns, truth.omega_ib_b, truth.f_ib_b,
                        np.full((len(t_ns), 4), np.nan)), reference
 
@@ -126,7 +128,6 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
 
     Bound: the error of the offline strapdown on the same samples, times 1.01 for another start.
     """
-    from ins_sim.core.simulation.inertial import simulate
     shown = []
     for mode in ('rotation_vector', 'integrated'):
         chosen = parameter_files.read([], [
@@ -139,7 +140,7 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
         got = run(RecordedImu(t_ns, omega, f, np.full((len(t_ns), 4), np.nan)), reference,
                   input=mode)
         ours = got.comparisons[0].position.values
-        theirs = simulate(chosen, twin=False).errors.position
+        theirs = run_offline(chosen, twin=False).errors.position
         shown.append(f'{mode} {np.abs(ours).max():.3g} m (simulate {np.abs(theirs).max():.3g})')
         assert np.abs(ours - theirs).max() < 0.01 * np.abs(theirs).max() + 1e-8
     with capsys.disabled():
@@ -194,7 +195,7 @@ def test_a_gap_restarts_from_a_standstill_behind_it():
     imu = RecordedImu(t_ns, np.tile(rate, (n, 1)),
                       np.tile([0.0, 0.0, ellipsoid.gravity(math.sin(lat), 0.0)], (n, 1)),
                       np.full((n, 4), np.nan))
-    reference = Reference('fix', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
+    reference = Reference('fix', SampledTrack(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
     got = run(imu, reference, on_gap='restart', initial__attitude='align',
               alignment__longest_s=8.0)
     assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
@@ -280,9 +281,9 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
     # heading 90 deg in compass terms is q = identity in ENU
     imu = RecordedImu(t_ns, np.tile(rate, (n, 1)), np.tile([0.0, 0.0, g + b], (n, 1)),
                       np.full((n, 4), np.nan))
-    reference = Reference('truth', Track(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))),
-                          Track(t_ns, np.zeros((n, 3))),
-                          Track(t_ns, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
+    reference = Reference('truth', SampledTrack(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))),
+                          SampledTrack(t_ns, np.zeros((n, 3))),
+                          SampledTrack(t_ns, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
     free = run(imu, reference).comparisons[0].position.values[-1, 2]
     damped = run(imu, reference, vertical__channel='damped').comparisons[0].position.values[:, 2]
     growth = 1.0 + 2.0 * g / ellipsoid.SEMI_MAJOR * 300.0 ** 2 / 12.0
@@ -304,12 +305,12 @@ def test_the_rows_are_the_errors_at_their_instants():
     """10 s and the end of a run of 20 s, and no row beyond."""
     imu, reference = recorded(stamps(100.0))
     got = run(imu, reference)
-    table = rows(got.comparisons[0], int(imu.t_ns[0]), int(imu.t_ns[-1]))
+    table = error_rows(got.comparisons[0], int(imu.t_ns[0]), int(imu.t_ns[-1]))
     assert [r.after_s for r in table] == [10.0, 20.0]
     p = got.comparisons[0].position.values[1000]
     assert table[0].horizontal_m == math.hypot(p[0], p[1]) and table[0].vertical_m == p[2]
-    assert compare(got.states, Reference('empty', Track(np.array([5, 6]), np.zeros((2, 3))))) \
-        is None
+    empty = Reference('empty', SampledTrack(np.array([5, 6]), np.zeros((2, 3))))
+    assert compare_with_reference(got.states, empty) is None
 
 
 def test_heading_error_is_clockwise():
@@ -317,10 +318,10 @@ def test_heading_error_is_clockwise():
     imu, reference = recorded(stamps(100.0, 1.0))
     turned = quaternion.multiply(quaternion.exponential((0.0, 0.0, math.radians(-1.0))),
                                  reference.attitude.values.T)
-    wrong = replace(reference, attitude=Track(imu.t_ns, np.stack(turned, axis=-1)))
+    wrong = replace(reference, attitude=SampledTrack(imu.t_ns, np.stack(turned, axis=-1)))
     got = run(imu, wrong)
-    shown = compare(got.states, reference)
-    assert abs(rows(shown, int(imu.t_ns[0]), int(imu.t_ns[-1]))[-1].heading_deg - 1.0) < 1e-3
+    shown = compare_with_reference(got.states, reference)
+    assert abs(error_rows(shown, int(imu.t_ns[0]), int(imu.t_ns[-1]))[-1].heading_deg - 1.0) < 1e-3
 
 
 def test_the_sections_name_the_settings():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies import MOTION_2, settings
+from studies import MOTION_2, run_offline, settings
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.sensors.imu.stream import make_imu, StreamImu
@@ -12,7 +12,7 @@ from ins_sim.core.sensors.imu.with_errors import reported_variances, with_errors
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import sense, simulate
+from ins_sim.core.simulation.inertial import sense
 from ins_sim.messages import topics
 
 NOISY = {**MOTION_2, 'source': 'stream', 'seed': 5,
@@ -86,7 +86,7 @@ def test_presets_order_the_navigation_error(name):
     """Ten minutes at rest: the better the class, the smaller the error; the twin has it too."""
     s = parameter_files.read([resources.config(name)], [
         'motion.kind:=static', 'duration_s:=600.0', 'rate_hz:=20.0', 'source:=motion'])
-    run = simulate(s)
+    run = run_offline(s)
     assert run.twin is None
     worst = np.abs(run.errors.position).max()
     print(f'\n{name}: {worst:.1f} m in ten minutes')

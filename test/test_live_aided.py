@@ -5,11 +5,11 @@ import subprocess
 import sys
 
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.simulation.aided import make_instruments, simulate_aided
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one
@@ -79,7 +79,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
                                                         motion=motion))
     states, errors = offline.states, offline.errors
     frame = MapFrame(generator.datum, True)
-    route = Route.of_points(settings.aided_navigator.motion.route.points)
+    route = GreatCircleRoute.of_points(settings.aided_navigator.motion.route.points)
     expected = {topic.name: [] for topic in HEARD}
     for k, solution in enumerate(zip(states.lat.tolist(), states.lon.tolist(),
                                      states.height.tolist(), states.v_n.tolist(),
@@ -205,7 +205,7 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(settings.simulation, twin=False, motion=motion)
-    meter, _ = settings.instruments((run.states.t_ns, body_velocity(run.states)))
+    meter, _ = make_instruments(settings, (run.states.t_ns, body_velocity(run.states)))
     with open_bag(tmp_path / 'bag') as bag:
         counts = {n.lstrip('/'): span.count for n, span in bag.spans().items()}
         logged, records = zip(*[(log_ns, velocity_record.read(bytes(data), 0))

@@ -5,13 +5,13 @@ import sys
 
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.settings.presets import preset
-from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import topics
 from ins_sim.messages.convert import error_blocks, state_blocks
 from live import Chain, Listener
 import numpy as np
 import pytest
 import studies
+from studies import run_offline
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
@@ -63,7 +63,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
 def same_as_offline(values, heard):
     """Compare what was heard with the offline run of the values; return the Run."""
     settings = studies.settings({**values, 'source': 'stream'})
-    run = simulate(settings, twin=False)
+    run = run_offline(settings, twin=False)
     frame = MapFrame(settings.strapdown.datum, True)
     expected = {**state_blocks(frame, run.states, run.imu.omega), **error_blocks(run.errors)}
     rounding = {'ins/odometry': 8e-9, 'ins/error/position': 8e-9, 'ins/error/velocity': 1e-11,

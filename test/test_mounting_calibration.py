@@ -4,6 +4,7 @@ from dataclasses import replace
 import math
 
 from ins_sim import parameter_files, resources
+from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.simulation.aided_run import aid, with_truth
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.core.aiding.mounting_calibration import (azimuth_error, calibrate, least_squares,
@@ -71,7 +72,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
 def test_the_filter_recovers_20_arcmin_to_2(flight):
     """The eskf with GNSS: mu within 2 arcmin and three of its sigmas, k_z within three."""
     settings, blocks = flight
-    run = aid(settings.aided_navigator, blocks, *settings.instruments())
+    run = aid(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = run.errors
     mu, _, k_z = errors.estimates[-1]
     print(f'eskf: mu {mu / ARCMIN:.2f} arcmin, k_z {k_z:.4f}')

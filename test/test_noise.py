@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, kstest
 
-from ins_sim.core.numerics.noise import BLOCK, LEVELS, Processes, stream
+from ins_sim.core.numerics.noise import BLOCK, indexed_noise, LEVELS, Processes
 
 QUANTILE = 1e-6
 
@@ -21,10 +21,10 @@ def within_chi2(sum_of_squares, freedom):
 @given(indices=st.lists(st.integers(0, 2 ** 50), min_size=1, max_size=30))
 def test_a_number_depends_on_its_index_alone(indices):
     """Asked in any order, one by one or as a range, bit for bit."""
-    one = stream(3, 1, 'a')
+    one = indexed_noise(3, 1, 'a')
     got = [(one.normal(k), one.uniform(k)) for k in indices]
     for k, (normal, uniform) in zip(indices, got):
-        fresh = stream(3, 1, 'a')
+        fresh = indexed_noise(3, 1, 'a')
         assert fresh.uniform(k) == uniform and fresh.normal(k) == normal
         assert fresh.normals(k, 300)[0] == normal and fresh.uniforms(k, 2)[0] == uniform
         assert 0.0 <= uniform < 1.0
@@ -35,11 +35,11 @@ def test_streams_are_normal_and_independent():
     n = 20000
     names = [(0, 0, 'gyro.white'), (1, 0, 'gyro.white'), (0, 1, 'gyro.white'),
              (0, 0, 'accelerometer.white')] + [(5, run, 'x') for run in range(16)]
-    draws = np.array([stream(*name).normals(0, n) for name in names])
+    draws = np.array([indexed_noise(*name).normals(0, n) for name in names])
     assert min(kstest(x, 'norm').pvalue for x in draws) > QUANTILE
     between = np.abs(np.corrcoef(draws)[np.triu_indices(len(names), 1)]).max()
     lags = max(abs(np.mean(x[k:] * x[:-k])) for x in draws for k in (1, 2, 3, BLOCK))
-    kinds = abs(np.corrcoef(draws[0], stream(*names[0]).uniforms(0, n))[0, 1])
+    kinds = abs(np.corrcoef(draws[0], indexed_noise(*names[0]).uniforms(0, n))[0, 1])
     print(f'largest correlation between streams {between:.4f}, in one {lags:.4f}, normals with '
           f'uniforms {kinds:.4f}; bound {4 / math.sqrt(n):.4f}')
     assert max(between, lags, kinds) < 4.0 / math.sqrt(n)
@@ -48,7 +48,7 @@ def test_streams_are_normal_and_independent():
 def test_a_negative_index_is_refused():
     """The sentence names it."""
     with pytest.raises(ValueError, match='expected an index >= 0'):
-        stream(0, 0, 'a').normal(-1)
+        indexed_noise(0, 0, 'a').normal(-1)
 
 
 @settings(max_examples=25, deadline=None)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.great_circle import FLATTENING2, Leg, Route, unit_vector
+from ins_sim.core.earth.great_circle import FLATTENING2, GreatCircleRoute, Leg, unit_vector
 from ins_sim.settings.route import TurningPoints
 
 R0 = ellipsoid.MEAN_RADIUS
@@ -128,7 +128,7 @@ def test_both_ends_of_a_short_leg_are_on_it():
 def test_legs_change_at_the_bisector():
     """Beside a corner of 90 deg the next leg begins on the line at 45 deg, either side."""
     lat, lon = [0.0, 0.0, 0.02], [0.0, 0.02, 0.02]
-    route = Route(lat, lon)
+    route = GreatCircleRoute(lat, lon)
     for side in (-1e-4, 1e-4):
         # on the bisector, inside and outside the corner, in geocentric latitude
         up = math.atan(math.tan(side) / FLATTENING2)
@@ -142,7 +142,7 @@ def test_legs_change_at_the_bisector():
 def test_a_route_that_crosses_itself_keeps_its_order():
     """Three sides of a square and on across the first: legs only go forwards."""
     lat, lon = [0.0, 0.0, 0.02, 0.02, -0.02], [-0.02, 0.02, 0.02, 0.0, 0.0]
-    route = Route(lat, lon)
+    route = GreatCircleRoute(lat, lon)
     way = [leg.from_xz(np.linspace(0.01 * leg.length, 0.99 * leg.length, 99), np.zeros(99))
            for leg in route.legs]
     lats, lons = (np.concatenate(parts) for parts in zip(*way))
@@ -169,6 +169,6 @@ BAD = [((55.0,), (37.0,), 'the route has 1 turning points; expected two or more'
 def test_bad_points(lat, lon, sentence):
     """One sentence that names the points and what was expected."""
     with pytest.raises(ValueError) as error:
-        Route.of_points(TurningPoints(lat, lon))
+        GreatCircleRoute.of_points(TurningPoints(lat, lon))
     assert str(error.value).startswith('motion.route.points: ')
     assert sentence in str(error.value) and '\n' not in str(error.value)

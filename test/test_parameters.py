@@ -12,7 +12,7 @@ from ins_sim import parameter_files, resources
 from ins_sim.settings.catalogue import build, flatten, values_of
 from ins_sim.settings.by_node import ALL_NAMES
 from ins_sim.settings.by_node import NODES
-from ins_sim.core.simulation.inertial import simulate
+from studies import run_offline
 
 ROOT = Path(__file__).resolve().parent.parent
 # those of other commands are in test_dtg_study and test_navigate_command
@@ -58,7 +58,7 @@ def test_every_shipped_file_runs(name, shared_flight):
         assignments.append(f'motion.recording.path:="{shared_flight}"')
     settings = parameter_files.read([resources.config('default'), resources.config(name)],
                                     assignments)
-    assert len(simulate(settings).errors) == 201
+    assert len(run_offline(settings).errors) == 201
     alone = parameter_files.read([resources.config(name)], assignments)
     assert alone == settings
 
@@ -175,21 +175,21 @@ def test_harmonics_need_as_many_phases():
     settings = parameter_files.read([], ['motion.kind:=harmonics', 'duration_s:=1.0',
                                          'motion.harmonics.psi_deg:=[1.0]'])
     with pytest.raises(ValueError, match='psi_phase_deg has 3 entries; expected 1'):
-        simulate(settings)
+        run_offline(settings)
 
 
 def test_endless_and_too_long_runs_are_refused(shared_data):
     """An offline run has a length, and a recording an end."""
     settings = parameter_files.read([], ['duration_s:=0.0'])
     with pytest.raises(ValueError, match='duration_s is 0, endless'):
-        simulate(settings)
+        run_offline(settings)
     path = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     settings = parameter_files.read([], ['motion.kind:=recording', 'duration_s:=900.0',
                                          f'motion.recording.path:="{path}"'])
     with pytest.raises(ValueError, match='expected at most .* s, the end of the recording'):
-        simulate(settings)
+        run_offline(settings)
     generator = replace(settings.motion_generator, duration_s=0.5)
-    assert len(simulate(replace(settings, motion_generator=generator)).errors) == 51
+    assert len(run_offline(replace(settings, motion_generator=generator)).errors) == 51
 
 
 def test_an_assignment_may_name_its_node():

@@ -6,7 +6,7 @@ from studies import settings
 
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-from ins_sim.core.sensors.tuned_gyro.parity import ParityTest, windows
+from ins_sim.core.sensors.tuned_gyro.parity import parity_windows, ParityTest
 from ins_sim.settings.presets import preset
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.core.simulation.inertial import sense
@@ -17,13 +17,13 @@ FAULT = {'gyro.dtg.fault.start_s': 10.0, 'gyro.dtg.fault.end_s': 20.0}
 TABLE = {'motion.kind': 'static'}
 
 
-def parity_windows(values, duration_s=30.0):
+def windows_of(values, duration_s=30.0):
     """Return the windows of a run."""
     s = settings({**DTG, **values}, source='motion', duration_s=duration_s)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     imu = ImuSamples.concatenate(sense(s, motion))
-    return windows(s.imu_sensor, PairInstrument(s.imu_sensor), imu)
+    return parity_windows(s.imu_sensor, PairInstrument(s.imu_sensor), imu)
 
 
 @pytest.mark.parametrize('motion', [
@@ -35,8 +35,8 @@ def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
     """At rest, turning, rocking and in flight; errors of the preset or none; five seeds."""
     closest = 0.0
     for seed in range(5 if errors else 1):
-        found = parity_windows({**motion, **errors, 'seed': seed,
-                                'gyro.dtg.arrangement': arrangement})
+        found = windows_of({**motion, **errors, 'seed': seed,
+                            'gyro.dtg.arrangement': arrangement})
         assert len(found) == 30 and not found[:, 3].any()
         closest = max(closest, (np.abs(found[:, 1]) / found[:, 2]).max())
     print(f'\n{motion["motion.kind"]}, {arrangement}: at most {closest:.3f} of the threshold')
@@ -48,8 +48,8 @@ def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
     *(('turned', c, True) for c in ('gyro_1_y', 'gyro_1_z', 'gyro_2_y', 'gyro_2_z'))])
 def test_a_fault_is_seen_where_the_parity_can_see_it(arrangement, channel, seen):
     """50 deg/h on one channel of the tactical preset, from 10 to 20 s."""
-    found = parity_windows({**TABLE, **preset('tactical_dtg'), **FAULT, 'seed': 2,
-                            'gyro.dtg.arrangement': arrangement, 'gyro.dtg.fault.channel':
+    found = windows_of({**TABLE, **preset('tactical_dtg'), **FAULT, 'seed': 2,
+                        'gyro.dtg.arrangement': arrangement, 'gyro.dtg.fault.channel':
                             channel, 'gyro.dtg.fault.bias_deg_h': 50.0})
     inside = (found[:, 0] > 11.0) & (found[:, 0] < 20.0)
     print(f'\n{arrangement} {channel}: mean parity {found[inside, 1].mean() / DEG_H:.2f} deg/h, '
@@ -62,18 +62,18 @@ def test_a_dead_channel_is_seen_while_it_turns():
     """A reading that stays at zero is a fault only of a gyro that turns."""
     dead = {**FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.scale': 0.0,
             **preset('tactical_dtg')}
-    turning = parity_windows({**dead, 'motion.kind': 'rocking', 'motion.rocking.axis': 'x',
-                              'motion.rocking.frequency_hz': 0.05,
-                              'motion.rocking.amplitude_deg': 30.0})
+    turning = windows_of({**dead, 'motion.kind': 'rocking', 'motion.rocking.axis': 'x',
+                          'motion.rocking.frequency_hz': 0.05,
+                          'motion.rocking.amplitude_deg': 30.0})
     assert turning[(turning[:, 0] > 11.0) & (turning[:, 0] < 14.0), 3].all()
-    assert not parity_windows({**dead, **TABLE, 'earth.rotation': False})[:, 3].any()
+    assert not windows_of({**dead, **TABLE, 'earth.rotation': False})[:, 3].any()
 
 
 def test_a_fixed_threshold_and_window():
     """They hold as they are given."""
     values = {**TABLE, 'gyro.dtg.parity.threshold_deg_h': 2.0, 'gyro.dtg.parity.window_s': 0.5,
               **FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 2.9}
-    found = parity_windows(values)
+    found = windows_of(values)
     assert len(found) == 60 and np.allclose(found[:, 2], 2.0 * DEG_H)
     inside = (found[:, 0] > 10.0) & (found[:, 0] < 20.0)
     # 2.9/sqrt 2 deg/h is beyond 2 deg/h by 2.5 %

@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, settings
+from studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, prediction_of, run_offline, settings
 
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.prediction.drift import channel_drift, delay_response, mean_drift
-from ins_sim.core.prediction.predict import predict
-from ins_sim.core.simulation.inertial import simulate
 
 RANDOM = [5, 17, 42]
 
@@ -45,8 +43,8 @@ DRIFTS = [pytest.param(*case, marks=pytest.mark.slow) if case[0] in ('random 17'
 def test_measured_drift_is_the_predicted_one(name, values, w):
     """The slope of the inertial attitude error, within 1e-4 + (w dt)^2 / 4 (section 5)."""
     s = settings(values, duration_s=1000.0)
-    measured = simulate(s, twin=False).errors.drift[-1]
-    predicted = predict(s).drift
+    measured = run_offline(s, twin=False).errors.drift[-1]
+    predicted = prediction_of(s).drift
     error = np.linalg.norm(measured - predicted) / np.linalg.norm(predicted)
     bound = 1e-4 + (w * 0.01) ** 2 / 4
     print(f'\n{name}: predicted {predicted * DEG_PER_HOUR} deg/h, measured '
@@ -72,9 +70,9 @@ def test_fourier_sum_equals_time_mean(name, values, w):
 def test_linear_model_predicts_the_position_error(values):
     """Within 1 % of the largest error, at every instant of 20 minutes."""
     s = settings(values, duration_s=1200.0, output_every=10)
-    result = simulate(s)
+    result = run_offline(s)
     position = result.errors.position - result.twin.position
-    predicted = predict(s).position
+    predicted = prediction_of(s).position
     n = min(len(position), len(predicted))
     off = np.abs(position[:n] - predicted[:n]).max() / np.abs(position).max()
     print(f'\nlargest error {np.abs(position).max():.3f} m, predicted within {off:.2e} of it')
@@ -88,8 +86,8 @@ def test_linear_model_predicts_initial_errors():
                   'initial.velocity_error_m_s': [0.05, -0.02, 0.0],
                   'initial.position_error_m': [30.0, -50.0, 0.0]}, duration_s=1200.0,
                  output_every=2)
-    errors = simulate(s).errors
-    predicted = predict(s)
+    errors = run_offline(s).errors
+    predicted = prediction_of(s)
     off = np.abs(errors.position - predicted.position[:len(errors)]).max()
     scale = np.abs(errors.position - errors.position[0]).max()
     print(f'\ninitial errors: {scale:.1f} m in 20 min, predicted within {off:.3f} m')
@@ -105,10 +103,10 @@ def test_both_resonances_of_motion_2_by_simulation():
     for name, gamma_rate in (("psi' = 2 gamma'", 0.5), ("psi' = -2 gamma'", -0.5)):
         s = settings(MOTION_2, motion__theta_deg=30.0, duration_s=1000.0,
                      motion__two_axis__gamma_rate_rad_s=gamma_rate)
-        found = predict(s).resonances
+        found = prediction_of(s).resonances
         formula = {n: d for n, rate, d in found}
         assert {n for n, rate, d in found if rate == 1.0} == {name}
-        measured = simulate(s, twin=False).errors.drift[-1]
+        measured = run_offline(s, twin=False).errors.drift[-1]
         drifts[name] = np.linalg.norm(measured)
         # the formula neglects the rotation of the Earth: Omega / gamma' of the larger resonance
         bound = 7.3e-5 / 0.5 * max(map(np.linalg.norm, formula.values()))

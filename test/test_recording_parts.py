@@ -4,7 +4,7 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, stamp_of
 from ins_sim.ros.transport.gaps import Gaps
-from ins_sim.ros.recording.playing import Beginning, Options, Playing
+from ins_sim.ros.recording.playing import Options, PlaybackStart, Playing
 from ins_sim.ros.recording.run_clock import RunClock
 import pytest
 
@@ -87,7 +87,7 @@ def test_the_first_sample_of_lock_step(bag):
     """What is older goes first, what is newer or has no stamp afterwards; nothing is missing."""
     playing = Playing(bag, Options(required=('strapdown',)))
     assert playing.driver == '/imu/data_raw' and playing.left_out == ['/sim/ack']
-    beginning = Beginning(playing, stamp_of)
+    beginning = PlaybackStart(playing, stamp_of)
     assert beginning.stamp_ns == 2 * SECOND
     assert [(n, t // SECOND) for n, t, _ in beginning.early] == [
         ('/truth/odometry', 0), ('/truth/odometry', 1)]

@@ -13,7 +13,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.earth.great_circle import FLATTENING2
 from ins_sim.settings.by_node import AIDING
 from ins_sim.settings.by_node import NODES
-from ins_sim.core.simulation.inertial import simulate
+from studies import run_offline
 
 # file, lengths of the legs (km), turns (deg); all begin at 55 N 37 E on a course of 30 deg
 FLIGHTS = [('route_flight', (160, 160, 160, 160), (60, -90, 60)),
@@ -106,7 +106,7 @@ def test_what_the_study_flight_is():
 @pytest.mark.slow
 def test_the_study_flight_closes():
     """An ideal IMU at 100 Hz: the strapdown stays within a centimetre in fifty minutes."""
-    run = simulate(read('route_flight', 'source:=motion'))
+    run = run_offline(read('route_flight', 'source:=motion'))
     position, velocity = (np.abs(getattr(run.errors, name)).max(axis=0)
                           for name in ('position', 'velocity'))
     print(f'\n{len(run.errors)} steps: position {position[0]:.1e} m east, {position[1]:.1e} north '

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from ins_sim import parameter_files
-from ins_sim.core.simulation.inertial import simulate
+from studies import run_offline
 
 
 def points(lat, lon):
@@ -49,7 +49,7 @@ def test_no_run_goes_beyond_the_arrival():
     settings = parameter_files.read([], ['motion.kind:=route', 'duration_s:=2000.0'])
     with pytest.raises(ValueError, match=r'start_s \+ duration_s is 2000 s; expected at most 6.* '
                        's, the arrival at the last turning point'):
-        simulate(settings)
+        run_offline(settings)
 
 
 @pytest.mark.parametrize('values', [

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from studies import MOTION_2, settings
+from studies import MOTION_2, run_offline, settings
 
-from ins_sim.studies.orientation import compare
+from ins_sim.studies.orientation import compare_orientations
 from ins_sim.core.navigation.sample_clock import SampleClock
-from ins_sim.core.simulation.inertial import simulate
 
 DISTURBED = {**MOTION_2, 'sampling.latency_us': 1500.0, 'sampling.jitter_us': 900.0, 'seed': 5}
 NOMINAL = {'imu_time': 'nominal', 'imu_latency_us': 1500.0}
@@ -14,8 +13,8 @@ NOMINAL = {'imu_time': 'nominal', 'imu_latency_us': 1500.0}
 
 def test_nominal_instants_undo_latency_and_jitter():
     """The same solution, bit for bit, as with perfect stamps; the stamps are what differs."""
-    perfect = simulate(settings(MOTION_2, duration_s=20.0), twin=False)
-    found = simulate(settings({**DISTURBED, **NOMINAL}, duration_s=20.0), twin=False)
+    perfect = run_offline(settings(MOTION_2, duration_s=20.0), twin=False)
+    found = run_offline(settings({**DISTURBED, **NOMINAL}, duration_s=20.0), twin=False)
     off = (found.imu.t_ns - perfect.imu.t_ns) * 1e-3
     print(f'\nstamps late by {off.mean():.0f} +- {off.std():.0f} us')
     assert 5.0 * 900.0 / np.sqrt(len(off)) > abs(off.mean() - 1500.0)
@@ -34,7 +33,7 @@ def test_stamps_taken_at_their_word_cost_accuracy():
     values = {**MOTION_2, 'gyro.delay_us.y': 0.0, 'sampling.jitter_us': 200.0}
     sizes = []
     for seed in range(4):
-        found = simulate(settings({**values, 'seed': seed}, duration_s=20.0), twin=False)
+        found = run_offline(settings({**values, 'seed': seed}, duration_s=20.0), twin=False)
         assert not found.faults
         sizes.append(np.linalg.norm(found.errors.attitude[-1]))
     # |w'| = psi' gamma' cos(30 deg) of the horizontal rate, which turns in the body
@@ -43,14 +42,15 @@ def test_stamps_taken_at_their_word_cost_accuracy():
     print(f'\nattitude off by {size:.2e} rad, root mean square; expected {expected:.2e}')
     # a chi-square of about 8 degrees of freedom
     assert 0.4 * expected < size < 1.8 * expected
-    wild = simulate(settings({**values, 'sampling.jitter_us': 900.0}, duration_s=5.0), twin=False)
+    wild = run_offline(settings({**values, 'sampling.jitter_us': 900.0}, duration_s=5.0),
+                       twin=False)
     assert any('comes at another rate' in f for f in wild.faults)
 
 
 def test_drop_outs_start_the_strapdown_anew():
     """As many gaps as there are runs of lost samples; the error begins at zero after each."""
     values = {**MOTION_2, 'sampling.drop_out_probability': 0.003, 'seed': 3}
-    found = simulate(settings(values, duration_s=60.0), twin=False)
+    found = run_offline(settings(values, duration_s=60.0), twin=False)
     gaps = np.flatnonzero(np.diff(found.imu.t_ns) > 10_000_000)
     print(f'\n{6001 - len(found.imu)} samples lost in {len(gaps)} gaps: {found.faults[0]}')
     assert len(gaps) > 5 and len(found.faults) == len(gaps)
@@ -59,7 +59,7 @@ def test_drop_outs_start_the_strapdown_anew():
     # the resolution of a latitude, 1e-9 m
     assert np.abs(found.errors.position[after]).max() <= 2e-9
     with pytest.raises(ValueError, match='imu has a gap from'):
-        simulate(settings({**values, 'on_fault': 'stop'}, duration_s=60.0), twin=False)
+        run_offline(settings({**values, 'on_fault': 'stop'}, duration_s=60.0), twin=False)
 
 
 def test_sample_clock():
@@ -88,7 +88,7 @@ def test_orientation_algorithms_agree_to_their_truncation():
     RK4 of a constant rate w errs by (w dt)^5/120 in angle a step for Poisson's equation; the
     Euler vector by less than that.
     """
-    results = compare(settings(MOTION_2, duration_s=600.0))
+    results = compare_orientations(settings(MOTION_2, duration_s=600.0))
     assert [r.kind for r in results] == ['quaternion', 'poisson', 'euler_vector']
     # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms
     bound = 60000 * (np.sqrt(1.75) * 0.01) ** 5 / 120.0

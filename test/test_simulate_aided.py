@@ -15,7 +15,7 @@ from scipy.stats import chi2
 
 @pytest.fixture(scope='module')
 def run():
-    """Return AidedSettings, motion, Run and AidedRun of the flight."""
+    """Return AidedSimulationSettings, motion, Run and AidedResult of the flight."""
     chosen = settings()
     return chosen, *flown(chosen)
 
@@ -24,7 +24,7 @@ def run():
 def rows(run):
     """Return {name: Row} of the flight."""
     chosen, _, free, solution = run
-    return {row.name: row for row in aided.rows(chosen, solution, free.states, free.errors)}
+    return {row.name: row for row in aided.aided_rows(chosen, solution, free.states, free.errors)}
 
 
 def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
@@ -164,7 +164,7 @@ def test_reasons_of_refusals_are_counted():
     """A meter that cannot measure the speed of the flight: each fix is none, for that reason."""
     chosen = settings('limits.speed_min_m_s:=390.0', 'duration_s:=10.0')
     _, free, solution = flown(chosen)
-    rows = {r.name: r for r in aided.rows(chosen, solution, free.states, free.errors)}
+    rows = {r.name: r for r in aided.aided_rows(chosen, solution, free.states, free.errors)}
     refused = rows['aided velocity_meter fixes refused']
     assert refused.measured == 10
     assert refused.note == 'the fix is none: speed outside the limits (10)'

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from studies import MOTION_1, MOTION_2, Pool, settings
+from studies import MOTION_1, MOTION_2, Pool, run_offline, settings
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.navigation import mechanization
-from ins_sim.core.simulation.inertial import simulate
 
 WOBBLE = {'motion.kind': 'sinusoids', 'motion.sinusoids.angle_deg': [20.0, 15.0, 25.0],
           'motion.sinusoids.position_m': [2.0, 3.0, 1.0],
@@ -17,7 +16,7 @@ WOBBLE = {'motion.kind': 'sinusoids', 'motion.sinusoids.angle_deg': [20.0, 15.0,
 def final(values, rate, **more):
     """Return the largest horizontal position error of 20 s, m, and attitude error, rad."""
     s = settings(values, rate_hz=rate, duration_s=20.0, **more)
-    errors = simulate(s, twin=False).errors
+    errors = run_offline(s, twin=False).errors
     return np.abs(errors.position[:, :2]).max(), np.abs(errors.attitude).max()
 
 
@@ -81,15 +80,16 @@ def test_free_vertical_channel_diverges_and_damped_does_not():
     """Free: exp(t sqrt(2 g / R)), time constant 570 s; damped: the reference wins."""
     start = {'motion.kind': 'static', 'rate_hz': 20.0,
              'initial.position_error_m': [0.0, 0.0, 10.0]}
-    free = simulate(settings(start, duration_s=1200.0, vertical__channel='free'), False).errors
+    free = run_offline(settings(start, duration_s=1200.0, vertical__channel='free'), False).errors
     growth = free.position[-1, 2] / 10.0
     expected = np.cosh(1200.0 * np.sqrt(2 * 9.8156 / 6.3782e6))
-    damped = simulate(settings(start, duration_s=1200.0, vertical__channel='damped'), False).errors
+    damped = run_offline(settings(start, duration_s=1200.0, vertical__channel='damped'),
+                         False).errors
     print(f'\nfree: 10 m grow {growth:.3f} times in 20 min (cosh: {expected:.3f}); damped: '
           f'{damped.position[-1, 2]:.1e} m left')
     assert growth == pytest.approx(expected, rel=5e-3)
     assert abs(damped.position[-1, 2]) < 1e-3
-    held = simulate(settings(start, duration_s=10.0), False).errors
+    held = run_offline(settings(start, duration_s=10.0), False).errors
     assert np.abs(held.position[:, 2]).max() == 0.0
 
 
@@ -99,7 +99,7 @@ def test_initial_errors_are_what_was_asked():
                   'initial.velocity_error_m_s': [0.3, -0.4, 0.0],
                   'initial.position_error_m': [20.0, -30.0, 0.0], 'gyro.delay_us.y': 0.0},
                  duration_s=0.1)
-    errors = simulate(s).errors
+    errors = run_offline(s).errors
     np.testing.assert_allclose(np.degrees(errors.attitude[0]), [0.1, -0.2, 1.0], atol=1e-12)
     np.testing.assert_allclose(errors.velocity[0], [0.3, -0.4, 0.0], atol=1e-12)
     np.testing.assert_allclose(errors.position[0], [20.0, -30.0, 0.0], atol=1e-8)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from studies import DEG_PER_HOUR, MOTION_2, settings
+from studies import DEG_PER_HOUR, MOTION_2, run_offline, settings
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.sensors.imu.ideal import MotionImu
@@ -11,7 +11,7 @@ from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import navigate, sense, simulate
+from ins_sim.core.simulation.inertial import navigate, sense
 
 LATE = {'gyro.delay_us.x': 1.0, 'gyro.delay_us.y': 0.5, 'gyro.delay_us.z': 0.0}
 MIXED = {**LATE, 'gyro.delay_us.z': -1.0}
@@ -60,7 +60,7 @@ def drift_of(source, late, frequency, rate):
     """Return the drift of 20 s of the mix, rad/s, started past the history of the stream."""
     s = settings({**mix(frequency), **late, 'source': source, 'rate_hz': rate,
                   'duration_s': 20.0, 'initial.after_s': 0.1})
-    return simulate(s, twin=False).errors.drift[-1]
+    return run_offline(s, twin=False).errors.drift[-1]
 
 
 @pytest.mark.parametrize('rate', [100.0, 1000.0])

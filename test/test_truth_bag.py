@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from studies import FLIGHT, MOTION_2, settings
+from studies import FLIGHT, MOTION_2, run_offline, settings
 
 from ins_sim.io import bag_truth, simulated
 from ins_sim.bags.bag_writer import BagWriter
@@ -72,7 +72,7 @@ def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
     """
     values, length_s = STUDIES[name], 300.0
     original = settings(values, start_s=PAD_S, duration_s=length_s)
-    run = simulate(original, twin=False)
+    run = run_offline(original, twin=False)
     bag = tmp_path / 'bag'
     simulated.write(bag, settings(values, duration_s=length_s + 2.0 * PAD_S), run, topics.TRUTH)
     again = recorded(bag, values, duration_s=length_s)

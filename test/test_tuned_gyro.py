@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from ins_sim.core.sensors.tuned_gyro.rotor import (loop_gains, PRESETS, state_space,
                                                    TunedGyroParameters)
-from ins_sim.core.sensors.tuned_gyro.report import report
+from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from ins_sim.core.sensors.tuned_gyro.stepping import TunedGyro
 
 PAPER, DAMPED, TACTICAL = (PRESETS[k] for k in ('paper', 'paper_damped', 'tactical'))
@@ -66,7 +66,7 @@ def test_margin_tells_stability():
     kinds = set()
     for p in draws(100):
         for speed in (p.speed_hz, 0.99 * p.speed_hz, 1.01 * p.speed_hz):
-            found = report(p, speed)
+            found = tuned_gyro_report(p, speed)
             assert (found.margin > 0.0) == found.stable == (found.decay_1_s > 0.0)
             kinds.add(found.stable)
     assert kinds == {True, False}
@@ -74,23 +74,23 @@ def test_margin_tells_stability():
 
 def test_figures_of_paper():
     """Time constant, growth of the nutation and RK4 window of the spec, to its digits."""
-    found = report(PAPER)
+    found = tuned_gyro_report(PAPER)
     print('\n' + '\n'.join(found.lines()))
     assert found.time_constant_s == pytest.approx(0.133652, abs=5e-7)
     assert found.roots[0].real == pytest.approx(7.45, abs=0.005) and not found.stable
     low, high = found.rk4_window_s
     assert (1e3 * low, 1e3 * high) == (pytest.approx(0.332, abs=5e-4),
                                        pytest.approx(1.099, abs=5e-4))
-    damped = report(DAMPED)
+    damped = tuned_gyro_report(DAMPED)
     assert damped.stable and damped.rk4_window_s[0] == 0.0
     # physically stable above 129.5 Hz
-    assert report(replace(DAMPED, speed_hz=129.6)).stable
-    assert not report(replace(DAMPED, speed_hz=129.4)).stable
+    assert tuned_gyro_report(replace(DAMPED, speed_hz=129.6)).stable
+    assert not tuned_gyro_report(replace(DAMPED, speed_hz=129.4)).stable
 
 
 def test_figures_of_tactical():
     """-3 dB, peak and gain at 10 Hz of the spec, to its digits."""
-    found = report(TACTICAL)
+    found = tuned_gyro_report(TACTICAL)
     gain = abs(state_space(TACTICAL).axis_responses(20 * math.pi)[0])
     print('\n' + '\n'.join([*found.lines(), f'|G(10 Hz)| = {gain:.6f}']))
     assert found.bandwidth_hz == pytest.approx(86.75, abs=0.005)

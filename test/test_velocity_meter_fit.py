@@ -9,7 +9,8 @@ import pytest
 
 from ins_sim.core.timeseries.fixes import VALID
 from ins_sim.core.sensors.velocity_meter.reading import (auto_peak, cross_peak, delay_velocity,
-                                                         log_quadratic, read, slowness)
+                                                         log_quadratic, read_correlations,
+                                                         slowness)
 from ins_sim.core.sensors.velocity_meter.antennas import geometry
 from ins_sim.core.sensors.velocity_meter.pulses import Field
 
@@ -22,8 +23,8 @@ def noise_free(speed, beta, alpha=0.0, taken=None, **terms):
     field = Field(s)
     functions = field.correlations(s.signal.lags, speed * math.cos(beta), speed * math.sin(beta),
                                    math.tan(alpha), s.signal.detection)
-    return read(functions, field.lag_s, geometry(s.antennas),
-                math.tan(alpha if taken is None else taken))
+    return read_correlations(functions, field.lag_s, geometry(s.antennas),
+                             math.tan(alpha if taken is None else taken))
 
 
 def test_the_published_noise_free_check():
@@ -167,8 +168,8 @@ def test_amplitudes_beyond_45_deg():
     field = Field(s)
     functions = field.correlations(64, V, 0.0, 0.0, 'power')
     functions[0] *= 0.05
-    assert read(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
+    assert read_correlations(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
         'amplitudes of R12 and R23 give no sideslip'
     functions[1, 63] = 2.0
-    assert read(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
+    assert read_correlations(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
         'R23 peaks at the last lag'

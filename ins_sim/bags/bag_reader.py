@@ -71,7 +71,7 @@ class BagReader:
                                      f'{known.type_name} and {channel.type_name}')
 
     def _find_files(self):
-        info = metadata.read(self.path)
+        info = metadata.read_metadata(self.path)
         if info is not None:
             files = [self.path / name for name in info.files]
             for file in files:

@@ -7,7 +7,7 @@ import numpy as np
 from . import mcap_format as form
 from .compression import decompress
 from .mcap_index import BEHIND_LENGTH, Chunk, LATEST_NS, McapIndex
-from .piece import apart, joined, Piece
+from .piece import apart, BagPiece, joined
 from .records import HEAD
 
 
@@ -148,8 +148,8 @@ class McapReader(McapIndex):
             raise self.corrupt(position, 'a message is longer than its chunk')
         if (heads['log_ns'] > LATEST_NS).any():
             raise self.corrupt(position, 'a message has a log time of 2^63 ns or more')
-        return Piece(data, heads['channel'].astype(np.int64), heads['log_ns'].astype(np.int64),
-                     starts + HEAD.itemsize, length.astype(np.int64) - BEHIND_LENGTH), heads
+        return BagPiece(data, heads['channel'].astype(np.int64), heads['log_ns'].astype(np.int64),
+                        starts + HEAD.itemsize, length.astype(np.int64) - BEHIND_LENGTH), heads
 
     def _scan(self, chunk, raw):
         """Return the Piece of all messages of a chunk, found by walking through it."""

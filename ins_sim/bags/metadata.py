@@ -19,7 +19,7 @@ class Metadata:
     files: tuple
 
 
-def read(folder):
+def read_metadata(folder):
     """
     Return the Metadata of a bag, or None where it has none.
 

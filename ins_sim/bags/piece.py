@@ -26,7 +26,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Piece:
+class BagPiece:
     """
     Some messages in the order of the file.
 
@@ -44,8 +44,8 @@ class Piece:
         return len(self.log_ns)
 
     def __getitem__(self, rows):
-        return Piece(self.data, self.channel[rows], self.log_ns[rows], self.starts[rows],
-                     self.sizes[rows])
+        return BagPiece(self.data, self.channel[rows], self.log_ns[rows], self.starts[rows],
+                        self.sizes[rows])
 
 
 def in_log_order(pieces):
@@ -92,5 +92,5 @@ def joined(pieces):
     """Return the messages of pieces of the same data as one Piece."""
     if len(pieces) == 1:
         return pieces[0]
-    return Piece(pieces[0].data, *(np.concatenate([getattr(p, name) for p in pieces])
-                                   for name in ('channel', 'log_ns', 'starts', 'sizes')))
+    return BagPiece(pieces[0].data, *(np.concatenate([getattr(p, name) for p in pieces])
+                                      for name in ('channel', 'log_ns', 'starts', 'sizes')))

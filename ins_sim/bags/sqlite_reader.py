@@ -5,7 +5,7 @@ import sqlite3
 
 import numpy as np
 
-from .piece import apart, Channel, Piece
+from .piece import apart, BagPiece, Channel
 
 ROWS = 1000
 # what a sound file needs at most: some thirty operations for a message of twenty bytes
@@ -167,8 +167,8 @@ class SqliteReader:
         if set(map(type, log_ns)) != {int} or set(map(type, blobs)) != {bytes}:
             raise self._corrupt('a message is no time with bytes')
         sizes = np.fromiter(map(len, blobs), np.int64, len(blobs))
-        return Piece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
-                     np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)
+        return BagPiece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
+                        np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)
 
     def close(self):
         """Close the file."""

@@ -53,7 +53,7 @@ def run(chosen):
 
 
 def _record(chosen, console):
-    """Return the ImuSamples, the simulation.Settings behind them or None, and a title."""
+    """Return the ImuSamples, the SimulationSettings behind them or None, and a title."""
     given = [resources.parameter_file(name) for name in chosen.params_file]
     if chosen.source is None:
         if chosen.topic is not None:

@@ -16,7 +16,7 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.report import filter_study as report
 from ins_sim.report import storage
 from ins_sim.settings.aided_navigator import FILTERS
-from ins_sim.studies.filters import Case, fly, run_settings
+from ins_sim.studies.filters import FilterCase, fly_filters, run_settings
 
 MARK = 'comparison.json'
 
@@ -37,7 +37,7 @@ def run(chosen):
     console = Console()
     flights = _fly_all(settings, cases, chosen.runs, chosen.jobs or os.cpu_count(), console)
     flown = list(zip(*flights))
-    rows = [report.row(case, list(f)) for case, f in zip(cases, flown)]
+    rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
     title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
              + ', '.join(map(str, names)))
     report.show(title, rows, console)
@@ -56,8 +56,8 @@ def _cases(chosen, cycles):
         if not 1 <= n <= 100000:
             raise ValueError(f'--cycles is {n}; expected 1 to 100000')
     # the other filters are made for one window: it is the first
-    cases = [Case(name, windows[0]) for name in filters]
-    return cases + [Case('eskf', n) for n in windows[1:] if 'eskf' in filters]
+    cases = [FilterCase(name, windows[0]) for name in filters]
+    return cases + [FilterCase('eskf', n) for n in windows[1:] if 'eskf' in filters]
 
 
 def _fly_all(settings, cases, runs, jobs, console):
@@ -68,7 +68,7 @@ def _fly_all(settings, cases, runs, jobs, console):
                   transient=True) as progress:
         task = progress.add_task('', total=runs)
         with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
-            futures = {pool.submit(fly, settings, cases, k): k for k in range(runs)}
+            futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
             try:
                 for future in as_completed(futures):
                     flights[futures[future]] = future.result()

@@ -10,7 +10,7 @@ from ins_sim.core.attitude.integration import KINDS
 from ins_sim.io.motion import read_motion
 from ins_sim.report.summary import DEG_PER_HOUR
 from ins_sim.report.table import number
-from ins_sim.studies.orientation import compare
+from ins_sim.studies.orientation import compare_orientations
 from . import settings as chosen_settings
 
 
@@ -22,8 +22,9 @@ def run(chosen):
                   TextColumn('{task.completed:.0f} of {task.total:.0f} algorithms'),
                   console=console, transient=True) as progress:
         task = progress.add_task('', total=len(KINDS))
-        results = compare(settings, lambda done: progress.update(task, completed=done),
-                          read_motion(settings.motion_generator))
+        results = compare_orientations(
+            settings, read_motion(settings.motion_generator),
+            lambda done: progress.update(task, completed=done))
     table = Table(title=chosen_settings.title(settings))
     table.add_column('figure')
     table.add_column('unit')

@@ -89,6 +89,6 @@ def _run(name, settings, work, folder, console):
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
     figure.save(work / 'errors.png', title, errors, prediction)
-    table.show(title, summary.rows(settings, errors, None, prediction), console)
+    table.show(title, summary.summary_rows(settings, errors, None, prediction), console)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
                   f'figure: {folder / "errors.png"}')

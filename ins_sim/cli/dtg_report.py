@@ -2,7 +2,7 @@
 
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.tuned_gyro.instrument import parameters
-from ins_sim.core.sensors.tuned_gyro.report import report
+from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from . import settings as chosen_settings
 
 
@@ -11,12 +11,12 @@ def run(chosen):
     sensor = chosen_settings.read(chosen).imu_sensor
     dtg = sensor.gyro.dtg
     p = parameters(dtg)
-    nominal = report(p)
+    nominal = tuned_gyro_report(p)
     print(f'tuned gyro {dtg.preset}, {p.loop} loop, rotor at {p.speed_hz:g} Hz')
     print('\n'.join(nominal.lines()))
     for gyro, ppm in enumerate(dtg.errors.speed_ppm, 1):
         if ppm:
-            there = report(p, p.speed_hz * (1.0 + 1e-6 * ppm))
+            there = tuned_gyro_report(p, p.speed_hz * (1.0 + 1e-6 * ppm))
             print(f'gyro {gyro}, {ppm:g} ppm off: ' + there.lines()[0])
     step_ms = period_ns(sensor.rate_hz) * 1e-6 / dtg.steps_per_sample
     print(f'steps of {step_ms:.4g} ms by the method {dtg.method} at {sensor.rate_hz:g} Hz')

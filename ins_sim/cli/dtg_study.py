@@ -45,8 +45,8 @@ def _study(name, settings, console):
                   TextColumn('{task.completed:.0f} of {task.total:.0f}'), console=console,
                   transient=True) as progress:
         task = progress.add_task(name, total=len(settings.values) + len(settings.curve_values))
-        cells = study.table(settings, lambda: progress.advance(task))
-        curve = study.curve(settings, lambda: progress.advance(task)) or cells
+        cells = study.study_table(settings, lambda: progress.advance(task))
+        curve = study.study_curve(settings, lambda: progress.advance(task)) or cells
     report.show(settings, cells, console)
     if limits:
         report.show_limits(settings, limits, console)

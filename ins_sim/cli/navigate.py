@@ -15,7 +15,7 @@ def run(chosen):
     paths = [resources.parameter_file(name) for name in chosen.params_file]
     settings = parameter_files.read_nodes(paths, chosen.param, NAVIGATE)['navigate']
     storage.check_free(chosen.output, chosen.force, navigation.MARK)
-    sources = imu.read(chosen.recording, settings)
+    sources = imu.read_imu(chosen.recording, settings)
     console = Console()
     with Progress(TextColumn('navigating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
                   TimeRemainingColumn(), console=console, transient=True) as progress:

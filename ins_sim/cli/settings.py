@@ -6,13 +6,16 @@ from ins_sim import parameter_files, resources
 
 
 def read(chosen):
-    """Return simulation.Settings of --params-file and -p."""
+    """Return SimulationSettings of --params-file and -p."""
     return parameter_files.read([resources.parameter_file(name) for name in chosen.params_file],
                                 chosen.param)
 
 
 def read_simulation(chosen):
-    """Return simulation.Settings, and with --aided the AidedSettings that they are of, or None."""
+    """
+    Return SimulationSettings, and with --aided the AidedSimulationSettings that they are of, or
+    None.
+    """
     if not chosen.aided:
         return read(chosen), None
     aided = parameter_files.read_aided(

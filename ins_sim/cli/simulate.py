@@ -30,10 +30,10 @@ def run(chosen):
     with Progress(TextColumn('{task.description}'), BarColumn(),
                   TextColumn('{task.percentage:>3.0f} %'), TimeRemainingColumn(),
                   console=console, transient=True) as progress:
-        result = simulate(settings, not chosen.no_twin, _watch(progress, 'simulating'), motion)
+        result = simulate(settings, motion, not chosen.no_twin, _watch(progress, 'simulating'))
         flown = None if aided is None else simulate_aided(aided, motion, result,
                                                           _watch(progress, 'aiding'))
-    rows = summary.rows(settings, result.errors, result.twin, prediction)
+    rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
     report = None if aided is None else _report(aided, flown, result)
     storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force, report)
     table.show(title, rows, console)
@@ -55,7 +55,8 @@ def _watch(progress, name):
 
 def _report(settings, flown, result):
     from ins_sim.report import aided
-    return aided.Report(settings, flown, aided.rows(settings, flown, result.states, result.errors))
+    rows = aided.aided_rows(settings, flown, result.states, result.errors)
+    return aided.AidedReport(settings, flown, rows)
 
 
 def _bag_writer(chosen, settings):

@@ -5,7 +5,7 @@ import numpy as np
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 
 
-def read(bag, topic):
+def read_imu_messages(bag, topic):
     """
     Return RecordedImu, frame id and notes (sentences) of a topic, in the order recorded.
 

@@ -75,7 +75,7 @@ def _to_csv(source, target, datum, topic):
                                  f'{", ".join(sorted(bag.topics)) or "no topic"}')
             name = choose(bag, types[1:], wanted, '--topic', needed=True)
         if bag.topics[name].type_name == topics.IMU:
-            imu, _, _ = bag_imu.read(bag, name)
+            imu, _, _ = bag_imu.read_imu_messages(bag, name)
             csv_writer.write_imu(target, imu)
             return f'{target} with {len(imu)} samples of {name}'
     poses = read_poses(source, name, datum, '--topic')

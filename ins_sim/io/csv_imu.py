@@ -5,7 +5,7 @@ import numpy as np
 from ins_sim.core.attitude.angles import from_compass
 from ins_sim.core.attitude.interpolation import continuous
 from ins_sim.core.postprocessing.imu_record import RecordedImu
-from ins_sim.core.postprocessing.reference import Reference, rising, Track
+from ins_sim.core.postprocessing.reference import keep_rising, Reference, SampledTrack
 from ins_sim.settings.suggest import nearest
 from . import csv_table
 
@@ -74,12 +74,12 @@ def read_reference(path):
     if all(name in columns for name in ATTITUDE):
         angles = (np.radians(columns[name]) for name in ATTITUDE)
         track = _track(t_ns, from_compass(*angles))
-        tracks['attitude'] = track and Track(track.t_ns, continuous(track.values))
+        tracks['attitude'] = track and SampledTrack(track.t_ns, continuous(track.values))
     if tracks['position'] is None:
         raise ValueError(f'{path} has no row with {", ".join(POSITION)}; expected a reference')
     return Reference(str(path).rpartition('/')[2], **tracks)
 
 
 def _track(t_ns, values):
-    t_ns, values = rising(t_ns, values)
-    return Track(t_ns, values) if len(t_ns) else None
+    t_ns, values = keep_rising(t_ns, values)
+    return SampledTrack(t_ns, values) if len(t_ns) else None

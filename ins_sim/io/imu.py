@@ -9,7 +9,8 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import typestore
 from ins_sim.core.attitude.interpolation import continuous
 from ins_sim.core.postprocessing.initial_state import Sources
-from ins_sim.core.postprocessing.reference import Odometry, Reference, rising, Track
+from ins_sim.core.postprocessing.reference import (keep_rising, OdometryReference, Reference,
+                                                   SampledTrack)
 from ins_sim.messages import topics
 from . import bag_imu, csv_imu
 from .csv_table import SUFFIXES
@@ -20,7 +21,7 @@ TWIST_WITH_COVARIANCE = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 TF = 'tf2_msgs/msg/TFMessage'
 
 
-def read(path, settings):
+def read_imu(path, settings):
     """
     Return the Sources of NavigateSettings in a bag or a CSV file of an IMU.
 
@@ -48,7 +49,7 @@ def _bag(path, settings):
             choose(bag, types, getattr(wanted, key), f'reference.{key}')
             for key, types in (('fix', [topics.FIX]), ('odometry', [topics.ODOMETRY]),
                                ('velocity', [TWIST, TWIST_WITH_COVARIANCE])))
-        imu, frame, notes = bag_imu.read(bag, topic)
+        imu, frame, notes = bag_imu.read_imu_messages(bag, topic)
         return Sources(f'{path.name} {topic}', imu, frame, _reference(bag, fix, velocity),
                        _odometry(bag, odometry), _static_transforms(bag), tuple(notes))
 
@@ -83,8 +84,8 @@ def _velocities(bag, topic):
 
 def _track(t_ns, values):
     """Return the Track in the order of the stamps, or None."""
-    t_ns, values = rising(t_ns, values)
-    return Track(t_ns, values) if len(t_ns) else None
+    t_ns, values = keep_rising(t_ns, values)
+    return SampledTrack(t_ns, values) if len(t_ns) else None
 
 
 def _odometry(bag, topic):
@@ -98,9 +99,10 @@ def _odometry(bag, topic):
     if track is None:
         return None
     v, frame = track.values, bag.frames(topic)[-1][0]
-    return Odometry(topic, frame, track.t_ns, v[:, :3],
-                    continuous(v[:, 3:7] / np.linalg.norm(v[:, 3:7], axis=1, keepdims=True)),
-                    v[:, 7:])
+    return OdometryReference(topic, frame, track.t_ns, v[:, :3],
+                             continuous(v[:, 3:7] / np.linalg.norm(v[:, 3:7],
+                                        axis=1, keepdims=True)),
+                             v[:, 7:])
 
 
 def _static_transforms(bag):

@@ -40,5 +40,5 @@ def read_imu(path, topic=None):
     with open_bag(path) as bag:
         topic = choose(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',
                        needed=True)
-        imu, _, _ = bag_imu.read(bag, topic)
+        imu, _, _ = bag_imu.read_imu_messages(bag, topic)
     return ImuSamples(imu.t_ns, imu.omega, imu.f)

@@ -8,7 +8,7 @@ from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-from ins_sim.core.sensors.tuned_gyro.parity import rows
+from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest
@@ -53,11 +53,12 @@ def select(settings, names, aided=False):
 def write(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
           progress=None, aided=None):
     """
-    Write a Run into a bag that appears only if it is whole; return {topic: message count}.
+    Write a SimulationResult into a bag that appears only if it is whole; return {topic: message
+    count}.
 
-    settings: simulation.Settings; chosen: Topics of ``select``; the rest as of BagWriter;
-    progress: called with the fraction done; aided: AidedSettings and the AidedRun on this run, or
-    None.  A message is logged at its own stamp.
+    settings: SimulationSettings; chosen: Topics of ``select``; the rest as of BagWriter;
+    progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
+    this run, or None.  A message is logged at its own stamp.
     """
     aiding = None
     if aided is not None:
@@ -102,7 +103,8 @@ class _Source:
         self._omega = _rates_at(run.states.t_ns, clock.instant(run.imu.t_ns), run.imu.omega)
         self._parity = None
         if run.imu.parity is not None:
-            self._parity = rows(settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu)
+            self._parity = parity_rows(
+                settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu)
 
     def window(self, first, stop):
         """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""

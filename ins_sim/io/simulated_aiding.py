@@ -3,7 +3,7 @@
 import numpy as np
 
 from ins_sim.core.earth.frames import MapFrame
-from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import convert, topics, velocity_record
 from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.gnss_fixes import GnssWriter
@@ -13,14 +13,14 @@ class AidingSource:
     """
     The topics of the three nodes that aid, by spans of motion time.
 
-    settings: AidedSettings; flown: AidedRun of ``simulate_aided``; omega (n, 3): readings of the
-    gyros at its states.
+    settings: AidedSimulationSettings; flown: AidedResult of ``simulate_aided``; omega (n, 3):
+    readings of the gyros at its states.
     """
 
     def __init__(self, settings, flown, omega):
         navigator = settings.aided_navigator
         self._frame = MapFrame(navigator.datum, navigator.earth.rotation)
-        self._route = Route.of_points(navigator.motion.route.points)
+        self._route = GreatCircleRoute.of_points(navigator.motion.route.points)
         self._flown, self._omega, self._leg = flown, omega, 0
         self._knows = not np.isnan(flown.errors.position_sigma).all()
         epoch_ns = settings.simulation.motion_generator.time.epoch_s * SECOND

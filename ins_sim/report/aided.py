@@ -10,8 +10,8 @@ from ins_sim import parameter_files
 from ins_sim.core.aiding.mounting_calibration import calibrate
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
-from ins_sim.core.simulation.aided import AidedSettings
-from ins_sim.core.simulation.aided_run import AidedRun
+from ins_sim.settings.simulation import AidedSimulationSettings
+from ins_sim.core.simulation.aided_run import AidedResult
 from . import aided_arrays, aided_figure
 from .consistency import mean_interval, THREE_SIGMA
 
@@ -25,7 +25,7 @@ REASONS = 3
 
 
 @dataclass(frozen=True)
-class Row:
+class AidedRow:
     """
     One figure of the aided solution; what does not apply is None.
 
@@ -48,11 +48,11 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Report:
+class AidedReport:
     """What ``storage.write`` keeps of an aided run; rows: of ``rows``."""
 
-    settings: AidedSettings
-    flown: AidedRun
+    settings: AidedSimulationSettings
+    flown: AidedResult
     rows: list
 
     @property
@@ -84,7 +84,7 @@ class Report:
 
 
 def sources(settings):
-    """Return the instruments that aid, of AidedSettings."""
+    """Return the instruments that aid, of AidedSimulationSettings."""
     return AidedNavigator(settings.aided_navigator).sources
 
 
@@ -95,8 +95,11 @@ def _described(settings, source):
     return f'velocity meter ({meter.mode}), N {meter.window.cycles}'
 
 
-def rows(settings, flown, states, errors):
-    """Return the Rows of AidedSettings, their AidedRun and the strapdown's states and errors."""
+def aided_rows(settings, flown, states, errors):
+    """
+    Return the AidedRows of AidedSimulationSettings, their AidedResult and the strapdown's states
+    and errors.
+    """
     table = _error_rows(flown.errors, errors) + _inside_rows(flown.errors)
     for source in sources(settings):
         table += _fix_rows(source, flown)
@@ -107,13 +110,14 @@ def rows(settings, flown, states, errors):
 
 
 def _error_rows(aided, free):
-    table = [Row(f'{AIDED}max |d{name}|', 'm', _largest(aided, axis), _largest(free, axis))
+    table = [AidedRow(f'{AIDED}max |d{name}|', 'm', _largest(aided, axis), _largest(free, axis))
              for axis, name in ((1, 'N'), (0, 'E'))]
     own, others = _horizontal(aided), _horizontal(free)
     sigma = np.hypot(aided.position_sigma[:, 0], aided.position_sigma[:, 1])
-    table.append(Row(f'{AIDED}rms horizontal', 'm', _rms(own), _rms(others), _known(_rms(sigma))))
-    table.append(Row(f'{AIDED}horizontal at the end', 'm', float(own[-1]), float(others[-1]),
-                     _known(float(sigma[-1]))))
+    table.append(AidedRow(f'{AIDED}rms horizontal', 'm',
+                 _rms(own), _rms(others), _known(_rms(sigma))))
+    table.append(AidedRow(f'{AIDED}horizontal at the end', 'm', float(own[-1]), float(others[-1]),
+                          _known(float(sigma[-1]))))
     return table
 
 
@@ -141,8 +145,8 @@ def _inside_rows(errors):
         axes = [axis for axis in range(3) if (sigma[:, axis] > 0.0).any()]
         if axes:
             inside = np.abs(error[:, axes]) <= 3.0 * sigma[:, axes]
-            table.append(Row(f'{AIDED}{kind} in 3 sigma', '%', 100.0 * float(inside.mean()),
-                             true=100.0 * THREE_SIGMA))
+            table.append(AidedRow(f'{AIDED}{kind} in 3 sigma', '%', 100.0 * float(inside.mean()),
+                                  true=100.0 * THREE_SIGMA))
     return table
 
 
@@ -155,12 +159,14 @@ def _fix_rows(source, flown):
         # the mean of chi-squares that all have the freedom of the instrument
         freedom = weighed[0].freedom
         low, high = mean_interval(len(weighed), freedom)
-        table.append(Row(f'{AIDED}NIS of {source}', '', float(np.mean([r.nis for r in weighed])),
-                         true=float(freedom), low=low, high=high))
+        mean = float(np.mean([r.nis for r in weighed]))
+        table.append(AidedRow(f'{AIDED}NIS of {source}', '', mean,
+                              true=float(freedom), low=low, high=high))
     taken = sum(r.taken for r in results)
     for name, number, note in (('reported', len(fixes), ''), ('taken', taken, ''),
                                ('refused', len(results) - taken, _reasons(results))):
-        table.append(Row(f'{AIDED}{source} fixes {name}', '', number, source=source, note=note))
+        table.append(AidedRow(f'{AIDED}{source} fixes {name}',
+                     '', number, source=source, note=note))
     return table
 
 
@@ -187,9 +193,9 @@ def _estimate_rows(settings, errors):
             ('scale kx', '%', 100.0, model.scale_x_sigma, k_x),
             ('scale kz', '%', 100.0, model.scale_z_sigma, (1.0 + k_z) * beam - 1.0))):
         if given:
-            table.append(Row(f'{AIDED}{name}', unit, factor * float(errors.estimates[-1, k]),
-                             sigma=factor * float(errors.estimates_sigma[-1, k]),
-                             true=factor * true))
+            table.append(AidedRow(f'{AIDED}{name}', unit, factor * float(errors.estimates[-1, k]),
+                                  sigma=factor * float(errors.estimates_sigma[-1, k]),
+                                  true=factor * true))
     return table
 
 
@@ -202,11 +208,12 @@ def _by_hand_rows(meter, flown, states):
         return []
     mu, sigma = found.least_squares
     true = meter.antennas.mounting_yaw_arcmin
-    return [Row(f'{AIDED}mounting by (27)', 'arcmin', found.two_manoeuvres / ARCMIN, true=true),
-            Row(f'{AIDED}mounting, least squares', 'arcmin', mu / ARCMIN, sigma=sigma / ARCMIN,
-                true=true),
-            Row(f'{AIDED}azimuth of the strapdown', 'arcmin', found.dpsi / ARCMIN,
-                sigma=found.dpsi_sigma / ARCMIN)]
+    by_hand = found.two_manoeuvres / ARCMIN
+    return [AidedRow(f'{AIDED}mounting by (27)', 'arcmin', by_hand, true=true),
+            AidedRow(f'{AIDED}mounting, least squares', 'arcmin', mu / ARCMIN,
+                     sigma=sigma / ARCMIN, true=true),
+            AidedRow(f'{AIDED}azimuth of the strapdown', 'arcmin', found.dpsi / ARCMIN,
+                     sigma=found.dpsi_sigma / ARCMIN)]
 
 
 def show(title, rows, console):

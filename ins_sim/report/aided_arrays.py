@@ -12,7 +12,7 @@ GNSS_COLUMNS = ('t_ns', 'lat', 'lon', 'height', 'v_n', 'position_sigma', 'veloci
 
 def arrays(flown):
     """
-    Return the arrays of an AidedRun by name.
+    Return the arrays of an AidedResult by name.
 
     aided_<record>_<field>: as in ``core.timeseries.histories``; velocity_meter_<field> and
     gnss_<field>: as in ``core.timeseries.fixes``, one row per fix; judged_<field>: what the

@@ -29,8 +29,8 @@ def save(path, title, flown, sources, gate_probability):
     """
     Save the figure as PNG.
 
-    flown: AidedRun with the fixes of the instruments; sources: those that aid; gate_probability:
-    of the navigator, 0: none.
+    flown: AidedResult with the fixes of the instruments; sources: those that aid;
+    gate_probability: of the navigator, 0: none.
     """
     start_ns, end_ns = int(flown.errors.t_ns[0]), int(flown.errors.t_ns[-1])
     span_s = (end_ns - start_ns) * 1e-9

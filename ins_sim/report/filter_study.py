@@ -18,7 +18,7 @@ COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
 
 
 @dataclass(frozen=True)
-class Row:
+class FilterRow:
     """
     One case over all flights: horizontal errors, m, and the consistency of its filter.
 
@@ -42,7 +42,7 @@ class Row:
     reason: str
 
 
-def row(case, flown):
+def filter_row(case, flown):
     """Return the Row of a Case and its list of Flown, one a flight."""
     ends = np.array([f.horizontal[-1] for f in flown])
     sigmas = np.array([np.hypot(*f.sigma[-1, :2]) for f in flown])
@@ -52,10 +52,10 @@ def row(case, flown):
         mean = float(nis.mean())
         low, high = mean_interval(len(nis), 2)
     refused = [f for f in flown if f.refused]
-    return Row(case.filter, case.cycles, len(flown), _rms(ends),
-               _rms(np.concatenate([f.horizontal for f in flown])), float(ends.max()),
-               _rms(sigmas) if np.isfinite(sigmas).all() else None, mean, low, high,
-               sum(f.refused for f in flown), refused[-1].reason if refused else '')
+    return FilterRow(case.filter, case.cycles, len(flown), _rms(ends),
+                     _rms(np.concatenate([f.horizontal for f in flown])), float(ends.max()),
+                     _rms(sigmas) if np.isfinite(sigmas).all() else None, mean, low, high,
+                     sum(f.refused for f in flown), refused[-1].reason if refused else '')
 
 
 def _rms(values):

@@ -17,9 +17,9 @@ from . import storage  # noqa: E402
 from .figure import MOST_POINTS  # noqa: E402
 from .table import number  # noqa: E402
 from ins_sim import parameter_files  # noqa: E402
-from ins_sim.core.postprocessing.comparison import rows  # noqa: E402
+from ins_sim.core.postprocessing.comparison import error_rows  # noqa: E402
 from ins_sim.core.navigation.errors import position_error  # noqa: E402
-from ins_sim.core.postprocessing.reference import Track  # noqa: E402
+from ins_sim.core.postprocessing.reference import SampledTrack  # noqa: E402
 
 MARK = 'nav.npz'
 OTHERS = ('tab:orange', 'tab:purple')
@@ -46,7 +46,7 @@ def show(title, result, console=None):
         table = Table(title=f'{title} less {comparison.name}')
         for _, head in COLUMNS:
             table.add_column(escape(head), justify='right')
-        for row in rows(comparison, start_ns, end_ns):
+        for row in error_rows(comparison, start_ns, end_ns):
             table.add_row(*(number(getattr(row, name)) for name, _ in COLUMNS))
         console.print(table)
 
@@ -72,7 +72,7 @@ def write(folder, settings, title, result, force=False):
         np.savez(work / MARK, **arrays)
         summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
                    'figures': result.figures, 'notes': result.notes,
-                   'errors': {c.name: [asdict(r) for r in rows(c, start_ns, end_ns)]
+                   'errors': {c.name: [asdict(r) for r in error_rows(c, start_ns, end_ns)]
                               for c in result.comparisons}}
         (work / 'summary.json').write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
         (work / 'parameters.yaml').write_text(
@@ -87,14 +87,14 @@ def save_figure(path, title, result):
     way = figure.add_subplot(grid[:, 0])
     first = result.states[0]
     start_ns, origin = int(first.t_ns[0]), (first.lat[0], first.lon[0], first.height[0])
-    tracks = [('solution', Track(s.t_ns, np.stack([s.lat, s.lon, s.height], axis=-1)))
+    tracks = [('solution', SampledTrack(s.t_ns, np.stack([s.lat, s.lon, s.height], axis=-1)))
               for s in result.states]
     end_ns = _span(result)[1]
     for reference in result.references:
         track = reference.position
         if track is not None:
             inside = (track.t_ns >= start_ns) & (track.t_ns <= end_ns)
-            tracks.append((reference.name, Track(track.t_ns[inside], track.values[inside])))
+            tracks.append((reference.name, SampledTrack(track.t_ns[inside], track.values[inside])))
     for k, (name, track) in enumerate(tracks):
         place = np.array([position_error(*p, *origin) for p in _thin(track.values).tolist()])
         if len(place):

@@ -64,7 +64,8 @@ def whole(folder, force=False, mark=MARK):
 
 def write(folder, settings, run, rows, prediction, title, force=False, aided=None):
     """
-    Write a Run, and what was predicted of it or None, into a folder that appears when complete.
+    Write a SimulationResult, and what was predicted of it or None, into a folder that appears when
+    complete.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.Report`` on this run, which goes into the same files, or None.

@@ -29,7 +29,7 @@ PUBLISHED_DRIFT = {
 
 
 @dataclass(frozen=True)
-class Row:
+class SummaryRow:
     """One figure: name, unit, predicted, measured, zero-delay twin and published (or None)."""
 
     name: str
@@ -65,20 +65,20 @@ def study_key(settings):
     return None
 
 
-def rows(settings, errors, twin=None, prediction=None):
+def summary_rows(settings, errors, twin=None, prediction=None):
     """Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction."""
     key = study_key(settings)
     place, drift = PUBLISHED_POSITION.get(key), PUBLISHED_DRIFT.get(key)
     table = []
     for axis, name in enumerate(('east', 'north', 'up')):
-        table.append(Row(
+        table.append(SummaryRow(
             f'mean drift {name}', 'deg/h',
             None if prediction is None else prediction.drift[axis] * DEG_PER_HOUR,
             errors.drift[-1, axis] * DEG_PER_HOUR,
             None if twin is None else twin.drift[-1, axis] * DEG_PER_HOUR,
             None if drift is None else drift[axis]))
     for axis, name in ((1, 'N'), (0, 'E')):
-        table.append(Row(
+        table.append(SummaryRow(
             f'max |d{name}|', 'm',
             None if prediction is None else np.abs(prediction.position[:, axis]).max(),
             np.abs(errors.position[:, axis]).max(),
@@ -86,7 +86,7 @@ def rows(settings, errors, twin=None, prediction=None):
             None if place is None else place[1 - axis]))
     if twin is not None:
         for axis, name in ((1, 'N'), (0, 'E')):
-            table.append(Row(
+            table.append(SummaryRow(
                 f'max |d{name} - twin|', 'm', None,
                 np.abs(errors.position[:, axis] - twin.position[:, axis]).max(), None, None))
     return table
@@ -105,8 +105,8 @@ def parity(sensor, imu):
     if imu.parity is None:
         return []
     from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-    from ins_sim.core.sensors.tuned_gyro.parity import windows
-    found = windows(sensor, PairInstrument(sensor), imu)
+    from ins_sim.core.sensors.tuned_gyro.parity import parity_windows
+    found = parity_windows(sensor, PairInstrument(sensor), imu)
     beyond = found[found[:, 3] > 0.0]
     if not len(beyond):
         most = (np.abs(found[:, 1]) / found[:, 2]).max() if len(found) else 0.0

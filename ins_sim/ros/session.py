@@ -22,7 +22,7 @@ class Session:
     """
     The processes of ``graph.PROCESSES`` in a namespace of their own, and a recorder here.
 
-    settings: simulation.Settings, whose pacing must require the recorder; folder: where parameters
+    settings: SimulationSettings, whose pacing must require the recorder; folder: where parameters
     and logs go; bag: path of the bag.  Use as a context manager: leaving it ends every process,
     and drops the bag unless ``run`` came to its end.
     """

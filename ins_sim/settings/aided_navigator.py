@@ -1,16 +1,17 @@
 """Settings of the node aided_navigator."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming, Window
 from .node import Time, Topics
 from .place import Datum, Earth
 from .route import FlownRoute
 
 FILTERS = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
+TAKES_GNSS = ('eskf',)
 
 
 @settings_class
-class AidedVertical(Settings):
+class AidedVertical(SettingsGroup):
     """The vertical channel."""
 
     channel: str = setting('altimeter', 'height and vertical velocity of the truth, as from an '
@@ -22,7 +23,7 @@ class AidedVertical(Settings):
 
 
 @settings_class
-class InitialSigmas(Settings):
+class InitialSigmas(SettingsGroup):
     """Initial errors: drawn from the seed with these standard deviations, and the filter's own."""
 
     after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
@@ -33,7 +34,7 @@ class InitialSigmas(Settings):
 
 
 @settings_class
-class ImuModel(Settings):
+class ImuModel(SettingsGroup):
     """What the filter believes of the IMU (a mid-grade one by default)."""
 
     gyro_bias_sigma_deg_h: float = setting(0.05, 'gyro bias at the start', 'deg/h', 0.0, 1e5)
@@ -52,7 +53,7 @@ class ImuModel(Settings):
 
 
 @settings_class
-class MeterModel(Settings):
+class MeterModel(SettingsGroup):
     """What the filter believes of the velocity meter at the start."""
 
     use: bool = setting(True, 'the velocity meter aids')
@@ -66,7 +67,7 @@ class MeterModel(Settings):
 
 
 @settings_class
-class GnssModel(Settings):
+class GnssModel(SettingsGroup):
     """How the navigator takes GNSS."""
 
     use: bool = setting(False, 'GNSS aids')
@@ -75,7 +76,7 @@ class GnssModel(Settings):
 
 
 @settings_class
-class AidedNavigatorSettings(Settings):
+class AidedNavigatorSettings(SettingsGroup):
     """Node aided_navigator."""
 
     datum: Datum = group(Datum)
@@ -108,3 +109,17 @@ class AidedNavigatorSettings(Settings):
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew from truth (reset) or end the node (stop)',
                             choices=('reset', 'stop'))
+
+    def check(self):
+        """Refuse a filter, a gain and latencies that do not go together."""
+        if self.gnss_model.use and self.filter not in TAKES_GNSS:
+            raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected filter '
+                             f'{", ".join(TAKES_GNSS)}, which alone takes GNSS')
+        if self.filter == 'paper' and self.gain > 1.0:
+            raise ValueError(f'gain is {self.gain:g} with filter paper; expected at most 1, '
+                             'beyond which it is unstable')
+        for name, latency_ms in (('window', self.window.latency_ms),
+                                 ('gnss', self.gnss.latency_ms)):
+            if latency_ms > 1e3 * self.buffer_s:
+                raise ValueError(f'{name}.latency_ms is {latency_ms:g} ms; expected at most '
+                                 f'buffer_s, {self.buffer_s:g} s: such fixes come too late')

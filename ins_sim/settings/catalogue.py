@@ -43,9 +43,7 @@ def build(cls, values):
         if name not in known:
             raise ValueError(unknown(name, known))
         checked[name] = check(name, value, known[name])
-    settings = _assemble(cls, checked, '')
-    _check_together(settings)
-    return settings
+    return _assemble(cls, checked, '')
 
 
 def _assemble(cls, values, prefix):
@@ -98,24 +96,3 @@ def _scalar(name, value, kind):
 
 
 _KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 'a text'}
-
-
-def _check_together(settings):
-    """Check what no single key shows."""
-    values = values_of(settings)
-    window, depth = values.get('pacing.window'), values.get('topics.depth')
-    if window is not None and window > depth:
-        raise ValueError(f'pacing.window is {window}; expected at most topics.depth, {depth}: '
-                         'a queue must hold a window')
-    if values.get('pacing.required') == () and (values['pacing.lock_step']
-                                                or values['pacing.real_time_factor'] == 0.0):
-        raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
-    if values.get('gyro.model') == 'dtg' and values['output'] != 'integrated':
-        raise ValueError(f'output is {values["output"]} with gyro.model dtg; expected integrated: '
-                         'a tuned gyro reads the integral of its rate')
-    if values.get('record.topics') == () and not values['record.all_topics']:
-        raise ValueError('record.topics is empty and record.all_topics false; expected topics to '
-                         'record')
-    if values.get('motion.kind') == 'recording' and not values['motion.recording.path']:
-        raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
-                         'file or a bag')

@@ -15,13 +15,23 @@ def group(cls):
     return field(default_factory=cls)
 
 
-class Settings:
+class SettingsGroup:
     """
     A frozen record of settings, compared and shown by value.
+
+    A subclass overrides ``check`` where values must fit each other; it runs whenever an object is
+    made. The range of a single value is checked by ``catalogue.build``.
 
     What dataclass(frozen=True) would write for each class stands here once: to make thirty such
     classes takes 25 ms, on the way of every node's start, and this a quarter of it.
     """
+
+    def __post_init__(self):
+        """Check the values against each other."""
+        self.check()
+
+    def check(self):
+        """Raise ValueError, in one sentence, where values do not go together."""
 
     def __setattr__(self, name, value):
         """Take each attribute once."""

@@ -1,10 +1,10 @@
 """Settings that an aiding instrument and the navigator share; ``/**`` of a file sets both."""
 
-from .field import setting, Settings, settings_class
+from .field import setting, settings_class, SettingsGroup
 
 
 @settings_class
-class Window(Settings):
+class Window(SettingsGroup):
     """
     Windows of the velocity meter, the same on both sides.
 
@@ -18,7 +18,7 @@ class Window(Settings):
 
 
 @settings_class
-class GnssTiming(Settings):
+class GnssTiming(SettingsGroup):
     """When GNSS measures, and when its fix is there; the same on both sides."""
 
     rate_hz: float = setting(1.0, 'rate of the fixes, at whole periods of motion time (the same '

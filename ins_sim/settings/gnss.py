@@ -1,6 +1,7 @@
 """Settings of the node gnss."""
 
-from .field import group, setting, Settings, settings_class
+from ins_sim.core.numerics.instants import period_ns
+from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming
 from .node import Time, Topics
 from .place import Datum, Earth
@@ -13,8 +14,15 @@ def enu(default, doc, unit, low, high):
     return setting(default, doc, unit, low, high, size=3)
 
 
+def check_span(name, start, end):
+    """Raise ValueError unless a span of time ends after it begins."""
+    if end <= start:
+        raise ValueError(f'{name}.end_s is {end:g} s with {name}.start_s {start:g} s; expected a '
+                         'later end')
+
+
 @settings_class
-class GnssErrors(Settings):
+class GnssErrors(SettingsGroup):
     """Errors of the fixes; lists are by East, North, Up."""
 
     position_noise_m: Axes = enu((1.5, 1.5, 3.0), 'white noise of the position, standard '
@@ -27,24 +35,37 @@ class GnssErrors(Settings):
 
 
 @settings_class
-class GnssOutages(Settings):
+class GnssOutages(SettingsGroup):
     """Outages by schedule, in motion time; the service ~/outage forces one."""
 
     start_s: Axes = setting((), 'each outage begins, a fix then being none', 's', 0.0, 1e7)
     end_s: Axes = setting((), 'and ends, a fix then being one', 's', 0.0, 1e7)
 
+    def check(self):
+        """Refuse lists that do not go together."""
+        if len(self.start_s) != len(self.end_s):
+            raise ValueError(f'outages.start_s has {len(self.start_s)} entries and outages.end_s '
+                             f'{len(self.end_s)}; expected as many')
+        for start, end in zip(self.start_s, self.end_s):
+            check_span('outages', start, end)
+
 
 @settings_class
-class GnssJump(Settings):
+class GnssJump(SettingsGroup):
     """A jump of the position that the reported sigma does not know, in motion time."""
 
     start_s: float = setting(0.0, 'the jump begins', 's', 0.0, 1e7)
     end_s: float = setting(0.0, 'and ends', 's', 0.0, 1e7)
     offset_m: Axes = enu((0.0, 0.0, 0.0), 'offset of the position', 'm', -1e6, 1e6)
 
+    def check(self):
+        """Refuse a jump that ends before it begins."""
+        if any(self.offset_m):
+            check_span('jump', self.start_s, self.end_s)
+
 
 @settings_class
-class GnssReported(Settings):
+class GnssReported(SettingsGroup):
     """Standard deviations that are reported, by East, North, Up."""
 
     position_sigma_m: Axes = enu((-1.0, -1.0, -1.0), 'of the position; negative = that of the '
@@ -54,7 +75,7 @@ class GnssReported(Settings):
 
 
 @settings_class
-class GnssSettings(Settings):
+class GnssSettings(SettingsGroup):
     """Node gnss."""
 
     datum: Datum = group(Datum)
@@ -74,3 +95,11 @@ class GnssSettings(Settings):
                              'IMU', 'Hz', 0.01, 20000.0)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
+
+    def check(self):
+        """Refuse fixes between the samples of the truth."""
+        dt_ns, fix_ns = period_ns(self.rate_hz), period_ns(self.gnss.rate_hz)
+        if fix_ns % dt_ns:
+            raise ValueError(f'gnss.rate_hz is {self.gnss.rate_hz:g} Hz, a period of '
+                             f'{fix_ns * 1e-9:.9g} s; expected a multiple of the period of '
+                             f'rate_hz, {dt_ns * 1e-9:.9g} s: a fix needs a sample of the truth')

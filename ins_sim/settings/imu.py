@@ -1,6 +1,6 @@
 """Settings of the node imu_sensor."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .motion import MotionSettings
 from .node import Time, Topics
@@ -9,7 +9,7 @@ from .tuned_gyro import Dtg
 
 
 @settings_class
-class DelaysUs(Settings):
+class DelaysUs(SettingsGroup):
     """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
 
     x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
@@ -17,9 +17,13 @@ class DelaysUs(Settings):
                        -1e6, 1e6)
     z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
 
+    def in_ns(self):
+        """Return the delays of the channels x, y, z in nanoseconds."""
+        return tuple(round(1000.0 * d) for d in (self.x, self.y, self.z))
+
 
 @settings_class
-class Gyro(Settings):
+class Gyro(SettingsGroup):
     """The gyro triad."""
 
     model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
@@ -30,7 +34,7 @@ class Gyro(Settings):
 
 
 @settings_class
-class Accelerometer(Settings):
+class Accelerometer(SettingsGroup):
     """The accelerometer triad."""
 
     delay_us: DelaysUs = group(DelaysUs)
@@ -41,7 +45,7 @@ OUTPUTS = ('rotation_vector', 'integrated')
 
 
 @settings_class
-class ImuSensorSettings(Settings):
+class ImuSensorSettings(SettingsGroup):
     """Node imu_sensor."""
 
     datum: Datum = group(Datum)
@@ -67,7 +71,8 @@ class ImuSensorSettings(Settings):
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
 
-
-def delays_ns(delay_us):
-    """Return the delays of the channels x, y, z (settings.DelaysUs) in nanoseconds."""
-    return tuple(round(1000.0 * d) for d in (delay_us.x, delay_us.y, delay_us.z))
+    def check(self):
+        """Refuse tuned gyros without the output that they have."""
+        if self.gyro.model == 'dtg' and self.output != 'integrated':
+            raise ValueError(f'output is {self.output} with gyro.model dtg; expected integrated: '
+                             'a tuned gyro reads the integral of its rate')

@@ -8,7 +8,7 @@ triads are alike; ``core.sensors.imu.triad_model`` brings both to SI.
 
 import math
 
-from .field import setting, Settings, settings_class
+from .field import setting, settings_class, SettingsGroup
 
 Axes = tuple[float, ...]
 MOST = 1e9
@@ -41,7 +41,7 @@ REPORTED = ('standard deviation reported in place of that of the noise; negative
 
 
 @settings_class
-class GyroErrors(Settings):
+class GyroErrors(SettingsGroup):
     """Errors of the gyro triad."""
 
     bias_deg_h: Axes = axes(BIAS, 'deg/h', -MOST)
@@ -74,7 +74,7 @@ class GyroErrors(Settings):
 
 
 @settings_class
-class AccelerometerErrors(Settings):
+class AccelerometerErrors(SettingsGroup):
     """Errors of the accelerometer triad."""
 
     bias_ug: Axes = axes(BIAS, 'ug', -MOST)
@@ -104,7 +104,7 @@ class AccelerometerErrors(Settings):
 
 
 @settings_class
-class Temperature(Settings):
+class Temperature(SettingsGroup):
     """Temperature of the instruments: constant, ramp and sinusoid of motion time."""
 
     reference_c: float = setting(25.0, 'temperature of the calibration', 'C', -100.0, 200.0)
@@ -115,7 +115,7 @@ class Temperature(Settings):
 
 
 @settings_class
-class Sampling(Settings):
+class Sampling(SettingsGroup):
     """How samples reach the outside; both triads share it, as they share a message."""
 
     latency_us: float = setting(0.0, 'added to every stamp', 'us', -1e6, 1e6)

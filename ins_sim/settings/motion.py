@@ -1,13 +1,13 @@
 """Settings of the motions and of the node motion_generator."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .node import Pacing, Time, Topics
 from .place import Datum, Earth
 from .route import FlightRoute
 
 
 @settings_class
-class Rocking(Settings):
+class Rocking(SettingsGroup):
     """Motion 1: angle = amplitude sin(2 pi f t) about one axis."""
 
     axis: str = setting('north', 'level axis (east, north, up) or body axis (x, y, z)',
@@ -17,7 +17,7 @@ class Rocking(Settings):
 
 
 @settings_class
-class TwoAxis(Settings):
+class TwoAxis(SettingsGroup):
     """Motion 2: constant rates of psi and gamma at constant theta."""
 
     psi_rate_rad_s: float = setting(1.0, 'rate of psi', 'rad/s', -100.0, 100.0)
@@ -26,7 +26,7 @@ class TwoAxis(Settings):
 
 
 @settings_class
-class Coning(Settings):
+class Coning(SettingsGroup):
     """The body axis describes a cone about its mean direction."""
 
     axis: str = setting('z', 'body axis that describes the cone', choices=('x', 'y', 'z'))
@@ -35,7 +35,7 @@ class Coning(Settings):
 
 
 @settings_class
-class Sculling(Settings):
+class Sculling(SettingsGroup):
     """Rocking about the vertical with a vibration along the mean forward axis."""
 
     amplitude_deg: float = setting(1.0, 'amplitude of the rocking', 'deg', 0.0, 90.0)
@@ -45,7 +45,7 @@ class Sculling(Settings):
 
 
 @settings_class
-class Sinusoids(Settings):
+class Sinusoids(SettingsGroup):
     """One sinusoid on each angle (psi, theta, gamma) and on each coordinate (E, N, U)."""
 
     angle_deg: tuple[float, ...] = setting((3.0, 2.0, 4.0), 'amplitudes of psi, theta, gamma',
@@ -63,7 +63,7 @@ class Sinusoids(Settings):
 
 
 @settings_class
-class Harmonics(Settings):
+class Harmonics(SettingsGroup):
     """Periodic angles: entry k of each list is the harmonic k + 1 of the period."""
 
     period_s: float = setting(10.0, 'common period', 's', 1e-3, 1e6)
@@ -82,7 +82,7 @@ class Harmonics(Settings):
 
 
 @settings_class
-class Recording(Settings):
+class Recording(SettingsGroup):
     """A recorded flight, or the truth of a bag."""
 
     path: str = setting('', 'CSV file, plain or gzip, or rosbag2 bag (folder or file)')
@@ -100,7 +100,7 @@ MOTION_KINDS = ('static', 'rocking', 'two_axis', 'coning', 'sculling', 'sinusoid
 
 
 @settings_class
-class MotionSettings(Settings):
+class MotionSettings(SettingsGroup):
     """The motion; only the group of its kind is used."""
 
     kind: str = setting('two_axis', 'which motion', choices=MOTION_KINDS)
@@ -119,9 +119,15 @@ class MotionSettings(Settings):
     route: FlightRoute = group(FlightRoute)
     recording: Recording = group(Recording)
 
+    def check(self):
+        """Refuse a recording without a file."""
+        if self.kind == 'recording' and not self.recording.path:
+            raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
+                             'file or a bag')
+
 
 @settings_class
-class MotionGeneratorSettings(Settings):
+class MotionGeneratorSettings(SettingsGroup):
     """Node motion_generator."""
 
     datum: Datum = group(Datum)
@@ -136,3 +142,10 @@ class MotionGeneratorSettings(Settings):
                                 's', 0.0, 1e7)
     publish_clock: bool = setting(False, 'publish /clock')
     exit_at_end: bool = setting(True, 'end the process after the last sample; else stay up')
+
+    def check(self):
+        """Refuse a window of lock-step that the queues cannot hold."""
+        window, depth = self.pacing.window, self.topics.depth
+        if window > depth:
+            raise ValueError(f'pacing.window is {window}; expected at most topics.depth, {depth}: '
+                             'a queue must hold a window')

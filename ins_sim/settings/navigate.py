@@ -1,13 +1,13 @@
 """Settings of the command ``navigate``: the strapdown over a recorded IMU."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .place import Earth
 
 INPUTS = ('instant', 'integrated', 'rotation_vector')
 
 
 @settings_class
-class ReferenceSource(Settings):
+class ReferenceSource(SettingsGroup):
     """What the solution is compared with."""
 
     fix: str = setting('auto', 'topic of NavSatFix; auto: the only one, if there is one; none')
@@ -20,7 +20,7 @@ class ReferenceSource(Settings):
 
 
 @settings_class
-class Mounting(Settings):
+class MountingSettings(SettingsGroup):
     """How the IMU sits in the vehicle: the rotation from base_link to the frame of the IMU."""
 
     source: str = setting('auto', 'tf: /tf_static of the bag; given: rpy_deg; level: the shortest '
@@ -34,7 +34,7 @@ class Mounting(Settings):
 
 
 @settings_class
-class Start(Settings):
+class StartSettings(SettingsGroup):
     """State at the start; the values serve only where their source is "given"."""
 
     attitude: str = setting('align', 'align: from a stationary interval; given: roll_deg, '
@@ -64,7 +64,7 @@ class Start(Settings):
 
 
 @settings_class
-class Alignment(Settings):
+class AlignmentSettings(SettingsGroup):
     """
     The search for a stationary interval and what is taken from it.
 
@@ -99,7 +99,7 @@ class Alignment(Settings):
 
 
 @settings_class
-class FreeVertical(Settings):
+class FreeVertical(SettingsGroup):
     """The vertical channel."""
 
     channel: str = setting('free', 'free, or damped towards the height of the reference',
@@ -108,15 +108,15 @@ class FreeVertical(Settings):
 
 
 @settings_class
-class NavigateSettings(Settings):
+class NavigateSettings(SettingsGroup):
     """The command navigate."""
 
     topic: str = setting('auto', 'topic of sensor_msgs/Imu; auto: the only one')
     earth: Earth = group(Earth)
     reference: ReferenceSource = group(ReferenceSource)
-    mounting: Mounting = group(Mounting)
-    initial: Start = group(Start)
-    alignment: Alignment = group(Alignment)
+    mounting: MountingSettings = group(MountingSettings)
+    initial: StartSettings = group(StartSettings)
+    alignment: AlignmentSettings = group(AlignmentSettings)
     vertical: FreeVertical = group(FreeVertical)
     start_s: float = setting(0.0, 'start, or begin the search for a stationary interval, this '
                              'long after the first sample', 's', 0.0, 1e7)
@@ -131,33 +131,32 @@ class NavigateSettings(Settings):
                           'force are drawn straight across the gap',
                           choices=('stop', 'restart', 'bridge'))
 
+    def check(self):
+        """
+        Refuse a value that its source leaves unused.
+
+        A heading that is given but not used would look as if it had been used.
+        """
+        initial, mounting = self.initial, self.mounting
+        attitude = initial.attitude == 'given'
+        heading = attitude or (initial.attitude == 'align' and initial.heading == 'given')
+        for key, used, expected in (
+                ('roll_deg', attitude, 'initial.attitude given'),
+                ('pitch_deg', attitude, 'initial.attitude given'),
+                ('heading_deg', heading, 'initial.heading (or initial.attitude) given'),
+                ('velocity_m_s', initial.velocity == 'given', 'initial.velocity given'),
+                *((key, initial.position == 'given', 'initial.position given')
+                  for key in ('latitude_deg', 'longitude_deg', 'height_m'))):
+            value = getattr(initial, key)
+            if not used and value != type(initial)().__dict__[key]:
+                raise ValueError(f'initial.{key} is {value} and would not be used; expected '
+                                 f'{expected}')
+        roll, pitch, yaw = mounting.rpy_deg
+        if (mounting.source == 'tf' and (roll or pitch or yaw)) or (
+                mounting.source == 'level' and (roll or pitch)):
+            raise ValueError(f'mounting.rpy_deg is {list(mounting.rpy_deg)} and would not be used '
+                             f'with mounting.source {mounting.source}; expected '
+                             + ('zeros' if mounting.source == 'tf' else 'a yaw alone'))
+
 
 NAVIGATE = {'navigate': NavigateSettings}
-
-
-def check_used(settings):
-    """
-    Raise ValueError where NavigateSettings hold a value that its source leaves unused.
-
-    A heading that is given and not taken would pass for one that was.
-    """
-    initial, mounting = settings.initial, settings.mounting
-    attitude = initial.attitude == 'given'
-    heading = attitude or (initial.attitude == 'align' and initial.heading == 'given')
-    for key, used, expected in (
-            ('roll_deg', attitude, 'initial.attitude given'),
-            ('pitch_deg', attitude, 'initial.attitude given'),
-            ('heading_deg', heading, 'initial.heading (or initial.attitude) given'),
-            ('velocity_m_s', initial.velocity == 'given', 'initial.velocity given'),
-            *((key, initial.position == 'given', 'initial.position given')
-              for key in ('latitude_deg', 'longitude_deg', 'height_m'))):
-        value = getattr(initial, key)
-        if not used and value != type(initial)().__dict__[key]:
-            raise ValueError(f'initial.{key} is {value} and would not be used; expected '
-                             f'{expected}')
-    roll, pitch, yaw = mounting.rpy_deg
-    if (mounting.source == 'tf' and (roll or pitch or yaw)) or (
-            mounting.source == 'level' and (roll or pitch)):
-        raise ValueError(f'mounting.rpy_deg is {list(mounting.rpy_deg)} and would not be used '
-                         f'with mounting.source {mounting.source}; expected '
-                         + ('zeros' if mounting.source == 'tf' else 'a yaw alone'))

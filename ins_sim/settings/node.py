@@ -1,10 +1,10 @@
 """Settings of a node that no computation depends on: time of the epoch, topics and pacing."""
 
-from .field import setting, Settings, settings_class
+from .field import setting, settings_class, SettingsGroup
 
 
 @settings_class
-class Pacing(Settings):
+class Pacing(SettingsGroup):
     """How fast the generator goes."""
 
     real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
@@ -17,16 +17,21 @@ class Pacing(Settings):
     timeout_s: float = setting(30.0, 'wall time without an acknowledgement before the missing '
                                'consumer is named and the run ends', 's', 0.1, 1e5)
 
+    def check(self):
+        """Refuse lock-step without a consumer."""
+        if not self.required and (self.lock_step or self.real_time_factor == 0.0):
+            raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
+
 
 @settings_class
-class Time(Settings):
+class Time(SettingsGroup):
     """Zero of motion time."""
 
     epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 2147483647)
 
 
 @settings_class
-class Topics(Settings):
+class Topics(SettingsGroup):
     """Quality of service of the data topics (reliable, volatile)."""
 
     depth: int = setting(10000, 'queue depth of publishers and subscriptions', 'messages', 1,

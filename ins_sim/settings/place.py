@@ -1,10 +1,10 @@
 """Settings that all nodes share: the datum and the Earth."""
 
-from .field import setting, Settings, settings_class
+from .field import setting, settings_class, SettingsGroup
 
 
 @settings_class
-class Datum(Settings):
+class Datum(SettingsGroup):
     """Origin of ``map``; the bench motions stand there."""
 
     latitude_deg: float = setting(55.75, 'geodetic latitude', 'deg', -89.9, 89.9)
@@ -13,7 +13,7 @@ class Datum(Settings):
 
 
 @settings_class
-class Earth(Settings):
+class Earth(SettingsGroup):
     """The Earth of truth and navigation alike."""
 
     rotation: bool = setting(True, 'the Earth rotates, in the truth and in the navigation')

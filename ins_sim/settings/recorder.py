@@ -1,10 +1,10 @@
 """Settings of the node recorder: what goes into a bag, and how."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 
 
 @settings_class
-class Record(Settings):
+class RecordSettings(SettingsGroup):
     """What is recorded, and at which time."""
 
     topics: tuple[str, ...] = setting((), 'names of topics; one that is not there yet is waited '
@@ -18,7 +18,7 @@ class Record(Settings):
 
 
 @settings_class
-class Storage(Settings):
+class StorageSettings(SettingsGroup):
     """The bag."""
 
     path: str = setting('ins_sim_bag', 'folder of the bag')
@@ -34,8 +34,14 @@ class Storage(Settings):
 
 
 @settings_class
-class RecorderSettings(Settings):
+class RecorderSettings(SettingsGroup):
     """Node recorder."""
 
-    record: Record = group(Record)
-    storage: Storage = group(Storage)
+    record: RecordSettings = group(RecordSettings)
+    storage: StorageSettings = group(StorageSettings)
+
+    def check(self):
+        """Refuse to record nothing."""
+        if not self.record.topics and not self.record.all_topics:
+            raise ValueError('record.topics is empty and record.all_topics false; expected topics '
+                             'to record')

@@ -1,19 +1,29 @@
 """Settings of flights along great circles."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 
 
 @settings_class
-class TurningPoints(Settings):
+class TurningPoints(SettingsGroup):
     """The turning points of a route, from the first to the last."""
 
     latitude_deg: tuple[float, ...] = setting((55.0, 56.0), 'geodetic latitudes', 'deg', -89.9,
                                               89.9)
     longitude_deg: tuple[float, ...] = setting((37.0, 38.0), 'longitudes', 'deg', -180.0, 180.0)
 
+    def check(self):
+        """Refuse lists that do not go together."""
+        latitudes, longitudes = len(self.latitude_deg), len(self.longitude_deg)
+        if latitudes != longitudes:
+            raise ValueError(f'motion.route.points: the route has {latitudes} latitudes and '
+                             f'{longitudes} longitudes; expected as many of each')
+        if latitudes < 2:
+            raise ValueError(f'motion.route.points: the route has {latitudes} turning points; '
+                             'expected two or more')
+
 
 @settings_class
-class FlightRoute(Settings):
+class FlightRoute(SettingsGroup):
     """A flight along great circles, with turns inside the corners."""
 
     points: TurningPoints = group(TurningPoints)
@@ -40,14 +50,14 @@ class FlightRoute(Settings):
 
 
 @settings_class
-class RoutePoints(Settings):
+class RoutePoints(SettingsGroup):
     """A route by its turning points alone."""
 
     points: TurningPoints = group(TurningPoints)
 
 
 @settings_class
-class FlownRoute(Settings):
+class FlownRoute(SettingsGroup):
     """The route that orthodromic coordinates refer to, under the names of the motion's."""
 
     route: RoutePoints = group(RoutePoints)

@@ -1,13 +1,13 @@
 """Settings of the node strapdown."""
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .imu import OUTPUTS
 from .node import Time, Topics
 from .place import Datum, Earth
 
 
 @settings_class
-class Vertical(Settings):
+class Vertical(SettingsGroup):
     """The vertical channel."""
 
     channel: str = setting('truth', 'height and vertical velocity from truth, free, or damped '
@@ -16,7 +16,7 @@ class Vertical(Settings):
 
 
 @settings_class
-class Initial(Settings):
+class Initial(SettingsGroup):
     """Initial errors, added to the truth, resolved in East, North, Up."""
 
     after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
@@ -29,7 +29,7 @@ class Initial(Settings):
 
 
 @settings_class
-class StrapdownSettings(Settings):
+class StrapdownSettings(SettingsGroup):
     """Node strapdown."""
 
     datum: Datum = group(Datum)

@@ -7,9 +7,11 @@ and z being the sensitive axes of a gyro's case (``ins_sim.core.sensors.tuned_gy
 
 import math
 
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 
 MOST = 1e9
+# Names of the rotors whose parameters are in ``core.sensors.tuned_gyro.rotor.PRESETS``.
+ROTORS = ('paper', 'paper_damped', 'tactical')
 
 
 def by_gyro(doc, unit, low=0.0, high=MOST):
@@ -23,7 +25,7 @@ def by_channel(doc, unit, low=-MOST, high=MOST):
 
 
 @settings_class
-class CustomDtg(Settings):
+class CustomDtg(SettingsGroup):
     """The gyro of preset custom; by default that of preset tactical."""
 
     rotor_axial_kg_m2: float = setting(5.0e-6, 'axial inertia of the rotor, Jr', 'kg m^2', 0.0,
@@ -52,7 +54,7 @@ class CustomDtg(Settings):
 
 
 @settings_class
-class DtgErrors(Settings):
+class DtgErrors(SettingsGroup):
     """What disturbs the rotors and their pick-offs (the read-out: gyro.errors)."""
 
     mass_unbalance_deg_h_g: tuple[float, ...] = by_channel(
@@ -86,7 +88,7 @@ class DtgErrors(Settings):
 
 
 @settings_class
-class DtgFault(Settings):
+class DtgFault(SettingsGroup):
     """A fault of one channel, in time or by the service ~/fault."""
 
     channel: str = setting('none', 'which channel',
@@ -99,7 +101,7 @@ class DtgFault(Settings):
 
 
 @settings_class
-class ParitySettings(Settings):
+class ParitySettings(SettingsGroup):
     """The test of the four channels against each other."""
 
     window_s: float = setting(1.0, 'the parity is averaged over this time', 's', 1e-3, 1e4)
@@ -108,13 +110,13 @@ class ParitySettings(Settings):
 
 
 @settings_class
-class Dtg(Settings):
+class Dtg(SettingsGroup):
     """Two dynamically tuned gyros in place of the ideal triad."""
 
     preset: str = setting('tactical', 'parameters of both gyros '
                           '(sensors.tuned_gyro.rotor.PRESETS), or custom; the undamped rotor of '
                           'the paper is unstable, and only RK4 at 0.332 to 1.099 ms damps it',
-                          choices=('paper', 'paper_damped', 'tactical', 'custom'))
+                          choices=(*ROTORS, 'custom'))
     custom: CustomDtg = group(CustomDtg)
     arrangement: str = setting('paper', 'paper: gyro 1 senses x and y, gyro 2 senses z and x; '
                                'turned: each pick-off pair turned 45 deg about its spin axis',

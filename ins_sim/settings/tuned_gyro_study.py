@@ -1,13 +1,13 @@
 """Settings of one table of the tuned-gyro study: default, unit, bounds and doc of every key."""
 
-from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
-from .field import setting, Settings, settings_class
+from .field import setting, settings_class, SettingsGroup
+from .tuned_gyro import ROTORS
 
 SWEEPS = {'base_rate': 'base rate [rad/s]', 'rotor_speed': 'rotor speed [Hz]'}
 
 
 @settings_class
-class DtgStudySettings(Settings):
+class DtgStudySettings(SettingsGroup):
     """One table and its figure: a rocking base recovered through two tuned gyros."""
 
     sweep: str = setting('base_rate', 'what the values are: angular frequency of the base or '
@@ -25,12 +25,12 @@ class DtgStudySettings(Settings):
     rotor_speed_hz: float = setting(230.0, 'speed of the rotors where the base rate is swept, and '
                                     'where the search for the limits begins', 'Hz', 1e-3, 1e4)
     preset: str = setting('paper', 'parameters of both gyros (sensors.tuned_gyro.rotor.PRESETS)',
-                          choices=tuple(PRESETS))
+                          choices=ROTORS)
     method: str = setting('rk4', 'integration of the gyros: rk4 as in the paper, or exact',
                           choices=('rk4', 'exact'))
     step_ms: float = setting(0.75, 'step of gyros and orientation', 'ms', 1e-3, 100.0)
 
-    def __post_init__(self):
+    def check(self):
         """Check the lists against each other."""
         if len(self.paper_deg) not in (0, len(self.values)):
             raise ValueError(f'paper_deg has {len(self.paper_deg)} entries; expected none or '

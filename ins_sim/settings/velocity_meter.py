@@ -4,15 +4,14 @@ Settings of the node velocity_meter, the correlation velocity meter.
 Axes of the antennas: X1 forward, Z1 right (docs/theory.md, "Correlation velocity meter").
 """
 
-from .catalogue import build, values_of
-from .field import group, setting, Settings, settings_class
+from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import Window
 from .node import Time, Topics
 from .place import Datum, Earth
 
 
 @settings_class
-class Antennas(Settings):
+class Antennas(SettingsGroup):
     """Three receiving antennas: 1 at (+X0, 0), 2 to the side at (0, Y0), 3 at (-X0, 0)."""
 
     x0_m: float = setting(0.20, 'distance of antennas 1 and 3 from the middle, X0', 'm', 1e-3,
@@ -28,7 +27,7 @@ class Antennas(Settings):
 
 
 @settings_class
-class Beam(Settings):
+class Beam(SettingsGroup):
     """The beam, which sets the correlation lengths lambda/(4 pi sigma_theta)."""
 
     wavelength_m: float = setting(0.07, 'wavelength, lambda', 'm', 1e-4, 10.0)
@@ -40,7 +39,7 @@ class Beam(Settings):
 
 
 @settings_class
-class Signal(Settings):
+class Signal(SettingsGroup):
     """Mode signal: pulses, receivers and correlators."""
 
     prf_hz: float = setting(1e5, 'pulse repetition frequency', 'Hz', 1.0, 1e7)
@@ -57,7 +56,7 @@ class Signal(Settings):
 
 
 @settings_class
-class Limits(Settings):
+class Limits(SettingsGroup):
     """Where the instrument measures; elsewhere its fixes are invalid."""
 
     height_min_m: float = setting(50.0, 'least height', 'm', -1e4, 1e6)
@@ -67,9 +66,17 @@ class Limits(Settings):
     speed_max_m_s: float = setting(400.0, 'greatest forward speed, true and measured', 'm/s', 0.1,
                                    1e4)
 
+    def check(self):
+        """Refuse limits in the wrong order."""
+        for low, high in (('height_min_m', 'height_max_m'), ('speed_min_m_s', 'speed_max_m_s')):
+            least, most = getattr(self, low), getattr(self, high)
+            if not least < most:
+                raise ValueError(f'limits.{low} is {least:g}; expected less than limits.{high}, '
+                                 f'{most:g}')
+
 
 @settings_class
-class Surrogate(Settings):
+class Surrogate(SettingsGroup):
     """Mode surrogate: errors of the window mean; N cycles, beta sideslip."""
 
     sigma_x_m_s: float = setting(8.0, 'forward sigma of one cycle: sigma_x/sqrt(N) '
@@ -84,15 +91,25 @@ class Surrogate(Settings):
 
 
 @settings_class
-class DropOuts(Settings):
+class DropOuts(SettingsGroup):
     """Flights over calm water, which gives no echo: windows that overlap are invalid."""
 
     start_s: tuple[float, ...] = setting((), 'motion times of their begins', 's', 0.0, 1e7)
     end_s: tuple[float, ...] = setting((), 'motion times of their ends, as many', 's', 0.0, 1e7)
 
+    def check(self):
+        """Refuse lists that do not go together."""
+        if len(self.start_s) != len(self.end_s):
+            raise ValueError(f'drop_outs.end_s has {len(self.end_s)} entries; expected '
+                             f'{len(self.start_s)}, as many as drop_outs.start_s')
+        for k, (start, end) in enumerate(zip(self.start_s, self.end_s)):
+            if not start < end:
+                raise ValueError(f'drop_outs.end_s[{k}] is {end:g} s; expected more than '
+                                 f'drop_outs.start_s[{k}], {start:g} s')
+
 
 @settings_class
-class VelocityMeterSettings(Settings):
+class VelocityMeterSettings(SettingsGroup):
     """Node velocity_meter."""
 
     datum: Datum = group(Datum)
@@ -118,61 +135,34 @@ class VelocityMeterSettings(Settings):
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
 
+    @property
+    def lag_s(self):
+        """Return the time from lag to lag, s."""
+        return self.signal.pulses_per_lag / self.signal.prf_hz
 
-def checked(settings):
-    """
-    Return VelocityMeterSettings if they are sound.
+    @property
+    def samples(self):
+        """Return how many samples, a lag apart, a navigation cycle has."""
+        # A quotient that is whole but for rounding is whole.
+        return int((1.0 + 1e-9) / (self.rate_hz * self.lag_s))
 
-    Raises ValueError, in one sentence that names key, value and expectation.
-    """
-    settings = build(VelocityMeterSettings, values_of(settings))
-    for low, high in (('height_min_m', 'height_max_m'), ('speed_min_m_s', 'speed_max_m_s')):
-        least, most = getattr(settings.limits, low), getattr(settings.limits, high)
-        if not least < most:
-            raise ValueError(f'limits.{low} is {least:g}; expected less than limits.{high}, '
-                             f'{most:g}')
-    _check_drop_outs(settings.drop_outs)
-    if settings.mode == 'signal':
-        _check_lags(settings)
-    return settings
-
-
-def _check_drop_outs(drop_outs):
-    starts, ends = drop_outs.start_s, drop_outs.end_s
-    if len(starts) != len(ends):
-        raise ValueError(f'drop_outs.end_s has {len(ends)} entries; expected {len(starts)}, as '
-                         'many as drop_outs.start_s')
-    for k, (start, end) in enumerate(zip(starts, ends)):
-        if not start < end:
-            raise ValueError(f'drop_outs.end_s[{k}] is {end:g} s; expected more than '
-                             f'drop_outs.start_s[{k}], {start:g} s')
-
-
-def _check_lags(settings):
-    """Check that a cycle holds the lags, and the lags the delay of some speed."""
-    signal, limits, antennas = settings.signal, settings.limits, settings.antennas
-    step, count = lag_s(settings), samples(settings)
-    if signal.lags > count:
-        raise ValueError(f'signal.lags is {signal.lags}, together {signal.lags * step * 1e3:g} '
-                         f'ms; expected at most the {count} that a cycle of rate_hz holds')
-    offset = antennas.x0_m * (0.5 if antennas.offsets == 'physical' else 1.0)
-    longest, shortest = offset / limits.speed_min_m_s, offset / limits.speed_max_m_s
-    if longest < step:
-        raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz, and a lag of '
-                         f'signal.pulses_per_lag {step * 1e3:g} ms; expected less than '
-                         f'{longest * 1e3:g} ms, the delay at limits.speed_min_m_s')
-    if shortest > (signal.lags - 2) * step:
-        raise ValueError(f'signal.lags is {signal.lags}, the last but one at '
-                         f'{(signal.lags - 2) * step * 1e3:g} ms; expected more than '
-                         f'{shortest * 1e3:g} ms, the delay at limits.speed_max_m_s')
-
-
-def lag_s(settings):
-    """Return the time from lag to lag of VelocityMeterSettings, s."""
-    return settings.signal.pulses_per_lag / settings.signal.prf_hz
-
-
-def samples(settings):
-    """Return how many samples, a lag apart, a navigation cycle has."""
-    # a quotient that is whole but for rounding is whole
-    return int((1.0 + 1e-9) / (settings.rate_hz * lag_s(settings)))
+    def check(self):
+        """Refuse a signal whose lags do not fit a cycle, or miss the delay of every speed."""
+        if self.mode != 'signal':
+            return
+        signal, limits, antennas = self.signal, self.limits, self.antennas
+        step = self.lag_s
+        if signal.lags > self.samples:
+            raise ValueError(f'signal.lags is {signal.lags}, together {signal.lags * step * 1e3:g}'
+                             f' ms; expected at most the {self.samples} that a cycle of rate_hz '
+                             'holds')
+        offset = antennas.x0_m * (0.5 if antennas.offsets == 'physical' else 1.0)
+        longest, shortest = offset / limits.speed_min_m_s, offset / limits.speed_max_m_s
+        if longest < step:
+            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz, and a lag of '
+                             f'signal.pulses_per_lag {step * 1e3:g} ms; expected less than '
+                             f'{longest * 1e3:g} ms, the delay at limits.speed_min_m_s')
+        if shortest > (signal.lags - 2) * step:
+            raise ValueError(f'signal.lags is {signal.lags}, the last but one at '
+                             f'{(signal.lags - 2) * step * 1e3:g} ms; expected more than '
+                             f'{shortest * 1e3:g} ms, the delay at limits.speed_max_m_s')

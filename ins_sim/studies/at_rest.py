@@ -9,7 +9,7 @@ from ins_sim.settings.motion import MotionSettings
 
 
 def at_rest(settings, duration_s):
-    """Return simulation.Settings of the same instrument, level, at rest, every sample in time."""
+    """Return SimulationSettings of the same instrument, level, at rest, every sample in time."""
     generator = replace(settings.motion_generator, duration_s=duration_s, motion=MotionSettings(
         kind='static', psi_deg=0.0, theta_deg=0.0, gamma_deg=0.0))
     sensor = replace(settings.imu_sensor, source='motion', motion=generator.motion,

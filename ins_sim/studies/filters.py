@@ -8,13 +8,14 @@ from ins_sim.core.aiding.navigator import METER
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
+from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.simulation.aided_run import aid, with_truth
 
 STEP_S = 5.0
 
 
 @dataclass(frozen=True)
-class Case:
+class FilterCase:
     """A filter, and the cycles that its velocity meter averages over."""
 
     filter: str
@@ -22,7 +23,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Flown:
+class FilterFlight:
     """
     One filter on one flight, at instants t_s (n,) since the start.
 
@@ -48,7 +49,7 @@ class Flown:
 
 
 def run_settings(settings, run):
-    """Return AidedSettings of a run of the study: its seeds are those given plus run."""
+    """Return AidedSimulationSettings of a run of the study: its seeds are those given plus run."""
     base = settings.simulation
     generator, sensor = base.motion_generator, base.imu_sensor
     route = generator.motion.route
@@ -61,9 +62,10 @@ def run_settings(settings, run):
                    aided_navigator=navigator)
 
 
-def fly(settings, cases, run):
+def fly_filters(settings, cases, run):
     """
-    Return the Flown of each Case on one flight: AidedSettings, its seeds plus run.
+    Return the FilterFlight of each FilterCase on one flight: AidedSimulationSettings, its seeds
+    plus run.
 
     The readings of the IMU are made once.  Raises ValueError as the stages do.
     """
@@ -86,12 +88,13 @@ def _fly(settings, case, blocks):
                                 gnss_model=replace(navigator.gnss_model,
                                                    use=navigator.gnss_model.use
                                                    and case.filter == 'eskf')))
-    instruments = settings.instruments()
+    instruments = make_instruments(settings)
     flown = aid(settings.aided_navigator, blocks, *instruments)
     errors = flown.errors
     weighed = [t.result for t in flown.taken if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
-    return Flown((errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
-                 errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
-                 np.array([r.nis for r in weighed if r.nis is not None]), len(refused),
-                 refused[-1] if refused else '')
+    return FilterFlight(
+        (errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
+        errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
+        np.array([r.nis for r in weighed if r.nis is not None]), len(refused),
+        refused[-1] if refused else '')

@@ -8,7 +8,6 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import KINDS, Orientation
-from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation.inertial import navigate, sense
 from ins_sim.core.timeseries.histories import NavErrors, NavStates
@@ -32,16 +31,15 @@ class OrientationResult:
     step_s: float
 
 
-def compare(settings, progress=None, motion=None):
+def compare_orientations(settings, motion, progress=None):
     """
     Return an OrientationResult for each of orientation.KINDS, the quaternion first.
 
-    settings: simulation.Settings, whose strapdown.orientation does not matter.  progress: called
-    with the number of algorithms done.  motion: that of the settings, where ``make_motion`` cannot
-    make it (a bag).  Raises ValueError where the settings name no run.
+    settings: SimulationSettings, whose strapdown.orientation does not matter; motion: that of
+    settings.motion_generator; progress: called with the number of algorithms done.  Raises
+    ValueError where the settings name no run of finite length.
     """
     generator = settings.motion_generator
-    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     blocks = list(sense(settings, motion))
     results, reference = [], None

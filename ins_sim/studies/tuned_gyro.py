@@ -84,7 +84,7 @@ def at_speed(parameters, speed_hz):
     return replace(parameters, speed_hz=speed_hz, hinge_stiffness_n_m_rad=None)
 
 
-def table(settings, progress=None):
+def study_table(settings, progress=None):
     """
     Return a Cell for each of the values of DtgStudySettings, with what the paper prints.
 
@@ -94,7 +94,7 @@ def table(settings, progress=None):
     return _cells(settings, settings.values, paper, progress)
 
 
-def curve(settings, progress=None):
+def study_curve(settings, progress=None):
     """Return a Cell for each of the curve_values of DtgStudySettings, as ``table`` does."""
     return _cells(settings, settings.curve_values, (None,) * len(settings.curve_values), progress)
 

@@ -13,7 +13,7 @@ import math
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.streams.matching import MatchedStreams
-from ins_sim.core.streams.restarts import Runs
+from ins_sim.core.streams.restarts import RestartDetector
 from .fix_checks import check_ahead, check_gnss, check_velocity
 from .navigator import AidedNavigator, GNSS, METER
 
@@ -32,7 +32,7 @@ class FixSchedule:
                    GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
         # runs: the samples are the first, a source the second
-        self._newest, self._runs = {}, defaultdict(Runs)
+        self._newest, self._runs = {}, defaultdict(RestartDetector)
         self.silent = set()
         self.begin()
 

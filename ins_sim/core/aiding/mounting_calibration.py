@@ -19,7 +19,7 @@ SPAN_NS = 600_000_000_000
 
 
 @dataclass(frozen=True)
-class Mounting:
+class MountingCalibration:
     """
     Estimates and their standard deviations, from the residuals as if they were white.
 
@@ -66,8 +66,8 @@ def calibrate(states, gnss, meter):
         raise ValueError('the INS has no solution at some GNSS fixes; expected one at every cycle')
     dpsi, dpsi_sigma = azimuth_error((t_ns - t_ns[0]) * 1e-9, states.v_n[at, :2], v_gnss)
     read, computed = _windows(states, t_ns, v_gnss, meter)
-    return Mounting(dpsi, dpsi_sigma, mounting_sum(read, computed),
-                    *least_squares(read, computed))
+    return MountingCalibration(dpsi, dpsi_sigma, mounting_sum(read, computed),
+                               *least_squares(read, computed))
 
 
 def _about_the_turn(fixes):

@@ -13,7 +13,7 @@ import math
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.instants import period_ns, seconds
-from ins_sim.core.numerics.noise import stream
+from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
 from .corrected_strapdown import CorrectedStrapdown
 from .filters.base import FreeFilter, NO_FIX, refused
@@ -28,7 +28,7 @@ KINDS = {'free': FreeFilter, 'conventional': ConventionalFilter, 'paper': PaperF
 SNAPSHOT_NS = 1_000_000_000
 METER, GNSS = 'velocity_meter', 'gnss'
 
-# A fix that was given, and what became of it: source, its instant ns, and gain_filters.Result.
+# A fix that was given, and what became of it: source, its instant ns, and FixOutcome.
 Taken = namedtuple('Taken', 'source t_ns result')
 _Entry = namedtuple('_Entry', 'source fix')
 _Snapshot = namedtuple('_Snapshot', 't_ns ins filter window_start_ns')
@@ -41,21 +41,9 @@ class AidedNavigator:
     settings: AidedNavigatorSettings; run: of the ensemble, which draws other initial errors.
     Give it samples by ``step`` and fixes, in any order, by ``take``: a fix counts from its
     arrival_ns on.  ``filter`` has sigmas() and estimates; ``sources``: the instruments that aid.
-    Raises ValueError on settings that do not go together.
     """
 
     def __init__(self, settings, run=0):
-        if settings.gnss_model.use and not KINDS[settings.filter].takes_gnss:
-            raise ValueError(f'gnss_model.use is true with filter {settings.filter}; expected '
-                             'filter eskf, which alone takes GNSS')
-        if settings.filter == 'paper' and settings.gain > 1.0:
-            raise ValueError(f'gain is {settings.gain:g} with filter paper; expected at most 1, '
-                             'beyond which it is unstable')
-        for name, latency_ms in (('window', settings.window.latency_ms),
-                                 ('gnss', settings.gnss.latency_ms)):
-            if latency_ms > 1e3 * settings.buffer_s:
-                raise ValueError(f'{name}.latency_ms is {latency_ms:g} ms; expected at most '
-                                 f'buffer_s, {settings.buffer_s:g} s: such fixes come too late')
         self._settings, self._run = settings, run
         self._dt_ns = period_ns(settings.rate_hz)
         self._window_ns = settings.window.cycles * self._dt_ns
@@ -121,7 +109,7 @@ class AidedNavigator:
 
     def _start(self, t_ns, omega, f, truth):
         lat, lon, height, v, q_nb = truth
-        draw = stream(self._settings.seed, self._run, 'aided.initial', 7).normal(0)
+        draw = indexed_noise(self._settings.seed, self._run, 'aided.initial', 7).normal(0)
         initial = self._settings.initial
         tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
         error = quaternion.exponential((tilt * draw[4], tilt * draw[5], azimuth * draw[6]))

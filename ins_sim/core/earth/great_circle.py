@@ -118,7 +118,7 @@ def course_of(u, n):
     return atan2(east, north)
 
 
-class Route:
+class GreatCircleRoute:
     """
     Legs from turning point to turning point.
 

@@ -142,7 +142,7 @@ def _nothing(windows, quiet, moving, best, limits):
 
 
 @dataclass(frozen=True)
-class Compass:
+class Gyrocompass:
     """
     A gyrocompassing.
 
@@ -159,7 +159,7 @@ class Compass:
 
 
 def gyrocompass(still, lat):
-    """Return the Compass of a Standstill at a latitude, rad."""
+    """Return the Gyrocompass of a Standstill at a latitude, rad."""
     up = still.force / np.linalg.norm(still.force)
     east = np.cross(still.rate, up)
     level = float(np.linalg.norm(east))
@@ -169,13 +169,13 @@ def gyrocompass(still, lat):
         q_nb = _attitude(east, up)
         sigma = math.sqrt(float(((still.rate_error * east) ** 2).sum())) \
             / (ellipsoid.ROTATION_RATE * math.cos(lat))
-    return Compass(q_nb, sigma, float(np.linalg.norm(still.rate)) - ellipsoid.ROTATION_RATE,
-                   float(still.rate @ up) - ellipsoid.ROTATION_RATE * math.sin(lat))
+    return Gyrocompass(q_nb, sigma, float(np.linalg.norm(still.rate)) - ellipsoid.ROTATION_RATE,
+                       float(still.rate @ up) - ellipsoid.ROTATION_RATE * math.sin(lat))
 
 
 def trusted(compass, still, lat, sigma):
     """
-    Return whether a Compass can be believed to within sigma, rad.
+    Return whether a Gyrocompass can be believed to within sigma, rad.
 
     Its standard error must not exceed sigma; nor may the bias that shows in length or upward part
     of the mean rate, beyond three standard errors, be one that turns the heading by more.

@@ -21,12 +21,12 @@ _BLOCK_LEVELS = BLOCK.bit_length() - 1
 _NORMAL, _UNIFORM = 0, 1
 
 
-def stream(seed, run, name, width=None, block=BLOCK):
+def indexed_noise(seed, run, name, width=None, block=BLOCK):
     """Return the Stream of that name; different names, runs and seeds are independent."""
-    return Stream(seed, run, name, width, block)
+    return IndexedNoise(seed, run, name, width, block)
 
 
-class Stream:
+class IndexedNoise:
     """
     Standard normals and uniforms by sample index.
 
@@ -118,9 +118,9 @@ class Processes:
         self._c = np.array([[_weight(h, t) for _, t in pairs] for h in steps])
         self._s = np.array([[_spread(h, s, t) for s, t in pairs] for h in steps])
         width = len(pairs)
-        self._inner = Stream(seed, run, name, width)
+        self._inner = IndexedNoise(seed, run, name, width)
         # the knots, every 256th sample, are called for here and there: one to a block
-        knots = Stream(seed, run, f'{name}.knots', width, 1)
+        knots = IndexedNoise(seed, run, f'{name}.knots', width, 1)
         ends = knots.normal_block(0)[0], knots.normal_block(1 << (LEVELS - _BLOCK_LEVELS))[0]
         walk = np.isinf(time_s)
         span = math.ldexp(dt_s, LEVELS)

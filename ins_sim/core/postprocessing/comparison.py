@@ -7,7 +7,7 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.navigation.errors import position_error
-from .reference import Track
+from .reference import SampledTrack
 
 AFTER_S = (10.0, 30.0, 60.0)
 
@@ -22,9 +22,9 @@ class Comparison:
     """
 
     name: str
-    position: Track | None
-    velocity: Track | None
-    attitude: Track | None
+    position: SampledTrack | None
+    velocity: SampledTrack | None
+    attitude: SampledTrack | None
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class ErrorRow:
     heading_deg: float | None
 
 
-def compare(states, reference):
+def compare_with_reference(states, reference):
     """
     Return the Comparison of a list of NavStates, one a segment, with a Reference, or None.
 
@@ -57,8 +57,8 @@ def compare(states, reference):
         track = getattr(reference, kind)
         parts = [] if track is None else [_within(s, track, errors) for s in states]
         parts = [p for p in parts if len(p.t_ns)]
-        tracks.append(Track(np.concatenate([p.t_ns for p in parts]),
-                            np.concatenate([p.values for p in parts])) if parts else None)
+        tracks.append(SampledTrack(np.concatenate([p.t_ns for p in parts]),
+                                   np.concatenate([p.values for p in parts])) if parts else None)
     return None if tracks == [None] * 3 else Comparison(reference.name, *tracks)
 
 
@@ -66,18 +66,19 @@ def _within(states, track, errors):
     inside = (track.t_ns >= states.t_ns[0]) & (track.t_ns <= states.t_ns[-1])
     t_ns, values = track.t_ns[inside], track.values[inside]
     if len(states.t_ns) < 2 or not len(t_ns):
-        return Track(t_ns[:0], np.empty((0, 3)))
-    return Track(t_ns, errors(states, t_ns, values))
+        return SampledTrack(t_ns[:0], np.empty((0, 3)))
+    return SampledTrack(t_ns, errors(states, t_ns, values))
 
 
 def _position(states, t_ns, values):
-    own = Track(states.t_ns, np.stack([states.lat, np.unwrap(states.lon), states.height], -1))
+    own = SampledTrack(states.t_ns, np.stack(
+        [states.lat, np.unwrap(states.lon), states.height], -1))
     return np.array([position_error(*a, *b) for a, b in zip(_drawn(own, t_ns).tolist(),
                                                             values.tolist())])
 
 
 def _velocity(states, t_ns, values):
-    return _drawn(Track(states.t_ns, states.v_n), t_ns) - values
+    return _drawn(SampledTrack(states.t_ns, states.v_n), t_ns) - values
 
 
 def _attitude(states, t_ns, values):
@@ -94,7 +95,7 @@ def _drawn(track, t_ns):
     return np.stack([np.interp(t_ns - start, track.t_ns - start, v) for v in track.values.T], -1)
 
 
-def rows(comparison, start_ns, end_ns):
+def error_rows(comparison, start_ns, end_ns):
     """Return the ErrorRows AFTER_S the start, as far as the solution goes, and at its end."""
     length_s = (end_ns - start_ns) * 1e-9
     return [_row(comparison, start_ns, after) for after in

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.timeseries.histories import Record
+from ins_sim.core.timeseries.histories import History
 
 
 @dataclass(frozen=True, eq=False)
-class RecordedImu(Record):
+class RecordedImu(History):
     """
     Samples as they were recorded, in the frame s of the sensor or in b.
 

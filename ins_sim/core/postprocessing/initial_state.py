@@ -38,7 +38,7 @@ class Sources:
 
 
 @dataclass(frozen=True, eq=False)
-class Beginning:
+class InitialState:
     """
     The sample to start at, the state there, and how it was found.
 
@@ -69,7 +69,7 @@ class Starter:
 
     def begin(self, first, last, again=False):
         """
-        Return the Beginning in the samples first to last (not included).
+        Return the InitialState in the samples first to last (not included).
 
         again: behind a gap, where given values no longer hold.  Raises ValueError where there is
         none, in one sentence.
@@ -114,7 +114,7 @@ class Starter:
                 q_still = self._reference.attitude_at(still.end_ns)
             bias = self._bias(still, q_still or alignment.level(still.force, 0.0), where[0],
                               notes, figures)
-        return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
+        return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _standstill(self, first, last, expected, longest=False):
         try:
@@ -210,7 +210,7 @@ class Starter:
         if max(abs(roll), abs(pitch)) > UPRIGHT_DEG:
             notes.append('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or '
                          'mounting.source level)')
-        return Beginning(k, (*where, v, q_nb), bias, still, notes, figures)
+        return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):
         """Return q_nb of a standstill and whether its heading is gyrocompassed."""

@@ -11,9 +11,8 @@ from ins_sim.core.navigation import alignment
 from ins_sim.core.navigation.strapdown import FreeNavigation, runs_away
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
-from ins_sim.settings.navigate import check_used
 from . import mounting
-from .comparison import compare
+from .comparison import compare_with_reference
 from .imu_record import gaps, ordered
 from .initial_state import Starter
 
@@ -22,7 +21,7 @@ FEWEST = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Navigation:
+class NavigationResult:
     """
     The result: states: NavStates of each segment; references: what it was compared with;
     comparisons: one a reference; notes: what was found and done, in sentences; figures: the same
@@ -43,7 +42,6 @@ def navigate(settings, sources, progress=None):
     progress: called with the fraction done.  Raises ValueError in one sentence where there is
     nothing to begin with.
     """
-    check_used(settings)
     imu, losses = ordered(sources.imu)
     step_ns = imu.step_ns
     broken = gaps(imu.t_ns, settings.gap_factor)
@@ -64,7 +62,7 @@ def navigate(settings, sources, progress=None):
     if settings.duration_s:
         stop_ns = imu.t_ns[begin.index] + round(settings.duration_s * 1e9)
         last = min(last, int(np.searchsorted(imu.t_ns, stop_ns, side='right')))
-    run = _Run(settings, sources, imu, step_ns, notes, progress)
+    run = _Replay(settings, sources, imu, step_ns, notes, progress)
     states = run.segments(begin, broken, last, Starter(settings, sources, imu, broken))
     if not states:
         raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
@@ -73,14 +71,14 @@ def navigate(settings, sources, progress=None):
     references = [] if sources.reference is None else [sources.reference]
     if sources.odometry is not None:
         lat, lon, height, _, q_nb = begin.state
-        laid = sources.odometry.laid_on(int(imu.t_ns[begin.index]), lat, lon, height, q_nb)
+        laid = sources.odometry.aligned_to(int(imu.t_ns[begin.index]), lat, lon, height, q_nb)
         if laid is None:
             notes.append(f'{sources.odometry.name} is not there at the start: not compared')
         else:
             references.append(laid)
-    pairs = [(r, compare(states, r)) for r in references]
+    pairs = [(r, compare_with_reference(states, r)) for r in references]
     pairs = [(r, c) for r, c in pairs if c is not None]
-    return Navigation(states, [r for r, _ in pairs], [c for _, c in pairs], notes, figures)
+    return NavigationResult(states, [r for r, _ in pairs], [c for _, c in pairs], notes, figures)
 
 
 def _span(settings, imu):
@@ -115,7 +113,7 @@ def _mounting(settings, sources, imu, first, notes):
     return angles.from_rpy(roll, pitch, yaw)
 
 
-class _Run:
+class _Replay:
     """Steps through the samples, from gap to gap."""
 
     def __init__(self, settings, sources, imu, step_ns, notes, progress):
@@ -161,7 +159,7 @@ class _Run:
         return states
 
     def _segment(self, begin, end, bridges):
-        """Return the NavStates from a Beginning to end (not included); whether it got there."""
+        """Return the NavStates from a InitialState to end (not included); whether it got there."""
         imu, k = self._imu, begin.index
         rows = zip(imu.t_ns[k:end].tolist(), imu.omega[k:end].tolist(), imu.f[k:end].tolist(),
                    self._heights[k:end].tolist())

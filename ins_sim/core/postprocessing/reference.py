@@ -15,7 +15,7 @@ LONGEST_STEP_S = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class SampledTrack:
     """Values (n, k) at rising stamps t_ns (n,) int64."""
 
     t_ns: np.ndarray
@@ -51,9 +51,9 @@ class Reference:
     """
 
     name: str
-    position: Track | None = None
-    velocity: Track | None = None
-    attitude: Track | None = None
+    position: SampledTrack | None = None
+    velocity: SampledTrack | None = None
+    attitude: SampledTrack | None = None
 
     def velocity_at(self, t_ns):
         """Return v_n at stamps, (m, 3), NaN where unknown."""
@@ -89,7 +89,7 @@ class Reference:
 
 
 @dataclass(frozen=True, eq=False)
-class Odometry:
+class OdometryReference:
     """
     Poses in a frame of unknown place and heading, whose z is up.
 
@@ -106,15 +106,15 @@ class Odometry:
 
     def velocity_b(self):
         """Return the Track of v_b."""
-        return Track(self.t_ns, self.v_b)
+        return SampledTrack(self.t_ns, self.v_b)
 
     def as_enu(self):
         """Return the Reference without position whose frame is taken for East, North, Up."""
         v = quaternion.rotate(self.q.T, self.v_b.T)
-        return Reference(self.name, velocity=Track(self.t_ns, np.stack(v, axis=-1)),
-                         attitude=Track(self.t_ns, self.q))
+        return Reference(self.name, velocity=SampledTrack(self.t_ns, np.stack(v, axis=-1)),
+                         attitude=SampledTrack(self.t_ns, self.q))
 
-    def laid_on(self, t_ns, lat, lon, height, q_nb):
+    def aligned_to(self, t_ns, lat, lon, height, q_nb):
         """
         Return the Reference with place and heading of the solution at t_ns; None if not there.
 
@@ -124,7 +124,7 @@ class Odometry:
         own = self.as_enu().attitude_at(t_ns)
         if own is None:
             return None
-        origin = Track(self.t_ns, self.r).at([t_ns])[0]
+        origin = SampledTrack(self.t_ns, self.r).at([t_ns])[0]
         headings = to_compass(np.array([own, q_nb]))[2]
         turn = quaternion.exponential((0.0, 0.0, float(headings[0] - headings[1])))
         r = quaternion.rotate(turn, (self.r - origin).T)
@@ -133,11 +133,11 @@ class Odometry:
                     lon + r[0] / ((r_e + height) * math.cos(lat)), height + r[2])
         q = quaternion.multiply(turn, tuple(self.q.T))
         v = quaternion.rotate(q, self.v_b.T)
-        return Reference(f'{self.name} laid on the start',
-                         *(Track(self.t_ns, np.stack(x, axis=-1)) for x in (position, v, q)))
+        tracks = (SampledTrack(self.t_ns, np.stack(x, axis=-1)) for x in (position, v, q))
+        return Reference(f'{self.name} laid on the start', *tracks)
 
 
-def rising(t_ns, *arrays):
+def keep_rising(t_ns, *arrays):
     """Return stamps and arrays in the order of the stamps, repeated and NaN ones left out."""
     good = np.all([np.isfinite(a).all(axis=1) for a in arrays], axis=0)
     t_ns, first = np.unique(t_ns[good], return_index=True)

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ins_sim.core.earth.rates import rate_of_n
-from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
-from ins_sim.settings.imu import delays_ns
 from .drift import (_nanoseconds, _to_n, channel_drift, exact_pair, late_attitude_error,
                     mean_drift, pair_attitude_error, STEP_S, SUBSAMPLES, two_axis_resonances)
 from .error_model import propagate
@@ -30,19 +28,18 @@ class Prediction:
     resonances: list
 
 
-def predict(settings, motion=None):
+def predict(settings, motion):
     """
-    Return the Prediction of simulation.Settings.
+    Return the Prediction of SimulationSettings.
 
-    motion: that of the settings, where ``make_motion`` cannot make it (a bag).  Raises ValueError
-    where no such run exists, NoPrediction for rotors that only RK4 damps.
+    motion: that of settings.motion_generator.  Raises ValueError where the settings name no run
+    of finite length, NoPrediction for rotors that only RK4 damps.
     """
     generator, sensor, nav = (settings.motion_generator, settings.imu_sensor, settings.strapdown)
-    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     rotation = generator.earth.rotation
-    tau = np.array(delays_ns(sensor.gyro.delay_us)) * 1e-9
-    tau_f = np.array(delays_ns(sensor.accelerometer.delay_us)) * 1e-9
+    tau = np.array(sensor.gyro.delay_us.in_ns()) * 1e-9
+    tau_f = np.array(sensor.accelerometer.delay_us.in_ns()) * 1e-9
     start_s = generator.start_s + nav.initial.after_s
     span_s = generator.duration_s - nav.initial.after_s
     steps = int(span_s / STEP_S)

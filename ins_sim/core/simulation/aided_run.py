@@ -16,7 +16,7 @@ UNKNOWN = (NONE,) * 3
 
 
 @dataclass(frozen=True)
-class AidedRun:
+class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
@@ -54,7 +54,7 @@ def with_truth(motion, blocks):
 
 def aid(settings, blocks, meter=None, gnss=None, run=0):
     """
-    Return the AidedRun of AidedNavigatorSettings over the blocks of ``with_truth``.
+    Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
     meter, gnss: the instruments, anything with fixes(Truth) -> list of fixes in the order of
     arrival, or None; run: of the ensemble.  Faults are handled as on_fault says: the solution
@@ -136,12 +136,12 @@ class _Chain:
             self._nav = AidedNavigator(self._settings, self._run)
 
     def finish(self):
-        """Return the AidedRun."""
+        """Return the AidedResult."""
         if not self._truth:
             raise ValueError('the run has no navigation output; expected duration_s longer than '
                              'initial.after_s')
         t_ns = np.array(self._t_ns, dtype=np.int64)
-        return AidedRun(Truth.concatenate(self._truth),
-                        NavStates(t_ns, *map(np.array, zip(*self._solutions))),
-                        AidedErrors(t_ns, *map(np.array, zip(*self._errors))),
-                        tuple(self._taken), tuple(self._faults))
+        return AidedResult(Truth.concatenate(self._truth),
+                           NavStates(t_ns, *map(np.array, zip(*self._solutions))),
+                           AidedErrors(t_ns, *map(np.array, zip(*self._errors))),
+                           tuple(self._taken), tuple(self._faults))

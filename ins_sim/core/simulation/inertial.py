@@ -1,11 +1,10 @@
 """The whole chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ins_sim.core.earth.frames import MapFrame
-from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.navigation.strapdown import Strapdown
@@ -16,15 +15,12 @@ from ins_sim.core.sensors.imu.stream import StreamImu
 from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.streams.faults import check_interval, StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples, NavErrors, NavStates, Truth
-from ins_sim.settings.imu import DelaysUs, ImuSensorSettings
-from ins_sim.settings.motion import MotionGeneratorSettings
-from ins_sim.settings.strapdown import StrapdownSettings
 
 BLOCK = 4096
 
 
 @dataclass(frozen=True)
-class Run:
+class SimulationResult:
     """
     One offline run: the truth, the solution and its errors at the output instants.
 
@@ -38,40 +34,6 @@ class Run:
     errors: NavErrors
     twin: NavErrors | None
     faults: tuple = ()
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Settings of the three stages."""
-
-    motion_generator: MotionGeneratorSettings
-    imu_sensor: ImuSensorSettings
-    strapdown: StrapdownSettings
-
-    def __post_init__(self):
-        """Refuse rates that do not go together; a live strapdown reports them."""
-        sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
-        if sends != expects:
-            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
-                             f'{sends:g} Hz')
-        start_ns, dt_ns = round(1e9 * self.motion_generator.start_s), period_ns(sends)
-        if self.strapdown.imu_time == 'nominal' and start_ns % dt_ns:
-            raise ValueError(f'motion_generator: start_s is {self.motion_generator.start_s:.9g} s '
-                             'with imu_time nominal; expected a multiple of the period of the '
-                             f'IMU, {dt_ns * 1e-9:.9g} s')
-
-    def without_delays(self):
-        """Return the settings of the zero-delay twin; it has the same instrument errors."""
-        imu = self.imu_sensor
-        return replace(self, imu_sensor=replace(
-            imu, gyro=replace(imu.gyro, delay_us=DelaysUs()),
-            accelerometer=replace(imu.accelerometer, delay_us=DelaysUs())))
-
-    @property
-    def delayed(self):
-        """Return whether any channel is late."""
-        imu = self.imu_sensor
-        return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
 
 
 def sense(settings, motion):
@@ -164,16 +126,15 @@ def _gap(now_ns, last_ns, dt_ns):
     return None
 
 
-def simulate(settings, twin=True, progress=None, motion=None):
+def simulate(settings, motion, twin=True, progress=None):
     """
-    Return the Run of Settings.
+    Return the SimulationResult of SimulationSettings.
 
-    twin: also run with all delays zero.  progress: called with the fraction done.  motion: that
-    of the settings, where ``make_motion`` cannot make it (a bag).  Raises ValueError where the
-    settings name no run of finite length.
+    motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
+    called with the fraction done.  Raises ValueError where the settings name no run of finite
+    length.
     """
     generator = settings.motion_generator
-    motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     twin = twin and settings.delayed
     total = 1.0 + _steps(generator)
@@ -206,7 +167,8 @@ def simulate(settings, twin=True, progress=None, motion=None):
         blocks = watch(sense(ideal, motion), total / 2)
         twin_errors = NavErrors.concatenate(e for _, _, e in navigate(settings.strapdown, motion,
                                                                       blocks))
-    return Run(truth, ImuSamples.concatenate(imu), states, errors, twin_errors, tuple(faults))
+    return SimulationResult(truth, ImuSamples.concatenate(imu), states, errors, twin_errors,
+                            tuple(faults))
 
 
 def _steps(generator):

@@ -5,7 +5,7 @@ from collections import deque
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns, seconds
 from .faults import check_finite, check_interval, check_unit, StreamFault
-from .restarts import Runs
+from .restarts import RestartDetector
 
 
 class MatchedStreams:
@@ -32,7 +32,7 @@ class MatchedStreams:
         self._truth = deque(maxlen=settings.topics.depth)
         self._joined_ns = self._truth_ns = None
         # the IMU is the first of the two
-        self._runs = Runs()
+        self._runs = RestartDetector()
         self.faults = []
         self.reset()
 
@@ -44,7 +44,7 @@ class MatchedStreams:
 
     def rejoin(self):
         """Start anew as if both streams began now: one of them has not brought what it should."""
-        self._runs, self._truth_ns = Runs(), None
+        self._runs, self._truth_ns = RestartDetector(), None
         self._truth.clear()
         self.reset()
 

@@ -1,7 +1,7 @@
 """Two streams of the same time that both jump back, one before the other."""
 
 
-class Runs:
+class RestartDetector:
     """
     Which of two streams has begun a new run that the other has still to begin.
 

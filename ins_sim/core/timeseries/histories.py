@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 
-class Record:
+class History:
     """Slicing and joining along the leading (time) axis; a field that is None stays None."""
 
     def __len__(self):
@@ -27,7 +27,7 @@ class Record:
 
 
 @dataclass(frozen=True, eq=False)
-class Truth(Record):
+class Truth(History):
     """
     True motion at instants.
 
@@ -46,7 +46,7 @@ class Truth(Record):
 
 
 @dataclass(frozen=True, eq=False)
-class ImuSamples(Record):
+class ImuSamples(History):
     """
     Mean reading over the interval (t - dt, t] that ends at the stamp.
 
@@ -69,7 +69,7 @@ class ImuSamples(Record):
 
 
 @dataclass(frozen=True, eq=False)
-class NavStates(Record):
+class NavStates(History):
     """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
 
     t_ns: np.ndarray
@@ -81,7 +81,7 @@ class NavStates(Record):
 
 
 @dataclass(frozen=True, eq=False)
-class NavErrors(Record):
+class NavErrors(History):
     """
     Solution less truth, resolved in n: t_ns (n,) and four (n, 3) arrays.
 
@@ -97,7 +97,7 @@ class NavErrors(Record):
 
 
 @dataclass(frozen=True, eq=False)
-class AidedErrors(Record):
+class AidedErrors(History):
     """
     Errors of an aided solution, solution less truth, resolved in n, and what the filter thinks.
 

@@ -2,7 +2,7 @@
 
 from ins_sim.core.aiding.live import AidedStream
 from ins_sim.core.aiding.navigator import GNSS, METER
-from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one, SIGMAS
 from ins_sim.messages.gnss_fixes import GnssPairs
@@ -23,7 +23,7 @@ class AidedNavigatorNode(NavigatorNode):
 
     def make_navigator(self):
         """Return the navigator."""
-        self._route = Route.of_points(self.settings.motion.route.points)
+        self._route = GreatCircleRoute.of_points(self.settings.motion.route.points)
         return AidedStream(self.settings)
 
     def make_outputs(self):

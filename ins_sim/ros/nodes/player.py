@@ -13,7 +13,7 @@ from ins_sim.messages.cdr import Reader, SECOND, stamp_of
 from ..lock_step.pacing import LockStep, Pace
 from ..process.diagnostics import Monitor
 from ..process.runtime import EXIT_CONSUMER, EXIT_FAULT
-from ..recording.playing import ABSOLUTE, Beginning, Playing
+from ..recording.playing import ABSOLUTE, PlaybackStart, Playing
 from ..recording.run_clock import JUMP_NS
 from ..transport import qos
 from ..transport.backlog import HandQueue
@@ -166,7 +166,7 @@ class PlayerNode(Node):
 
     def _begin(self):
         """Send the first sample of a part until all consumers have answered it."""
-        beginning = Beginning(self._playing, stamp_of)
+        beginning = PlaybackStart(self._playing, stamp_of)
         for name, _, data in beginning.early:
             self._send(name, data)
         self._start_sample(beginning.stamp_ns)

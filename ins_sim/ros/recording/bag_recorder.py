@@ -26,7 +26,7 @@ PACED = topics.TRUTH
 
 
 @dataclass
-class Track:
+class RecordedTopic:
     """One topic in recording: its messages in the bag, and the repeated ones that are not."""
 
     name: str
@@ -86,7 +86,7 @@ class BagRecorder:
         # its array is stamped with the time of the run, as that of /diagnostics need not be
         by_stamp = stamped(topic.type_name) or name == self._node.resolve_topic_name(
             topics.METER_RECORD.name)
-        track = Track(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
+        track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
         self.tracks[name] = track
         if (track.stamped or seldom) and name != self._ack_name:
             self._silent.append(track)

@@ -106,7 +106,7 @@ class Playing:
         self.bag.close()
 
 
-class Beginning:
+class PlaybackStart:
     """
     The first sample of lock-step, which is repeated until the consumers have answered.
 

@@ -7,7 +7,8 @@ from ..velocity_window import BodyMean
 
 # What became of a fix: innovation (its components), their normalised square, how many they are
 # (nis None without a covariance), whether it was taken, and why not.
-Result = namedtuple('Result', 'innovation nis freedom taken reason', defaults=(None, 0, True, ''))
+FixOutcome = namedtuple('Result', 'innovation nis freedom taken reason',
+                        defaults=(None, 0, True, ''))
 # The paper takes the acceleration in body axes for the derivative of the velocity in body axes:
 # a turn whose product rate x velocity adds more than this to its innovation, m/s^2, is refused.
 TURN_LIMIT = 0.01
@@ -17,13 +18,12 @@ NO_FIX = 'the fix is none'
 
 def refused(reason):
     """Return the Result of a fix that is not taken."""
-    return Result((), taken=False, reason=reason)
+    return FixOutcome((), taken=False, reason=reason)
 
 
 class FreeFilter:
     """No correction at all."""
 
-    takes_gnss = False
     healthy = True
     # mounting mu (rad), kx, kz of the velocity meter
     estimates = (0.0, 0.0, 0.0)

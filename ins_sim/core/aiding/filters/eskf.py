@@ -8,7 +8,7 @@ from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
 from . import eskf_model as model
 from .. import kalman
-from .base import FreeFilter, Result
+from .base import FixOutcome, FreeFilter
 
 # what is known exactly still has a variance, so that the covariance stays positive definite: m,
 # m/s, rad, m/s^2, rad/s, m, rad and parts
@@ -26,8 +26,6 @@ class ErrorStateFilter(FreeFilter):
     The residual of the velocity meter is the mean over its window of the velocity in b, which is
     exact whatever the vehicle does in it: eta carries the errors of the window (spec section 4).
     """
-
-    takes_gnss = True
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
@@ -137,10 +135,10 @@ class ErrorStateFilter(FreeFilter):
         nis = kalman.normalised_square(z, s)
         innovation = tuple(z.tolist())
         if kalman.tail(nis, len(z)) < self._settings.gate_probability:
-            return Result(innovation, nis, len(z), False, GATE)
+            return FixOutcome(innovation, nis, len(z), False, GATE)
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
         self._correct(ins, (gain @ z).tolist())
-        return Result(innovation, nis, len(z))
+        return FixOutcome(innovation, nis, len(z))
 
     def _correct(self, ins, x):
         """Take the estimated errors off; what eta was is seen in the mean velocity no more."""

@@ -6,7 +6,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import middle
 from ins_sim.core.earth import ellipsoid
 from ..velocity_window import DoubleIntegral, Integrals
-from .base import FreeFilter, refused, Result, TURN_LIMIT
+from .base import FixOutcome, FreeFilter, refused, TURN_LIMIT
 
 
 class ConventionalFilter(FreeFilter):
@@ -18,7 +18,7 @@ class ConventionalFilter(FreeFilter):
         gain = self._settings.gain
         e, n, _ = quaternion.rotate(ins.q_nb, (gain * z[0], gain * z[1], 0.0))
         ins.correct(velocity=(e, n, 0.0))
-        return Result(z)
+        return FixOutcome(z)
 
 
 class MatrixFilter(FreeFilter):
@@ -105,7 +105,7 @@ class PaperFilter(_ChainedFilter):
         innovation = tuple(a[0] + b[0] - 2.0 * (a[2] - b[2]) / t for a, b in zip(now, last))
         turning = math.hypot(*(a[1] + b[1] for a, b in zip(now, last)))
         if turning > TURN_LIMIT:
-            return Result(innovation, taken=False, reason=(
+            return FixOutcome(innovation, taken=False, reason=(
                 f'filter paper refuses a window in which the body turns: it would take '
                 f'{turning:.3g} m/s^2 of it for an error; expected a straight leg without weave '
                 '(paper_corrected and eskf fly turns)'))
@@ -114,7 +114,7 @@ class PaperFilter(_ChainedFilter):
         e, n, _ = quaternion.rotate(ins.q_nb, (*w, 0.0))
         half = 0.5 * t * t
         ins.correct(position=(half * e, half * n, 0.0), velocity=(t * e, t * n, 0.0))
-        return Result(innovation)
+        return FixOutcome(innovation)
 
     def close(self):
         """Begin a window."""
@@ -145,4 +145,4 @@ class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
         ins.add_biases(accelerometer=(*w, 0.0))
         back = (b2 @ w).tolist()
         self._last = z[0] - back[0], z[1] - back[1]
-        return Result(nu)
+        return FixOutcome(nu)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ins_sim.core.numerics.units import STANDARD_GRAVITY, UG
 from .. import kalman
-from .base import Result
+from .base import FixOutcome
 from .fixed_gain import MatrixFilter
 
 # what is known exactly still has a variance, so that the covariance stays positive definite
@@ -59,7 +59,8 @@ class WindowFilter(MatrixFilter):
         nis = kalman.normalised_square(z, s)
         if kalman.tail(nis, 2) < self._settings.gate_probability:
             self._propagate(t, a1, a2)
-            return Result(tuple(z.tolist()), nis, 2, False, 'its innovation is beyond the gate')
+            return FixOutcome(tuple(z.tolist()), nis, 2, False,
+                              'its innovation is beyond the gate')
         x = gain @ z
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
         self._propagate(t, a1, a2)
@@ -68,7 +69,7 @@ class WindowFilter(MatrixFilter):
         ins.correct(position=(*dp.tolist(), 0.0), velocity=(*dv.tolist(), 0.0))
         ins.add_biases(accelerometer=(*x[4:6].tolist(), 0.0))
         self._offset = tuple((self._offset + x[6:8]).tolist())
-        return Result(tuple(z.tolist()), nis, 2)
+        return FixOutcome(tuple(z.tolist()), nis, 2)
 
     def _propagate(self, t, a1, a2):
         phi = np.eye(8)

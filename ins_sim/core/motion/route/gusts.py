@@ -26,7 +26,7 @@ class Gusts:
     """
 
     def __init__(self, sigma, length, airspeed, seed):
-        draws = noise.stream(seed, 0, 'gusts', 6).uniforms(0, LINES).T
+        draws = noise.indexed_noise(seed, 0, 'gusts', 6).uniforms(0, LINES).T
         low, high = math.atan(LOWEST), math.atan(HIGHEST)
         part = (np.arange(LINES) + draws[:3]) / LINES
         self.rates = np.tan(low + part * (high - low)) * (airspeed / length)

@@ -16,12 +16,12 @@ import numpy as np
 
 from ins_sim.core.attitude import angles, quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.great_circle import Route
+from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from ..truth import truth_from_pose
 from .gusts import Gusts
-from .track import Flow, leg_piece, Track
+from .track import Flow, leg_piece, RouteTrack
 from .turn import turn_between
 from .weave import Weave
 
@@ -48,7 +48,7 @@ class RouteMotion:
         self._spin = ellipsoid.ROTATION_RATE if self._rotation else 0.0
         self._height, self._airspeed = settings.height_m, settings.airspeed_m_s
         self._attack = math.radians(settings.attack_deg)
-        self.route = Route.of_points(settings.points)
+        self.route = GreatCircleRoute.of_points(settings.points)
         self._weave = None
         if settings.weave_deg:
             self._weave = Weave(math.radians(settings.weave_deg), settings.weave_period_s,
@@ -144,4 +144,4 @@ def _track(flow, legs, rate, roll_s):
     if nearest > POLEMOST_DEG:
         raise ValueError(f'motion.route.points: the route reaches a latitude of {nearest:.2f} deg;'
                          f' expected at most {POLEMOST_DEG:g} deg')
-    return Track(flow, pieces), turns
+    return RouteTrack(flow, pieces), turns

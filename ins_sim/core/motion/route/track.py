@@ -82,7 +82,7 @@ class Flow:
         return lat, lon, psi, ellipsoid.MEAN_RADIUS * speed / size
 
 
-class Piece:
+class LegPiece:
     """
     Knots of a part of the track.
 
@@ -109,10 +109,10 @@ def leg_piece(flow, leg, first, last):
     speed = flow.on_leg(leg, inner.ravel())[3].reshape(inner.shape)
     t = np.concatenate([[0.0], np.cumsum(half * (_WEIGHTS / speed).sum(axis=1))])
     lat, lon, psi, _ = flow.on_leg(leg, x[:-1])
-    return Piece(t[:-1], lat, lon, psi, np.zeros((count, 1)), float(t[-1]))
+    return LegPiece(t[:-1], lat, lon, psi, np.zeros((count, 1)), float(t[-1]))
 
 
-class Track:
+class RouteTrack:
     """The pieces one after the other, from time zero; flow: a Flow."""
 
     def __init__(self, flow, pieces):

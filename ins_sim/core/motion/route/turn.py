@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ins_sim.core.earth import ellipsoid
-from .track import Piece, STEP_M
+from .track import LegPiece, STEP_M
 
 # of the integration, and between knots: at most this angle and STEP_M, and a roll in eight
 STEP_ANGLE = 0.05
@@ -51,7 +51,7 @@ class TurnProfile:
         self.parts.append((roll_s, roll_step, peak - rise))
 
 
-def fly(flow, state, profile):
+def fly_turn(flow, state, profile):
     """
     Return the Piece of a turn from state (lat, lon, heading, rad), and the state at its end.
 
@@ -76,7 +76,7 @@ def fly(flow, state, profile):
         turn.append(_taylor(polynomial, solution.t[:-1]))
         start += length
     lat, lon, psi = np.concatenate(states, axis=1)
-    return Piece(np.concatenate(t), lat, lon, psi, np.concatenate(turn), start), state.tolist()
+    return LegPiece(np.concatenate(t), lat, lon, psi, np.concatenate(turn), start), state.tolist()
 
 
 def _taylor(polynomial, t):
@@ -108,7 +108,7 @@ def turn_between(flow, before, after, rate, roll_s):
 
     def attempt(start, by):
         lat, lon, psi, _ = flow.on_leg(before, np.array([start * before.length]))
-        piece, end = fly(flow, (lat[0], lon[0], psi[0]), TurnProfile(
+        piece, end = fly_turn(flow, (lat[0], lon[0], psi[0]), TurnProfile(
             float(by), rate, roll_s, STEP_M / flow.airspeed))
         off = np.array((after.to_xz(*end[:2])[1] / ellipsoid.MEAN_RADIUS,
                         _wrap(flow.course(end[0], end[2]) - after.course(*end[:2]))))

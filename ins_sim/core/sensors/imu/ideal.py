@@ -12,7 +12,6 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.settings.imu import delays_ns
 
 # Gauss-Legendre, three points on [0, 1]
 NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
@@ -53,7 +52,7 @@ class Triads:
     def __init__(self, settings):
         self.dt_ns = period_ns(settings.rate_hz)
         self.integrated = settings.output == 'integrated'
-        gyro, accel = delays_ns(settings.gyro.delay_us), delays_ns(settings.accelerometer.delay_us)
+        gyro, accel = settings.gyro.delay_us.in_ns(), settings.accelerometer.delay_us.in_ns()
         self.gyro_delays, self.accel_delays = tuple(sorted(set(gyro))), tuple(sorted(set(accel)))
         # attitudes are needed at both kinds of delay; each distinct one is evaluated once
         self.attitude_delays = tuple(sorted(set(gyro) | set(accel)))

@@ -35,9 +35,9 @@ class Sampler:
         self.perfect = not (self._latency_ns or self._jitter_ns or self._lost)
         if not self.perfect:
             # NumPy's generators cost the start of a node with perfect stamps nothing
-            from ins_sim.core.numerics.noise import stream
-            self._jitters = stream(seed, run, f'{name}.jitter')
-            self._drop_outs = stream(seed, run, f'{name}.drop_out')
+            from ins_sim.core.numerics.noise import indexed_noise
+            self._jitters = indexed_noise(seed, run, f'{name}.jitter')
+            self._drop_outs = indexed_noise(seed, run, f'{name}.drop_out')
 
     def stamp(self, index, t_ns):
         """Return the stamp of sample index, taken at t_ns, or None where it is lost."""

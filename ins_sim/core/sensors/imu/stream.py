@@ -6,7 +6,7 @@ from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 from .ideal import MotionImu, NODES, Triads
-from .with_errors import ErringImu, with_errors
+from .with_errors import ImuWithErrors, with_errors
 
 BLOCK = 256
 
@@ -19,7 +19,7 @@ def make_imu(settings, motion=None):
     """
     imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings, motion)
     errors = with_errors(settings)
-    return imu if errors is None else ErringImu(imu, errors)
+    return imu if errors is None else ImuWithErrors(imu, errors)
 
 
 class StreamImu:

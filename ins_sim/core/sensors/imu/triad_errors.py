@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.numerics.noise import BLOCK, Processes, stream
+from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
 from .triad_model import temperature_off, triad_model
 
 ZERO = (0.0, 0.0, 0.0)
@@ -140,7 +140,7 @@ def _if_any(*terms):
 
 def drawn(seed, run, name, sigma):
     """Return the numbers of standard deviations sigma that are drawn once a run."""
-    normals = stream(seed, run, name, 3, 1).normal(0)
+    normals = indexed_noise(seed, run, name, 3, 1).normal(0)
     return tuple(s * n for s, n in zip(sigma, normals))
 
 
@@ -212,7 +212,7 @@ def make_noise(model, seed, run, name, dt_s):
     white = np.array(model.white) / math.sqrt(dt_s)
     terms = []
     if any(model.white):
-        normals = stream(seed, run, f'{name}.white', 3).normal_block
+        normals = indexed_noise(seed, run, f'{name}.white', 3).normal_block
         terms.append(lambda b: white * normals(b))
     hour = tuple(s / 60.0 if math.isinf(t) else s
                  for s, t in zip(model.in_run_sigma, model.in_run_time))

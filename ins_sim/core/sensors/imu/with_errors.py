@@ -69,7 +69,7 @@ class InstrumentErrors:
         return ImuSamples(imu.t_ns, np.array(omega), np.array(f), imu.parity)
 
 
-class ErringImu:
+class ImuWithErrors:
     """An IMU with push and reset whose readings pass through InstrumentErrors."""
 
     def __init__(self, imu, errors):

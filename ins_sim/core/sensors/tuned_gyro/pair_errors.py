@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from ins_sim.core.numerics.noise import stream
+from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY
 
 URAD = 1e-6
@@ -46,7 +46,7 @@ class RotorErrors:
         self._densities = tuple(URAD * n for n in errors.pickoff_noise_urad_sqrt_s)
         self._normals = None
         if any(self._densities):
-            self._normals = stream(seed, 0, 'gyro.dtg.pickoff', 4)
+            self._normals = indexed_noise(seed, 0, 'gyro.dtg.pickoff', 4)
         self._constant = tuple(
             math.radians(u) * rotor.parameters.vibration_2n_factor
             * cmath.exp(-1j * math.radians(phase)) if u else 0.0j

@@ -117,7 +117,7 @@ class ParityTest:
         return parity, self.mean, self.threshold if math.isfinite(self.threshold) else 0.0
 
 
-def rows(settings, instrument, imu):
+def parity_rows(settings, instrument, imu):
     """Return ``ParityTest.row`` of each reading of a run, (n, 3); imu: ImuSamples with parity."""
     test, found = ParityTest(settings, instrument), []
     for sample in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), imu.parity.tolist()):
@@ -126,7 +126,7 @@ def rows(settings, instrument, imu):
     return np.array(found)
 
 
-def windows(settings, instrument, imu):
+def parity_windows(settings, instrument, imu):
     """
     Return the windows of a run, (n, 4): end, s, mean, threshold, rad/s, and 1 where it exceeds.
 

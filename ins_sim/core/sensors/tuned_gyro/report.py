@@ -49,7 +49,7 @@ class TunedGyroReport:
         return found
 
 
-def report(parameters, speed_hz=None):
+def tuned_gyro_report(parameters, speed_hz=None):
     """Return the TunedGyroReport of TunedGyroParameters, at the nominal speed unless given."""
     p, space = parameters, state_space(parameters, speed_hz)
 

@@ -10,9 +10,8 @@ import math
 
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.streams.faults import check_finite, check_interval, StreamFault
-from ins_sim.core.streams.restarts import Runs
+from ins_sim.core.streams.restarts import RestartDetector
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
-from ins_sim.settings.velocity_meter import checked
 from .reading import Reading
 from .surrogate import sigmas, SurrogateWindows
 
@@ -41,7 +40,6 @@ class VelocityMeter:
     """
 
     def __init__(self, settings, run=0):
-        settings = checked(settings)
         self._settings = settings
         self._dt_ns = period_ns(settings.rate_hz)
         self._cycles = settings.window.cycles
@@ -146,7 +144,7 @@ class VelocityMeter:
 
     def _forget_ins(self):
         # the truth is the first of the two
-        self._runs, self._last_ins_ns, self._ins = Runs(), None, {}
+        self._runs, self._last_ins_ns, self._ins = RestartDetector(), None, {}
 
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """

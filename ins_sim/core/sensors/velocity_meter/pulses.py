@@ -19,11 +19,10 @@ from typing import NamedTuple
 from numpy import fft
 import numpy as np
 
-from ins_sim.core.numerics.noise import stream
+from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.timeseries.fixes import VALID
-from ins_sim.settings.velocity_meter import lag_s, samples
 from .antennas import geometry
-from .reading import PAIRS, read, Reading, secant
+from .reading import PAIRS, read_correlations, Reading, secant
 
 # the spectrum is cut, and the delays are parted, at this many standard deviations
 SIGMAS = 5.0
@@ -62,8 +61,8 @@ class Field:
                               (beam.sigma_theta_x_rad, beam.sigma_theta_z_rad))
         self._decay = 1.0 / signal.decay_time_s if signal.decay_time_s else 0.0
         self._noise = 10.0 ** (-0.05 * signal.snr_db) / math.sqrt(2.0)
-        self.lag_s = lag_s(settings)
-        self.length = samples(settings) + signal.lags - 1
+        self.lag_s = settings.lag_s
+        self.length = settings.samples + signal.lags - 1
         # one period of the synthesis holds the samples and the longest correlation
         reach = (2.0 * self._geometry.kappa * self._geometry.x0
                  + SIGMAS * max(self._lengths)) / limits.speed_min_m_s
@@ -151,7 +150,7 @@ class Correlator:
     def __init__(self, settings):
         self._powers = settings.signal.detection == 'power'
         self._by_cycle = settings.signal.normalisation == 'cycle'
-        self._lags, self._count = settings.signal.lags, samples(settings)
+        self._lags, self._count = settings.signal.lags, settings.samples
         self._size = power_of_two(self._count + self._lags - 1)
         self._earlier, self._later = (list(side) for side in zip(*PAIRS))
 
@@ -193,9 +192,10 @@ class SignalWindows:
 
     def __init__(self, settings, run):
         self._cycles, self._limits = settings.window.cycles, settings.limits
-        self._geometry, self._lag_s = geometry(settings.antennas), lag_s(settings)
+        self._geometry, self._lag_s = geometry(settings.antennas), settings.lag_s
         self._field, self._correlator = Field(settings), Correlator(settings)
-        self._normals = stream(settings.seed, run, 'velocity_meter.signal', self._field.width, 1)
+        self._normals = indexed_noise(
+            settings.seed, run, 'velocity_meter.signal', self._field.width, 1)
 
     def add(self, total, index, v_last, v):
         """
@@ -212,7 +212,7 @@ class SignalWindows:
     def read(self, total, index, tan_alpha):
         """Return the Reading of a window."""
         functions = self._correlator.functions(total, self._cycles)
-        reading = read(functions, self._lag_s, self._geometry, tan_alpha)
+        reading = read_correlations(functions, self._lag_s, self._geometry, tan_alpha)
         low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s
         if reading.status == VALID and not low <= reading.v_x <= high:
             return Reading('measured speed outside the limits')

@@ -163,7 +163,7 @@ def sideslip(r12, r23, a, b, geometry, tan_alpha):
     return 0.5 * math.asin(sine) if abs(sine) <= 1.0 else None
 
 
-def read(correlations, lag_s, geometry, tan_alpha):
+def read_correlations(correlations, lag_s, geometry, tan_alpha):
     """
     Return the Reading of five correlation functions, (5, lags) by PAIRS.
 

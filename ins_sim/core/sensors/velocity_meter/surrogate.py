@@ -6,7 +6,7 @@ Its coefficients are those of the simulated signals at 250 m/s (spec/velocity_me
 
 import math
 
-from ins_sim.core.numerics.noise import stream
+from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.timeseries.fixes import VALID
 from .reading import Reading, secant
 
@@ -36,7 +36,7 @@ class SurrogateWindows:
         self._scale_x = 1.0 + self._surrogate.k_x
         self._scale_z = (1.0 + self._surrogate.k_z) * (
             beam.sigma_theta_z_rad / beam.sigma_theta_x_rad) ** 2
-        self._normals = stream(settings.seed, run, 'velocity_meter.surrogate', 2)
+        self._normals = indexed_noise(settings.seed, run, 'velocity_meter.surrogate', 2)
 
     def add(self, total, index, v_last, v):
         """

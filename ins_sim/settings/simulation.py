@@ -1,0 +1,103 @@
+"""Settings of a whole simulation: those of its nodes, checked against each other."""
+
+from dataclasses import dataclass, replace
+
+from ins_sim.core.numerics.instants import period_ns
+from .aided_navigator import AidedNavigatorSettings
+from .gnss import GnssSettings
+from .imu import DelaysUs, ImuSensorSettings
+from .motion import MotionGeneratorSettings
+from .strapdown import StrapdownSettings
+from .velocity_meter import VelocityMeterSettings
+
+
+@dataclass(frozen=True)
+class SimulationSettings:
+    """Settings of the three stages."""
+
+    motion_generator: MotionGeneratorSettings
+    imu_sensor: ImuSensorSettings
+    strapdown: StrapdownSettings
+
+    def __post_init__(self):
+        """Refuse rates that do not go together; a live strapdown reports them."""
+        sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
+        if sends != expects:
+            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
+                             f'{sends:g} Hz')
+        start_ns, dt_ns = round(1e9 * self.motion_generator.start_s), period_ns(sends)
+        if self.strapdown.imu_time == 'nominal' and start_ns % dt_ns:
+            raise ValueError(f'motion_generator: start_s is {self.motion_generator.start_s:.9g} s '
+                             'with imu_time nominal; expected a multiple of the period of the '
+                             f'IMU, {dt_ns * 1e-9:.9g} s')
+
+    def without_delays(self):
+        """Return the settings of the zero-delay twin; it has the same instrument errors."""
+        imu = self.imu_sensor
+        return replace(self, imu_sensor=replace(
+            imu, gyro=replace(imu.gyro, delay_us=DelaysUs()),
+            accelerometer=replace(imu.accelerometer, delay_us=DelaysUs())))
+
+    @property
+    def delayed(self):
+        """Return whether any channel is late."""
+        imu = self.imu_sensor
+        return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
+
+
+# What the settings of an instrument and of the navigator must have in common.
+AGREED = (('velocity_meter', ('rate_hz', 'window')), ('gnss', ('gnss',)))
+
+
+@dataclass(frozen=True)
+class AidedSimulationSettings:
+    """Settings of the six stages; raises ValueError where both sides of a fix do not agree."""
+
+    simulation: SimulationSettings
+    velocity_meter: VelocityMeterSettings
+    gnss: GnssSettings
+    aided_navigator: AidedNavigatorSettings
+
+    def __post_init__(self):
+        """Refuse what a live navigator would report with every fix."""
+        navigator, sensor = self.aided_navigator, self.simulation.imu_sensor
+        for name, keys in AGREED:
+            for key in keys:
+                theirs, ours = getattr(getattr(self, name), key), getattr(navigator, key)
+                if theirs != ours:
+                    raise ValueError(f'aided_navigator: {key} is {ours}; expected that of {name}, '
+                                     f'{theirs}: a fix has one schedule on both sides')
+        if navigator.rate_hz != sensor.rate_hz:
+            raise ValueError(f'aided_navigator: rate_hz is {navigator.rate_hz:g} Hz; expected '
+                             f'that of imu_sensor, {sensor.rate_hz:g} Hz')
+        if navigator.input != sensor.output:
+            raise ValueError(f'aided_navigator: input is {navigator.input}; expected the output '
+                             f'of imu_sensor, {sensor.output}')
+        self._check_streams()
+        self._check_route()
+
+    def _check_streams(self):
+        """Refuse streams that the live stages would report with every message."""
+        generator, sensor = self.simulation.motion_generator, self.simulation.imu_sensor
+        sent = generator.rate_hz
+        if self.velocity_meter.rate_hz != sent:
+            raise ValueError(f'velocity_meter: rate_hz is {self.velocity_meter.rate_hz:g} Hz; '
+                             f'expected that of motion_generator, {sent:g} Hz: a cycle is from '
+                             'truth to truth')
+        if self.gnss.rate_hz > sent:
+            raise ValueError(f'gnss: rate_hz is {self.gnss.rate_hz:g} Hz; expected at most that '
+                             f'of motion_generator, {sent:g} Hz')
+        for key in ('jitter_us', 'latency_us'):
+            value = getattr(sensor.sampling, key)
+            if value:
+                raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
+                                 'aided_navigator, which needs the truth of the same stamp')
+
+    def _check_route(self):
+        """Refuse a route for the orthodromic coordinates that is not the one flown."""
+        points, motion = self.aided_navigator.motion.route.points, \
+            self.simulation.motion_generator.motion
+        if motion.kind == 'route' and points != motion.route.points:
+            raise ValueError('aided_navigator: motion.route.points are not those of '
+                             'motion_generator; expected the route that is flown: name it under '
+                             '"/**", for both')
