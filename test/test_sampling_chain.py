@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from studies import MOTION_2, run_offline, settings
 
+from ins_sim.io.motion import read_motion
 from ins_sim.studies.orientation import compare_orientations
 from ins_sim.core.navigation.sample_clock import SampleClock
 
@@ -88,7 +89,8 @@ def test_orientation_algorithms_agree_to_their_truncation():
     RK4 of a constant rate w errs by (w dt)^5/120 in angle a step for Poisson's equation; the
     Euler vector by less than that.
     """
-    results = compare_orientations(settings(MOTION_2, duration_s=600.0))
+    chosen = settings(MOTION_2, duration_s=600.0)
+    results = compare_orientations(chosen, read_motion(chosen.motion_generator))
     assert [r.kind for r in results] == ['quaternion', 'poisson', 'euler_vector']
     # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms
     bound = 60000 * (np.sqrt(1.75) * 0.01) ** 5 / 120.0

@@ -208,7 +208,7 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
 @pytest.mark.parametrize('assignments, sentence', [
     (['gnss_model.use:=true', 'filter:=window_kf'], 'expected filter eskf, which alone takes'),
     (['outages.start_s:=[1.0]'], 'outages.start_s has 1 entries and outages.end_s 2'),
-    (['motion.route.points.latitude_deg:=[55.0]'], 'aided_navigator: motion.route.points: the '
+    (['motion.route.points.latitude_deg:=[55.0]'], 'motion_generator: motion.route.points: the '
      'route has 1 latitudes and 7 longitudes'),
     (['sampling.jitter_us:=5.0'], 'imu_sensor: sampling.jitter_us is 5 us; expected 0 with'),
     (['limits.speed_min_m_s:=400.0'], 'limits.speed_min_m_s is 400; expected less than'),

@@ -20,7 +20,7 @@ class SettingsGroup:
     A frozen record of settings, compared and shown by value.
 
     A subclass overrides ``check`` where values must fit each other; it runs whenever an object is
-    made. The range of a single value is checked by ``catalogue.build``.
+    made. ``catalogue.build`` checks the range of each single value before.
 
     What dataclass(frozen=True) would write for each class stands here once: to make thirty such
     classes takes 25 ms, on the way of every node's start, and this a quarter of it.
