@@ -2,7 +2,7 @@
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
-from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.simulation.aided import make_instruments, simulate_aided
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.inertial import simulate
 
@@ -24,7 +24,7 @@ def flown(settings):
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(settings.simulation, twin=False, motion=motion)
-    return motion, run, simulate_aided(settings, motion, run)
+    return motion, run, simulate_aided(settings, make_instruments(settings), motion, run)
 
 
 def command(folder, *arguments, assignments=(), flight=FLIGHT, files=FILES):

@@ -53,8 +53,9 @@ def scene():
     generator = simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(simulation, twin=False, motion=motion)
-    offline = simulate_aided(chosen, motion, run)
-    meter, gnss = make_instruments(chosen, (run.states.t_ns, body_velocity(run.states)))
+    offline = simulate_aided(chosen, make_instruments(chosen), motion, run)
+    meter, gnss = make_instruments(chosen)
+    meter.follow_ins(run.states.t_ns, body_velocity(run.states))
     truth = [t for _, t in with_truth(motion, [run.imu])][0]
     frame = MapFrame(generator.datum, True)
     poses = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)

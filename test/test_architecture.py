@@ -57,8 +57,7 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
                          'graph', 'studies', 'report'}
 MAY_IMPORT = {
-    # One definition of the period of a rate; instants needs only Python.
-    'settings': {'core.numerics.instants'},
+    'settings': set(),
     'core.numerics': set(),
     'core.timeseries': set(),
     'core.attitude': {'core.numerics'},

@@ -75,8 +75,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     settings = chosen_settings({**VALUES, 'source': 'stream'})
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    offline = simulate_aided(settings, motion, simulate(settings.simulation, twin=False,
-                                                        motion=motion))
+    offline = simulate_aided(settings, make_instruments(settings), motion,
+                             simulate(settings.simulation, motion, twin=False))
     states, errors = offline.states, offline.errors
     frame = MapFrame(generator.datum, True)
     route = GreatCircleRoute.of_points(settings.aided_navigator.motion.route.points)
@@ -205,7 +205,8 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     run = simulate(settings.simulation, twin=False, motion=motion)
-    meter, _ = make_instruments(settings, (run.states.t_ns, body_velocity(run.states)))
+    meter, _ = make_instruments(settings)
+    meter.follow_ins(run.states.t_ns, body_velocity(run.states))
     with open_bag(tmp_path / 'bag') as bag:
         counts = {n.lstrip('/'): span.count for n, span in bag.spans().items()}
         logged, records = zip(*[(log_ns, velocity_record.read(bytes(data), 0))

@@ -79,7 +79,7 @@ def test_sample_clock():
 def test_bad_clocks_are_refused(values, says):
     """One sentence each."""
     with pytest.raises(ValueError, match=says):
-        SampleClock(settings(values).strapdown, 10_000_000)
+        run_offline(settings(values, duration_s=1.0))
 
 
 def test_orientation_algorithms_agree_to_their_truncation():

@@ -7,7 +7,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ins_sim.core.prediction.drift import NoPrediction
 from ins_sim.core.prediction.predict import predict
-from ins_sim.core.simulation.aided import simulate_aided
+from ins_sim.core.simulation.aided import make_instruments, simulate_aided
 from ins_sim.core.simulation.inertial import simulate
 from ins_sim.io.motion import read_motion
 from ins_sim.report import storage, summary, table
@@ -22,6 +22,8 @@ def run(chosen):
     title = chosen_settings.title(settings)
     console = Console()
     motion = read_motion(settings.motion_generator)
+    # Made before the run, so that settings that do not fit are refused before it.
+    instruments = None if aided is None else make_instruments(aided)
     try:
         prediction = predict(settings, motion)
     except NoPrediction as reason:
@@ -31,7 +33,7 @@ def run(chosen):
                   TextColumn('{task.percentage:>3.0f} %'), TimeRemainingColumn(),
                   console=console, transient=True) as progress:
         result = simulate(settings, motion, not chosen.no_twin, _watch(progress, 'simulating'))
-        flown = None if aided is None else simulate_aided(aided, motion, result,
+        flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
                                                           _watch(progress, 'aiding'))
     rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
     report = None if aided is None else _report(aided, flown, result)

@@ -1,6 +1,5 @@
 """Settings of the node gnss."""
 
-from ins_sim.core.numerics.instants import period_ns
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming
 from .node import Time, Topics
@@ -95,11 +94,3 @@ class GnssSettings(SettingsGroup):
                              'IMU', 'Hz', 0.01, 20000.0)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
-
-    def check(self):
-        """Refuse fixes between the samples of the truth."""
-        dt_ns, fix_ns = period_ns(self.rate_hz), period_ns(self.gnss.rate_hz)
-        if fix_ns % dt_ns:
-            raise ValueError(f'gnss.rate_hz is {self.gnss.rate_hz:g} Hz, a period of '
-                             f'{fix_ns * 1e-9:.9g} s; expected a multiple of the period of '
-                             f'rate_hz, {dt_ns * 1e-9:.9g} s: a fix needs a sample of the truth')

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 
-from ins_sim.core.numerics.instants import period_ns
 from .aided_navigator import AidedNavigatorSettings
 from .gnss import GnssSettings
 from .imu import DelaysUs, ImuSensorSettings
@@ -25,11 +24,6 @@ class SimulationSettings:
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
                              f'{sends:g} Hz')
-        start_ns, dt_ns = round(1e9 * self.motion_generator.start_s), period_ns(sends)
-        if self.strapdown.imu_time == 'nominal' and start_ns % dt_ns:
-            raise ValueError(f'motion_generator: start_s is {self.motion_generator.start_s:.9g} s '
-                             'with imu_time nominal; expected a multiple of the period of the '
-                             f'IMU, {dt_ns * 1e-9:.9g} s')
 
     def without_delays(self):
         """Return the settings of the zero-delay twin; it has the same instrument errors."""

@@ -88,8 +88,7 @@ def _fly(settings, case, blocks):
                                 gnss_model=replace(navigator.gnss_model,
                                                    use=navigator.gnss_model.use
                                                    and case.filter == 'eskf')))
-    instruments = make_instruments(settings)
-    flown = aid(settings.aided_navigator, blocks, *instruments)
+    flown = aid(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = flown.errors
     weighed = [t.result for t in flown.taken if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']

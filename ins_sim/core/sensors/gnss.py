@@ -18,12 +18,21 @@ from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 
 
 class Gnss:
-    """The GNSS receiver of GnssSettings as a consumer of streamed truth: samples in, fixes out."""
+    """
+    The GNSS receiver of GnssSettings as a consumer of streamed truth: samples in, fixes out.
+
+    Raises ValueError where a fix would lie between samples of the truth.
+    """
 
     def __init__(self, settings, run=0):
         self._settings, self._run = settings, run
         self._dt_ns = period_ns(settings.rate_hz)
         self.period_ns = period_ns(settings.gnss.rate_hz)
+        if self.period_ns % self._dt_ns:
+            raise ValueError(f'gnss.rate_hz is {settings.gnss.rate_hz:g} Hz, a period of '
+                             f'{self.period_ns * 1e-9:.9g} s; expected a multiple of the period '
+                             f'of rate_hz, {self._dt_ns * 1e-9:.9g} s: a fix needs a sample of '
+                             'the truth')
         self.latency_ns = round(1e6 * settings.gnss.latency_ms)
         self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
         self._outages = _spans(settings.outages.start_s, settings.outages.end_s)

@@ -10,25 +10,27 @@ from .aided_run import aid, Reported, with_truth
 from .inertial import truth_blocks
 
 
-def make_instruments(settings, ins=None):
+def make_instruments(settings):
     """
-    Return the velocity meter and the GNSS receiver of AidedSimulationSettings, both new.
+    Return velocity meter and GNSS of AidedSimulationSettings, on the truth, before the first fix.
 
-    ins: as of MeterOnTruth.
+    Raises ValueError where an instrument cannot be made; make them before the run they serve.
     """
-    return MeterOnTruth(VelocityMeter(settings.velocity_meter), ins), Gnss(settings.gnss)
+    return MeterOnTruth(VelocityMeter(settings.velocity_meter)), Gnss(settings.gnss)
 
 
-def simulate_aided(settings, motion, run, progress=None):
+def simulate_aided(settings, instruments, motion, run, progress=None):
     """
     Return the AidedResult on a SimulationResult of the first three stages.
 
-    settings: AidedSimulationSettings; motion: that of the run; run: SimulationResult, whose
-    solution, as often as it is put out, gives the velocity meter the angle of attack, as it does
-    on ins/odometry; progress: called with the fraction done.  The instruments see the truth of the
-    generator, whatever the IMU loses.  Raises ValueError as the stages do.
+    settings: AidedSimulationSettings; instruments: those of ``make_instruments``, used up here;
+    motion: that of the run; run: SimulationResult, whose solution, as often as it is put out,
+    gives the velocity meter the angle of attack, as it does on ins/odometry; progress: called
+    with the fraction done.  The instruments see the truth of the generator, even where the IMU
+    loses samples.  Raises ValueError as the stages do.
     """
-    meter, gnss = make_instruments(settings, (run.states.t_ns, body_velocity(run.states)))
+    meter, gnss = instruments
+    meter.follow_ins(run.states.t_ns, body_velocity(run.states))
     generator = settings.simulation.motion_generator
     velocity_fixes, gnss_fixes = [], []
     done, total = 0, 2 * len(run.imu)

@@ -136,6 +136,7 @@ def simulate(settings, motion, twin=True, progress=None):
     """
     generator = settings.motion_generator
     check_length(generator, motion)
+    _check_start(settings)
     twin = twin and settings.delayed
     total = 1.0 + _steps(generator)
     total *= period_ns(generator.rate_hz) * (2 if twin else 1)
@@ -169,6 +170,14 @@ def simulate(settings, motion, twin=True, progress=None):
                                                                       blocks))
     return SimulationResult(truth, ImuSamples.concatenate(imu), states, errors, twin_errors,
                             tuple(faults))
+
+
+def _check_start(settings):
+    """Raise ValueError where nominal instants, multiples of the period, would miss the start."""
+    start_s, dt_ns = settings.motion_generator.start_s, period_ns(settings.imu_sensor.rate_hz)
+    if settings.strapdown.imu_time == 'nominal' and round(1e9 * start_s) % dt_ns:
+        raise ValueError(f'motion_generator: start_s is {start_s:.9g} s with imu_time nominal; '
+                         f'expected a multiple of the period of the IMU, {dt_ns * 1e-9:.9g} s')
 
 
 def _steps(generator):

@@ -9,12 +9,16 @@ class MeterOnTruth:
     """
     A VelocityMeter that is given truth in blocks.
 
-    ins: (t_ns (n,), v_b (n, 3)) of an INS, for the angle of attack; without one it comes from the
-    truth, of which an INS at rest in its errors differs by milliradians.
+    Without an INS the true angle of attack is used; that of a converged INS differs from it by
+    milliradians.
     """
 
-    def __init__(self, meter, ins=None):
-        self._meter, self._ins = meter, ins
+    def __init__(self, meter):
+        self._meter, self._ins = meter, None
+
+    def follow_ins(self, t_ns, v_b):
+        """Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s."""
+        self._ins = t_ns, v_b
 
     def fixes(self, truth):
         """Return the VelocityFixes that a Truth record completes, in the order of arrival."""
