@@ -1,7 +1,7 @@
 """
 Allan deviation of a record and the noise coefficients fitted to it.
 
-The estimate is that of allantools (overlapping Allan deviation), the model that of IEEE Std 952:
+The estimate is the overlapping Allan deviation, the model that of IEEE Std 952:
 
     variance(tau) = 3 Q^2/tau^2 + N^2/tau + (2 ln 2/pi) B^2 + K^2 tau/3
 
@@ -14,6 +14,8 @@ import math
 
 import numpy as np
 from scipy.optimize import least_squares, nnls
+
+from ins_sim.core.numerics.allan_deviation import overlapping
 
 PER_DECADE = 8
 # The longest tau leaves this many intervals in the record.
@@ -109,14 +111,8 @@ def estimate(samples, rate_hz):
     """
     Return the Allan deviation of samples (n,) or (n, channels), taken at rate_hz.
 
-    Raises ValueError where the record is too short or not finite, or allantools is missing.
+    Raises ValueError where the record is too short or not finite.
     """
-    try:
-        # no Ubuntu package exists: a machine with ROS may lack it
-        import allantools
-    except ImportError as error:
-        raise ValueError(f'allantools cannot be imported ({error}); the Allan deviation expects '
-                         '"pip install allantools"') from None
     samples = np.asarray(samples, dtype=float)
     samples = samples.reshape(len(samples), -1)
     if len(samples) < LEAST:
@@ -125,13 +121,10 @@ def estimate(samples, rate_hz):
     if not np.isfinite(samples).all():
         raise ValueError('the record holds NaN or infinity; expected finite samples')
     most = len(samples) // FEWEST
-    wanted = np.unique(np.round(np.geomspace(1, most, round(PER_DECADE * math.log10(most)) + 1)))
-    deviations = []
-    for channel in samples.T:
-        tau_s, deviation, _, _ = allantools.oadev(channel - channel.mean(), rate=rate_hz,
-                                                  data_type='freq', taus=wanted / rate_hz)
-        deviations.append(deviation)
-    return Allan(tau_s, np.stack(deviations, axis=-1), len(samples) / rate_hz)
+    factors = np.unique(np.round(
+        np.geomspace(1, most, round(PER_DECADE * math.log10(most)) + 1)).astype(int))
+    deviations = [overlapping(channel, factors) for channel in samples.T]
+    return Allan(factors / rate_hz, np.stack(deviations, axis=-1), len(samples) / rate_hz)
 
 
 def fit(allan, known=0.0):
