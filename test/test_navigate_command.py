@@ -221,7 +221,7 @@ def test_the_odometry_is_laid_on_the_start(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_twist_with_covariance_is_the_same_velocity(storage, tmp_path, capsys):
-    """Either type of message gives the same numbers; the other is read through rosbags."""
+    """Either type of message gives the same numbers."""
     _, motion = motion_of('motion.kind:=sinusoids')
     ends = []
     for name in (TWIST, COVARIANCE_TWIST):
@@ -241,7 +241,7 @@ def test_a_twist_with_covariance_is_the_same_velocity(storage, tmp_path, capsys)
 @pytest.mark.parametrize('data', [b'', b'\0\1\0\0', b'\0\1\0\0\xff\xff\xff\x7f',
                                   b'\0\1\0\0' * 9])
 def test_transforms_that_are_none_are_one_sentence(data, tmp_path, capsys):
-    """Bytes that rosbags cannot decode are named by topic and time, whatever it raises."""
+    """Bytes that are not a TFMessage are named by topic and time."""
     bag = tmp_path / 'bag'
     with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for name, type_name in (('/imu', IMU), ('/tf_static', TF)):

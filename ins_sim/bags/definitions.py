@@ -1,25 +1,57 @@
 """Definitions of message types and their hashes, as a bag carries them."""
 
 from functools import lru_cache
+import json
+from pathlib import Path
+
+# Written by tools/make_message_types.py; a test keeps it equal to what rosbags has.
+TABLE = Path(__file__).with_name('message_types.json')
+SEPARATOR = '=' * 80
 
 
 @lru_cache(maxsize=None)
 def define(type_name):
     """
-    Return (definition in the language ros2msg, RIHS01 hash) of a message type of ROS 2 Jazzy.
+    Return the definition and the hash of a message type of ROS 2 Jazzy.
 
-    Raises ValueError for a type that is not among its common interfaces.
+    Parameters
+    ----------
+    type_name : for example 'sensor_msgs/msg/Imu'
+
+    Returns
+    -------
+    definition : its text in the language ros2msg, followed by those of the types it holds
+    type_hash : RIHS01 hash
+
+    Raises
+    ------
+    ValueError : the type is not among the common interfaces of ROS 2 Jazzy
     """
-    store = typestore()
-    if type_name not in store.types:
+    table = _table()
+    if type_name not in table:
         raise ValueError(f'the type {type_name!r} is not known; expected one of the common '
                          'interfaces of ROS 2 Jazzy, or its definition')
-    definition, _ = store.generate_msgdef(type_name, ros_version=2)
-    return definition, store.hash_rihs01(type_name)
+    held = {}
+    _collect(type_name, held)
+    parts = ''.join(f'{SEPARATOR}\nMSG: {name.replace("/msg/", "/")}\n{_text(name)}'
+                    for name in held)
+    return _text(type_name) + parts, table[type_name]['hash']
 
 
 @lru_cache(maxsize=None)
-def typestore():
-    """Return the types of ROS 2 Jazzy as rosbags has them."""
-    from rosbags.typesys import get_typestore, Stores
-    return get_typestore(Stores.ROS2_JAZZY)
+def _table():
+    return json.loads(TABLE.read_text(encoding='utf-8'))
+
+
+def _text(type_name):
+    return ''.join(f'{line}\n' for line in _table()[type_name]['lines'])
+
+
+def _collect(type_name, held):
+    """Add the types that a type holds to the keys of a dictionary, each before its own parts."""
+    for line in _table()[type_name]['lines']:
+        package, slash, name = line.partition(' ')[0].partition('[')[0].partition('/')
+        part = f'{package}/msg/{name}'
+        if slash and part not in held:
+            held[part] = None
+            _collect(part, held)

@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.bags.definitions import typestore
 from ins_sim.core.attitude.interpolation import continuous
 from ins_sim.core.postprocessing.initial_state import Sources
 from ins_sim.core.postprocessing.reference import (keep_rising, OdometryReference, Reference,
                                                    SampledTrack)
-from ins_sim.messages import topics
+from ins_sim.messages import topics, transforms
 from . import bag_imu, csv_imu
 from .csv_table import SUFFIXES
 from .topic_choice import choose
@@ -74,12 +73,8 @@ def _fixes(bag, topic):
 
 
 def _velocities(bag, topic):
-    if bag.topics[topic].type_name == TWIST:
-        table = bag.arrays(topic, ('linear',))
-        return _track(table['stamp_ns'], table['linear'])
-    rows = [(_stamp(m), _vector(m.twist.twist.linear)) for m in _decoded(bag, topic)]
-    t_ns, values = zip(*rows) if rows else ((), np.empty((0, 3)))
-    return _track(np.array(t_ns, dtype=np.int64), np.array(values))
+    table = bag.arrays(topic, ('linear',))
+    return _track(table['stamp_ns'], table['linear'])
 
 
 def _track(t_ns, values):
@@ -107,35 +102,22 @@ def _odometry(bag, topic):
 
 def _static_transforms(bag):
     """Return {(parent, child): q from child to parent} of every topic named tf_static."""
-    transforms = {}
+    static = {}
     for topic, channel in bag.topics.items():
         if channel.type_name == TF and topic.rpartition('/')[2] == 'tf_static':
-            for message in _decoded(bag, topic):
-                for t in message.transforms:
-                    q = t.transform.rotation
-                    ends = t.header.frame_id.lstrip('/'), t.child_frame_id.lstrip('/')
-                    transforms[ends] = (q.x, q.y, q.z, q.w)
-    return transforms
+            for parent, child, q in _rotations(bag, channel):
+                static[parent.lstrip('/'), child.lstrip('/')] = q
+    return static
 
 
-def _decoded(bag, topic):
-    """Yield the messages of a topic whose type has no layout of ours, as objects of rosbags."""
-    channel = bag.topics[topic]
+def _rotations(bag, channel):
+    """Yield the transforms of a topic of TFMessages in the order of the log times."""
     if channel.encoding != 'cdr':
-        raise ValueError(f'{bag.path}: {topic} is serialized as {channel.encoding!r}; expected '
-                         'cdr')
-    for _, log_ns, data in bag.messages([topic]):
+        raise ValueError(f'{bag.path}: {channel.name} is serialized as {channel.encoding!r}; '
+                         'expected cdr')
+    for _, log_ns, data in bag.messages([channel.name]):
         try:
-            yield typestore().deserialize_cdr(data, channel.type_name)
-        except Exception as error:  # rosbags lets through whatever the bytes lead it to
-            raise ValueError(f'{bag.path}: {topic} has a message at {log_ns} ns that is no '
-                             f'{channel.type_name} ({error})') from None
-
-
-def _stamp(message):
-    stamp = message.header.stamp
-    return stamp.sec * 1_000_000_000 + stamp.nanosec
-
-
-def _vector(v):
-    return v.x, v.y, v.z
+            yield from transforms.rotations(data)
+        except ValueError as error:
+            raise ValueError(f'{bag.path}: {channel.name} has a message at {log_ns} ns that is '
+                             f'no {TF} ({error})') from None
