@@ -8,7 +8,7 @@ import numpy as np
 
 from . import mcap_format as form
 from . import mcap_writer, metadata, qos, sqlite_writer
-from .compression import NAMES
+from .compression import library, NAMES
 from .definitions import define
 from .piece import Channel
 from .records import arrange, fill, Records
@@ -279,6 +279,8 @@ def check(path, storage, compression, replace):
     if storage == 'sqlite3' and compression != 'none':
         raise ValueError(f'sqlite3 cannot be compressed by {compression}; expected the storage '
                          'mcap, or the compression none')
+    if compression != 'none':
+        library(compression)
     path = Path(path)
     if not path.exists():
         return

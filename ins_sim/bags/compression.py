@@ -1,23 +1,38 @@
 """Compression of MCAP chunks, with no more memory on reading than a chunk says it needs."""
 
-import lz4.frame
-
-try:
-    from compression import zstd
-except ImportError:  # Python before 3.14
-    from backports import zstd
+from functools import lru_cache
+from importlib import import_module
 
 NAMES = ('none', 'lz4', 'zstd')
+# Any one of the modules will do.  compression.zstd is in the standard library from Python 3.14;
+# zstandard is the library that Debian and Ubuntu package.
+MODULES = {'lz4': ('lz4.frame',), 'zstd': ('compression.zstd', 'backports.zstd', 'zstandard')}
+APT_PACKAGES = {'lz4': 'python3-lz4', 'zstd': 'python3-zstandard'}
 # what the formats can gain at most
 _LZ4_RATIO = 256
 LARGEST = 1 << 30
 
 
+@lru_cache(maxsize=None)
+def library(name):
+    """Return the module for 'lz4' or 'zstd'; ValueError where none is installed."""
+    for module in MODULES[name]:
+        try:
+            return import_module(module)
+        except ImportError:
+            continue
+    raise ValueError(f'compression by {name} needs a library that is not installed; install the '
+                     f'extra "compression" of ins_sim with pip, or {APT_PACKAGES[name]} with apt')
+
+
 def compress(data, name):
     """Return bytes compressed by 'lz4' or 'zstd' at the fastest level; '' leaves them."""
     if name == 'lz4':
-        return lz4.frame.compress(data, store_size=True)
+        return library(name).compress(data, store_size=True)
     if name == 'zstd':
+        zstd = library(name)
+        if zstd.__name__ == 'zstandard':
+            return zstd.ZstdCompressor(level=1).compress(data)
         return zstd.compress(data, level=1)
     return data
 
@@ -35,9 +50,13 @@ def decompress(data, name, size):
     elif name == 'lz4':
         if size > _LZ4_RATIO * len(data):
             raise ValueError(f'{len(data)} bytes of lz4 cannot have {size} bytes')
-        raw = _whole(lz4.frame.LZ4FrameDecompressor(), data, size)
+        raw = _whole(library(name).LZ4FrameDecompressor(), data, size, RuntimeError)
     elif name == 'zstd':
-        raw = _whole(zstd.ZstdDecompressor(), data, size)
+        zstd = library(name)
+        if zstd.__name__ == 'zstandard':
+            raw = _read(zstd, data, size)
+        else:
+            raw = _whole(zstd.ZstdDecompressor(), data, size, zstd.ZstdError)
     else:
         raise ValueError(f'its compression is {name!r}; expected lz4, zstd or none')
     if len(raw) != size:
@@ -45,12 +64,22 @@ def decompress(data, name, size):
     return raw
 
 
-def _whole(decompressor, data, size):
+def _whole(decompressor, data, size, failure):
     try:
         # one byte more than expected shows that there is more
         raw = decompressor.decompress(data, max_length=size + 1)
-    except (RuntimeError, zstd.ZstdError, EOFError) as error:
+    except (failure, EOFError) as error:
         raise ValueError(f'its compressed data are corrupt ({error})') from None
     if not decompressor.eof:
         raise ValueError(f'its compressed data are corrupt; expected the end after {size} bytes')
     return raw
+
+
+def _read(zstandard, data, size):
+    """Return the data, but at most one byte more than size."""
+    try:
+        # The other ways of zstandard to decompress have no limit to their memory.
+        with zstandard.ZstdDecompressor().stream_reader(data) as reader:
+            return reader.read(size + 1)
+    except zstandard.ZstdError as error:
+        raise ValueError(f'its compressed data are corrupt ({error})') from None

@@ -5,7 +5,7 @@ from zlib import crc32
 import numpy as np
 
 from . import mcap_format as form
-from .compression import decompress
+from .compression import decompress, library, MODULES
 from .mcap_index import BEHIND_LENGTH, Chunk, LATEST_NS, McapIndex
 from .piece import apart, BagPiece, joined
 from .records import HEAD
@@ -21,6 +21,12 @@ class McapReader(McapIndex):
     def __init__(self, path):
         super().__init__(path)
         self._scanned = {}
+        # Ask for the library here: later its absence would pass for a chunk that is corrupt.
+        for name in {chunk.compression for chunk in self.chunks} & MODULES.keys():
+            try:
+                library(name)
+            except ValueError as error:
+                raise ValueError(f'{self.path} cannot be read: {error}') from None
         self._look_into_chunks()
         self.compression = sorted({c.compression or 'none' for c in self.chunks} or {'none'})
 
