@@ -4,7 +4,7 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow lint clean
+.PHONY: help setup demo test test-slow lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
@@ -12,6 +12,7 @@ help:
 	@echo 'make test       run the tests'
 	@echo 'make test-slow  run the slow tests'
 	@echo 'make lint       check the style'
+	@echo 'make lock       write requirements.lock again (UPGRADE=--upgrade: newest versions)'
 	@echo 'make clean      remove .venv, builds and caches'
 
 setup:
@@ -28,6 +29,12 @@ test-slow:
 
 lint:
 	$(RUN) python -m flake8
+
+# Needs uv.  The file holds versions, markers and hashes for every supported Python, and no index.
+lock:
+	uv pip compile --universal --python-version 3.10 --generate-hashes --no-emit-index-url \
+		--no-header --no-annotate --quiet $(UPGRADE) --extra ros --extra test \
+		--output-file requirements.lock setup.py
 
 clean:
 	rm -rf .venv .venv.lock build dist install log *.egg-info .pytest_cache .hypothesis

@@ -9,6 +9,11 @@ package_name = 'ins_sim'
 with open(package_name + '/__init__.py', encoding='utf-8') as stream:
     version = re.search(r"^__version__ = '(.+)'$", stream.read(), re.MULTILINE).group(1)
 
+# The chunks of MCAP.  From Python 3.14 zstd is in the standard library.
+COMPRESSION = ['lz4<5', 'backports.zstd<2; python_version < "3.14"']
+DATAFRAME = ['pandas<4']
+
+# Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
     name=package_name,
     version=version,
@@ -20,16 +25,19 @@ setup(
         ('share/' + package_name + '/launch', sorted(glob('launch/*.launch.py'))),
     ],
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich', 'rosbags',
-                      'allantools',
-                      # the chunks of MCAP; rosbags needs both as well
-                      'lz4', 'backports.zstd; python_version < "3.14"'],
+    package_data={package_name + '.bags': ['message_types.json']},
+    install_requires=['numpy<3', 'scipy<2', 'pyyaml<7', 'matplotlib<4', 'rich<16'],
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
+        'compression': COMPRESSION,
+        'dataframe': DATAFRAME,
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': ['pytest<9', 'hypothesis', 'flake8', 'colcon-ros>=0.5', 'mcap',
-                 'geographiclib'],
+        'test': [*COMPRESSION, *DATAFRAME, 'pytest<9', 'pytest-xdist<4', 'hypothesis<7',
+                 'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
+                 # what results are compared with
+                 'allantools', 'geographiclib<3', 'mcap<2', 'rosbags<0.12'],
+        'bench': ['python-ins<2', 'rosbags<0.12'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

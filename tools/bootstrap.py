@@ -4,7 +4,8 @@ Make .venv, install ins_sim and what it needs into it once, and run a command th
 Usage: python3 tools/bootstrap.py [command [argument ...]]
 
 Standard library only, and legal for any Python 3 so that an old one can say that it is too old.
-Where ROS 2 is sourced its own rclpy is used; elsewhere rclpy comes as wheels from PyPI.
+Where ROS 2 is sourced its own rclpy and libraries are used, which a fixed set of versions would
+overlay; elsewhere all comes from PyPI, in the versions and with the hashes of requirements.lock.
 """
 
 import fcntl
@@ -20,6 +21,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 VENV = os.path.join(ROOT, '.venv')
 VENV_BIN = os.path.join(VENV, 'bin')
 STAMP = os.path.join(VENV, 'ins_sim-stamp.json')
+LOCK = os.path.join(ROOT, 'requirements.lock')
 OLDEST = (3, 10)
 # What the wheels of rclpy exist for.
 WHEEL_PYTHONS = ((3, 10), (3, 14))
@@ -100,9 +102,12 @@ def read_stamp():
 
 
 def digest_of_requirements():
-    """Return a digest of the file that decides what pip installs."""
-    with open(os.path.join(ROOT, 'setup.py'), 'rb') as stream:
-        return hashlib.sha256(stream.read()).hexdigest()
+    """Return a digest of the files that decide what pip installs."""
+    digest = hashlib.sha256()
+    for path in (os.path.join(ROOT, 'setup.py'), LOCK):
+        with open(path, 'rb') as stream:
+            digest.update(hashlib.sha256(stream.read()).digest())
+    return digest.hexdigest()
 
 
 def venv_environment(with_ros):
@@ -133,19 +138,25 @@ def install(facts, with_ros, fresh):
         shutil.rmtree(VENV, ignore_errors=True)
         options = ['--system-site-packages'] if with_ros else []
         run([facts['executable'], '-m', 'venv'] + options + [VENV], with_ros, 'making .venv')
-    extras = ['test']
+    pip = [python, '-m', 'pip', 'install', '--quiet', '--no-input',
+           '--disable-pip-version-check']
+    locked = not with_ros and wheels_fit(facts)
     if with_ros:
         say('using rclpy of the sourced ROS 2 ' + os.environ['ROS_DISTRO'])
-    elif wheels_fit(facts):
-        extras.insert(0, 'ros')
-    else:
+    elif not locked:
         say('PyPI has no rclpy for this machine (wheels exist for Linux on x86-64 with glibc 2.28 '
-            'or newer and Python 3.10 to 3.14): installing without it, the nodes will not start')
+            'or newer and Python 3.10 to 3.14): installing without it and without '
+            'requirements.lock, the nodes will not start')
     say('installing into .venv; this takes a minute or two and is done only once')
-    # Wheels first, for there may be no compiler.
-    run([python, '-m', 'pip', 'install', '--quiet', '--no-input', '--disable-pip-version-check',
-         '--prefer-binary', '--editable',
-         '{}[{}]'.format(ROOT, ','.join(extras))], with_ros, 'installing')
+    if locked:
+        run(pip + ['--require-hashes', '--requirement', LOCK], with_ros, 'installing')
+        # Without isolation the package is built by the setuptools of the lock, and not by
+        # whichever is the newest.
+        run(pip + ['--no-deps', '--no-build-isolation', '--editable', ROOT], with_ros,
+            'installing')
+    else:
+        # Wheels first, for there may be no compiler.
+        run(pip + ['--prefer-binary', '--editable', ROOT + '[test]'], with_ros, 'installing')
 
 
 def run(command, with_ros, doing):
