@@ -1,6 +1,7 @@
 """The package installs with pip and colcon, and the two commands set themselves up."""
 
 from importlib import import_module
+import ast
 import os
 from pathlib import Path
 import re
@@ -13,6 +14,7 @@ from ins_sim import __version__, graph, resources
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+MANIFEST = ElementTree.parse(ROOT / 'package.xml').getroot()
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
 SCRIPTS = dict(re.findall(r"'(\w+) = (ins_sim[\w.]+:\w+)'", SETUP))
 FIND = ('from ins_sim import resources, __file__ as f; '
@@ -47,9 +49,8 @@ def clean_environment():
 
 def test_versions_agree():
     """The manifest of ROS and the package carry one version."""
-    manifest = ElementTree.parse(ROOT / 'package.xml')
-    assert manifest.findtext('version') == __version__
-    assert manifest.findtext('name') == 'ins_sim'
+    assert MANIFEST.findtext('version') == __version__
+    assert MANIFEST.findtext('name') == 'ins_sim'
 
 
 def test_graph_names_executables():
@@ -94,6 +95,36 @@ def test_resources_stand_without_ament(monkeypatch):
     assert resources.config('default').is_file()
 
 
+def imported_packages():
+    """Return the names of the packages that the modules of ins_sim import."""
+    names = set()
+    for path in (ROOT / 'ins_sim').rglob('*.py'):
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name.partition('.')[0] for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names.add(node.module.partition('.')[0])
+    return names - set(sys.stdlib_module_names) - {'ins_sim'}
+
+
+def test_run_time_needs_five_libraries_and_ros():
+    """What is imported is required at run time, comes with ROS, or is an extra."""
+    required = re.search(r"install_requires=\[(.*?)\]", SETUP, re.DOTALL).group(1)
+    assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
+    of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
+    extras = {'pandas', 'numba'}
+    assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
+        of_ros | extras)
+
+
+def test_manifest_depends_on_packages_of_ubuntu_alone():
+    """A release of a ROS distribution may not depend on keys that rosdep takes from PyPI."""
+    names = [element.text for element in MANIFEST if element.tag.endswith('depend')]
+    assert len(names) > 20 and not [name for name in names if name.endswith('-pip')]
+    for library in ('numpy', 'scipy', 'yaml', 'matplotlib', 'rich'):
+        assert f'python3-{library}' in names
+
+
 @pytest.mark.slow
 def test_pip_install(source, tmp_path, clean_environment):
     """``pip install .`` in a new environment gives the scripts, and finds its configuration."""
@@ -108,6 +139,13 @@ def test_pip_install(source, tmp_path, clean_environment):
     for path in (module, config, launch):
         assert Path(path).is_relative_to(tmp_path / 'venv')
     run([python.parent / 'ins_sim', '--help'], cwd=tmp_path, env=clean_environment)
+    listed = run([python, '-m', 'pip', 'list', '--format', 'freeze'], env=clean_environment)
+    names = {line.partition('==')[0].lower() for line in listed.split()}
+    print(f'pip install . : {len(names)} packages, {", ".join(sorted(names))}')
+    assert len(names - {'pip', 'setuptools', 'wheel'}) <= 20
+    # The definitions of the messages come with the package.
+    run([python.parent / 'ins_sim', 'simulate', '-p', 'duration_s:=1.0', '-o', 'run', '--bag',
+         'bag'], cwd=tmp_path, env=clean_environment)
 
 
 def test_colcon_build(source, tmp_path):
@@ -128,6 +166,7 @@ def test_colcon_build(source, tmp_path):
     module, config, launch = run([sys.executable, '-c', FIND], cwd=tmp_path, env=env).split()
     for path in (module, config, launch):
         assert Path(path).is_relative_to(prefix)
+    assert (Path(module).parent / 'bags' / 'message_types.json').is_file()
     index = ('from ament_index_python.packages import get_package_prefix as find; '
              'print(find("ins_sim"))')
     assert run([sys.executable, '-c', index], cwd=tmp_path, env=env).strip() == str(prefix)

@@ -38,9 +38,13 @@ try:
     has_rclpy = True
 except ImportError:
     has_rclpy = False
+try:
+    from numpy import __version__ as numpy
+except ImportError:
+    numpy = None
 print(json.dumps({'executable': sys.executable, 'version': sys.version_info[:3],
                   'libc': platform.libc_ver(), 'machine': platform.machine(),
-                  'system': sys.platform, 'venv': has_venv, 'rclpy': has_rclpy}))
+                  'system': sys.platform, 'venv': has_venv, 'rclpy': has_rclpy, 'numpy': numpy}))
 """
 
 
@@ -155,8 +159,15 @@ def install(facts, with_ros, fresh):
         run(pip + ['--no-deps', '--no-build-isolation', '--editable', ROOT], with_ros,
             'installing')
     else:
+        limits = []
+        if with_ros and facts['numpy']:
+            # The messages of ROS are compiled for its NumPy: no library may bring another one.
+            limits = ['--constraint', os.path.join(VENV, 'constraints.txt')]
+            with open(limits[1], 'w') as stream:
+                stream.write('numpy=={}\n'.format(facts['numpy']))
         # Wheels first, for there may be no compiler.
-        run(pip + ['--prefer-binary', '--editable', ROOT + '[test]'], with_ros, 'installing')
+        run(pip + limits + ['--prefer-binary', '--editable', ROOT + '[test]'], with_ros,
+            'installing')
 
 
 def run(command, with_ros, doing):
