@@ -1,10 +1,12 @@
 """Bags for the tests of navigate, written by rosbags and not by the package's own writers."""
 
 import numpy as np
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import get_typestore, Stores
+import pytest
 
-STORE = get_typestore(Stores.ROS2_JAZZY)
+rosbag2 = pytest.importorskip('rosbags.rosbag2')
+typesys = pytest.importorskip('rosbags.typesys')
+StoragePlugin, Writer = rosbag2.StoragePlugin, rosbag2.Writer
+STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
 TYPES = STORE.types
 
 

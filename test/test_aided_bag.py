@@ -154,6 +154,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
 
 def test_topics_order_and_every_reader(run, bag_path, capsys):
     """All topics, messages in the order of the stamps, and rosbags decodes each."""
+    pytest.importorskip('rosbags')
     from rosbags.highlevel import AnyReader
     with open_bag(bag_path) as bag:
         assert list(bag.topics) == NAMES and not bag.cut

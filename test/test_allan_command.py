@@ -64,6 +64,7 @@ def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
 
 def write_bag(path, t_ns, *names):
     """Write a bag with white noise of SIGMA rad/s and 10 SIGMA m/s^2 on topics of type Imu."""
+    pytest.importorskip('rosbags')
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import get_typestore, Stores
     rng = np.random.default_rng(3)

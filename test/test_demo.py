@@ -10,7 +10,6 @@ import time
 import pytest
 
 pytest.importorskip('rclpy')
-pytest.importorskip('rosbags')
 pytestmark = pytest.mark.live
 ROOT = Path(__file__).resolve().parent.parent
 
