@@ -109,7 +109,7 @@ def imported_packages():
 
 def test_run_time_needs_five_libraries_and_ros():
     """What is imported is required at run time, comes with ROS, or is an extra."""
-    required = re.search(r"install_requires=\[(.*?)\]", SETUP, re.DOTALL).group(1)
+    required = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL).group(1)
     assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
     of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
     extras = {'pandas', 'numba'}
