@@ -112,7 +112,7 @@ def test_imports_are_those_of_the_table(name):
             known = other if other in FILES else other.rpartition('.')[0]
             if known != 'ins_sim':
                 assert (room_of(known) in allowed
-                        or known.removeprefix("ins_sim.") in allowed), other
+                        or known.removeprefix('ins_sim.') in allowed), other
 
 
 @pytest.mark.parametrize('name', inside('core'))
