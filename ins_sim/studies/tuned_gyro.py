@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ins_sim.core.attitude.angles import roll
 from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
@@ -126,26 +127,22 @@ def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution
     """
     Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
 
-    Walks from the nominal speed by resolution_hz and bisects; None on a side where no limit lies
-    between low_hz and high_hz.  Raises ValueError where the nominal speed itself is unstable.
+    Walks from the nominal speed by resolution_hz until RK4 grows, and finds the limit in that
+    step by Brent's method; None on a side where no limit lies between low_hz and high_hz.  Raises
+    ValueError where the nominal speed itself is unstable.
     """
-    def decays(hz):
-        return rk4_radius(parameters, hz, step_s) < 1.0
+    def growth(hz):
+        return rk4_radius(parameters, hz, step_s) - 1.0
 
     start = parameters.speed_hz
-    if not decays(start):
+    if growth(start) >= 0.0:
         raise ValueError(f'speed_hz is {start:g}, at which RK4 with {1e3 * step_s:g} ms grows; '
                          'expected a speed between the limits')
     limits = []
     for stride, end in ((-resolution_hz, low_hz), (resolution_hz, high_hz)):
         inside, outside = start, start + stride
-        while decays(outside) and min(start, end) <= outside <= max(start, end):
+        while growth(outside) < 0.0 and min(start, end) <= outside <= max(start, end):
             inside, outside = outside, outside + stride
-        if decays(outside):
-            limits.append(None)
-            continue
-        while abs(outside - inside) > tolerance_hz:
-            middle = 0.5 * (inside + outside)
-            inside, outside = (middle, outside) if decays(middle) else (inside, middle)
-        limits.append(inside)
+        found = growth(outside) >= 0.0
+        limits.append(brentq(growth, inside, outside, xtol=tolerance_hz) if found else None)
     return tuple(limits)
