@@ -1,134 +1,251 @@
-"""Every Jacobian of the aided navigator against finite differences of the equations themselves."""
+"""
+Every matrix of a linear error model of an aiding filter against differences of two flights.
+
+Parametrised over the filters of the table that name states; a filter that is added to the table
+is checked without a change here. Errors are added by the filter's own ``correct``, so that its
+signs are checked too.
+"""
 
 import math
 
-from ins_sim.core.aiding.filters import eskf_model
-from ins_sim.core.attitude import matrix, quaternion
-from ins_sim.core.earth import ellipsoid
 from ins_sim.core.aiding.corrected_strapdown import CorrectedStrapdown
+from ins_sim.core.aiding.filters import eskf_model
+from ins_sim.core.aiding.filters.base import AidingFilter
+from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
+from ins_sim.core.aiding.navigator import filter_class
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.timeseries.fixes import GnssFix, VelocityFix
+from ins_sim.settings.aided_navigator import AidedNavigatorSettings, FILTERS
+from ins_sim.settings.catalogue import build
 import numpy as np
 import pytest
 
-SPIN = ellipsoid.ROTATION_RATE
 LAT, LON, HEIGHT = math.radians(55.0), math.radians(37.0), 500.0
 STEP_S, STEPS = 0.01, 10
-# what is moved, so far that the difference is not rounding and so little that it is linear
-SIZES = np.array([10.0] * 3 + [0.1] * 3 + [1e-4] * 3 + [1e-3] * 3 + [1e-5] * 3)
-# Bounds of a row beside a tenth of the entry, for the effect of the change: rounding, and of V_U
-# the change of gravity with latitude and the square of height, which F leaves out.
-FLOORS = np.array([2e-7] * 3 + [1e-11, 1e-11, 2e-8] + [1e-13] * 3 + [2e-8] * 2)
-# a step of ten is the grain of what is of second order in time
-GRAIN = 1.2 / 10
-
-
-def start(velocity, q_nb, change=np.zeros(15)):
-    """Return a strapdown with errors added at its start."""
-    ins = CorrectedStrapdown(0, (0.0,) * 3, (0.0,) * 3, STEP_S,
-                             (LAT, LON, HEIGHT, velocity, q_nb), SPIN, False)
-    ins.correct(-change[0:3], -change[3:6], tuple((-change[6:9]).tolist()))
-    # the error of a bias is estimate less truth
-    ins.add_biases(gyro=change[12:15].tolist(), accelerometer=change[9:12].tolist())
-    return ins
-
-
-def fly(ins, omega, force):
-    """
-    Advance over STEPS; return the integral of the velocity in b, m, and the mean force in n.
-
-    An increment is resolved in b at the start of its step.
-    """
-    path, mean = np.zeros(2), np.zeros(3)
-    for k in range(1, STEPS + 1):
-        before = ins.v_b
-        mean += np.array(quaternion.rotate(ins.q_nb, force)) / STEPS
-        ins.advance(k * 10_000_000, omega, force, ())
-        path += 0.5 * STEP_S * (np.array(before[:2]) + ins.v_b[:2])
-    return path, mean
-
-
-def difference(one, other):
-    """Return dp, dV, phi of a solution less another."""
-    a, b = one.solution, other.solution
-    turned = quaternion.logarithm(quaternion.multiply(a[4], quaternion.conjugate(b[4])))
-    return np.concatenate([position_error(*a[:3], *b[:3]), np.subtract(a[3], b[3]), turned])
-
-
+TIME_S = STEP_S * STEPS
+FORCE = (0.4, -0.6, 9.9)
+LEVER = (2.0, -1.0, 0.5)
 CASES = {'cruise': ((150.0, 130.0, 0.0), 0.3, (0.0, 0.0, 0.001)),
          'climbing turn': ((-180.0, 60.0, 12.0), 2.1, (0.01, 0.02, 0.02))}
+LINEAR = [name for name in FILTERS if filter_class(name).states]
+# Errors that are added: so large that rounding does not matter, so small that they act linearly.
+SIZES = {'position': 10.0, 'velocity': 0.1, 'attitude': 1e-4, 'accelerometer_bias': 1e-3,
+         'acceleration': 1e-3, 'gyro_bias': 1e-5}
+OWN_SIZE = 1e-4
+# Bounds of a row beside a part of its entry, for the effect of the added error: rounding, and for
+# the vertical velocity the change of gravity with latitude and the square of height, which the
+# model leaves out. Of the mean velocity: the third order in time, over the length of the window.
+FLOORS = {'position': 2e-7, 'velocity': 1e-11, 'velocity_u': 2e-8, 'attitude': 1e-13,
+          'accelerometer_bias': 1e-15, 'acceleration': 1e-15, 'gyro_bias': 1e-17}
+MEAN_FLOOR = 2e-8 / TIME_S
+# Terms of second order in time are summed over ten steps, which resolves them to a tenth.
+GRAIN = 1.2 / STEPS
+# The strapdown resolves an increment in the axes of the start of a step, off by rate x step.
+STEP_GRAIN = 1e-3
 
 
-@pytest.mark.parametrize('velocity, yaw, omega', CASES.values(), ids=CASES)
-def test_transition_is_the_derivative_of_the_strapdown(velocity, yaw, omega):
-    """
-    Columns of exp(F dt), eta included, against central differences over ten steps.
+class Flight:
+    """A filter of a class on a short flight; ``settings.filter`` does not matter to a filter."""
 
-    A wrong sign of any term would be twice its part of the entry; see FLOORS and GRAIN.
-    """
-    q_nb = quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
-                               quaternion.exponential((0.02, -0.05, 0.0)))
-    force = (0.4, -0.6, 9.9)
-    nominal = start(velocity, q_nb)
-    v_start, q_start = nominal.v, nominal.q_nb
-    _, mean = fly(nominal, omega, force)
-    dt = STEP_S * STEPS
-    q_mid = quaternion.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, nominal.q_nb)))
-    v_mid = tuple(0.5 * (a + b) for a, b in zip(v_start, nominal.v))
-    f = eskf_model.dynamics(LAT, HEIGHT, v_mid, matrix.matrix(q_mid), mean, SPIN)
-    phi = eskf_model.transition(f, dt)
-    worst = 0.0
-    for k, size in enumerate(SIZES):
-        change = np.zeros(15)
-        change[k] = size
-        plus, minus = start(velocity, q_nb, change), start(velocity, q_nb, -change)
-        ways = [fly(ins, omega, force)[0] for ins in (plus, minus)]
-        measured = np.concatenate([
-            (difference(plus, nominal) - difference(minus, nominal)) / (2.0 * size),
-            (ways[0] - ways[1]) / (2.0 * size)])
-        expected = np.concatenate([phi[0:9, k], phi[eskf_model.ETA, k]])
-        identity = np.eye(17)[k, [*range(9), 15, 16]]
-        apart, part = np.abs(measured - expected) * size, np.abs(expected - identity) * size
-        bound = GRAIN * part + FLOORS
-        assert (apart <= bound).all(), (k, apart, part)
+    def __init__(self, cls, case):
+        velocity, yaw, self._omega = case
+        q_nb = quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
+                                   quaternion.exponential((0.02, -0.05, 0.0)))
+        self.ins = CorrectedStrapdown(0, (0.0,) * 3, (0.0,) * 3, STEP_S,
+                                      (LAT, LON, HEIGHT, velocity, q_nb),
+                                      ellipsoid.ROTATION_RATE, False)
+        # The covariance is not propagated while the flight lasts.
+        settings = build(AidedNavigatorSettings, {'vertical.channel': 'free',
+                                                  'covariance_every': 10 * STEPS})
+        self.filter = cls(settings, self.ins)
+        self.filter.estimates = (0.006, 0.01, -0.03)
+
+    def with_error(self, k, size):
+        """Return a copy with an error of state k."""
+        other = object.__new__(Flight)
+        other._omega, other.ins, other.filter = self._omega, self.ins.copy(), self.filter.copy()
+        x = [0.0] * len(self.filter.states)
+        x[k] = -size
+        other.filter.correct(other.ins, x)
+        return other
+
+    def fly(self):
+        """Advance over STEPS samples."""
+        for k in range(1, STEPS + 1):
+            before = self.ins.q_nb, self.ins.v_b, self.ins.v
+            u = self.ins.advance(k * 10_000_000, self._omega, FORCE, ())
+            self.filter.step(self.ins, before, u, STEP_S)
+        return self
+
+    def velocity(self):
+        """Return innovation and matrix of a fix of the velocity meter."""
+        return self.filter.velocity_model(self.ins, VelocityFix(
+            0, round(1e9 * TIME_S), STEPS, (201.0, -7.0), (1.0, 1.0)))
+
+    def gnss(self, nominal):
+        """Return innovation and matrix of a GNSS fix; a gyro bias changes the rate as well."""
+        ins = nominal.ins
+        rate = np.subtract(ins.rate_to_earth, np.subtract(self.ins.gyro_bias, ins.gyro_bias))
+        return self.filter.gnss_model(self.ins, GnssFix(
+            ins.t_ns, ins.lat, ins.lon, ins.height, ins.v, (1.0,) * 3, (1.0,) * 3),
+            tuple(rate.tolist()), LEVER)
+
+
+def errors(one, other):
+    """Return the errors of one strapdown relative to another, by the name of the state."""
+    a, b = one.solution, other.solution
+    found = {'position_enu': position_error(*a[:3], *b[:3]),
+             'velocity_enu': np.subtract(a[3], b[3]),
+             'attitude_enu': quaternion.logarithm(
+                 quaternion.multiply(a[4], quaternion.conjugate(b[4]))),
+             'gyro_bias_xyz': np.subtract(one.gyro_bias, other.gyro_bias)}
+    bias = np.subtract(one.accelerometer_bias, other.accelerometer_bias)
+    found['accelerometer_bias_xyz'], found['acceleration_xyz'] = bias, -bias
+    return {name[:-3] + axis: value for name, values in found.items()
+            for axis, value in zip(name[-3:], values)}
+
+
+def size_of(state):
+    """Return the error of a state that is added."""
+    return SIZES.get(state.rpartition('_')[0], OWN_SIZE)
+
+
+def check_transition(cls, case):
+    """Hold each column of the transition matrix to central differences; return the worst."""
+    start = Flight(cls, case)
+    nominal = start.with_error(0, 0.0).fly()
+    phi, states, worst = nominal.filter.transition(nominal.ins), cls.states, 0.0
+    assert phi.shape == (len(states),) * 2
+    for k, size in enumerate(map(size_of, states)):
+        plus, minus = (start.with_error(k, s).fly() for s in (size, -size))
+        up, down = (errors(flight.ins, nominal.ins) for flight in (plus, minus))
+        for row, state in enumerate(states):
+            if state not in up:
+                continue
+            part = abs(phi[row, k] - (row == k)) * size
+            floor = FLOORS.get(state, FLOORS.get(state.rpartition('_')[0]))
+            bound = GRAIN * part + floor + cls.neglected * TIME_S * size
+            apart = abs(0.5 * (up[state] - down[state]) - phi[row, k] * size)
+            assert apart <= bound, (state, states[k], apart, part)
+            worst = max(worst, apart / bound)
+        # The rows of the filter's own states, as far as they act on the innovation.
+        _, h = nominal.velocity()
+        expected, of_now = h[:, k], 0.0
+        if cls.observed_at == 'end':
+            expected, of_now = (h @ phi)[:, k], h[:, k]
+        grain = GRAIN if cls.observed_at == 'end' else STEP_GRAIN
+        apart = np.abs(0.5 * (plus.velocity()[0] - minus.velocity()[0]) - expected * size)
+        bound = (grain * np.abs(expected - of_now) * size + MEAN_FLOOR
+                 + cls.neglected * TIME_S * size)
+        assert (apart <= bound).all(), ('innovation', states[k], apart, expected * size)
         worst = max(worst, (apart / bound).max())
-    print(f'largest deviation, in parts of its bound: {worst:.3f}')
+    return worst
 
 
-def test_meter_matrix_is_the_derivative_of_its_prediction():
-    """H of mean, mu, kx, kz against central differences; bound: rounding over the step."""
-    mean, mu, kx, kz, t = np.array((201.0, -7.0)), 0.006, 0.01, -0.03, 10.0
-    _, h = eskf_model.meter_matrix(mean, mu, kx, kz, t)
-
-    def read(x):
-        return eskf_model.meter_matrix(mean + x[:2] / t, mu + x[2], kx + x[3], kz + x[4], t)[0]
-
-    columns = [15, 16, eskf_model.MU, eskf_model.KX, eskf_model.KZ]
-    for k, column in enumerate(columns):
-        x = np.zeros(5)
-        x[k] = 1e-4
-        measured = (read(x) - read(-x)) / 2e-4
-        np.testing.assert_allclose(measured, h[:, column], rtol=1e-7, atol=1e-6)
-    assert np.count_nonzero(h.any(axis=0)) == len(columns)
+def check_present(cls, case, model):
+    """Hold a matrix of the present errors to central differences; return it."""
+    nominal = Flight(cls, case).fly()
+    z, h = model(nominal, nominal)
+    assert h.shape == (len(z), len(cls.states))
+    for k, size in enumerate(map(size_of, cls.states)):
+        up, down = (model(nominal.with_error(k, s), nominal)[0] for s in (size, -size))
+        # Rounding of 6e6 m over the change, and the curvature of the Earth over 10 m.
+        np.testing.assert_allclose((up - down) / (2.0 * size), h[:, k], rtol=1e-6,
+                                   atol=1e-9 + 1e-11 / size, err_msg=cls.states[k])
+    return h
 
 
-def test_gnss_matrix_is_the_derivative_of_the_antenna():
-    """H of the antenna's position and velocity against differences of attitude and rate."""
-    q_nb = quaternion.exponential((0.1, -0.2, 0.7))
-    lever, omega = np.array((2.0, -1.0, 0.5)), np.array((0.1, -0.2, 0.3))
-    h = eskf_model.gnss_matrix(matrix.matrix(q_nb), lever, omega)
+def velocity_model(flight, nominal):
+    """Return innovation and matrix of the velocity meter."""
+    return flight.velocity()
 
-    def antenna(phi, bias):
-        q = quaternion.multiply(quaternion.exponential(tuple(phi)), q_nb)
-        # a gyro bias estimated too large makes the rate too small
-        rate = omega - bias
-        return np.concatenate([quaternion.rotate(q, tuple(lever)),
-                               quaternion.rotate(q, tuple(np.cross(rate, lever)))])
 
-    for k in range(3):
-        x = np.zeros(3)
-        x[k] = 1e-5
-        for columns, one, other in ((eskf_model.PHI, antenna(x, 0 * x), antenna(-x, 0 * x)),
-                                    (eskf_model.BG, antenna(0 * x, x), antenna(0 * x, -x))):
-            np.testing.assert_allclose((one - other) / 2e-5, h[:, columns][:, k], atol=1e-9)
-    np.testing.assert_array_equal(h[0:3, eskf_model.P], np.eye(3))
-    np.testing.assert_array_equal(h[3:6, eskf_model.V], np.eye(3))
+@pytest.mark.parametrize('case', CASES.values(), ids=CASES)
+@pytest.mark.parametrize('name', LINEAR)
+def test_transition_is_the_derivative_of_the_strapdown(name, case):
+    """Over ten samples; a wrong sign would be twice its part of the entry, see GRAIN."""
+    worst = check_transition(filter_class(name), case)
+    print(f'{name}: largest deviation, in parts of its bound: {worst:.3f}')
+
+
+@pytest.mark.parametrize('case', CASES.values(), ids=CASES)
+@pytest.mark.parametrize('name', [n for n in LINEAR if filter_class(n).observed_at == 'end'])
+def test_velocity_matrix_is_the_derivative_of_the_innovation(name, case):
+    """By present errors; that of errors at the start of the window is checked with the above."""
+    check_present(filter_class(name), case, velocity_model)
+
+
+@pytest.mark.parametrize('case', CASES.values(), ids=CASES)
+@pytest.mark.parametrize('name', [n for n in LINEAR if FILTERS[n].takes_gnss])
+def test_gnss_matrix_is_the_derivative_of_the_innovation(name, case):
+    """Position and velocity of the antenna, with its lever arm."""
+    check_present(filter_class(name), case, Flight.gnss)
+
+
+def test_every_filter_with_a_covariance_is_checked():
+    """A filter that reports standard deviations names its states."""
+    weighing = [name for name in FILTERS
+                if filter_class(name).sigmas is not AidingFilter.sigmas]
+    assert weighing == LINEAR and {'window_kf', 'eskf'} <= set(LINEAR)
+
+
+def test_the_eskf_observes_what_it_should():
+    """The velocity meter by five states, GNSS by position, velocity, attitude and gyro bias."""
+    case = CASES['climbing turn']
+    for model, observed in (
+            (velocity_model, ('eta_x', 'eta_y', 'mounting', 'scale_x', 'scale_z')),
+            (Flight.gnss, [s for s in eskf_model.STATES if s.startswith(
+                ('position', 'velocity', 'attitude', 'gyro_bias'))])):
+        h = check_present(ErrorStateFilter, case, model)
+        assert [s for s, column in zip(eskf_model.STATES, h.T) if column.any()] == list(observed)
+
+
+class WrongTransition(ErrorStateFilter):
+    """The sign of one coupling, attitude to velocity, is wrong."""
+
+    def transition(self, ins):
+        """Return a wrong matrix."""
+        phi = super().transition(ins)
+        phi[eskf_model.V, eskf_model.PHI] *= -1.0
+        return phi
+
+
+class WrongMean(ErrorStateFilter):
+    """The sign of the effect of a velocity error on the mean velocity is wrong."""
+
+    def transition(self, ins):
+        """Return a wrong matrix."""
+        phi = super().transition(ins)
+        phi[eskf_model.ETA, eskf_model.V] *= -1.0
+        return phi
+
+
+class WrongMeter(ErrorStateFilter):
+    """The mounting error has the wrong sign."""
+
+    def velocity_model(self, ins, fix):
+        """Return a wrong matrix."""
+        z, h = super().velocity_model(ins, fix)
+        h[:, eskf_model.MU] *= -1.0
+        return z, h
+
+
+class WrongAntenna(ErrorStateFilter):
+    """The lever arm is left out of the matrix."""
+
+    def gnss_model(self, ins, fix, rate, lever):
+        """Return a wrong matrix."""
+        z, h = super().gnss_model(ins, fix, rate, lever)
+        h[0:3, eskf_model.PHI] = 0.0
+        return z, h
+
+
+@pytest.mark.parametrize('cls, check, more', [
+    (WrongTransition, check_transition, ()), (WrongMean, check_transition, ()),
+    (WrongMeter, check_present, (velocity_model,)), (WrongAntenna, check_present, (Flight.gnss,))])
+def test_a_wrong_matrix_is_found(cls, check, more):
+    """Each check fails for one wrong entry."""
+    with pytest.raises(AssertionError):
+        check(cls, CASES['climbing turn'], *more)

@@ -64,7 +64,7 @@ def test_late_fixes_give_the_solution_of_punctual_ones_to_the_bit(name, seed):
     taken = fly(punctual, fixes)
     delays = np.random.default_rng(seed).integers(0, 4 * 10**9, len(fixes)).tolist()
     fly(delayed, late(fixes, delays))
-    assert sum(t.result.taken for t in taken) > (len(fixes) // 2 if name != 'paper' else -1)
+    assert sum(t.outcome.taken for t in taken) > (len(fixes) // 2 if name != 'paper' else -1)
     assert delayed.solution == punctual.solution
     assert delayed.filter.estimates == punctual.filter.estimates
     if name in ('eskf', 'window_kf'):
@@ -76,8 +76,8 @@ def test_an_innovation_is_that_of_the_instant_of_the_fix():
     one = METER_FIXES[7]
     punctual = fly(navigator(), [(METER, one)])
     delayed = fly(navigator(), late([(METER, one)], [2_345_000_000]))
-    assert delayed[0].result == punctual[0].result
-    assert punctual[0].result.nis > 0.0
+    assert delayed[0].outcome == punctual[0].outcome
+    assert punctual[0].outcome.nis > 0.0
 
 
 def test_a_fix_older_than_the_buffer_is_not_taken():
@@ -85,8 +85,8 @@ def test_a_fix_older_than_the_buffer_is_not_taken():
     nav, free = navigator(buffer_s=2.0), navigator(buffer_s=2.0)
     taken = fly(nav, late(FIXES[:1], [5 * 10**9]))
     fly(free, [])
-    assert not taken[0].result.taken
-    assert 'is 5.000 s old; expected at most buffer_s, 2 s' in taken[0].result.reason
+    assert not taken[0].outcome.taken
+    assert 'is 5.000 s old; expected at most buffer_s, 2 s' in taken[0].outcome.reason
     assert nav.solution == free.solution
 
 
@@ -95,8 +95,8 @@ def test_a_fix_that_comes_twice_is_taken_once():
     nav, once = navigator(), navigator()
     taken = fly(nav, [FIXES[3], FIXES[3]])
     fly(once, [FIXES[3]])
-    assert [t.result.taken for t in taken] == [True, False]
-    assert 'has come before' in taken[1].result.reason
+    assert [t.outcome.taken for t in taken] == [True, False]
+    assert 'has come before' in taken[1].outcome.reason
     assert nav.solution == once.solution
 
 
@@ -104,8 +104,8 @@ def test_a_window_that_the_solution_does_not_cover_is_not_taken():
     """The solution begins inside the first window."""
     nav = navigator()
     taken = fly(nav, [FIXES[0], FIXES[1]], SAMPLES[10:])
-    assert [t.result.taken for t in taken] == [False, True]
-    assert taken[0].result.reason == 'the solution does not cover its window'
+    assert [t.outcome.taken for t in taken] == [False, True]
+    assert taken[0].outcome.reason == 'the solution does not cover its window'
 
 
 METER_FIX, GNSS_FIX = METER_FIXES[3], gnss_fixes()[2]
@@ -162,8 +162,8 @@ def test_an_invalid_fix_says_why():
     invalid = replace(METER_FIX, velocity=(NAN, NAN), sigma=(NAN, NAN), status='calm water')
     outage = no_gnss_fix(2 * 10**9, 'outage', 2 * 10**9)
     taken = fly(navigator(), [(METER, invalid), (GNSS, outage)])
-    assert [t.result.reason for t in taken] == ['the fix is none: outage',
-                                                'the fix is none: calm water']
+    assert [t.outcome.reason for t in taken] == ['the fix is none: outage',
+                                                 'the fix is none: calm water']
 
 
 def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
@@ -174,10 +174,10 @@ def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
     nav, without = navigator(), navigator()
     taken = fly(nav, [(GNSS, f) for f in jumped])
     fly(without, [(GNSS, f) for k, f in enumerate(fixes) if not 5 <= k <= 8])
-    refused = [t.t_ns // 10**9 for t in taken if not t.result.taken]
-    print(f'NIS of the jump {taken[6].result.nis:.3g}')
+    refused = [t.t_ns // 10**9 for t in taken if not t.outcome.taken]
+    print(f'NIS of the jump {taken[6].outcome.nis:.3g}')
     assert refused == [5, 6, 7, 8]
-    assert taken[6].result.reason == 'its innovation is beyond the gate'
+    assert taken[6].outcome.reason == 'its innovation is beyond the gate'
     # the same but for where the steps of the covariance end
     np.testing.assert_allclose(nav.solution[3], without.solution[3], atol=1e-6)
     off = math.hypot(nav.solution[0] - without.solution[0], nav.solution[1] - without.solution[1])

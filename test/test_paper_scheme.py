@@ -28,7 +28,7 @@ def fly(motion, filter_name, windows, gain=0.4, bias=(0.0, 0.0), offset=(0.0, 0.
         navigator.take(METER, fix)
     for sample in samples:
         for taken in navigator.step(*sample):
-            innovations.append(taken.result)
+            innovations.append(taken.outcome)
             left.append(np.subtract(bias, navigator._ins.accelerometer_bias[:2]))
     return innovations, np.array(left)
 

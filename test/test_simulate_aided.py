@@ -52,7 +52,7 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
         assert arrays['gnss_status'].tolist() == ['valid'] * 60 + ['outage'] * 31
         meter = arrays['judged_source'] == METER
         assert np.array_equal(arrays['judged_nis'][meter], [
-            t.result.nis for t in solution.taken if t.source == METER])
+            t.outcome.nis for t in solution.taken if t.source == METER])
         assert np.isnan(arrays['judged_nis'][~meter & ~arrays['judged_taken']]).all()
     told = json.loads((folder / 'summary.json').read_text())
     assert told[0]['name'] == 'mean drift east'
@@ -96,8 +96,8 @@ def test_the_rows_are_the_errors(run, rows, capsys):
         np.abs(errors.attitude) <= 3.0 * sigma)
     for source, freedom in ((METER, 2), (GNSS, 4)):
         row = rows[f'aided NIS of {source}']
-        nis = [t.result.nis for t in solution.taken
-               if t.source == source and t.result.nis is not None]
+        nis = [t.outcome.nis for t in solution.taken
+               if t.source == source and t.outcome.nis is not None]
         low, high = chi2.interval(0.95, freedom * len(nis))
         assert (row.low * len(nis), row.high * len(nis)) == pytest.approx((low, high), rel=1e-9)
         assert row.measured == pytest.approx(np.mean(nis), rel=1e-12)

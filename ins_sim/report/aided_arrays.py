@@ -30,9 +30,9 @@ def arrays(flown):
     found.update({
         'judged_source': np.array([t.source for t in judged], dtype=str),
         'judged_t_ns': np.array([t.t_ns for t in judged], dtype=np.int64),
-        'judged_nis': np.array([np.nan if t.result.nis is None else t.result.nis
+        'judged_nis': np.array([np.nan if t.outcome.nis is None else t.outcome.nis
                                 for t in judged]),
-        'judged_freedom': np.array([t.result.freedom for t in judged], dtype=np.int64),
-        'judged_taken': np.array([t.result.taken for t in judged], dtype=bool),
-        'judged_reason': np.array([t.result.reason for t in judged], dtype=str)})
+        'judged_freedom': np.array([t.outcome.freedom for t in judged], dtype=np.int64),
+        'judged_taken': np.array([t.outcome.taken for t in judged], dtype=bool),
+        'judged_reason': np.array([t.outcome.reason for t in judged], dtype=str)})
     return found

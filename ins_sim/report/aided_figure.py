@@ -40,7 +40,7 @@ def save(path, title, flown, sources, gate_probability):
         return (np.asarray(t_ns, dtype=np.int64) - start_ns) * 1e-9 / per
 
     errors = flown.errors[::max(1, len(flown.errors) // MOST_POINTS)]
-    weighed = any(t.result.nis is not None for t in flown.taken)
+    weighed = any(t.outcome.nis is not None for t in flown.taken)
     rows = len(PANELS) + weighed
     figure = Figure(figsize=(10, 2.6 * rows), layout='constrained')
     panels = figure.subplots(rows, 1, sharex=True)
@@ -90,13 +90,13 @@ def _show_nis(axes, taken, sources, gate_probability, time):
     """Plot the NIS of each fix, the running mean of those taken, and where the gate is."""
     for source in sources:
         colour, name = SOURCES[source]
-        fixes = [t for t in taken if t.source == source and t.result.nis is not None]
+        fixes = [t for t in taken if t.source == source and t.outcome.nis is not None]
         if not fixes:
             continue
-        freedom = fixes[0].result.freedom
+        freedom = fixes[0].outcome.freedom
         t = time([fix.t_ns for fix in fixes])
-        nis = np.maximum([fix.result.nis / freedom for fix in fixes], 1e-3)
-        good = np.array([fix.result.taken for fix in fixes])
+        nis = np.maximum([fix.outcome.nis / freedom for fix in fixes], 1e-3)
+        good = np.array([fix.outcome.taken for fix in fixes])
         axes.plot(t[good], nis[good], '.', ms=3, alpha=0.5, color=colour, label=name)
         if not good.all():
             axes.plot(t[~good], nis[~good], 'x', ms=6, color='tab:red', label=f'{name}, refused')

@@ -98,8 +98,9 @@ def save_figure(path, title, cases, flown):
     for case, flights in zip(cases, flown):
         count = seen[case.filter] = seen.get(case.filter, -1) + 1
         rms = np.sqrt(np.mean([f.horizontal ** 2 for f in flights], axis=0))
-        top.semilogy(flights[0].t_s / 60.0, np.maximum(rms, 1e-2), color=COLOURS[case.filter],
-                     ls=styles[count % len(styles)], label=f'{case.filter}, N {case.cycles}')
+        top.semilogy(flights[0].t_s / 60.0, np.maximum(rms, 1e-2),
+                     color=COLOURS.get(case.filter, 'black'), ls=styles[count % len(styles)],
+                     label=f'{case.filter}, N {case.cycles}')
     shown = max(range(len(cases)), key=lambda k: (cases[k].filter == 'eskf',
                                                   cases[k].filter == 'window_kf', -k))
     for flight in flown[shown]:

@@ -1,13 +1,27 @@
 """Settings of the node aided_navigator."""
 
+from collections import namedtuple
+
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming, Window
 from .node import Time, Topics
 from .place import Datum, Earth
 from .route import FlownRoute
 
-FILTERS = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
-TAKES_GNSS = ('eskf',)
+# A filter: where its class is ('module:class'), and the instruments whose fixes it processes.
+FilterEntry = namedtuple('FilterEntry', 'location takes_velocity takes_gnss',
+                         defaults=(True, False))
+_FOLDER = 'ins_sim.core.aiding.filters'
+# The one table of the aiding filters. Classes are named by text and imported when an
+# AidedNavigator is made, because settings need nothing but Python.
+FILTERS = {
+    'free': FilterEntry(f'{_FOLDER}.base:NoCorrection', takes_velocity=False),
+    'conventional': FilterEntry(f'{_FOLDER}.fixed_gain:ConventionalFilter'),
+    'paper': FilterEntry(f'{_FOLDER}.fixed_gain:PaperFilter'),
+    'paper_corrected': FilterEntry(f'{_FOLDER}.fixed_gain:PaperCorrectedFilter'),
+    'window_kf': FilterEntry(f'{_FOLDER}.window_kalman:WindowFilter'),
+    'eskf': FilterEntry(f'{_FOLDER}.eskf:ErrorStateFilter', takes_gnss=True),
+}
 
 
 @settings_class
@@ -112,9 +126,10 @@ class AidedNavigatorSettings(SettingsGroup):
 
     def check(self):
         """Refuse a filter, a gain and latencies that do not go together."""
-        if self.gnss_model.use and self.filter not in TAKES_GNSS:
+        takes_gnss = [name for name, entry in FILTERS.items() if entry.takes_gnss]
+        if self.gnss_model.use and self.filter not in takes_gnss:
             raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected filter '
-                             f'{", ".join(TAKES_GNSS)}, which alone takes GNSS')
+                             f'{", ".join(takes_gnss)}, which alone takes GNSS')
         if self.filter == 'paper' and self.gain > 1.0:
             raise ValueError(f'gain is {self.gain:g} with filter paper; expected at most 1, '
                              'beyond which it is unstable')

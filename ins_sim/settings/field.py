@@ -4,9 +4,13 @@ from dataclasses import dataclass, field, FrozenInstanceError
 
 
 def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
-    """Return a dataclass field carrying its unit, closed bounds, choices, array size and doc."""
+    """
+    Return a dataclass field carrying its unit, closed bounds, choices, array size and doc.
+
+    choices is kept, not copied, so that entries added to a table later are accepted as well.
+    """
     return field(default=default, metadata={
-        'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': tuple(choices),
+        'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': choices,
         'size': size})
 
 

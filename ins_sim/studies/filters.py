@@ -10,6 +10,7 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
 from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.simulation.aided_run import aid, with_truth
+from ins_sim.settings.aided_navigator import FILTERS
 
 STEP_S = 5.0
 
@@ -87,10 +88,10 @@ def _fly(settings, case, blocks):
                                 output_every=every,
                                 gnss_model=replace(navigator.gnss_model,
                                                    use=navigator.gnss_model.use
-                                                   and case.filter == 'eskf')))
+                                                   and FILTERS[case.filter].takes_gnss)))
     flown = aid(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = flown.errors
-    weighed = [t.result for t in flown.taken if t.source == METER]
+    weighed = [t.outcome for t in flown.taken if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
     return FilterFlight(
         (errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,

@@ -43,10 +43,10 @@ class FixSchedule:
     def missing(self, t_ns):
         """Return the sources whose fix is due by the sample t_ns and has not come."""
         late = []
-        for source, (step_ns, lead_ns, latency_ms) in self._periods.items():
+        for source, (step_ns, lead_ns, latency_ns) in self._periods.items():
             # a window is reported that was seen from its start
             first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
-            due_ns = (t_ns - latency_ms) // step_ns * step_ns
+            due_ns = (t_ns - latency_ns) // step_ns * step_ns
             if due_ns >= first_ns and source not in self.silent and (
                     self._runs[source].lead or self._newest.get(source, -math.inf) < due_ns):
                 late.append(source)

@@ -1,9 +1,10 @@
 """
 The mounting error of the velocity meter and the azimuth error of the INS, while GNSS works.
 
-Both by hand, beside the filter's own estimates: the azimuth from what a turn does to the velocity
-of a free INS, the sum of both from the lateral velocity (equation 27).  Senses are made one (spec
-section 3): mu > 0 for antennas turned left, dpsi > 0 for a computed heading too far clockwise.
+Two estimates that are independent of the filter's own: the azimuth error from the velocity error
+of a free INS in a turn, and the sum of both from the lateral velocity (Ivanov 2015, equation 27;
+docs/theory.md, "Aided navigation"). Signs: mu > 0 for antennas turned left, dpsi > 0 for a
+computed heading too far clockwise.
 """
 
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import numpy as np
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.timeseries.histories import NavStates
 
-# no quadratic follows the errors of a free INS for longer
+# Longest span whose velocity errors a quadratic in time describes.
 SPAN_NS = 600_000_000_000
 
 
@@ -50,10 +51,21 @@ class MountingCalibration:
 
 def calibrate(states, gnss, meter):
     """
-    Return the Mounting of NavStates of a free INS, a list of GnssFix and one of VelocityFix.
+    Return the MountingCalibration of a flight with a turn.
 
-    The INS at every cycle; invalid fixes are left out, and so are windows without GNSS at both
-    ends.  Raises ValueError where there are too few fixes, or no turn.
+    Invalid fixes are left out, and so are windows during which GNSS has a gap.
+
+    Parameters
+    ----------
+    states : NavStates
+        Solution of a free INS at every navigation cycle.
+    gnss : list of GnssFix
+    meter : list of VelocityFix
+
+    Raises
+    ------
+    ValueError
+        If there are too few fixes, or if the velocity does not turn.
     """
     fixes = _about_the_turn([fix for fix in gnss if fix.valid
                              and states.t_ns[0] <= fix.t_ns <= states.t_ns[-1]])
@@ -118,10 +130,11 @@ def mounting_sum(read, computed):
 
 def least_squares(read, computed):
     """
-    Return mu + dpsi (rad), its sigma, k_z and its sigma: the form that survives wind.
+    Return mu + dpsi (rad), its sigma, k_z and its sigma, unaffected by cross-wind.
 
-    Least squares of V_z - V_z1N on [V_x, V_z1N] (spec section 3); as in ``mounting_sum``.  The
-    instrument turns first and scales then, so that the first coefficient is (1 + k_z)(mu + dpsi).
+    Least squares of V_z - V_z1N on [V_x, V_z1N] (docs/theory.md, "Aided navigation"); parameters
+    as in ``mounting_sum``. The fix is first rotated by the mounting error and then scaled, so
+    that the first coefficient is (1 + k_z)(mu + dpsi).
     """
     rows = np.stack([read[:, 0], computed[:, 1]], axis=1)
     x, sigma = _fit(rows, read[:, 1] - computed[:, 1])

@@ -1,13 +1,14 @@
 """
-The aided navigator: a strapdown, and a filter that takes fixes on time or late.
+The aided navigator: a strapdown, and a filter that processes fixes on time or late.
 
-A fix that comes late is taken where it belongs: the snapshot before it is restored, the fix
-taken, and the samples since then advanced again.
+A late fix is processed at its own instant: the navigator restores the snapshot before it, applies
+the fix, and advances again over the samples since then.
 """
 
 from bisect import insort
 from collections import deque, namedtuple
 from dataclasses import replace
+from importlib import import_module
 import math
 
 from ins_sim.core.attitude import quaternion
@@ -15,32 +16,45 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
+from ins_sim.settings.aided_navigator import FILTERS
 from .corrected_strapdown import CorrectedStrapdown
-from .filters.base import FreeFilter, NO_FIX, refused
-from .filters.eskf import ErrorStateFilter
-from .filters.fixed_gain import ConventionalFilter, PaperCorrectedFilter, PaperFilter
-from .filters.window_kalman import WindowFilter
+from .filters.base import INVALID_FIX, refused
 from .fix_checks import check_ahead, check_gnss, check_velocity
 
-KINDS = {'free': FreeFilter, 'conventional': ConventionalFilter, 'paper': PaperFilter,
-         'paper_corrected': PaperCorrectedFilter, 'window_kf': WindowFilter,
-         'eskf': ErrorStateFilter}
 SNAPSHOT_NS = 1_000_000_000
 METER, GNSS = 'velocity_meter', 'gnss'
 
-# A fix that was given, and what became of it: source, its instant ns, and FixOutcome.
-Taken = namedtuple('Taken', 'source t_ns result')
+# A fix that was processed: its source, its instant (ns of motion time) and the FixOutcome.
+JudgedFix = namedtuple('JudgedFix', 'source t_ns outcome')
 _Entry = namedtuple('_Entry', 'source fix')
 _Snapshot = namedtuple('_Snapshot', 't_ns ins filter window_start_ns')
+
+
+def filter_class(name):
+    """Return the class of a filter of the table `settings.aided_navigator.FILTERS`."""
+    module, _, attribute = FILTERS[name].location.partition(':')
+    return getattr(import_module(module), attribute)
 
 
 class AidedNavigator:
     """
     Strapdown and filter of one IMU.
 
-    settings: AidedNavigatorSettings; run: of the ensemble, which draws other initial errors.
-    Give it samples by ``step`` and fixes, in any order, by ``take``: a fix counts from its
-    arrival_ns on.  ``filter`` has sigmas() and estimates; ``sources``: the instruments that aid.
+    Samples are given by ``step``, fixes by ``take`` in any order; a fix is processed at the
+    sample that reaches its ``arrival_ns``.
+
+    Parameters
+    ----------
+    settings : AidedNavigatorSettings
+    run : int
+        Number of the realization in an ensemble; each draws other initial errors.
+
+    Attributes
+    ----------
+    filter : AidingFilter or None
+        None until the solution starts.
+    sources : tuple of str
+        The instruments that aid: METER, GNSS.
     """
 
     def __init__(self, settings, run=0):
@@ -49,8 +63,9 @@ class AidedNavigator:
         self._window_ns = settings.window.cycles * self._dt_ns
         self._buffer_ns = round(settings.buffer_s * 1e9)
         self._after_ns = round(settings.initial.after_s * 1e9)
-        used = {METER: settings.meter_model.use and settings.filter != 'free',
-                GNSS: settings.gnss_model.use}
+        self._filter_class, entry = filter_class(settings.filter), FILTERS[settings.filter]
+        used = {METER: settings.meter_model.use and entry.takes_velocity,
+                GNSS: settings.gnss_model.use and entry.takes_gnss}
         self.sources = tuple(source for source, use in used.items() if use)
         self._altimeter = settings.vertical.channel == 'altimeter'
         self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
@@ -70,7 +85,7 @@ class AidedNavigator:
 
     def step(self, t_ns, omega, f, truth):
         """
-        Take the reading that ends at t_ns; return a list of Taken, or None before the start.
+        Take the reading that ends at t_ns; return a list of JudgedFix, or None before the start.
 
         omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb), which starts the
         solution, with the initial errors, and then is the altimeter.
@@ -119,14 +134,14 @@ class AidedNavigator:
         p, s = initial.position_sigma_m, initial.velocity_sigma_m_s
         self._ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
                           velocity=(-s * draw[2], -s * draw[3], 0.0))
-        self.filter = KINDS[self._settings.filter](self._settings, self._ins)
+        self.filter = self._filter_class(self._settings, self._ins)
         self._window_start_ns = t_ns
 
     def _advance(self, t_ns, omega, f, vertical):
         ins, filter_ = self._ins, self.filter
         if ins.t_ns // self._window_ns != self._window_start_ns // self._window_ns:
-            # lazily, so that a fix of the window that ends now still finds it
-            filter_.close()
+            # Not at the end of the window, so that the fix of that instant still finds its sums.
+            filter_.begin_window(ins)
             self._window_start_ns = ins.t_ns
         before, last_ns = (ins.q_nb, ins.v_b, ins.v), ins.t_ns
         u = ins.advance(t_ns, omega, f, vertical)
@@ -152,20 +167,20 @@ class AidedNavigator:
                                              self._window_start_ns))
 
     def _due(self):
-        """Take the fixes that have arrived by now."""
-        taken = []
+        """Process the fixes that have arrived by now; return a list of JudgedFix."""
+        judged = []
         while self._pending and self._pending[0].fix.arrival_ns <= self._ins.t_ns:
             entry = self._pending.pop(0)
-            result = self._unfit(entry) or self._insert(entry)
+            outcome = self._unfit(entry) or self._insert(entry)
             self._check()
-            taken.append(Taken(entry.source, entry.fix.t_ns, result))
-        return taken
+            judged.append(JudgedFix(entry.source, entry.fix.t_ns, outcome))
+        return judged
 
     def _unfit(self, entry):
-        """Return the Result of a fix that is not to be taken, or None."""
+        """Return the FixOutcome of a fix that must not reach the filter, or None."""
         fix = entry.fix
         if not fix.valid:
-            return refused(f'{NO_FIX}: {fix.status}')
+            return refused(f'{INVALID_FIX}: {fix.status}')
         if entry.source not in self.sources:
             return refused(f'{entry.source} is not used')
         if fix.t_ns < self._snapshots[0].t_ns:
@@ -184,8 +199,8 @@ class AidedNavigator:
         return self._replay(entry)
 
     def _replay(self, wanted):
-        """Restore the snapshot before a fix, and advance again with it; return its Result."""
-        now_ns, result = self._ins.t_ns, None
+        """Restore the snapshot before a fix, and advance again; return the FixOutcome."""
+        now_ns, found = self._ins.t_ns, None
         while self._snapshots[-1].t_ns > wanted.fix.t_ns:
             self._snapshots.pop()
         start = self._snapshots[-1]
@@ -197,9 +212,9 @@ class AidedNavigator:
             while log and log[0].fix.t_ns <= self._ins.t_ns:
                 entry = log.popleft()
                 outcome = self._apply(entry)
-                result = outcome if entry is wanted else result
+                found = outcome if entry is wanted else found
             if not samples:
-                return result
+                return found
             self._advance(*samples.popleft())
             if self._ins.t_ns < now_ns:
                 self._snapshot()
@@ -207,16 +222,16 @@ class AidedNavigator:
     def _apply(self, entry):
         fix, ins = entry.fix, self._ins
         if entry.source == GNSS:
-            return self.filter.gnss(ins, fix, ins.rate_to_earth,
-                                    self._settings.gnss_model.lever_arm_m)
+            return self.filter.update_gnss(ins, fix, ins.rate_to_earth,
+                                           self._settings.gnss_model.lever_arm_m)
         if self._window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
             return refused('the solution does not cover its window')
         forward, left = fix.velocity
         known = self._settings.meter_model.bias_x_m_s / fix.cycles
-        return self.filter.velocity(ins, replace(fix, velocity=(forward - known, left)))
+        return self.filter.update_velocity(ins, replace(fix, velocity=(forward - known, left)))
 
     def _check(self):
-        """Raise StreamFault if the covariance is none any more."""
+        """Raise StreamFault if the covariance is no longer positive definite."""
         if not self.filter.healthy:
             raise StreamFault(f'the covariance of filter {self._settings.filter} at '
                               f'{seconds(self._ins.t_ns)} is not positive definite; expected '

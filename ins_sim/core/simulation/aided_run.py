@@ -20,7 +20,7 @@ class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    taken: a Taken for every fix, in the order of arrival; faults: a sentence for each fault;
+    taken: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
     velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them.
     """
 

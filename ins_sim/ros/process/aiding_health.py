@@ -1,6 +1,6 @@
 """What became of the fixes, for /diagnostics.  No ROS is imported."""
 
-from ins_sim.core.aiding.filters.base import NO_FIX
+from ins_sim.core.aiding.filters.base import INVALID_FIX
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG
 
@@ -26,9 +26,9 @@ class AidingHealth:
             self._last_ns[source] = fix.t_ns
 
     def judge(self, taken):
-        """Take what became of fixes, Taken, and empty the list."""
+        """Count processed fixes, a list of JudgedFix, and empty the list."""
         for source, t_ns, result in taken:
-            if result.reason.startswith(NO_FIX):
+            if result.reason.startswith(INVALID_FIX):
                 self._none[source] += 1
                 continue
             (self._taken if result.taken else self._refused)[source] += 1

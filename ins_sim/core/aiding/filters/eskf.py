@@ -1,4 +1,4 @@
-"""The error-state Kalman filter of the aided navigator; its model stands in model."""
+"""The error-state Kalman filter of the aided navigator; its linear model is `eskf_model`."""
 
 import numpy as np
 
@@ -8,24 +8,28 @@ from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
 from . import eskf_model as model
 from .. import kalman
-from .base import FixOutcome, FreeFilter
+from .base import AidingFilter, FixOutcome
 
-# what is known exactly still has a variance, so that the covariance stays positive definite: m,
-# m/s, rad, m/s^2, rad/s, m, rad and parts
+# Smallest standard deviations: quantities that are known exactly get them too, so that the
+# covariance stays positive definite (m, m/s, rad, m/s^2, rad/s, m; mounting rad, scale errors).
 FLOOR = np.array([1e-3] * 3 + [1e-5] * 3 + [1e-8] * 3 + [1e-9] * 3 + [1e-12] * 3 + [1e-9] * 2
                  + [1e-9, 1e-9, 1e-9])
 GATE = 'its innovation is beyond the gate'
-# how long a turn lasts, and what is shorter than one, s
+# Duration of a typical turn, and time constant over which the rate is smoothed, s.
 TURN_S, SMOOTHING_S = 50.0, 10.0
 
 
-class ErrorStateFilter(FreeFilter):
+class ErrorStateFilter(AidingFilter):
     """
-    Twenty states; every fix is taken off the strapdown at once, so that the state is zero.
+    Error-state Kalman filter with twenty states (docs/theory.md, "Aided navigation").
 
-    The residual of the velocity meter is the mean over its window of the velocity in b, which is
-    exact whatever the vehicle does in it: eta carries the errors of the window (spec section 4).
+    The strapdown is corrected after every fix, so that the estimated error state is zero between
+    fixes. The measurement of the velocity meter is compared with the mean over its window of the
+    velocity in b, which is exact for any motion within the window; the state eta holds the
+    effect of the errors on that mean.
     """
+
+    states = model.STATES
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
@@ -53,30 +57,34 @@ class ErrorStateFilter(FreeFilter):
         self._begin(ins)
 
     def _begin(self, ins):
-        """Begin a step of the covariance."""
+        """Begin an interval of the covariance propagation."""
         self._start = (ins.q_nb, ins.v)
         self._steps, self._time_s, self._force = 0, 0.0, (0.0, 0.0, 0.0)
 
-    def step(self, ins, before, u, dt):
-        """Sum the force; every covariance_every steps propagate the covariance."""
-        super().step(ins, before, u, dt)
+    def step(self, ins, before, delta_v, dt):
+        """Sum the force; every ``covariance_every`` samples propagate the covariance."""
+        super().step(ins, before, delta_v, dt)
         f = self._force
-        self._force = (f[0] + u[0], f[1] + u[1], f[2] + u[2])
+        self._force = (f[0] + delta_v[0], f[1] + delta_v[1], f[2] + delta_v[2])
         self._time_s += dt
         self._steps += 1
-        if self._steps >= self._settings.covariance_every:
+        if self._steps >= self.settings.covariance_every:
             self._propagate(ins)
 
-    def _propagate(self, ins):
-        if not self._steps:
-            return
+    def transition(self, ins):
+        """Return the transition matrix over the samples since the last propagation, (20, 20)."""
         q_start, v_start = self._start
         dt = self._time_s
         q_mid = middle(q_start, ins.q_nb)
         f_n = quaternion.rotate(q_mid, tuple(x / dt for x in self._force))
         v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
         c = matrix.matrix(q_mid)
-        phi = model.transition(model.dynamics(ins.lat, ins.height, v, c, f_n, self._spin), dt)
+        return model.transition(model.dynamics(ins.lat, ins.height, v, c, f_n, self._spin), dt)
+
+    def _propagate(self, ins):
+        if not self._steps:
+            return
+        phi, dt = self.transition(ins), self._time_s
         half = np.diag(0.5 * dt * (self._density + self._of_turns(ins, dt)))
         p = phi @ (self.covariance + half) @ phi.T + half
         if self._altimeter:
@@ -88,11 +96,12 @@ class ErrorStateFilter(FreeFilter):
 
     def _of_turns(self, ins, dt):
         """
-        Return the density of what scale factors and axes of the gyros add to the tilt, (20,).
+        Return the noise density that gyro scale factors and misalignment cause in turns, (20,).
 
-        They are constant, and no states: white noise that after TURN_S at a rate is as large.
-        The rate is smoothed, as a weave takes back what it adds.  The azimuth is left out, for
-        its sigma is large beside that, and a turn back takes it back.
+        These errors are constant, but are not states. They are replaced by white noise of the
+        tilt that has the same effect after TURN_S at the present rate. The rate is smoothed,
+        because the errors of a weave cancel. The azimuth gets no such noise: its standard
+        deviation is large in comparison, and the error of a turn cancels in the turn back.
         """
         density = np.zeros(model.SIZE)
         if self._gyro_scale:
@@ -103,19 +112,28 @@ class ErrorStateFilter(FreeFilter):
             density[model.TILT] = self._gyro_scale * TURN_S * sum(w * w for w in self._turning)
         return density
 
-    def velocity(self, ins, fix):
-        """Update with a fix whose window ends now; forget the window's eta."""
-        self._propagate(ins)
+    def velocity_model(self, ins, fix):
+        """Return the innovation of the velocity meter and its matrix."""
         read, h = model.meter_matrix(self.mean.value, *self.estimates, self.mean.time_s)
-        return self._update(ins, read - fix.velocity, h, np.diag(np.square(fix.sigma)))
+        return read - fix.velocity, h
 
-    def gnss(self, ins, fix, rate, lever):
-        """
-        Update with a GNSS fix of now or at most one step ago.
-
-        rate: of b relative to the Earth, in b, rad/s; lever: of the antenna in b, m.
-        """
+    def update_velocity(self, ins, fix):
+        """Update with a fix whose window ends now."""
         self._propagate(ins)
+        return self._update(ins, *self.velocity_model(ins, fix), np.square(fix.sigma))
+
+    def update_gnss(self, ins, fix, rate, lever):
+        """Update with a GNSS fix; with an altimeter its vertical components are not used."""
+        self._propagate(ins)
+        z, h = self.gnss_model(ins, fix, rate, lever)
+        variances = np.square((*fix.position_sigma, *fix.velocity_sigma))
+        if self._altimeter:
+            level = [0, 1, 3, 4]
+            z, h, variances = z[level], h[level], variances[level]
+        return self._update(ins, z, h, variances)
+
+    def gnss_model(self, ins, fix, rate, lever):
+        """Return the innovation of position and velocity of the antenna, and its matrix."""
         c = matrix.matrix(ins.q_nb)
         ago = (ins.t_ns - fix.t_ns) * 1e-9
         east, north, up = position_error(ins.lat, ins.lon, ins.height, fix.lat, fix.lon,
@@ -123,34 +141,30 @@ class ErrorStateFilter(FreeFilter):
         arm, speed = c @ lever, c @ np.cross(rate, lever)
         z = np.concatenate([(east, north, up) + arm - ago * np.array(ins.v),
                             np.array(ins.v) + speed - fix.v_n])
-        h = model.gnss_matrix(c, np.array(lever), np.array(rate))
-        r = np.square((*fix.position_sigma, *fix.velocity_sigma))
-        if self._altimeter:
-            level = [0, 1, 3, 4]
-            z, h, r = z[level], h[level], r[level]
-        return self._update(ins, z, h, np.diag(r))
+        return z, model.gnss_matrix(c, np.array(lever), np.array(rate))
 
-    def _update(self, ins, z, h, r):
+    def _update(self, ins, z, h, variances):
+        r = np.diag(variances)
         s, gain = kalman.innovation(self.covariance, h, r)
         nis = kalman.normalised_square(z, s)
         innovation = tuple(z.tolist())
-        if kalman.tail(nis, len(z)) < self._settings.gate_probability:
+        if kalman.tail(nis, len(z)) < self.settings.gate_probability:
             return FixOutcome(innovation, nis, len(z), False, GATE)
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
-        self._correct(ins, (gain @ z).tolist())
+        self.correct(ins, (gain @ z).tolist())
         return FixOutcome(innovation, nis, len(z))
 
-    def _correct(self, ins, x):
-        """Take the estimated errors off; what eta was is seen in the mean velocity no more."""
+    def correct(self, ins, x):
+        """Subtract the estimated errors; that of eta by shifting the mean velocity."""
         ins.correct(x[0:3], x[3:6], x[6:9])
         ins.add_biases(gyro=tuple(-b for b in x[12:15]), accelerometer=tuple(-b for b in x[9:12]))
         self.estimates = tuple(a - b for a, b in zip(self.estimates, x[17:20]))
         self.mean.shift(x[15], x[16])
         self._begin(ins)
 
-    def close(self):
-        """Begin a window: eta is zero, and independent of all."""
-        super().close()
+    def begin_window(self, ins):
+        """Clear the window: eta becomes zero, without correlation to other states."""
+        super().begin_window(ins)
         p = self.covariance.copy()
         p[model.ETA, :] = p[:, model.ETA] = 0.0
         p[15, 15] = p[16, 16] = FLOOR[15] ** 2
@@ -158,14 +172,14 @@ class ErrorStateFilter(FreeFilter):
 
     @property
     def healthy(self):
-        """Return whether the covariance is one."""
+        """Return whether the covariance is positive definite."""
         return kalman.is_covariance(self.covariance)
 
     def sigmas(self):
-        """Return the standard deviations of position, velocity and attitude, ENU."""
+        """Return the standard deviations of position, velocity and attitude, East, North, Up."""
         s = np.sqrt(np.diagonal(self.covariance)).tolist()
         return tuple(s[0:3]), tuple(s[3:6]), tuple(s[6:9])
 
     def estimate_sigmas(self):
-        """Return the standard deviations of mu, kx, kz."""
+        """Return the standard deviations of mounting and scale errors of the velocity meter."""
         return tuple(np.sqrt(np.diagonal(self.covariance)[17:20]).tolist())

@@ -11,6 +11,9 @@ SIZE = 20
 P, V, PHI, BA, BG = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)
 ETA, MU, KX, KZ = slice(15, 17), 17, 18, 19
 DOWN, TILT = (2, 5), slice(6, 8)
+STATES = (*(f'{name}_{axis}' for name in ('position', 'velocity', 'attitude') for axis in 'enu'),
+          *(f'{name}_{axis}' for name in ('accelerometer_bias', 'gyro_bias') for axis in 'xyz'),
+          'eta_x', 'eta_y', 'mounting', 'scale_x', 'scale_z')
 
 
 def dynamics(lat, height, v, c, f_n, spin):

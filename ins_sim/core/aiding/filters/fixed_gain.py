@@ -1,4 +1,4 @@
-"""Filters with a fixed gain: the conventional one, and those of Ivanov (2015)."""
+"""Filters with a fixed gain: the conventional one, and those after Ivanov (2015)."""
 
 import math
 
@@ -6,23 +6,33 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import middle
 from ins_sim.core.earth import ellipsoid
 from ..velocity_window import DoubleIntegral, Integrals
-from .base import FixOutcome, FreeFilter, refused, TURN_LIMIT
+from .base import AidingFilter, FixOutcome, refused
+
+# Ivanov (2015) takes the acceleration in body axes for the derivative of the velocity in body
+# axes. A window in which the neglected product rate x velocity is larger than this is refused,
+# m/s^2.
+TURN_LIMIT = 0.01
 
 
-class ConventionalFilter(FreeFilter):
-    """The mean taken for the velocity at the end of its window, with a fixed gain."""
+class ConventionalFilter(AidingFilter):
+    """
+    Velocity correction with a fixed gain, as if the fix were the velocity at the window's end.
 
-    def velocity(self, ins, fix):
-        """Take away a part of the velocity error that the fix shows."""
+    It is in fact the mean over the window, so that this filter errs whenever the velocity in body
+    axes changes (docs/theory.md, "Aided navigation").
+    """
+
+    def update_velocity(self, ins, fix):
+        """Remove the part ``gain`` of the velocity error that the fix shows."""
         z = ins.v_b[0] - fix.velocity[0], ins.v_b[1] - fix.velocity[1]
-        gain = self._settings.gain
+        gain = self.settings.gain
         e, n, _ = quaternion.rotate(ins.q_nb, (gain * z[0], gain * z[1], 0.0))
         ins.correct(velocity=(e, n, 0.0))
         return FixOutcome(z)
 
 
-class MatrixFilter(FreeFilter):
-    """A filter that needs the matrices of the window."""
+class MatrixFilter(AidingFilter):
+    """Base class of the filters that use the matrices A1, A2, B1, B2 of the window."""
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
@@ -30,36 +40,36 @@ class MatrixFilter(FreeFilter):
 
     def copy(self):
         """Return a snapshot."""
-        twin = super().copy()
-        twin.integrals = self.integrals.copy()
-        return twin
+        snapshot = super().copy()
+        snapshot.integrals = self.integrals.copy()
+        return snapshot
 
-    def step(self, ins, before, u, dt):
-        """Sum up the window."""
-        super().step(ins, before, u, dt)
+    def step(self, ins, before, delta_v, dt):
+        """Add one sample to the matrices of the window."""
+        super().step(ins, before, delta_v, dt)
         self.integrals.add(middle(before[0], ins.q_nb), dt)
 
-    def close(self):
-        """Begin a window."""
-        super().close()
+    def begin_window(self, ins):
+        """Clear the matrices."""
+        super().begin_window(ins)
         self.integrals.clear()
 
 
-class _ChainedFilter(FreeFilter):
-    """A filter that compares each window with the one before it."""
+class _ChainedFilter(AidingFilter):
+    """Base class of the filters that compare each window with the one before it."""
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
         self._last, self._fixed = None, False
 
     def _follow(self, value):
-        """Keep the value of this window and return that of the one before, or None."""
+        """Store the value of this window; return that of the previous window, or None."""
         last, self._last, self._fixed = self._last, value, True
         return last
 
-    def close(self):
-        """Begin a window; one without a fix breaks the chain."""
-        super().close()
+    def begin_window(self, ins):
+        """Begin a window; after a window without a fix there is no previous value."""
+        super().begin_window(ins)
         if not self._fixed:
             self._last = None
         self._fixed = False
@@ -70,22 +80,25 @@ FIRST = refused('the first window has none before it')
 
 class PaperFilter(_ChainedFilter):
     """
-    The scheme as printed, equations (13) to (20): for straight legs only.
+    The scheme of Ivanov (2015) as printed, equations (13) to (20); for straight legs only.
 
-    J = (2 / T^2) times the double integral of the acceleration in b over a window; innovation
-    (19): J_k + J_{k-1} - 2 (V_k - V_{k-1}) / T, V the means of the instrument; for constant
-    errors e of the acceleration it is e_k + e_{k-1}.  A turn is refused.
+    The innovation (19) is J_k + J_{k-1} - 2 (V_k - V_{k-1}) / T. J is 2 / T^2 times the double
+    integral of the acceleration in b over a window of length T, and V the mean velocity that the
+    velocity meter measures. With constant errors e of the acceleration the innovation is
+    e_k + e_{k-1}. Windows in which the vehicle turns are refused (docs/theory.md, "Aided
+    navigation").
     """
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
         self._all = self._turn = DoubleIntegral()
 
-    def step(self, ins, before, u, dt):
-        """Integrate the acceleration in b twice, and that part of it which is rate x velocity."""
-        super().step(ins, before, u, dt)
+    def step(self, ins, before, delta_v, dt):
+        """Integrate the acceleration in b twice, and separately its part rate x velocity."""
+        super().step(ins, before, delta_v, dt)
         q_start, b_start, v = before
-        # in a frame that does not turn about the vertical along a great circle
+        # Resolve the acceleration in a level frame that does not turn about the vertical while
+        # the vehicle follows a great circle.
         _, r_e = ellipsoid.radii(math.sin(ins.lat))
         spin = v[0] * math.tan(ins.lat) / (r_e + ins.height) * dt
         w = quaternion.rotate_back(middle(q_start, ins.q_nb), (
@@ -93,8 +106,8 @@ class PaperFilter(_ChainedFilter):
         turn = w[0] - ins.v_b[0] + b_start[0], w[1] - ins.v_b[1] + b_start[1]
         self._all, self._turn = self._all.after(w, dt), self._turn.after(turn, dt)
 
-    def velocity(self, ins, fix):
-        """Correct acceleration, velocity and coordinates (20), unless the windows hold a turn."""
+    def update_velocity(self, ins, fix):
+        """Correct acceleration, velocity and position by equation (20); refuse turns."""
         t = self.mean.time_s
         scale = 2.0 / (t * t)
         now = [(scale * self._all.twice[k], scale * self._turn.twice[k], fix.velocity[k])
@@ -109,36 +122,37 @@ class PaperFilter(_ChainedFilter):
                 f'filter paper refuses a window in which the body turns: it would take '
                 f'{turning:.3g} m/s^2 of it for an error; expected a straight leg without weave '
                 '(paper_corrected and eskf fly turns)'))
-        w = tuple(self._settings.gain * x for x in innovation)
+        w = tuple(self.settings.gain * x for x in innovation)
         ins.add_biases(accelerometer=(*w, 0.0))
         e, n, _ = quaternion.rotate(ins.q_nb, (*w, 0.0))
         half = 0.5 * t * t
         ins.correct(position=(half * e, half * n, 0.0), velocity=(t * e, t * n, 0.0))
         return FixOutcome(innovation)
 
-    def close(self):
-        """Begin a window."""
-        super().close()
+    def begin_window(self, ins):
+        """Clear the integrals."""
+        super().begin_window(ins)
         self._all = self._turn = DoubleIntegral()
 
 
 class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
     """
-    The paper's scheme with a residual that is exact under rotation (spec section 4).
+    The scheme of Ivanov (2015) with a residual that is exact while the vehicle turns.
 
-    nu = (z_k - z'_{k-1}) / T, dW = K nu in b, V -= A1 dW, position -= T/2 A1 dW, z'_k = z_k - B2
-    dW.  The acceleration stays corrected by the sum of dW.
+    nu = (z_k - z'_{k-1}) / T, dW = K nu in b, V -= A1 dW, position -= T/2 A1 dW,
+    z'_k = z_k - B2 dW, where z is the residual of the mean velocity (docs/theory.md, "Aided
+    navigation"). The acceleration stays corrected by the sum of all dW.
     """
 
-    def velocity(self, ins, fix):
+    def update_velocity(self, ins, fix):
         """Correct acceleration, velocity and position."""
-        z, t = self._residual(fix), self.mean.time_s
+        z, t = self.residual(fix), self.mean.time_s
         a1, _, _, b2 = self.integrals.matrices
         last = self._follow(z)
         if last is None:
             return FIRST
         nu = (z[0] - last[0]) / t, (z[1] - last[1]) / t
-        w = tuple(self._settings.gain * x for x in nu)
+        w = tuple(self.settings.gain * x for x in nu)
         e, n = (a1 @ w).tolist()
         half = 0.5 * t
         ins.correct(position=(half * e, half * n, 0.0), velocity=(e, n, 0.0))

@@ -1,4 +1,4 @@
-"""The paper's measurement in a Kalman filter of eight states, one step a window."""
+"""Kalman filter of eight states with one step per window of the velocity meter."""
 
 import math
 
@@ -9,22 +9,32 @@ from .. import kalman
 from .base import FixOutcome
 from .fixed_gain import MatrixFilter
 
-# what is known exactly still has a variance, so that the covariance stays positive definite
+# Smallest initial standard deviation: quantities that are known exactly get it too, so that the
+# covariance stays positive definite.
 FLOOR = 1e-6
-# the acceleration error in b drifts by Schuler's tilt and the gyros, here a random walk,
-# m/s^2/sqrt(s); the offsets of the instrument by what the turns of its axes leave, m/s/sqrt(s)
+# The acceleration error in b changes with the tilt (Schuler oscillation, gyro drift). It is
+# modelled as a random walk, m/s^2/sqrt(s). So is the offset of the velocity meter, which changes
+# when its axes turn, m/s/sqrt(s).
 ACCELERATION_WALK = 4e-5
 OFFSET_WALK = 1e-3
 
 
 class WindowFilter(MatrixFilter):
     """
-    States dp (E, N), dV (E, N), dW (forward, left), c (forward, left); spec section 4.
+    The measurement of Ivanov (2015), made exact while turning, in a Kalman filter.
 
-    Over a window: dp += T dV + A2 dW, dV += A1 dW; measured z = B1 dV + B2 dW + c, dV being that
-    at the start of the window.  The offset c also stands for the error of the azimuth times the
-    velocity.  What is estimated of dp, dV, dW is taken off the strapdown after each window.
+    States: position error dp and velocity error dV (East, North), acceleration error dW and
+    offset c of the velocity meter (forward, left). Over a window of length T,
+    dp += T dV + A2 dW and dV += A1 dW; measured is z = B1 dV + B2 dW + c with dV at the start of
+    the window (docs/theory.md, "Aided navigation"). The offset c also stands for the azimuth
+    error times the velocity. The strapdown is corrected after each window.
     """
+
+    states = ('position_e', 'position_n', 'velocity_e', 'velocity_n',
+              'acceleration_x', 'acceleration_y', 'offset_x', 'offset_y')
+    observed_at = 'start'
+    # Coriolis acceleration and rotation of the level axes, 2 x 7.3e-5 + V tan(lat) / R.
+    neglected = 3e-4
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
@@ -43,41 +53,57 @@ class WindowFilter(MatrixFilter):
         self._offset = (0.0, 0.0)
         self._propagated, self._turned = False, 0.0
 
-    def step(self, ins, before, u, dt):
-        """Sum up the window."""
-        super().step(ins, before, u, dt)
+    def step(self, ins, before, delta_v, dt):
+        """Add one sample to the matrices of the window, and the turn about the vertical."""
+        super().step(ins, before, delta_v, dt)
         self._turned += ins.rate[2] * dt
 
-    def velocity(self, ins, fix):
-        """Update at the start of the window, go to its end, and correct the strapdown there."""
+    def velocity_model(self, ins, fix):
+        """Return the innovation, and its derivative by the errors at the start of the window."""
+        _, _, b1, b2 = self.integrals.matrices
+        return (np.subtract(self.residual(fix), self._offset),
+                np.hstack([np.zeros((2, 2)), b1, b2, np.eye(2)]))
+
+    def update_velocity(self, ins, fix):
+        """Estimate the errors at the start of the window; correct the strapdown at its end."""
         t = self.mean.time_s
-        a1, a2, b1, b2 = self.integrals.matrices
-        z = np.subtract(self._residual(fix), self._offset)
-        h = np.hstack([np.zeros((2, 2)), b1, b2, np.eye(2)])
+        a1, a2, _, _ = self.integrals.matrices
+        z, h = self.velocity_model(ins, fix)
         r = np.diag(np.square(fix.sigma))
         s, gain = kalman.innovation(self.covariance, h, r)
         nis = kalman.normalised_square(z, s)
-        if kalman.tail(nis, 2) < self._settings.gate_probability:
-            self._propagate(t, a1, a2)
+        if kalman.tail(nis, 2) < self.settings.gate_probability:
+            self._propagate(ins)
             return FixOutcome(tuple(z.tolist()), nis, 2, False,
                               'its innovation is beyond the gate')
         x = gain @ z
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
-        self._propagate(t, a1, a2)
+        self._propagate(ins)
         dp = x[:2] + t * x[2:4] + a2 @ x[4:6]
         dv = x[2:4] + a1 @ x[4:6]
-        ins.correct(position=(*dp.tolist(), 0.0), velocity=(*dv.tolist(), 0.0))
-        ins.add_biases(accelerometer=(*x[4:6].tolist(), 0.0))
-        self._offset = tuple((self._offset + x[6:8]).tolist())
+        self.correct(ins, np.concatenate([dp, dv, x[4:8]]))
         return FixOutcome(tuple(z.tolist()), nis, 2)
 
-    def _propagate(self, t, a1, a2):
+    def correct(self, ins, x):
+        """Correct position, velocity, acceleration and the offset of the velocity meter."""
+        x = np.asarray(x)
+        ins.correct(position=(*x[0:2].tolist(), 0.0), velocity=(*x[2:4].tolist(), 0.0))
+        ins.add_biases(accelerometer=(*x[4:6].tolist(), 0.0))
+        self._offset = tuple((self._offset + x[6:8]).tolist())
+
+    def transition(self, ins):
+        """Return the transition matrix from the start of the window to the present."""
+        a1, a2, _, _ = self.integrals.matrices
         phi = np.eye(8)
-        phi[0:2, 2:4] = t * np.eye(2)
+        phi[0:2, 2:4] = self.mean.time_s * np.eye(2)
         phi[0:2, 4:6] = a2
         phi[2:4, 4:6] = a1
+        return phi
+
+    def _propagate(self, ins):
+        t, phi = self.mean.time_s, self.transition(ins)
         q = self._noise * t
-        # the part of dW that is tilt stands in n, and turns in b
+        # The part of dW that is due to tilt is constant in n and therefore turns in b.
         q[4:6] += (self._tilt * self._turned) ** 2
         self._turned = 0.0
         q[2:4] += self._walk * t
@@ -85,20 +111,19 @@ class WindowFilter(MatrixFilter):
         self.covariance = phi @ self.covariance @ phi.T + np.diag(q)
         self._propagated = True
 
-    def close(self):
-        """Begin a window; without a fix the covariance goes to its end all the same."""
+    def begin_window(self, ins):
+        """Propagate the covariance over the last window if there was no fix, and clear it."""
         if not self._propagated and self.mean.time_s:
-            a1, a2, _, _ = self.integrals.matrices
-            self._propagate(self.mean.time_s, a1, a2)
+            self._propagate(ins)
         self._propagated = False
-        super().close()
+        super().begin_window(ins)
 
     @property
     def healthy(self):
-        """Return whether the covariance is one."""
+        """Return whether the covariance is positive definite."""
         return kalman.is_covariance(self.covariance)
 
     def sigmas(self):
-        """Return the standard deviations of position, velocity and attitude (not estimated)."""
+        """Return standard deviations; 0 for what is not estimated (vertical, attitude)."""
         e, n, ve, vn = np.sqrt(np.diagonal(self.covariance)[:4]).tolist()
         return (e, n, 0.0), (ve, vn, 0.0), (0.0, 0.0, 0.0)
