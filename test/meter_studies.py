@@ -23,7 +23,7 @@ def meter_settings(values=None, **more):
 
 
 def body(speed, beta, alpha=0.0):
-    """Return the velocity in body axes FLU, spec/velocity_meter 1; beta, alpha rad."""
+    """Return the velocity in body axes FLU of sideslip beta and angle of attack alpha, rad."""
     return (speed * math.cos(beta) * math.cos(alpha), -speed * math.sin(beta),
             -speed * math.cos(beta) * math.sin(alpha))
 

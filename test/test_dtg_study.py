@@ -44,7 +44,7 @@ def show(cells, unit):
 
 
 def test_table_of_frequencies(tables):
-    """Within 0.012 deg of the two-decimal cells and 0.05 deg of the others (spec section 3)."""
+    """Within 0.012 deg of the two-decimal cells and 0.05 deg of the others."""
     show(tables['frequency'], 'rad/s')
     assert [c.value for c in tables['frequency']] == [0.5, 1.0, 2.0, 4.0, 8.0]
     for c in tables['frequency']:
@@ -61,7 +61,7 @@ def test_table_of_speeds(tables):
 
 
 def test_both_algorithms_agree(tables):
-    """1e-11 deg in every cell; and the cells are the figures of the specification."""
+    """1e-11 deg in every cell; and the cells are the reference figures."""
     for c in (*tables['frequency'], *tables['speed']):
         assert abs(c.poisson_deg - c.euler_vector_deg) <= 1e-11
         assert c.poisson_deg == pytest.approx(SPECIFIED[c.value], abs=6e-4)

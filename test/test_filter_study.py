@@ -1,4 +1,4 @@
-"""The tables of the study (spec section 4): twelve flights of each, and what the filters know."""
+"""The tables of the study (docs/validation.md): twelve flights each; filters and their sigma."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -79,8 +79,9 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published):
     """
     Error at the end, and mounting of 20 arcmin known to 2 when GNSS fails.
 
-    The filter's own sigma within 30 % of the published figure (the spec only names the grades
-    navigation and tactical: their figures are ours), and the errors of twelve flights as large.
+    The filter's own sigma within 30 % of the reference figure (of the grades only the names
+    navigation and tactical were given; their figures are ours), and the errors of twelve flights
+    as large.
     """
     rows, flights = flown(
         ('default', 'gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],

@@ -1,4 +1,4 @@
-"""The IMU on streamed truth against the IMU on the closed form (spec/delays section 8)."""
+"""The IMU on streamed truth against that on the closed form (docs/theory.md, "Streamed truth")."""
 
 import numpy as np
 import pytest

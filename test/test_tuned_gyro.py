@@ -1,4 +1,4 @@
-"""The dynamically tuned gyro against its equations, an ODE solver and the figures of the spec."""
+"""The dynamically tuned gyro against its equations, an ODE solver and reference figures."""
 
 from dataclasses import replace
 import math
@@ -73,7 +73,7 @@ def test_margin_tells_stability():
 
 
 def test_figures_of_paper():
-    """Time constant, growth of the nutation and RK4 window of the spec, to its digits."""
+    """Time constant, growth of the nutation and RK4 window of the reference, to its digits."""
     found = tuned_gyro_report(PAPER)
     print('\n' + '\n'.join(found.lines()))
     assert found.time_constant_s == pytest.approx(0.133652, abs=5e-7)
@@ -89,7 +89,7 @@ def test_figures_of_paper():
 
 
 def test_figures_of_tactical():
-    """-3 dB, peak and gain at 10 Hz of the spec, to its digits."""
+    """-3 dB, peak and gain at 10 Hz of the reference, to its digits."""
     found = tuned_gyro_report(TACTICAL)
     gain = abs(state_space(TACTICAL).axis_responses(20 * math.pi)[0])
     print('\n' + '\n'.join([*found.lines(), f'|G(10 Hz)| = {gain:.6f}']))

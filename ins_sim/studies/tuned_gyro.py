@@ -1,10 +1,11 @@
 """
-The study of Sapegin, Romanov, Bugaiov 2016: what the lag of two tuned gyros costs in roll.
+The study of Sapegin, Romanov, Bugaiov (2016): error of the roll due to the lag of tuned gyros.
 
-The base rocks in roll by 10 deg sin(w t).  Its rates go through two gyros, and the readings into
-Poisson's equation and into that of the Euler vector, all by RK4 with one step; half of the peak to
-peak of the roll so found over the last whole period is the amplitude (spec/dtg section 3).  What
-the paper's tables hold and print stands in config/dtg_study_*.yaml.
+The base rocks in roll by 10 deg sin(w t). Two gyros sense its rates, and their readings are
+integrated by Poisson's equation and by that of the Euler vector; gyros and equations use RK4 with
+the same step. The amplitude is half the peak-to-peak value of the computed roll over the last
+whole period (docs/theory.md, "Dynamically tuned gyro", The study). The conditions and printed
+values of the paper's tables are in config/dtg_study_frequency.yaml and dtg_study_speed.yaml.
 """
 
 from dataclasses import dataclass, replace

@@ -47,8 +47,8 @@ def bortz_rate(theta, w):
     """
     Return the derivative of the rotation vector theta, rad/s.
 
-    theta' = w + theta x w / 2 + bortz_factor theta x (theta x w) (Bortz 1971; spec/dtg equation
-    (3)).  Singular at |theta| = 2 pi.
+    theta' = w + theta x w / 2 + bortz_factor theta x (theta x w) (Bortz 1971; docs/theory.md,
+    "Dynamically tuned gyro", Orientation). Singular at |theta| = 2 pi.
     """
     r = quaternion.cross(theta, w)
     x, y, z = quaternion.cross(theta, r)

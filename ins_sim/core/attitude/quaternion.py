@@ -59,7 +59,7 @@ def logarithm(q):
     """
     Return the rotation vector (at most pi long) of a quaternion of any norm, floats, rad.
 
-    The atan2 form: the acos(trace) form loses half the digits (spec: 1.35 m in an hour at 1 kHz).
+    The atan2 form: the acos(trace) form loses half the digits (1.35 m in an hour at 1 kHz).
     """
     x, y, z, w = q
     if w < 0.0:

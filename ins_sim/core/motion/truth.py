@@ -14,8 +14,9 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
 
     t_ns (n,) int64; lat, lon, height: Series of order >= 2 (rad, rad, m); q_nb: tuple of four
     Series of order >= 1.  Velocity V_E = (R_E + h) cos(lat) lon', V_N = (R_N + h) lat', V_U = h';
-    specific force f = V' + (2 Omega + rho) x V - g (spec/delays section 3, equation 25; Groves
-    5.53); rate omega_ib_b = C_bn omega_in_n + 2 q* q'.
+    specific force f = V' + (2 Omega + rho) x V - g (Bogdanov and Fomichev 2018, equation 25;
+    Groves 5.53; docs/theory.md, "Truth from one pose"); rate
+    omega_ib_b = C_bn omega_in_n + 2 q* q'.
     """
     s, c = taylor.sincos(lat)
     meridian, transverse = ellipsoid.radii(s)

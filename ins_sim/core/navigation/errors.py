@@ -33,10 +33,11 @@ class ErrorMeter:
     """
     Attitude, velocity and position errors in East, North, Up, and the drift of the attitude.
 
-    The attitude error is inertial: the rotation from the true to the computed q_ib, resolved in
-    n (A_z' A_z^T of spec/delays section 5).  Its growth is accumulated as beta' = C_ni d(error_i),
-    which takes the turning of n in inertial space out; the drift is the least-squares slope of
-    beta over all samples since the start (running form: Welford 1962).
+    The attitude error is inertial: the rotation from the true to the computed q_ib, resolved in n
+    (A_z' A_z^T of Bogdanov and Fomichev 2018; docs/theory.md, "Errors"). Its growth is
+    accumulated as beta' = C_ni d(error_i), so that the rotation of n in inertial space does not
+    count. The drift is the least-squares slope of beta over all samples since the start (running
+    form: Welford 1962).
     """
 
     def __init__(self, spin):

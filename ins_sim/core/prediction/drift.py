@@ -31,9 +31,9 @@ def drift_density(truth, omega_in_n, tau):
     Return R (w x T w) and R T w (n, 3): integrand and boundary term of the attitude error.
 
     tau (3,): delays of the gyro channels x, y, z, s.  The reading errs by -T w', so that the
-    attitude error grows by nu = -R T w' = -d/dt(R T w) + R (w_nb x T w).  The rate w under T is
-    that of b in i; the one that turns R is that of b in n (spec/delays section 5 neglects the
-    difference, the rotation of the Earth).
+    attitude error grows by nu = -R T w' = -d/dt(R T w) + R (w_nb x T w). The rate w under T is
+    that of b in i; the one that turns R is that of b in n. Bogdanov and Fomichev (2018) neglect
+    the difference, the rotation of the Earth (docs/theory.md, "Prediction").
     """
     omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
     late = truth.omega_ib_b * np.asarray(tau)
@@ -141,8 +141,9 @@ def two_axis_resonances(motion, tau):
     """
     Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
 
-    (19) of the paper: psi' = 2 gamma', and the one it misses: psi' = -2 gamma' (spec/delays
-    section 4).  tau (3,): delays of x, y, z, s; the paper's tau1 is y, tau3 is z.
+    The resonance psi' = 2 gamma' is equation (19) of Bogdanov and Fomichev (2018), who do not
+    mention the other one, psi' = -2 gamma' (docs/theory.md, "Prediction"). tau (3,): delays of x,
+    y, z, s; tau1 of the paper is that of y, tau3 that of z.
     """
     if motion.kind != 'two_axis':
         return []

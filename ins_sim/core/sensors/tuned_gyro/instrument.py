@@ -1,11 +1,12 @@
 """
 The two tuned gyros of an IMU with their errors: body rates in, body rates and parity out.
 
-In the order of the signal: what disturbs the rotors (moments by specific force, the product of
-rates, hunting, vibration at twice the speed) and their pick-offs; the rotors; an injected fault;
-the read-out of each gyro, which has the errors of a triad along (spin axis, y, z) of its case, the
-spin axis being there for misalignment alone; the combination of the four channels (spec/dtg
-section 6; the model of IEEE Std 813).
+In the order of the signal: disturbances of the rotors (moments due to specific force, the product
+of rates, hunting, vibration at twice the speed) and of their pick-offs; the rotors; an injected
+fault; the read-out of each gyro, with the errors of a triad along (spin axis, y, z) of its case,
+where the spin axis only serves the misalignment; the combination of the four channels
+(docs/theory.md, "Dynamically tuned gyro", Errors of the rotors and of the read-out; model of IEEE
+Std 813).
 """
 
 from dataclasses import fields, replace

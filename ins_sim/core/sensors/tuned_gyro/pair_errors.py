@@ -1,7 +1,8 @@
 """
-What disturbs the rotors of a pair of tuned gyros and their pick-offs (spec/dtg section 6).
+Disturbances of the rotors of a pair of tuned gyros and of their pick-offs.
 
-A moment is given as the rate d it is mistaken for, complex in the case, y + j z:
+A moment is given as the equivalent rate d, complex in the case, y + j z (docs/theory.md,
+"Dynamically tuned gyro", Errors of the rotors):
 
     by specific force a    d_y = m_y a_y + q_y a_z + a_s (s_y + c_y a_y), d_z likewise
     product of rates       d = kappa (B - A)/(B Omega) u_s u

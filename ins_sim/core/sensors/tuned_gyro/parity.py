@@ -1,11 +1,12 @@
 """
-The test of four gyro channels against each other: is their parity what healthy ones may have?
+Parity test of the four gyro channels: detect that one of them has failed.
 
-The parity is one number of unit gain on every channel it sees, so that its spread is that of one
-channel.  Its mean over a window is held to five standard deviations of noise, biases, scale
-factors, axes and drifts by force, at the present rate and force, and to what the motion itself
-gives: the two gyros see an axis as y and as z, and differ by the cross-coupling of angular
-acceleration and by the product of rates (spec/dtg section 6).
+The parity has unit gain for every channel that it sees, so that its spread is that of one
+channel. The limit for its mean over a window is five standard deviations of noise, biases, scale
+factors, misalignment and drifts due to specific force, at the present rate and force, plus the
+effect of the motion itself: the two gyros see an axis as y and as z, and differ by the
+cross-coupling of angular acceleration and by the product of rates (docs/theory.md, "Dynamically
+tuned gyro", Parity test).
 """
 
 import math

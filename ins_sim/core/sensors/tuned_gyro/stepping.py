@@ -4,7 +4,8 @@ The dynamically tuned gyro, step by step.
 At constant speed the gyro is linear, so that a step, exact or RK4, is one set of matrices: the
 state and the mean reading of the interval are linear in the state at its start and in the rates
 at its start, middle and end.  Exact steps take the rate between these as the parabola
-(``quadratic``) or the straight line (``linear``) through them (spec/dtg section 5).
+(``quadratic``) or the straight line (``linear``) through them (docs/theory.md, "Dynamically tuned
+gyro").
 """
 
 from dataclasses import replace

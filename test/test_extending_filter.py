@@ -1,0 +1,38 @@
+"""The example of docs/extending_filter.md is a whole filter: it runs, and it corrects."""
+
+from pathlib import Path
+import re
+
+from ins_sim.settings.aided_navigator import FILTERS
+import pytest
+
+PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'extending_filter.md'
+
+
+@pytest.fixture
+def example(tmp_path, monkeypatch):
+    """Save and register the filter of the page as it says; return the code that flies it."""
+    code, register, fly = re.findall(r'```python\n(.*?)```', PAGE.read_text(encoding='utf-8'),
+                                     re.DOTALL)
+    assert len(code.splitlines()) <= 20
+    (tmp_path / 'mean_velocity.py').write_text(code, encoding='utf-8')
+    monkeypatch.syspath_prepend(tmp_path)
+    # Restores the table after the test.
+    monkeypatch.setitem(FILTERS, 'mean_velocity', None)
+    exec(compile(register, str(PAGE), 'exec'), {})
+    return fly
+
+
+def test_the_filter_of_the_page_corrects_the_solution(example):
+    """
+    Its error after 60 s is less than a third of that of the free solution.
+
+    The free one drifts for 60 s with the initial velocity error v = 2.3 m/s. Windows of 2 s with
+    gain 0.4 leave 2 / 0.4 = 5 s of it, a twelfth or 11 m; fixes with 0.6 m/s of noise add a
+    random walk of 7 m by axis (one standard deviation), hence a third.
+    """
+    names = {}
+    exec(compile(example, str(PAGE), 'exec'), names)
+    errors = names['errors']
+    print(f"free {errors['free']:.1f} m, mean_velocity {errors['mean_velocity']:.1f} m")
+    assert errors['mean_velocity'] < errors['free'] / 3.0
