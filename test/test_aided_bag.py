@@ -140,8 +140,8 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
             elif name == '/gnss/velocity':
                 push_fixes(GNSS, pairs.push_velocity(bytes(data)))
     assert [t for t, *_ in outputs] == solution.states.t_ns.tolist()
-    assert [(t.source, t.t_ns, t.outcome.taken) for t in stream.taken] == [
-        (t.source, t.t_ns, t.outcome.taken) for t in solution.taken]
+    assert [(t.source, t.t_ns, t.outcome.taken) for t in stream.judged] == [
+        (t.source, t.t_ns, t.outcome.taken) for t in solution.judged]
     position = np.array([errors[2] for _, _, errors, _ in outputs])
     off = np.abs(position - solution.errors.position).max()
     sigma = np.array([sigmas[0] for *_, sigmas in outputs])

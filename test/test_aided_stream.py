@@ -119,9 +119,9 @@ def test_the_stream_is_the_offline_run():
     print(f'\nattitude {off[0]:.1e} rad, velocity {off[1]:.1e} m/s, position {off[2]:.1e} m, '
           f'sigma of the position {ratio:.1e} of it')
     assert off[2] < 8e-9 and off[1] < 1e-11 and off[0] < 1e-14 and ratio < 1e-12
-    assert [(t.source, t.t_ns, t.outcome.taken) for t in stream.taken] == [
-        (t.source, t.t_ns, t.outcome.taken) for t in offline.taken]
-    assert sum(t.outcome.taken for t in stream.taken) == 5 + 10
+    assert [(t.source, t.t_ns, t.outcome.taken) for t in stream.judged] == [
+        (t.source, t.t_ns, t.outcome.taken) for t in offline.judged]
+    assert sum(t.outcome.taken for t in stream.judged) == 5 + 10
 
 
 @settings(max_examples=6, deadline=None)
@@ -221,7 +221,7 @@ def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
           f'{math.hypot(*expected[-1][2][1]):.4f} m/s, apart when late '
           f'{math.dist(ends[0][2][1], ends[1][2][1]):.1e} m/s')
     assert ends[0] == ends[1]
-    assert [t.outcome.taken for t in stream.taken if t.source == METER] == [True] * 5
+    assert [t.outcome.taken for t in stream.judged if t.source == METER] == [True] * 5
 
 
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():
@@ -270,7 +270,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     stream = AidedStream(chosen_settings(VALUES).aided_navigator)
     health = AidingHealth(stream)
     gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
-    health.judge([JudgedFix(GNSS, 7 * SECOND, gated),
+    health.count([JudgedFix(GNSS, 7 * SECOND, gated),
                   JudgedFix(GNSS, 8 * SECOND, refused('the fix is none: outage'))])
     wrong, values = health.describe()
     assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '

@@ -106,7 +106,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         bound = most.get(name, 8e-9)
         print(f'{name}: {difference.max():.1e} ({bound:.0e})')
         assert difference.max() < bound
-    assert [t.outcome.taken for t in offline.taken if t.source == 'velocity_meter'] == [True] * 5
+    assert [t.outcome.taken for t in offline.judged if t.source == 'velocity_meter'] == [True] * 5
     assert lock_step(ros_domain, tmp_path / 'again', NODES[::-1], load=2) == heard
     again = lock_step(ros_domain, tmp_path / 'reset', NODES, reset_ns=5 * SECOND)
     assert {name: dict(sorted(h.items())) for name, h in again.items()} == heard

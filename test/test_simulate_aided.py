@@ -52,7 +52,7 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
         assert arrays['gnss_status'].tolist() == ['valid'] * 60 + ['outage'] * 31
         meter = arrays['judged_source'] == METER
         assert np.array_equal(arrays['judged_nis'][meter], [
-            t.outcome.nis for t in solution.taken if t.source == METER])
+            t.outcome.nis for t in solution.judged if t.source == METER])
         assert np.isnan(arrays['judged_nis'][~meter & ~arrays['judged_taken']]).all()
     told = json.loads((folder / 'summary.json').read_text())
     assert told[0]['name'] == 'mean drift east'
@@ -96,7 +96,7 @@ def test_the_rows_are_the_errors(run, rows, capsys):
         np.abs(errors.attitude) <= 3.0 * sigma)
     for source, freedom in ((METER, 2), (GNSS, 4)):
         row = rows[f'aided NIS of {source}']
-        nis = [t.outcome.nis for t in solution.taken
+        nis = [t.outcome.nis for t in solution.judged
                if t.source == source and t.outcome.nis is not None]
         low, high = chi2.interval(0.95, freedom * len(nis))
         assert (row.low * len(nis), row.high * len(nis)) == pytest.approx((low, high), rel=1e-9)
@@ -195,13 +195,13 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
                       'window.latency_ms:=2500.0', 'gnss.latency_ms:=120.0')
     motion, run, solution = flown(chosen)
     arrivals = [(t.t_ns + (2_500_000_000 if t.source == METER else 120_000_000))
-                for t in solution.taken]
+                for t in solution.judged]
     assert arrivals == sorted(arrivals) and len(arrivals) == 17 + 20
     cut = (run.imu[k:k + length] for k in range(0, len(run.imu), length))
     again = aid(chosen.aided_navigator, with_truth(motion, cut),
                 Reported(list(solution.velocity_fixes)), Reported(list(solution.gnss_fixes)))
-    assert [(t.source, t.t_ns) for t in again.taken] == [
-        (t.source, t.t_ns) for t in solution.taken]
+    assert [(t.source, t.t_ns) for t in again.judged] == [
+        (t.source, t.t_ns) for t in solution.judged]
     assert np.array_equal(again.errors.position, solution.errors.position)
 
 

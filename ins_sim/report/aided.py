@@ -152,7 +152,7 @@ def _inside_rows(errors):
 
 def _fix_rows(source, flown):
     fixes = flown.velocity_fixes if source == METER else flown.gnss_fixes
-    results = [judged.outcome for judged in flown.taken if judged.source == source]
+    results = [judged.outcome for judged in flown.judged if judged.source == source]
     weighed = [r for r in results if r.nis is not None]
     table = []
     if weighed:

@@ -26,7 +26,7 @@ def arrays(flown):
                                    (GNSS, flown.gnss_fixes, GNSS_COLUMNS)):
         found.update({f'{source}_{name}': np.array([getattr(fix, name) for fix in fixes])
                       for name in columns})
-    judged = flown.taken
+    judged = flown.judged
     found.update({
         'judged_source': np.array([t.source for t in judged], dtype=str),
         'judged_t_ns': np.array([t.t_ns for t in judged], dtype=np.int64),

@@ -40,7 +40,7 @@ def save(path, title, flown, sources, gate_probability):
         return (np.asarray(t_ns, dtype=np.int64) - start_ns) * 1e-9 / per
 
     errors = flown.errors[::max(1, len(flown.errors) // MOST_POINTS)]
-    weighed = any(t.outcome.nis is not None for t in flown.taken)
+    weighed = any(t.outcome.nis is not None for t in flown.judged)
     rows = len(PANELS) + weighed
     figure = Figure(figsize=(10, 2.6 * rows), layout='constrained')
     panels = figure.subplots(rows, 1, sharex=True)
@@ -49,7 +49,7 @@ def save(path, title, flown, sources, gate_probability):
                      getattr(errors, f'{kind}_sigma') * factor, components)
         axes.set_ylabel(label)
     if weighed:
-        _show_nis(panels[-1], flown.taken, sources, gate_probability, time)
+        _show_nis(panels[-1], flown.judged, sources, gate_probability, time)
         panels[-1].set_ylabel('NIS per degree of freedom')
     panels[-1].set_xlabel(f'time [{unit}]')
     silent = {source: [time(span) for span in _silent(fixes, start_ns, end_ns)]

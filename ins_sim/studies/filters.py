@@ -91,7 +91,7 @@ def _fly(settings, case, blocks):
                                                    and FILTERS[case.filter].takes_gnss)))
     flown = aid(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = flown.errors
-    weighed = [t.outcome for t in flown.taken if t.source == METER]
+    weighed = [t.outcome for t in flown.judged if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
     return FilterFlight(
         (errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,

@@ -88,12 +88,12 @@ class AidedStream(MatchedStreams):
     """
     An AidedNavigator on live streams; outputs are (t_ns, solution, errors, sigmas).
 
-    errors as of errors.level_errors; sigmas as of the filter, or None.  ``taken`` collects what
-    became of the fixes; the owner empties it.
+    errors as of errors.level_errors; sigmas as of the filter, or None.  ``judged`` collects a
+    JudgedFix for every fix that was processed; the owner empties it.
     """
 
     def __init__(self, settings):
-        self.taken, self._fixes = [], []
+        self.judged, self._fixes = [], []
         self._schedule = FixSchedule(settings, AidedNavigator(settings).sources)
         super().__init__(settings)
 
@@ -165,9 +165,9 @@ class AidedStream(MatchedStreams):
         while self._fixes and self._fixes[0][0] <= t_ns:
             _, source, fix = self._fixes.pop(0)
             self.navigator.take(source, fix)
-        taken = self.navigator.step(t_ns, omega, f, truth)
-        if taken is None:
+        judged = self.navigator.step(t_ns, omega, f, truth)
+        if judged is None:
             return []
-        self.taken.extend(taken)
+        self.judged.extend(judged)
         solution = self.navigator.solution
         return [(t_ns, solution, level_errors(solution, truth), self.navigator.filter.sigmas())]

@@ -20,14 +20,14 @@ class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    taken: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
+    judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
     velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them.
     """
 
     truth: Truth
     states: NavStates
     errors: AidedErrors
-    taken: tuple
+    judged: tuple
     faults: tuple = ()
     velocity_fixes: tuple = ()
     gnss_fixes: tuple = ()
@@ -77,7 +77,7 @@ class _Chain:
         self._nav = AidedNavigator(settings, run)
         self._last_ns = self._first_ns = None
         self._truth, self._solutions, self._errors = [], [], []
-        self._taken, self._faults, self._t_ns = [], [], []
+        self._judged, self._faults, self._t_ns = [], [], []
         self._waiting = []
 
     def block(self, imu, truth, fixes):
@@ -109,13 +109,13 @@ class _Chain:
             except StreamFault as fault:
                 self._fault(fault)
         try:
-            taken = self._nav.step(t_ns, omega, f, truth)
+            judged = self._nav.step(t_ns, omega, f, truth)
         except StreamFault as fault:
             self._fault(fault)
-            taken = self._nav.step(t_ns, omega, f, truth)
-        if taken is None:
+            judged = self._nav.step(t_ns, omega, f, truth)
+        if judged is None:
             return False
-        self._taken.extend(taken)
+        self._judged.extend(judged)
         if self._first_ns is None:
             self._first_ns = t_ns
         steps = (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns
@@ -144,4 +144,4 @@ class _Chain:
         return AidedResult(Truth.concatenate(self._truth),
                            NavStates(t_ns, *map(np.array, zip(*self._solutions))),
                            AidedErrors(t_ns, *map(np.array, zip(*self._errors))),
-                           tuple(self._taken), tuple(self._faults))
+                           tuple(self._judged), tuple(self._faults))

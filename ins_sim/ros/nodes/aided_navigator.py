@@ -85,7 +85,7 @@ class AidedNavigatorNode(NavigatorNode):
 
     def publish(self, outputs):
         """Publish, and take note of what became of the fixes."""
-        self._health.judge(self.stage.taken)
+        self._health.count(self.stage.judged)
         super().publish(outputs)
 
     def messages(self, rate, solution, errors, sigmas):

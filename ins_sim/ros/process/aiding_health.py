@@ -25,9 +25,9 @@ class AidingHealth:
         if fix.valid:
             self._last_ns[source] = fix.t_ns
 
-    def judge(self, taken):
+    def count(self, judged):
         """Count processed fixes, a list of JudgedFix, and empty the list."""
-        for source, t_ns, result in taken:
+        for source, t_ns, result in judged:
             if result.reason.startswith(INVALID_FIX):
                 self._none[source] += 1
                 continue
@@ -40,7 +40,7 @@ class AidingHealth:
                     # weighed and found wanting, not merely absent
                     self._wrong = (f'{source}: the fix at {seconds(t_ns)} is not taken: '
                                    f'{result.reason}')
-        taken.clear()
+        judged.clear()
 
     def describe(self):
         """Return the last fix refused since the last time, or '', and the values."""
