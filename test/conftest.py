@@ -10,6 +10,7 @@ from ins_sim.ros.transport.repairs import use_profile
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+pytest_plugins = ('figures', 'pytester')
 
 # Before anything imports rclpy: no test talks to another machine, setters check types, and what
 # a test publishes is repaired as soon as what a node does.
