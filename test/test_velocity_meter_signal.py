@@ -1,7 +1,6 @@
-"""Mode signal of the velocity meter: fields, correlation functions, published errors, speed."""
+"""Mode signal of the velocity meter: fields, correlation functions, published errors."""
 
 import math
-import time
 
 from meter_studies import body, errors, flight, meter_settings, PERFECT
 import numpy as np
@@ -14,8 +13,13 @@ from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
 from ins_sim.core.sensors.velocity_meter.surrogate import sigmas
 
 V = 250.0
-# the two published sigmas agree with the print when they are within this part of it
-AGREEMENT = 0.3
+# Lateral scale errors of the two normalisations, see docs/design/velocity_meter.md.
+LATERAL_SCALE = {'cycle': 0.054, 'window': 0.015}
+
+
+def scatter(windows):
+    """Return three standard deviations of a sigma estimated from windows, as part of it."""
+    return 3.0 / math.sqrt(2.0 * windows)
 
 
 def show(name, found, valid, published=None):
@@ -55,52 +59,79 @@ def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha
     assert worst < 6.3
 
 
-def test_one_cycle():
-    """Published: sigma of V_x about 45 m/s, 8 % invalid; both are made by false peaks."""
+def test_one_cycle(figures):
+    """
+    Published: sigma of V_x about 45 m/s, 8 % invalid; both are made by false peaks.
+
+    "About 45" is read as given to 5 m/s; the scatter of our sigma follows from the fourth moment,
+    for false peaks make the tails heavy. A known deviation: we find 15 % of the windows invalid,
+    because false peaks below the least speed are refused as well; 15 % is held, within three
+    standard deviations of the number of invalid windows.
+    """
     found, valid = errors(meter_settings(mode='signal', window__cycles=1), 3000)
     sigma = show('N = 1', found, valid, '~45, 8 % invalid')
-    assert sigma[0] == pytest.approx(45.0, rel=AGREEMENT)
-    # false peaks below the least speed are refused; 8 % would be those that show themselves
-    assert 0.05 < 1.0 - valid < 0.2
+    figures.record('velocity_meter.signal.1.sigma_x', sigma[0], 'm/s', 45.0, 'Ivanov 2015')
+    figures.record('velocity_meter.signal.1.invalid', 100.0 * (1.0 - valid), '%', 8.0,
+                   'Ivanov 2015')
+    x = found[:, 0] - found[:, 0].mean()
+    off = sigma[0] * math.sqrt((np.mean(x ** 4) / sigma[0] ** 4 - 1.0) / (4.0 * len(x)))
+    assert sigma[0] == pytest.approx(45.0, abs=2.5 + 3.0 * off)
+    assert 1.0 - valid == pytest.approx(0.15, abs=3.0 * math.sqrt(0.15 * 0.85 / 3000))
 
 
-def test_a_hundred_cycles():
-    """Published: 0.79 and 0.87 m/s; the amplitudes are worth six times the delays."""
+def test_a_hundred_cycles(figures):
+    """
+    Published: 0.79 and 0.87 m/s; the amplitudes are worth six times the delays.
+
+    Each sigma scatters by three standard deviations of an estimate from 120 windows; their ratio
+    by the root of two times that.
+    """
     found, valid = errors(meter_settings(mode='signal', window__cycles=100), 120)
     sigma = show('N = 100', found, valid, '0.79 / 0.87, by delays 6 times worse')
     assert valid == 1.0
-    assert sigma[:2] == pytest.approx((0.79, 0.87), rel=AGREEMENT)
-    assert sigma[2] / sigma[1] > 4.0
+    figures.record('velocity_meter.signal.100.sigma', sigma[:2], 'm/s', (0.79, 0.87),
+                   'Ivanov 2015')
+    figures.record('velocity_meter.signal.100.delays_over_amplitudes', sigma[2] / sigma[1], '',
+                   6.0, 'Ivanov 2015')
+    assert sigma[:2] == pytest.approx((0.79, 0.87), rel=scatter(120))
+    assert sigma[2] / sigma[1] == pytest.approx(6.0, rel=math.sqrt(2.0) * scatter(120))
 
 
 @pytest.mark.slow
-def test_a_thousand_cycles():
+def test_a_thousand_cycles(figures):
     """Published: 0.25 and 0.27 m/s."""
     found, valid = errors(meter_settings(mode='signal', window__cycles=1000), 100)
     sigma = show('N = 1000', found, valid, '0.25 / 0.27')
-    assert valid == 1.0 and sigma[:2] == pytest.approx((0.25, 0.27), rel=AGREEMENT)
+    figures.record('velocity_meter.signal.1000.sigma', sigma[:2], 'm/s', (0.25, 0.27),
+                   'Ivanov 2015')
+    assert valid == 1.0 and sigma[:2] == pytest.approx((0.25, 0.27), rel=scatter(100))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('cycles, windows, beta', [(100, 200, 0.0), (100, 200, 3.0),
                                                    (100, 200, -6.0), (1000, 60, 3.0)])
-def test_the_surrogate_agrees(cycles, windows, beta):
-    """Sigmas and biases by its formulae, with and without sideslip."""
+def test_the_surrogate_agrees(cycles, windows, beta, figures):
+    """Sigmas and biases by its formulae, within the scatter of so many windows."""
     s, beta = meter_settings(mode='signal', window__cycles=cycles), math.radians(beta)
     found, valid = errors(s, windows, beta)
     formula = sigmas(s.surrogate, cycles, beta)
     sigma = show(f'N = {cycles}, beta = {math.degrees(beta):g} deg', found, valid)
     bias = s.surrogate.bias_x_m_s / cycles
     print(f'  surrogate: sigma {formula[0]:.3f}, {formula[1]:.3f}, bias {bias:+.3f} m/s')
-    assert sigma[:2] == pytest.approx(formula, rel=AGREEMENT)
+    figures.record(f'velocity_meter.surrogate.{cycles}.{math.degrees(beta):g}.sigma', sigma[:2],
+                   'm/s', formula, 'surrogate')
+    figures.record(f'velocity_meter.surrogate.{cycles}.{math.degrees(beta):g}.bias_x',
+                   found[:, 0].mean(), 'm/s', bias, 'surrogate')
+    assert sigma[:2] == pytest.approx(formula, rel=scatter(windows))
     # five standard deviations of a mean; a lateral scale error of 1.5 % is left of 5.4 %
     mean = found.mean(axis=0)
     assert abs(mean[0] - bias) < 5.0 * sigma[0] / math.sqrt(windows)
-    assert abs(mean[1]) < 5.0 * sigma[1] / math.sqrt(windows) + 0.015 * V * abs(math.sin(beta))
+    assert abs(mean[1]) < 5.0 * sigma[1] / math.sqrt(windows) + (
+        LATERAL_SCALE['window'] * V * abs(math.sin(beta)))
 
 
 @pytest.mark.slow
-def test_normalisation_by_each_cycle_shrinks_the_lateral_velocity():
+def test_normalisation_by_each_cycle_shrinks_the_lateral_velocity(figures):
     """As printed: -5.4 %, for the mean of a cycle knows the signal it is taken from."""
     beta, scale = math.radians(6.0), {}
     for normalisation in ('cycle', 'window'):
@@ -110,16 +141,19 @@ def test_normalisation_by_each_cycle_shrinks_the_lateral_velocity():
         show(f'normalisation {normalisation}, N = 250, beta = 6 deg', found, valid)
         scale[normalisation] = found[:, 1].mean() / (V * math.sin(beta))
     print(f'lateral scale error: cycle {scale["cycle"]:+.4f}, window {scale["window"]:+.4f}')
+    for name, value in scale.items():
+        figures.record(f'velocity_meter.lateral_scale.{name}', 100.0 * value, '%')
     # four standard deviations of the mean, 1.2/sqrt(80) m/s of 26 m/s
-    assert abs(scale['cycle'] + 0.054) < 0.02 and abs(scale['window']) < 0.02
+    assert abs(scale['cycle'] + LATERAL_SCALE['cycle']) < 0.02 and abs(scale['window']) < 0.02
 
 
 def test_complex_detection_is_quieter():
-    """By about a half, which the published figures are not: those are of powers."""
+    """By about a half: half the published sigmas, which are of powers, within the scatter."""
     found, valid = errors(meter_settings(mode='signal', window__cycles=100,
                                          signal__detection='complex'), 60)
     sigma = show('N = 100, complex', found, valid)
-    assert valid == 1.0 and (sigma[:2] < (0.55, 0.65)).all()
+    assert valid == 1.0
+    assert sigma[:2] == pytest.approx((0.5 * 0.79, 0.5 * 0.87), rel=scatter(60))
 
 
 @pytest.mark.parametrize('detection', ['power', 'complex'])
@@ -135,8 +169,8 @@ def test_every_way_of_correlating_measures(detection, normalisation):
           f'{v[0]:.3f}, {v[1]:.3f}, V_y1 {fix.up:.3f} for {v[2]:.3f} m/s')
     assert fix.valid and fix.tan_alpha == pytest.approx(math.tan(math.radians(5.0)))
     assert abs(fix.velocity[0] - v[0]) < 5.0 * fix.sigma[0]
-    # and the lateral scale error of either normalisation
-    assert abs(fix.velocity[1] - v[1]) < 5.0 * fix.sigma[1] + 0.06 * abs(v[1])
+    assert abs(fix.velocity[1] - v[1]) < 5.0 * fix.sigma[1] + (
+        LATERAL_SCALE[normalisation] * abs(v[1]))
     assert min(fix.tau) > 0.0 and max(fix.g) < 0.0
     # by the sideslip of the INS, which the error of the fix has no part in
     assert fix.sigma == pytest.approx(sigmas(s.surrogate, 400, math.atan2(-v[1], v[0])))
@@ -180,14 +214,3 @@ def test_neighbouring_cycles_are_independent():
     r = (x[1:] * x[:-1]).mean(axis=0) / (x * x).mean(axis=0)
     print(f'correlation of neighbours {r[0]:+.3f}, {r[1]:+.3f}; sigma {1 / math.sqrt(300):.3f}')
     assert (r ** 2 * 299 < chi2.isf(1e-6, 1)).all()
-
-
-def test_faster_than_real_time():
-    """One window of 1000 cycles, 10 s; at least ten times real time on one core."""
-    meter = VelocityMeter(meter_settings(mode='signal', window__cycles=1000))
-    start = time.process_time()
-    fix, = meter.advance(*flight(1000))
-    spent = time.process_time() - start
-    print(f'one window of 1000 cycles, 10 s of flight: {spent:.3f} s, {10.0 / spent:.0f} times '
-          f'real time; {1e3 * spent:.0f} us a cycle')
-    assert fix.valid and spent < 1.0
