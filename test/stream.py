@@ -10,7 +10,7 @@ from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import LAYOUTS
 from ins_sim.messages.convert import truth_blocks
-from live import Chain, Listener
+from live import Chain, GUARD_S, Listener
 import numpy as np
 
 DT = 10_000_000
@@ -68,7 +68,7 @@ class Stream:
 
     def begin(self, process, first=0):
         """Send the first sample until it is acknowledged, so that all have found each other."""
-        end = time.monotonic() + 60.0
+        end = time.monotonic() + GUARD_S
         while not self.heard[ACK.name]:
             assert time.monotonic() < end and process.poll() is None, self.chain.text(process)
             for topic in self._out:
@@ -78,7 +78,7 @@ class Stream:
             self.listener.poll()
         time.sleep(0.3)
 
-    def wait_ack(self, t_ns, timeout_s=30.0):
+    def wait_ack(self, t_ns, timeout_s=GUARD_S):
         """Wait until a stamp is acknowledged."""
         self.listener.poll_until(lambda: t_ns in self.heard[ACK.name], timeout_s)
 
@@ -87,7 +87,7 @@ class Stream:
         self.listener.poll_until(lambda: all(
             len(self.heard[topic.name]) >= count for topic, count in counts.items()))
 
-    def wait_diagnosis(self, part, timeout_s=30.0):
+    def wait_diagnosis(self, part, timeout_s=GUARD_S):
         """Wait until /diagnostics says this."""
         self.listener.spin_until(lambda: any(part in message for _, _, message in self.seen),
                                  timeout_s)

@@ -1,7 +1,6 @@
-"""Settings of the studies the tests share, and a pool that runs the hour-long ones."""
+"""Settings of the studies the tests share, and their runs."""
 
-from concurrent.futures import ProcessPoolExecutor
-import multiprocessing
+from functools import lru_cache
 
 from ins_sim.settings.catalogue import build, flatten
 from ins_sim.core.earth.frames import MapFrame
@@ -54,32 +53,18 @@ def prediction_of(chosen):
     return predict(chosen, read_motion(chosen.motion_generator))
 
 
-def run(values, twin=True):
-    """Return errors and twin errors (or None) of a run."""
-    result = run_offline(settings(values), twin)
+def study(values, twin=True):
+    """
+    Return errors and twin errors (or None) of the run of {dotted name: value}.
+
+    The newest few are kept: tests that look at the same run, which carry the same xdist_group,
+    compute it once.
+    """
+    return _study(tuple(sorted(values.items())), twin)
+
+
+@lru_cache(maxsize=3)
+def _study(values, twin):
+    chosen = settings(dict(values))
+    result = run_offline(chosen, twin)
     return result.errors, result.twin
-
-
-class Pool:
-    """Runs studies in the background on every core; each is computed once."""
-
-    def __init__(self):
-        # spawn: the test process may hold threads of rclpy
-        self._pool = ProcessPoolExecutor(multiprocessing.cpu_count(),
-                                         multiprocessing.get_context('spawn'))
-        self._futures = {}
-
-    def submit(self, values, twin=True):
-        """Start a study unless it has been started; twin: whether with its twin."""
-        key = (twin, *sorted(values.items()))
-        if key not in self._futures:
-            self._futures[key] = self._pool.submit(run, values, twin)
-        return self._futures[key]
-
-    def result(self, values):
-        """Return errors and twin errors of a study."""
-        return self.submit(values).result()
-
-    def close(self):
-        """Drop what has not started."""
-        self._pool.shutdown(cancel_futures=True)

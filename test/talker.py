@@ -3,6 +3,7 @@
 import time
 
 from ins_sim.messages import topics
+from live import GUARD_S
 
 
 class Talker:
@@ -32,7 +33,7 @@ class Talker:
         """Return an Imu message that knows its stamp in its values."""
         return self._writer.pack(stamp_ns, (stamp_ns * 1e-9, 0.0, 0.0), (0.0, 0.0, 9.8))
 
-    def wait_matched(self, *publishers, timeout_s=30.0):
+    def wait_matched(self, *publishers, timeout_s=GUARD_S):
         """Wait until each publisher has a reader."""
         end = time.monotonic() + timeout_s
         while not all(p.get_subscription_count() for p in publishers):

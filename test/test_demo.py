@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+from live import GUARD_S
 import pytest
 
 pytest.importorskip('rclpy')
@@ -33,7 +34,7 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
     """A whole run; then SIGTERM and SIGINT in the middle: exit 130, old results, no process."""
     folder, log = tmp_path / 'demo', tmp_path / 'log'
     with open(log, 'w') as stream:
-        assert start(folder, 10.0, stream).wait(120.0) == 0, log.read_text()
+        assert start(folder, 10.0, stream).wait(GUARD_S) == 0, log.read_text()
     assert 'mean drift east' in log.read_text()
     files = {p: p.stat().st_mtime_ns for p in folder.rglob('*') if p.is_file()}
     for part in ('motion_2', 'cruise'):
@@ -42,12 +43,12 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
     for number in (signal.SIGTERM, signal.SIGINT):
         with open(log, 'w') as stream:
             demo = start(folder, 3000.0, stream)
-            end = time.monotonic() + 60.0
+            end = time.monotonic() + GUARD_S
             while len(members(demo.pid)) < 4 and time.monotonic() < end:
                 time.sleep(0.1)
             time.sleep(2.0)
             demo.send_signal(number)
-            assert demo.wait(60.0) == 130, log.read_text()
+            assert demo.wait(GUARD_S) == 130, log.read_text()
         assert 'interrupted' in log.read_text() and 'Traceback' not in log.read_text()
         assert members(demo.pid) == []
         assert {p: p.stat().st_mtime_ns for p in folder.rglob('*') if p.is_file()} == files

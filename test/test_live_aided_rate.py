@@ -1,19 +1,17 @@
-"""Six nodes in real time for ten minutes: nothing is lost on the way."""
+"""Six nodes in real time: nothing is lost on the way."""
 
-import os
-from pathlib import Path
 import time
 
 from ins_sim import graph, resources
 from ins_sim.messages import topics
-from live import Chain, Listener, wait_handlers
+from live import Chain, GUARD_S, Listener, wait_handlers
 import numpy as np
 import pytest
 
 pytest.importorskip('rclpy')
-pytestmark = [pytest.mark.live, pytest.mark.slow]
+pytestmark = pytest.mark.live
 
-RATE_HZ, SECONDS = 100, 600
+RATE_HZ, SECONDS = 100, 15
 # the meter as a simulated instrument, GNSS with an outage in the middle; by node, for the section
 # of a node in a file wins over what is said for all
 VALUES = {'motion_generator:duration_s': float(SECONDS), 'velocity_meter:mode': 'signal',
@@ -23,11 +21,12 @@ HEARD = {topics.TRUTH_IMU: RATE_HZ, topics.IMU_RAW: RATE_HZ, topics.INS_ODOMETRY
          topics.AIDED_ODOMETRY: RATE_HZ, topics.AIDED_SIGMAS[2]: RATE_HZ, topics.GNSS_FIX: 1}
 
 
-def test_ten_minutes_in_real_time_lose_nothing(ros_domain, tmp_path):
+def test_real_time_loses_nothing(ros_domain, tmp_path):
     """
     Each topic without a gap from its first message to the last instant.
 
-    What the generator sends before DDS has made it known to all is heard by none.
+    What the generator sends before DDS has made it known to all is heard by none. Ten minutes of
+    the same, and the CPU of each node, are printed by benchmarks/live_aided.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, HEARD)
     files = [word for name in ('default', 'route_flight', 'grade_mid')
@@ -39,7 +38,7 @@ def test_ten_minutes_in_real_time_lose_nothing(ros_domain, tmp_path):
             wait_handlers(node)
         names = [topic.name for topic in (topics.IMU_RAW, topics.INS_ODOMETRY,
                                           topics.AIDED_ODOMETRY, topics.GNSS_FIX)]
-        end = time.monotonic() + 60.0
+        end = time.monotonic() + GUARD_S
         while not all(listener.node.count_publishers(name) for name in names):
             assert time.monotonic() < end, 'the nodes do not appear'
             time.sleep(0.1)
@@ -52,26 +51,16 @@ def test_ten_minutes_in_real_time_lose_nothing(ros_domain, tmp_path):
         took_s = time.monotonic() - began
         time.sleep(3.5)
         listener.poll()
-        cpu_s = {name: seconds_of(node.pid) for name, node in nodes.items()}
         texts = {name: chain.text(node) for name, node in nodes.items()}
     finally:
         codes = chain.end()
         listener.close()
     assert set(codes.values()) == {0}
-    print('\n' + ', '.join(f'{name} {cpu:.0f} s' for name, cpu in cpu_s.items())
-          + f' of CPU in {took_s:.0f} s')
-    assert SECONDS <= took_s < SECONDS + 30.0
+    assert took_s >= SECONDS
     for topic, rate_hz in HEARD.items():
         stamps = np.array(sorted(listener.heard[topic.name]))
         first_s = stamps[0] * 1e-9
         lost = round((SECONDS - first_s) * rate_hz) + 1 - len(stamps)
         print(f'{topic.name}: {len(stamps)} heard from {first_s:.2f} s on, {lost} lost')
         assert lost == 0 and stamps[-1] == SECONDS * 10**9
-        assert first_s < 10.0
     assert not any('WARN' in text or 'FATAL' in text for text in texts.values()), texts
-
-
-def seconds_of(pid):
-    """Return the CPU seconds that a process has used."""
-    fields = Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')

@@ -4,11 +4,13 @@ import os
 import re
 import signal
 import time
+import xml.etree.ElementTree as ElementTree
 
+from ins_sim import resources
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
 from ins_sim.ros.transport.repairs import use_profile, VARIABLE
-from live import Chain
+from live import Chain, GUARD_S
 import pytest
 
 pytest.importorskip('rclpy')
@@ -36,6 +38,13 @@ def test_a_profile_that_the_user_has_named_stays(monkeypatch):
     assert os.path.isfile(os.environ[VARIABLE])
 
 
+def test_writers_ask_what_readers_miss_every_tenth_of_a_second():
+    """The heartbeat of our profile; Fast DDS alone asks every 3 s."""
+    root = ElementTree.parse(resources.middleware_profile('fastdds')).getroot()
+    period, = (e for e in root.iter() if e.tag.endswith('heartbeatPeriod'))
+    assert {e.tag.split('}')[-1]: e.text for e in period} == {'nanosec': '100000000'}
+
+
 @pytest.mark.live
 def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
     """
@@ -48,7 +57,7 @@ def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
     chain.wait_text(recorder, 'waiting for')
     generator = chain.start('motion_generator', {
         'rate_hz': float(RATE_HZ), 'duration_s': float(LENGTH_S), 'publish_clock': 'true'})
-    end, file = time.monotonic() + 20.0, tmp_path / 'bag' / 'bag_0.mcap'
+    end, file = time.monotonic() + GUARD_S, tmp_path / 'bag' / 'bag_0.mcap'
     while not file.exists() or file.stat().st_size < 10000:
         assert time.monotonic() < end, chain.text(recorder)
         time.sleep(0.05)
@@ -59,13 +68,10 @@ def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
         running = generator.poll() is None
     finally:
         recorder.send_signal(signal.SIGCONT)
-    start = time.monotonic()
-    assert generator.wait(20.0) == 0, chain.text(generator)
-    took_s = time.monotonic() - start
+    assert generator.wait(GUARD_S) == 0, chain.text(generator)
     assert set(chain.end().values()) == {0}
     text = chain.text(recorder)
-    print(f'\nrepaired and ended in {took_s:.2f} s')
-    assert running and took_s < 1.5
+    assert running
     assert re.findall(r'recorded, (\d+) lost', text) == ['0'] * len(wanted), text
     with open_bag(tmp_path / 'bag') as bag:
         assert {s.last_ns for s in bag.spans().values()} == {LENGTH_S * 10**9}

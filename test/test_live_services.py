@@ -1,8 +1,5 @@
 """Names, services, pacing and parameters of the running nodes."""
 
-import subprocess
-import sys
-
 from ins_sim.messages import topics
 from live import Chain, Listener
 import pytest
@@ -141,35 +138,6 @@ def test_clock_and_use_sim_time(chain, ros_domain):
         listener.poll_until(lambda: max(listener.heard['/clock']) == 1700000003 * 10**9)
     finally:
         listener.close()
-
-
-@pytest.mark.slow
-def test_nodes_start_as_cheaply_as_a_bare_node(chain):
-    """
-    CPU that our node takes beyond a bare one with a publisher: at most 0.1 s.
-
-    It is taken in a process that has made the bare node already, so that the scatter of what
-    rclpy itself takes falls out.  The best of 15: what else runs on the machine can only add.
-    Bytecode is cached, as pip and colcon leave it: an environment that forbids to write it would
-    compile every module of ours, and none of rclpy, at each start.
-    """
-    environment = {key: value for key, value in chain.environment.items()
-                   if key != 'PYTHONDONTWRITEBYTECODE'}
-    code = ('import rclpy, sys; from time import process_time as now; rclpy.init(); '
-            'from nav_msgs.msg import Odometry; node = rclpy.create_node("x"); '
-            'node.create_publisher(Odometry, "y", 10); start = now(); '
-            'from ins_sim.ros.nodes.{0} import {1}; {1}(); print(now() - start); '
-            'bad = {{"scipy", "matplotlib", "numba", "rosbags"}} & set(sys.modules); '
-            'assert not bad, bad')
-    for name, cls in (('motion_generator', 'MotionGeneratorNode'),
-                      ('imu_sensor', 'ImuSensorNode'), ('strapdown', 'StrapdownNode'),
-                      ('gnss', 'GnssNode'), ('velocity_meter', 'VelocityMeterNode'),
-                      ('aided_navigator', 'AidedNavigatorNode')):
-        extra = min(float(subprocess.run(
-            [sys.executable, '-c', code.format(name, cls)], env=environment,
-            capture_output=True, text=True, check=True).stdout) for _ in range(15))
-        print(f'{name}: {extra:.3f} s more than a bare node')
-        assert extra < 0.1
 
 
 def test_an_injected_fault_is_seen(chain, ros_domain):

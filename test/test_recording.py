@@ -147,16 +147,6 @@ def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
         load(path, on_gap='cut', start_s=31.0)
 
 
-def test_ten_hours_of_instants_take_seconds(shared_data):
-    """360 000 instants: seconds, not minutes (0.3 to 0.7 s where this was written)."""
-    import time
-    motion = load(shared_data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
-    t_ns = np.arange(360000) * 10 ** 7
-    began = time.process_time()
-    motion.at(t_ns)
-    assert time.process_time() - began < 10.0
-
-
 # Against closed forms.
 
 def test_recorded_closed_form_converges(tmp_path):

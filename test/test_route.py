@@ -1,7 +1,6 @@
 """The flight along a route: one pose, great circles, turns, wind and weave."""
 
 import math
-import time
 
 from flown import air_velocity, in_body, instants, on_legs, ROUGH, route, WEAVE, WIND
 from hypothesis import given, settings, strategies as st
@@ -239,22 +238,6 @@ def test_any_cutting_gives_the_same_bits():
         assert (getattr(parts, name) == value).all(), name
     again = route(ROUGH).at(t_ns[:100])
     assert (again.lat == whole.lat[:100]).all() and (again.f_ib_b == whole.f_ib_b[:100]).all()
-
-
-def test_evaluation_is_fast():
-    """Blocks of 4096 in milliseconds; 300 000 instants in less than 5 s."""
-    began = time.perf_counter()
-    motion = route(ROUGH)
-    made = time.perf_counter() - began
-    t_ns = np.arange(4096, dtype=np.int64) * 10_000_000
-    took = []
-    for k in range(74):
-        began = time.perf_counter()
-        motion.at(t_ns + k * 4096 * 5_000_000)
-        took.append(time.perf_counter() - began)
-    print(f'\nmade in {made:.2f} s; a block of 4096: {1e3 * min(took):.1f} ms; '
-          f'303 104 instants: {sum(took):.2f} s')
-    assert sum(took) < 5.0
 
 
 @settings(deadline=None, max_examples=40)

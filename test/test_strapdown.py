@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from studies import MOTION_1, MOTION_2, Pool, run_offline, settings
+from studies import MOTION_1, MOTION_2, run_offline, settings, study
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.navigation import mechanization
@@ -111,21 +111,14 @@ AT_ONE_MS = {name: {**values, 'rate_hz': 1000.0, 'output_every': 10} for name, v
     ('motion 2', {**MOTION_2, **NO_DELAY}))}
 
 
-@pytest.fixture(scope='module')
-def hours():
-    """Return {name: future of (errors, None)} of the hours at 1 ms, all under way."""
-    pool = Pool()
-    yield {name: pool.submit(values, twin=False) for name, values in AT_ONE_MS.items()}
-    pool.close()
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize('name', AT_ONE_MS)
-def test_one_hour_at_one_millisecond(hours, name):
+def test_one_hour_at_one_millisecond(name, figures):
     """Floor 5e-4 m with no delay; motion 1 late: 112.05 and 15.04 m (section 4)."""
-    errors, _ = hours[name].result()
+    errors, _ = study(AT_ONE_MS[name], twin=False)
     east, north, _ = np.abs(errors.position).max(axis=0)
     print(f'\n{name} at 1 ms: |dN| {north:.4g}, |dE| {east:.4g} m')
+    figures.record(f'strapdown.hour_at_1_ms.{name}', (north, east), 'm')
     if name == 'motion 1 late':
         assert (north, east) == (pytest.approx(112.05, abs=5e-3), pytest.approx(15.04, abs=5e-3))
     else:

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 import math
-import time
 
 from hypothesis import given, settings, strategies as st
 import numpy as np
@@ -273,15 +272,3 @@ def test_sensors_axes_runs_and_seeds_are_independent():
     worst = np.abs(np.corrcoef(rows.T)[np.triu_indices(12, 1)]).max()
     print(f'largest correlation {worst:.4f}; bound {4 / math.sqrt(n):.4f}')
     assert worst < 4.0 / math.sqrt(n)
-
-
-def test_a_step_with_everything_on_is_quick():
-    """At most 20 us, the best of five; a block of noise included."""
-    errors, best = errors_of(FULL, temperature=WARM), math.inf
-    for part in range(5):
-        start = time.perf_counter()
-        for k in range(2048 * part, 2048 * (part + 1)):
-            errors.step(k, U, F, 0.1)
-        best = min(best, (time.perf_counter() - start) / 2048)
-    print(f'{1e6 * best:.1f} us a step')
-    assert best < 20e-6

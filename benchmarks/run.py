@@ -1,0 +1,55 @@
+"""
+Run all benchmarks, short ones by default, and print their figures and ratios.
+
+Run: python benchmarks/run.py [--full] [--against CHECKOUT]
+"""
+
+import argparse
+from pathlib import Path
+import subprocess
+import sys
+
+HERE = Path(__file__).resolve().parent
+# script, words of the short run, words of the full one, whether it needs rclpy
+SCRIPTS = (
+    ('core_step', [], ['--hour'], False),
+    ('pyins_peer', ['600'], ['3600'], False),
+    ('parts', ['600'], ['3600'], False),
+    ('bags', ['20000'], ['100000'], False),
+    ('velocity_meter', ['200', '10'], ['2000', '100'], False),
+    ('live_chain', ['--quick'], [], True),
+    ('live_recorder', ['10'], ['600'], True),
+    ('live_aided', ['20'], ['600'], True))
+
+
+def has_rclpy():
+    """Return whether nodes can be started here."""
+    return subprocess.run([sys.executable, '-c', 'import rclpy'], capture_output=True,
+                          check=False).returncode == 0
+
+
+def main():
+    """Run what can be run here; return 1 where one of them failed."""
+    parser = argparse.ArgumentParser(description=__doc__.strip().splitlines()[0])
+    parser.add_argument('--full', action='store_true', help='as long as the figures of the docs')
+    parser.add_argument('--against', metavar='CHECKOUT', help='compare with another checkout too')
+    arguments = parser.parse_args()
+    ros, failed = has_rclpy(), []
+    commands = [(name, full if arguments.full else short) for name, short, full, needs in SCRIPTS
+                if ros or not needs]
+    if arguments.against:
+        length = '3600' if arguments.full else '600'
+        commands.append(('paired', [arguments.against, '--seconds', length]))
+    for name, words in commands:
+        print(f'\n== {name} {" ".join(words)}', flush=True)
+        if subprocess.run([sys.executable, HERE / f'{name}.py', *words], check=False).returncode:
+            failed.append(name)
+    if not ros:
+        print('\nno rclpy: the live benchmarks were left out')
+    if failed:
+        print(f'\nfailed: {", ".join(failed)}')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
