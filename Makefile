@@ -4,13 +4,14 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow bench lint lock clean
+.PHONY: help setup demo test test-slow figures bench lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
 	@echo 'make demo       run the three nodes and show predicted against measured errors'
 	@echo 'make test       run the tests'
 	@echo 'make test-slow  run the slow tests'
+	@echo 'make figures    compute the long studies and render docs/validation.md'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
 	@echo 'make lint       check the style'
 	@echo 'make lock       write requirements.lock again (UPGRADE=--upgrade: newest versions)'
@@ -23,10 +24,14 @@ demo:
 	$(RUN) ins_sim demo $(if $(RECORDING),--recording $(RECORDING))
 
 test:
-	$(RUN) python -m pytest test
+	$(RUN) python tools/run_tests.py fast
 
 test-slow:
-	$(RUN) python -m pytest test -m slow
+	$(RUN) python tools/run_tests.py slow
+
+figures:
+	$(RUN) python tools/run_tests.py figures
+	$(RUN) python tools/render_validation.py --take build/figures.json
 
 bench:
 	$(RUN) python benchmarks/run.py $(if $(AGAINST),--against $(AGAINST))

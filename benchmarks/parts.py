@@ -16,7 +16,7 @@ from ins_sim.core.sensors.imu.triad_errors import TriadErrors
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.simulation.inertial import simulate
 from ins_sim.io import simulated
-from ins_sim.io.motion import make_motion
+from ins_sim.io.motion import read_motion
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.imu import ImuSensorSettings
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
@@ -59,9 +59,8 @@ def triad_step_us(steps=2048):
 
 def motion_of(*assignments, files=()):
     """Return the motion of shipped files and assignments."""
-    s = parameter_files.read([resources.config(name) for name in files],
-                             assignments).motion_generator
-    return make_motion(s.motion, s.datum, s.earth)
+    return read_motion(parameter_files.read([resources.config(name) for name in files],
+                                            assignments).motion_generator)
 
 
 def main(seconds=3600.0):
@@ -86,7 +85,7 @@ def main(seconds=3600.0):
                                     [f'duration_s:={float(seconds):.1f}'])
     with tempfile.TemporaryDirectory() as folder:
         start = process_time()
-        run = simulate(settings, twin=False)
+        run = simulate(settings, read_motion(settings.motion_generator), twin=False)
         middle = process_time()
         counts = simulated.write(Path(folder) / 'bag', settings, run,
                                  simulated.select(settings, None))

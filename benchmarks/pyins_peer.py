@@ -20,7 +20,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.initial_state import Sources
 from ins_sim.core.postprocessing.navigate import navigate
-from ins_sim.core.postprocessing.reference import Reference, Track
+from ins_sim.core.postprocessing.reference import Reference, SampledTrack
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.navigate import NavigateSettings
 
@@ -37,8 +37,8 @@ def flight(seconds):
 def ours(truth):
     """Return a function that navigates, and gives latitude, longitude (rad), height at the end."""
     track = np.stack([truth.lat, truth.lon, truth.height], axis=-1)
-    reference = Reference('truth', Track(truth.t_ns, track), Track(truth.t_ns, truth.v_n),
-                          Track(truth.t_ns, truth.q_nb))
+    reference = Reference('truth', SampledTrack(truth.t_ns, track), SampledTrack(truth.t_ns, truth.v_n),
+                          SampledTrack(truth.t_ns, truth.q_nb))
     imu = RecordedImu(truth.t_ns, truth.omega_ib_b, truth.f_ib_b,
                       np.full((len(truth.t_ns), 4), np.nan))
     settings = build(NavigateSettings, {'initial.attitude': 'reference'})

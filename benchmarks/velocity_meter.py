@@ -14,7 +14,6 @@ from ins_sim.core.sensors.velocity_meter import reading as fit
 from ins_sim.settings.catalogue import build
 from ins_sim.core.timeseries.fixes import VALID
 from ins_sim.core.sensors.velocity_meter.antennas import geometry
-from ins_sim.settings.velocity_meter import lag_s
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
 
@@ -52,7 +51,7 @@ def readings(cycles, windows, beta=0.0, biased=None, **signal):
             functions = correlator.functions([sum(part) for part in parts], cycles)
         else:
             functions = sum(map(correlator.functions_of, signals)) / cycles
-        found.append(fit.read_correlations(functions, lag_s(s), geometry(s.antennas), 0.0))
+        found.append(fit.read_correlations(functions, s.lag_s, geometry(s.antennas), 0.0))
     return found
 
 

@@ -77,7 +77,8 @@ class Collector:
         if report.when == 'call' and report.passed:
             for key, figure in report.user_properties:
                 if key == KEY:
-                    self._add(report.nodeid, dict(figure))
+                    # pytest-xdist adds the group of a test to its name
+                    self._add(report.nodeid.split('@')[0], dict(figure))
 
     def _add(self, test, figure):
         name = figure.pop('name')

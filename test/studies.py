@@ -1,6 +1,8 @@
 """Settings of the studies the tests share, and their runs."""
 
+from concurrent.futures import ProcessPoolExecutor
 from functools import lru_cache
+import os
 
 from ins_sim.settings.catalogue import build, flatten
 from ins_sim.core.earth.frames import MapFrame
@@ -68,3 +70,15 @@ def _study(values, twin):
     chosen = settings(dict(values))
     result = run_offline(chosen, twin)
     return result.errors, result.twin
+
+
+def spread(function, *arguments):
+    """
+    Return what a function gives for each of the arguments, computed on all cores.
+
+    A worker of pytest-xdist has its neighbours on the other cores and computes one by one.
+    """
+    if 'PYTEST_XDIST_WORKER' in os.environ:
+        return list(map(function, *arguments))
+    with ProcessPoolExecutor() as pool:
+        return list(pool.map(function, *arguments))

@@ -1,8 +1,5 @@
 """The covariance of the eskf against Monte Carlo: errors (NEES) and innovations (NIS)."""
 
-from concurrent.futures import ProcessPoolExecutor
-import os
-
 from ins_sim import parameter_files, resources
 from ins_sim.core.aiding import kalman, navigator
 from ins_sim.core.aiding.filters import eskf_model
@@ -17,6 +14,7 @@ from ins_sim.core.simulation.inertial import sense
 import numpy as np
 import pytest
 from scipy.stats import chi2
+from studies import spread
 
 RUNS = 16
 EVERY_NS = 60 * 10**9
@@ -50,7 +48,7 @@ class StampedAtItsEnd(ErrorStateFilter):
         return read - fix.velocity, h
 
 
-def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch):
+def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch, figures):
     """
     Ten minutes on a straight leg, the heading weaving: NIS 2 of two, and 82.
 
@@ -67,6 +65,8 @@ def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch):
     expected = 2.0 + (off / sigma) ** 2
     print(f'NIS of the mean {exact.mean():.2f} ({low:.2f} to {high:.2f}), stamped at its end '
           f'{stamped.mean():.0f}; expected {expected:.0f}')
+    figures.record('consistency.mean.nis', exact.mean(), '', 2.0)
+    figures.record('consistency.stamped_at_its_end.nis', stamped.mean(), '', expected)
     assert low < exact.mean() < high
     assert stamped.mean() == pytest.approx(expected, rel=0.25)
     assert stamped.mean() > 40.0
@@ -117,16 +117,15 @@ def consistency(assignments, run):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('assignments', CASES.values(), ids=CASES)
-def test_errors_and_innovations_are_as_large_as_the_filter_says(assignments):
+@pytest.mark.parametrize('case', CASES)
+def test_errors_and_innovations_are_as_large_as_the_filter_says(case, figures):
     """
     NEES of 16 runs at each minute, and NIS of all fixes, in their 95 % chi-square intervals.
 
     Ten minutes are looked at, one of which may lie outside by chance, as 1 in 20 do; their mean
     lies in the interval of one of them, as what is left of the errors goes on from one to another.
     """
-    with ProcessPoolExecutor(min(RUNS, os.cpu_count())) as pool:
-        found = list(pool.map(consistency, [assignments] * RUNS, range(RUNS)))
+    found = spread(consistency, [CASES[case]] * RUNS, range(RUNS))
     nees = np.mean([f[0] for f in found], axis=0)
     freedom = len(STATES) * RUNS
     low, high = (chi2.ppf(p, freedom) / RUNS for p in (0.025, 0.975))
@@ -137,6 +136,9 @@ def test_errors_and_innovations_are_as_large_as_the_filter_says(assignments):
     edges = [chi2.ppf(p, many) / many for p in (0.025, 0.975)]
     print(f'NIS per freedom {total / many:.4f} of {len(nis)} fixes, interval {edges[0]:.4f} to '
           f'{edges[1]:.4f}')
+    name = f'consistency.{case.replace(" ", "_")}'
+    figures.record(f'{name}.nees', nees.mean(), '', len(STATES))
+    figures.record(f'{name}.nis', (total / many, *edges))
     outside = ((nees < low) | (nees > high)).sum()
     assert outside <= 1
     assert low < nees.mean() < high

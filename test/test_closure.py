@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-from studies import FLIGHT, settings, study
-
-from ins_sim.core.prediction.predict import predict
-from ins_sim.io.motion import read_motion
+from studies import FLIGHT, prediction_of, settings, study
 
 # the Gulfstream's cruise from 748 s on; the circuit from the air start to before the landing
 FLIGHTS = [*(pytest.param(('cruise_gv_acclip_rf01.csv.gz', start_s, 3600.0, {}),
@@ -36,9 +33,7 @@ def test_recorded_flights_close(row, shared_data, figures):
     added = (errors.position - twin.position)[:, :2]
     late = np.abs(added).max()
     # the prediction has a step of 0.1 s
-    chosen = settings(values)
-    motion = read_motion(chosen.motion_generator)
-    predicted = predict(chosen, motion).position[:, :2]
+    predicted = prediction_of(settings(values)).position[:, :2]
     off = np.abs(added[::10][:len(predicted)] - predicted[:len(added[::10])]).max() / late
     print(f'\n{row[0]} from {row[1]:g} s, {row[2]:g} s: closure {closure:.2e} m (1e-2), '
           f'delays 1, 2, 3 us: {late:.3f} m, predicted within {off:.1e} of it')

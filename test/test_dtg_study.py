@@ -43,18 +43,26 @@ def show(cells, unit):
               f'Poisson - Euler vector {c.poisson_deg - c.euler_vector_deg:.1e}')
 
 
-def test_table_of_frequencies(tables):
+def record(figures, tables, name):
+    """Note the cells of a table."""
+    figures.record(f'tuned_gyro.study.{name}', [c.poisson_deg for c in tables[name]], 'deg',
+                   [c.paper_deg for c in tables[name]], 'published')
+
+
+def test_table_of_frequencies(tables, figures):
     """Within 0.012 deg of the two-decimal cells and 0.05 deg of the others."""
     show(tables['frequency'], 'rad/s')
+    record(figures, tables, 'frequency')
     assert [c.value for c in tables['frequency']] == [0.5, 1.0, 2.0, 4.0, 8.0]
     for c in tables['frequency']:
         bound = 0.05 if c.value in (0.5, 8.0) else 0.012
         assert abs(c.poisson_deg - c.paper_deg) <= bound
 
 
-def test_table_of_speeds(tables):
+def test_table_of_speeds(tables, figures):
     """Within 0.01 deg in all eight cells."""
     show(tables['speed'], 'Hz')
+    record(figures, tables, 'speed')
     assert len(tables['speed']) == 8
     for c in tables['speed']:
         assert abs(c.poisson_deg - c.paper_deg) <= 0.01
@@ -84,7 +92,7 @@ def test_exact_propagation_of_the_damped_preset(tables):
     assert off <= 1e-4
 
 
-def test_stability_limits():
+def test_stability_limits(figures):
     """129.4 and 337.4 Hz at 0.75 ms, found by search; the paper says 130 and 337."""
     settings = read('speed')
     assert settings.paper_limits_hz == (130.0, 337.0)
@@ -92,6 +100,7 @@ def test_stability_limits():
     low, high = stability_limits(gyro_at(settings), step_s)
     print(f'\nRK4 at 0.75 ms is stable from {low:.4f} to {high:.4f} Hz; paper '
           f'{settings.paper_limits_hz}')
+    figures.record('tuned_gyro.study.limits', (low, high), 'Hz', (129.4, 337.4), 'specification')
     assert abs(low - 129.4) <= 0.1 and abs(high - 337.4) <= 0.1
     assert stability_limits(gyro_at(settings), step_s, 200.0, 300.0) == (None, None)
 

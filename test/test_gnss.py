@@ -52,7 +52,7 @@ def errors_at_rest(receiver, n):
             np.array([f.v_n for f in fixes]))
 
 
-def test_white_noise_has_its_variances():
+def test_white_noise_has_its_variances(figures):
     """20000 fixes: chi-square at 1e-6 in every axis; lag one and cross correlations at 5 sigma."""
     n = 20000
     noise, slip = (1.5, 2.0, 4.0), (0.05, 0.06, 0.1)
@@ -61,6 +61,8 @@ def test_white_noise_has_its_variances():
     sigma = np.array(noise + slip)
     found = np.sqrt((errors ** 2).mean(axis=0))
     print(f'\nsigma {np.round(found, 4)} of {sigma}')
+    figures.record('gnss.white.position', found[:3], 'm', noise, 'asked')
+    figures.record('gnss.white.velocity', found[3:], 'm/s', slip, 'asked')
     low, high = chi2.ppf(QUANTILE, n), chi2.isf(QUANTILE, n)
     assert ((low < n * (found / sigma) ** 2) & (n * (found / sigma) ** 2 < high)).all()
     u = errors / sigma

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 from scipy.special import j1
-from studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, settings, study
+from studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, prediction_of, settings, study
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.prediction.predict import predict
 
 TABLE = [  # theta, detuning, max |dN|, max |dE|, half a unit of the last digits
     (-30.0, 0.0, 4472.1, 623.94, 0.05, 0.005),
@@ -142,7 +141,7 @@ def test_racetrack_errs_by_metres_at_most(figures):
     added = errors.position - twin.position
     n, e = np.abs(added).max(axis=0)[[1, 0]]
     # the prediction has a step of 0.1 s
-    predicted = predict(settings(RACETRACK)).position
+    predicted = prediction_of(settings(RACETRACK)).position
     off = np.abs(added[::10][:len(predicted)] - predicted[:len(added[::10])]).max() / max(n, e)
     print(f'\nracetrack: |dN| {n:.4f}, |dE| {e:.4f}, predicted within {off:.1e} of it, twin '
           f'{largest(twin).max():.2e} m')

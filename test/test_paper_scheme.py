@@ -33,7 +33,7 @@ def fly(motion, filter_name, windows, gain=0.4, bias=(0.0, 0.0), offset=(0.0, 0.
     return innovations, np.array(left)
 
 
-def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2():
+def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2(figures):
     """
     Perfect data in a flat turn of 1.2 deg/s at 200 m/s: 2 w V = 8.378 m/s^2; corrected: none.
 
@@ -47,6 +47,8 @@ def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2():
     true = [math.hypot(*r.innovation) for r in corrected[1:]]
     expected = 2.0 * math.radians(1.2) * 200.0
     print(f'printed {false[-1]:.4f} m/s^2 (8.378), corrected {max(true):.2e} m/s^2')
+    figures.record('paper_scheme.false_innovation', false[-1], 'm/s^2', expected, '2 w V')
+    figures.record('paper_scheme.corrected_innovation', max(true), 'm/s^2', 0.0)
     assert expected == pytest.approx(8.378, abs=5e-4)
     assert false == pytest.approx([expected] * 3, rel=1e-4)
     rounding = 4 * CYCLES * 2.0 ** -52 * 9.8
@@ -89,7 +91,7 @@ def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
         assert roots(gain).max() == pytest.approx(1.0) and ratio > 0.3
 
 
-def test_the_fastest_gain_of_the_printed_scheme_is_0_172():
+def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
     """The largest root is least where both meet, K = 3 - 2 sqrt 2; it reaches 1 at K = 1."""
     gains = np.linspace(0.001, 1.2, 100000)
     # the larger root of the quadratic, for all gains at once
@@ -97,6 +99,7 @@ def test_the_fastest_gain_of_the_printed_scheme_is_0_172():
     largest = np.maximum(np.abs(a + b), np.abs(a - b)) / 2.0
     best = gains[largest.argmin()]
     print(f'fastest gain {best:.4f}')
+    figures.record('paper_scheme.fastest_gain', best, '', 3.0 - 2.0 * math.sqrt(2.0))
     assert best == pytest.approx(3.0 - 2.0 * math.sqrt(2.0), abs=1e-4)
     np.testing.assert_array_equal(largest < 1.0, gains < 1.0)
 

@@ -40,13 +40,14 @@ DRIFTS = [pytest.param(*case, marks=pytest.mark.slow) if case[0] in ('random 17'
 
 
 @pytest.mark.parametrize('name, values, w', DRIFTS, ids=NAMES)
-def test_measured_drift_is_the_predicted_one(name, values, w):
+def test_measured_drift_is_the_predicted_one(name, values, w, figures):
     """The slope of the inertial attitude error, within 1e-4 + (w dt)^2 / 4 (section 5)."""
     s = settings(values, duration_s=1000.0)
     measured = run_offline(s, twin=False).errors.drift[-1]
     predicted = prediction_of(s).drift
     error = np.linalg.norm(measured - predicted) / np.linalg.norm(predicted)
     bound = 1e-4 + (w * 0.01) ** 2 / 4
+    figures.record(f'prediction.drift_off.{name.replace(" ", "_")}', error, '', bound, 'bound')
     print(f'\n{name}: predicted {predicted * DEG_PER_HOUR} deg/h, measured '
           f'{measured * DEG_PER_HOUR}, off by {error:.2e} (bound {bound:.2e})')
     assert error <= bound

@@ -37,7 +37,7 @@ def readings(values, **more):
 
 @pytest.mark.parametrize('rate', [100.0, 1000.0])
 @pytest.mark.parametrize('frequency', [1.0, 10.0, 30.0])
-def test_delay_signal_of_the_stream(frequency, rate):
+def test_delay_signal_of_the_stream(frequency, rate, figures):
     """
     What the delays add to the readings, relative to its largest value.
 
@@ -51,6 +51,8 @@ def test_delay_signal_of_the_stream(frequency, rate):
     largest = np.abs(closed).max()
     error = np.abs(streamed - closed).max() / largest
     rounding = 8 * 2.2e-16 * rate / largest
+    figures.record(f'stream.delay_signal.{frequency:g}.{rate:g}', error, '', BOUND[frequency],
+                   'bound at 100 Hz')
     print(f'\n{frequency:g} Hz motion, {rate:g} Hz: error {error:.1e} (bound '
           f'{BOUND[frequency]:.0e} + rounding {rounding:.0e})')
     assert error <= BOUND[frequency] + rounding

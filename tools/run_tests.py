@@ -1,0 +1,40 @@
+"""
+Run the tests as CI does, and print how long they took.
+
+Usage: python tools/run_tests.py fast | slow | figures
+
+First what needs no processes of its own, side by side on all cores; then, alone, the tests that
+start nodes. ``figures`` runs the long studies on all cores, one after another.
+"""
+
+import subprocess
+import sys
+import time
+
+SIDE_BY_SIDE = ['-n', 'auto', '--dist', 'loadgroup']
+CALLS = {
+    'fast': [(SIDE_BY_SIDE, 'not slow and not figures and not live'),
+             ([], 'live and not slow and not figures')],
+    'slow': [(SIDE_BY_SIDE, 'slow and not figures and not live'),
+             ([], 'slow and not figures and live')],
+    'figures': [([], 'figures')]}
+# What pytest returns where no test is chosen: without rclpy there are none that start nodes.
+NONE_CHOSEN = 5
+
+
+def main(kind):
+    """Run the calls of a kind, whatever the first one finds; return 1 where a test failed."""
+    start, failed = time.monotonic(), False
+    for words, marks in CALLS[kind]:
+        code = subprocess.run([sys.executable, '-m', 'pytest', 'test', *words, '-m', marks,
+                               '--durations', '20'], check=False).returncode
+        failed |= code not in (0, NONE_CHOSEN)
+    minutes, seconds = divmod(round(time.monotonic() - start), 60)
+    print(f'{kind} tests: {minutes} min {seconds} s in all', flush=True)
+    return int(failed)
+
+
+if __name__ == '__main__':
+    if len(sys.argv) != 2 or sys.argv[1] not in CALLS:
+        sys.exit(__doc__.strip())
+    sys.exit(main(sys.argv[1]))
