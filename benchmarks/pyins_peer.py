@@ -37,8 +37,8 @@ def flight(seconds):
 def ours(truth):
     """Return a function that navigates, and gives latitude, longitude (rad), height at the end."""
     track = np.stack([truth.lat, truth.lon, truth.height], axis=-1)
-    reference = Reference('truth', SampledTrack(truth.t_ns, track), SampledTrack(truth.t_ns, truth.v_n),
-                          SampledTrack(truth.t_ns, truth.q_nb))
+    reference = Reference('truth', *(SampledTrack(truth.t_ns, values)
+                                     for values in (track, truth.v_n, truth.q_nb)))
     imu = RecordedImu(truth.t_ns, truth.omega_ib_b, truth.f_ib_b,
                       np.full((len(truth.t_ns), 4), np.nan))
     settings = build(NavigateSettings, {'initial.attitude': 'reference'})

@@ -16,7 +16,7 @@ SCRIPTS = (
     ('pyins_peer', ['600'], ['3600'], False),
     ('parts', ['600'], ['3600'], False),
     ('bags', ['20000'], ['100000'], False),
-    ('velocity_meter', ['200', '10'], ['2000', '100'], False),
+    ('velocity_meter', ['400', '20'], ['2000', '100'], False),
     ('live_chain', ['--quick'], [], True),
     ('live_recorder', ['10'], ['600'], True),
     ('live_aided', ['20'], ['600'], True))
