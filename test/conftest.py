@@ -8,9 +8,9 @@ import tempfile
 from hypothesis import settings
 from ins_sim.ros.transport.repairs import use_profile
 import pytest
+from support.places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
-pytest_plugins = ('figures', 'pytester')
+pytest_plugins = ('support.figures', 'pytester')
 
 # Before anything imports rclpy: no test talks to another machine, setters check types, and what
 # a test publishes is repaired as soon as what a node does.

@@ -1,0 +1,208 @@
+"""The directions of the imports, and the sizes of files and folders, are those of the design."""
+
+import ast
+import sys
+
+import pytest
+from support.places import ROOT
+
+PACKAGE = ROOT / 'ins_sim'
+FILES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts).removesuffix('.__init__'): path
+         for path in sorted(PACKAGE.rglob('*.py'))}
+LONGEST = 300
+# What numerics has no business with: the edges of the program are elsewhere.
+NOT_IN_CORE = {'argparse', 'logging'}
+LAZY = {'numba'}
+
+
+def imports(name, tree, nodes=None):
+    """Return the absolute names that a module imports, ``from x import y`` as x and x.y."""
+    package = name if FILES[name].name == '__init__.py' else name.rpartition('.')[0]
+    found = set()
+    for node in ast.walk(tree) if nodes is None else nodes:
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ''
+            if node.level:
+                parts = package.split('.')[:len(package.split('.')) - node.level + 1]
+                base = '.'.join([*parts, base]).rstrip('.')
+            found.add(base)
+            found.update(f'{base}.{alias.name}' for alias in node.names)
+    return found
+
+
+def eager(tree):
+    """Yield the nodes that run on import: all but the bodies of functions."""
+    stack = [tree]
+    while stack:
+        node = stack.pop()
+        yield node
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            stack.extend(ast.iter_child_nodes(node))
+
+
+TREES = {name: ast.parse(path.read_text(encoding='utf-8')) for name, path in FILES.items()}
+IMPORTS = {name: imports(name, tree) for name, tree in TREES.items()}
+EAGER = {name: imports(name, tree, eager(tree)) for name, tree in TREES.items()}
+
+
+# Which rooms of ins_sim a room may import, itself apart. This is the only place that lists it.
+EARTH = {'core.numerics', 'core.attitude', 'core.earth'}
+STREAMS = EARTH | {'core.timeseries', 'core.streams'}
+CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
+        'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
+        'core.prediction', 'core.simulation'}
+FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
+                         'graph', 'studies', 'report'}
+MAY_IMPORT = {
+    'settings': set(),
+    'core.numerics': set(),
+    'core.timeseries': set(),
+    'core.attitude': {'core.numerics'},
+    'core.earth': {'core.numerics', 'core.attitude'},
+    'core.streams': EARTH,
+    'core.motion': STREAMS - {'core.streams'},
+    'core.sensors': STREAMS | {'settings'},
+    'core.navigation': STREAMS,
+    'core.aiding': STREAMS | {'settings', 'core.navigation'},
+    'core.postprocessing': EARTH | {'settings', 'core.timeseries', 'core.navigation'},
+    'core.prediction': EARTH | {'settings', 'core.navigation', 'core.motion', 'core.sensors'},
+    'core.simulation': (CORE | {'settings'}) - {'core.postprocessing', 'core.prediction'},
+    'studies': CORE | {'settings'},
+    'messages': {'core.attitude', 'core.timeseries'},
+    'bags': {'messages', 'settings.suggest'},
+    'io': CORE | {'bags', 'messages', 'settings'},
+    'parameter_files': {'settings'},
+    'resources': set(),
+    'graph': {'messages'},
+    'report': CORE | {'settings', 'studies', 'parameter_files'},
+    'ros': FILES_AND_BAGS,
+    'cli': FILES_AND_BAGS | {'ros', '__version__'},
+    '__init__': set(),
+}
+
+
+def room_of(name):
+    """Return the room that a module lies in: 'core.attitude', 'io', 'graph'."""
+    parts = name.split('.')[1:]
+    return '.'.join(parts[:2]) if parts[:1] == ['core'] else parts[0] if parts else '__init__'
+
+
+def inside(*rooms):
+    """Return the names of the modules of some rooms."""
+    return [name for name in FILES
+            if any(f'{name}.'.startswith(f'ins_sim.{room}.') for room in rooms)]
+
+
+def tops(names):
+    """Return the first parts of names."""
+    return {name.partition('.')[0] for name in names}
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_imports_are_those_of_the_table(name):
+    """A module imports its own room and those that MAY_IMPORT names."""
+    room = room_of(name)
+    allowed = MAY_IMPORT.get(room, set()) | {room}
+    for other in IMPORTS[name]:
+        if other.startswith('ins_sim.') and other not in ('ins_sim.core',):
+            # Importing a name of a module is importing that module.
+            known = other if other in FILES else other.rpartition('.')[0]
+            if known != 'ins_sim':
+                assert (room_of(known) in allowed
+                        or known.removeprefix('ins_sim.') in allowed), other
+
+
+@pytest.mark.parametrize('name', inside('core'))
+def test_core_imports_only_numerics(name):
+    """Core knows the standard library, NumPy, SciPy, itself and, inside functions, Numba."""
+    standard = set(sys.stdlib_module_names) - NOT_IN_CORE
+    allowed = standard | {'numpy', 'scipy', 'ins_sim'} | LAZY
+    assert tops(IMPORTS[name]) <= allowed
+    assert not tops(EAGER[name]) & LAZY, 'import numba inside the function that needs it'
+
+
+@pytest.mark.parametrize('name', inside('core'))
+def test_core_opens_no_file(name):
+    """Files are read and written at the edges, by ins_sim.io and ins_sim.bags."""
+    called = {node.func.id for node in ast.walk(TREES[name])
+              if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    assert 'open' not in called
+    assert not tops(IMPORTS[name]) & {'os', 'pathlib', 'io', 'gzip', 'csv', 'tempfile', 'yaml'}
+
+
+@pytest.mark.parametrize('name', inside('settings'))
+def test_settings_need_only_python(name):
+    """A node reads its settings without NumPy."""
+    assert tops(IMPORTS[name]) <= set(sys.stdlib_module_names) | {'ins_sim'}
+
+
+@pytest.mark.parametrize('name', inside('messages'))
+def test_messages_need_only_numpy(name):
+    """Messages are packed without ROS."""
+    assert tops(IMPORTS[name]) <= set(sys.stdlib_module_names) | {'numpy', 'ins_sim'}
+
+
+@pytest.mark.parametrize('name', [name for name in FILES if name not in inside('ros')])
+def test_only_the_room_ros_imports_rclpy_at_once(name):
+    """Without ROS everything but ins_sim.ros can be imported."""
+    assert 'rclpy' not in tops(EAGER[name])
+
+
+@pytest.mark.parametrize('name', [name for name, path in FILES.items()
+                                  if path.name == '__init__.py' and name != 'ins_sim'])
+def test_a_room_holds_only_its_docstring(name):
+    """The file __init__ of a room says what is in the room, and imports nothing."""
+    assert ast.get_docstring(TREES[name])
+    assert len(TREES[name].body) == 1
+
+
+def test_no_class_name_twice():
+    """A name of a class means one thing in the whole package."""
+    found = {}
+    for name, tree in TREES.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, []).append(name)
+    assert {cls: names for cls, names in found.items() if len(names) > 1} == {}
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_imports_are_relative_inside_a_room_and_absolute_across(name):
+    """Every crossing from room to room is visible as an absolute import."""
+    for node in ast.walk(TREES[name]):
+        if isinstance(node, ast.ImportFrom):
+            base = '.'.join(name.split('.')[:-1 * node.level] if FILES[name].name != '__init__.py'
+                            else name.split('.')) if node.level else node.module
+            if base.partition('.')[0] == 'ins_sim' and room_of(name) != '__init__':
+                target = f'{base}.{node.module}' if node.level and node.module else base
+                same = room_of(f'{target}.x') == room_of(name)
+                assert same == bool(node.level), ast.unparse(node)
+
+
+@pytest.mark.parametrize('folder', sorted({path.parent for path in FILES.values()}),
+                         ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_folder_is_a_table_of_contents(folder):
+    """At most 24 entries, in the rooms of core at most 16."""
+    entries = [path for path in folder.iterdir()
+               if path.name not in ('__pycache__', '__init__.py')]
+    most = 16 if 'core' in folder.relative_to(ROOT).parts else 24
+    assert len(entries) <= most
+
+
+def test_there_is_no_import_cycle():
+    """The modules of ins_sim can be sorted so that each imports only earlier ones."""
+    graph = {name: {other for other in EAGER[name] if other in FILES and other != name}
+             for name in FILES}
+    while graph:
+        free = {name for name, needs in graph.items() if not needs & set(graph)}
+        assert free, f'import cycle among {sorted(graph)}'
+        graph = {name: needs for name, needs in graph.items() if name not in free}
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_file_is_short_and_has_a_telling_name(name):
+    """A file that needs more lines, or is named utils, holds more than one thing."""
+    assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= LONGEST
+    assert name.rpartition('.')[2] not in ('utils', 'util', 'helpers', 'misc')

@@ -1,0 +1,205 @@
+"""The package installs with pip and colcon, and the two commands set themselves up."""
+
+from importlib import import_module
+import ast
+import os
+from pathlib import Path
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+
+from ins_sim import __version__, graph, resources
+import pytest
+from support.places import ROOT
+
+MANIFEST = ElementTree.parse(ROOT / 'package.xml').getroot()
+SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
+SCRIPTS = dict(re.findall(r"'(\w+) = (ins_sim[\w.]+:\w+)'", SETUP))
+FIND = ('from ins_sim import resources, __file__ as f; '
+        'print(f); print(resources.config("default")); print(resources.launch("replay"))')
+
+
+def run(command, **options):
+    """Return what a command prints; its failure fails the test with both streams."""
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                            stdin=subprocess.DEVNULL, timeout=600, **options)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result.stdout
+
+
+@pytest.fixture
+def source(tmp_path):
+    """Return a copy of the source tree, for a build leaves files beside the sources."""
+    copy = tmp_path / 'src' / 'ins_sim'
+    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(
+        '.git', '.venv*', 'build', 'install', 'log', '*.egg-info', '__pycache__', 'runs'))
+    return copy
+
+
+@pytest.fixture
+def clean_environment():
+    """Return the environment without the traces that the wheels' start-up hook leaves."""
+    env = {name: value for name, value in os.environ.items() if name not in (
+        '_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LD_LIBRARY_PATH', 'VIRTUAL_ENV', 'PYTHONPATH',
+        'AMENT_PREFIX_PATH')}
+    return env
+
+
+def test_versions_agree():
+    """The manifest of ROS and the package carry one version."""
+    assert MANIFEST.findtext('version') == __version__
+    assert MANIFEST.findtext('name') == 'ins_sim'
+
+
+def test_graph_names_executables():
+    """Each process of the table is an installed executable, started by the same module."""
+    for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER):
+        module, function = SCRIPTS[process.executable].split(':')
+        assert function == process.executable
+        assert graph.command(process)[2:4] == [module, process.executable]
+        assert all(resources.config(name).is_file() for name in process.config)
+    assert graph.MASTER in {process.name for process in graph.PROCESSES}
+
+
+def test_command_passes_names_files_and_values():
+    """The runner of the demo speaks the same ROS arguments as launch."""
+    words = graph.command(graph.PROCESSES[0], ['a.yaml'], [('rate_hz', 10.0)], namespace='/left')
+    assert words[4:] == ['--ros-args', '-r', '__node:=strapdown', '-r', '__ns:=/left',
+                         '--params-file', 'a.yaml', '-p', 'rate_hz:=10.0']
+
+
+def test_scripts_exist():
+    """Each console script names a function that is there."""
+    assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter',
+                            'gnss', 'aided_navigator', 'recorder', 'ins_sim'}
+    for entry in SCRIPTS.values():
+        module, function = entry.split(':')
+        assert callable(getattr(import_module(module), function))
+
+
+def test_missing_configuration_is_named_with_those_there_are():
+    """A wrong name of a configuration is answered with the right ones."""
+    with pytest.raises(FileNotFoundError, match="no config named 'motion_3'; expected one of "
+                                                '.*motion_1, motion_2'):
+        resources.config('motion_3')
+
+
+def test_resources_stand_without_ament(monkeypatch):
+    """Without ROS the configuration is found all the same."""
+    monkeypatch.delenv('AMENT_PREFIX_PATH', raising=False)
+    assert resources.config('default').is_file()
+    monkeypatch.setitem(sys.modules, 'ament_index_python', None)
+    monkeypatch.setitem(sys.modules, 'ament_index_python.packages', None)
+    assert resources.config('default').is_file()
+
+
+def imported_packages():
+    """Return the names of the packages that the modules of ins_sim import."""
+    names = set()
+    for path in (ROOT / 'ins_sim').rglob('*.py'):
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name.partition('.')[0] for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names.add(node.module.partition('.')[0])
+    return names - set(sys.stdlib_module_names) - {'ins_sim'}
+
+
+def test_run_time_needs_five_libraries_and_ros():
+    """What is imported is required at run time, comes with ROS, or is an extra."""
+    required = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL).group(1)
+    assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
+    of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
+    extras = {'pandas', 'numba'}
+    assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
+        of_ros | extras)
+
+
+def test_manifest_depends_on_packages_of_ubuntu_alone():
+    """A release of a ROS distribution may not depend on keys that rosdep takes from PyPI."""
+    names = [element.text for element in MANIFEST if element.tag.endswith('depend')]
+    assert len(names) > 20 and not [name for name in names if name.endswith('-pip')]
+    for library in ('numpy', 'scipy', 'yaml', 'matplotlib', 'rich'):
+        assert f'python3-{library}' in names
+
+
+@pytest.mark.slow
+def test_pip_install(source, tmp_path, clean_environment):
+    """``pip install .`` in a new environment gives the scripts, and finds its configuration."""
+    python = tmp_path / 'venv' / 'bin' / 'python'
+    run([sys.executable, '-m', 'venv', tmp_path / 'venv'], env=clean_environment)
+    run([python, '-m', 'pip', 'install', '--quiet', '--prefer-binary', source],
+        env=clean_environment)
+    for script in SCRIPTS:
+        assert (python.parent / script).is_file()
+    module, config, launch = run([python, '-c', FIND], cwd=tmp_path,
+                                 env=clean_environment).split()
+    for path in (module, config, launch):
+        assert Path(path).is_relative_to(tmp_path / 'venv')
+    run([python.parent / 'ins_sim', '--help'], cwd=tmp_path, env=clean_environment)
+    listed = run([python, '-m', 'pip', 'list', '--format', 'freeze'], env=clean_environment)
+    names = {line.partition('==')[0].lower() for line in listed.split()}
+    print(f'pip install . : {len(names)} packages, {", ".join(sorted(names))}')
+    assert len(names - {'pip', 'setuptools', 'wheel'}) <= 20
+    # The definitions of the messages come with the package.
+    run([python.parent / 'ins_sim', 'simulate', '-p', 'duration_s:=1.0', '-o', 'run', '--bag',
+         'bag'], cwd=tmp_path, env=clean_environment)
+
+
+def test_colcon_build(source, tmp_path):
+    """``colcon build`` puts everything where ``ros2 run`` and the ament index look."""
+    pytest.importorskip('colcon_ros', reason='colcon-ros is not installed')
+    pytest.importorskip('ament_index_python', reason='no ROS: nothing to build upon')
+    env = dict(os.environ)
+    env.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    run([sys.executable, '-m', 'colcon', 'build', '--base-paths', source.parent], cwd=tmp_path,
+        env=env)
+    prefix = tmp_path / 'install' / 'ins_sim'
+    for script in SCRIPTS:
+        assert os.access(prefix / 'lib' / 'ins_sim' / script, os.X_OK)
+    # What sourcing the workspace sets.
+    env['AMENT_PREFIX_PATH'] = f'{prefix}{os.pathsep}{env["AMENT_PREFIX_PATH"]}'
+    site, = (prefix / 'lib').glob('python*/site-packages')
+    env['PYTHONPATH'] = os.pathsep.join([str(site), *filter(None, [env.get('PYTHONPATH')])])
+    module, config, launch = run([sys.executable, '-c', FIND], cwd=tmp_path, env=env).split()
+    for path in (module, config, launch):
+        assert Path(path).is_relative_to(prefix)
+    assert (Path(module).parent / 'bags' / 'message_types.json').is_file()
+    index = ('from ament_index_python.packages import get_package_prefix as find; '
+             'print(find("ins_sim"))')
+    assert run([sys.executable, '-c', index], cwd=tmp_path, env=env).strip() == str(prefix)
+    run([prefix / 'lib' / 'ins_sim' / 'ins_sim', '--help'], cwd=tmp_path, env=env)
+
+
+def bootstrap(source, environment, *command):
+    """Return the finished run of the bootstrap script of a source tree."""
+    return subprocess.run([sys.executable, source / 'tools' / 'bootstrap.py', *command],
+                          env=environment, capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=600)
+
+
+def test_sourced_ros_without_rclpy_is_refused(source, tmp_path, clean_environment):
+    """Wheels are never mixed with the libraries of a sourced ROS."""
+    # A module that cannot be imported hides the rclpy of this environment.
+    (tmp_path / 'rclpy.py').write_text('raise ImportError\n')
+    result = bootstrap(source, {**clean_environment, 'ROS_DISTRO': 'jazzy',
+                                'AMENT_PREFIX_PATH': str(tmp_path), 'PYTHONPATH': str(tmp_path)})
+    assert result.returncode == 1
+    assert 'install ros-jazzy-rclpy' in result.stderr
+    assert not (source / '.venv').exists()
+
+
+@pytest.mark.slow
+def test_bootstrap_recovers_and_needs_no_network_again(source, clean_environment):
+    """A half-made environment is made anew, and a whole one is used as it is."""
+    offline = {**clean_environment, 'PIP_NO_INDEX': '1', 'PIP_CONFIG_FILE': os.devnull}
+    offline.pop('PIP_FIND_LINKS', None)
+    result = bootstrap(source, offline)
+    assert result.returncode == 1 and 'installing failed' in result.stderr
+    assert (source / '.venv').exists()
+    result = bootstrap(source, clean_environment, 'python', '-c', 'import ins_sim')
+    assert result.returncode == 0, result.stderr
+    result = bootstrap(source, offline, 'ins_sim', '--help')
+    assert result.returncode == 0 and 'installing' not in result.stderr

@@ -1,0 +1,148 @@
+"""Gaps, bad stamps and bad samples of a record: what is left of the solution, and what is said."""
+
+from dataclasses import replace
+import math
+
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.postprocessing.imu_record import gaps, ordered, RecordedImu
+from ins_sim.core.postprocessing.reference import Reference, SampledTrack
+from ins_sim import parameter_files
+from support.recorded_imu import end_errors, recorded, run, stamps
+
+SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
+MOTION = make_motion(SETTINGS.motion_generator.motion, SETTINGS.motion_generator.datum,
+                     SETTINGS.motion_generator.earth)
+AIR = {'initial.attitude': 'reference'}
+SECOND = 1_000_000_000
+
+
+def with_gap(first_s=8.0, length_s=0.5):
+    """Return 20 s of record with a gap."""
+    t_ns = stamps(100.0)
+    start = t_ns[0] + round(first_s * SECOND)
+    return t_ns[(t_ns <= start) | (t_ns >= start + round(length_s * SECOND))]
+
+
+def test_a_gap_ends_the_solution():
+    """on_gap stop: the last state is that before the gap, and a note says so."""
+    t_ns = with_gap()
+    got = run(*recorded(t_ns))
+    assert got.states[-1].t_ns[-1] == 9 * SECOND and len(got.states) == 1
+    assert any('gap of 0.5 s from 9.000000000 s: the solution ends there' in n for n in got.notes)
+    assert got.figures['gaps'] == 1
+
+
+def test_a_gap_restarts_from_the_reference():
+    """on_gap restart: a second segment, exact where it begins."""
+    got = run(*recorded(with_gap()), on_gap='restart')
+    assert [s.t_ns[0] for s in got.states] == [SECOND, 9_500_000_000]
+    errors = got.comparisons[0]
+    k = int(np.searchsorted(errors.position.t_ns, 9_500_000_000))
+    assert np.linalg.norm(errors.position.values[k]) < 1e-8
+    assert np.linalg.norm(errors.attitude.values[k]) < 1e-12
+
+
+def test_a_gap_without_a_restart_says_why():
+    """Without attitude in the reference and without a standstill there is no restart."""
+    imu, reference = recorded(with_gap())
+    truth = MOTION.at(imu.t_ns[:1])
+    roll, pitch, heading = _degrees(truth.q_nb[0])
+    got = run(imu, replace(reference, attitude=None), on_gap='restart',
+              initial__attitude='given', initial__roll_deg=roll, initial__pitch_deg=pitch,
+              initial__heading_deg=heading)
+    assert len(got.states) == 1
+    assert any('no restart: no stationary interval' in n for n in got.notes)
+
+
+def test_a_gap_restarts_from_a_standstill_behind_it():
+    """A fix and no attitude: the IMU aligns itself again behind the gap, by gyrocompassing."""
+    lat = 0.7
+    t_ns = stamps(50.0, 60.0, 0.0)
+    t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
+    n = len(t_ns)
+    rate = (0.0, ellipsoid.ROTATION_RATE * math.cos(lat), ellipsoid.ROTATION_RATE * math.sin(lat))
+    imu = RecordedImu(t_ns, np.tile(rate, (n, 1)),
+                      np.tile([0.0, 0.0, ellipsoid.gravity(math.sin(lat), 0.0)], (n, 1)),
+                      np.full((n, 4), np.nan))
+    reference = Reference('fix', SampledTrack(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
+    got = run(imu, reference, on_gap='restart', initial__attitude='align',
+              alignment__longest_s=8.0)
+    assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
+    assert sum('heading by gyrocompassing' in note for note in got.notes) == 2
+    # east is forward: q_nb is the identity
+    assert np.abs(got.states[1].q_nb[-1] - [0.0, 0.0, 0.0, 1.0]).max() < 1e-11
+
+
+def _degrees(q_nb):
+    from ins_sim.core.attitude.angles import to_compass
+    return [math.degrees(float(a)) for a in to_compass(q_nb)]
+
+
+def test_a_gap_is_bridged_by_straight_lines(capsys):
+    """
+    on_gap bridge: the error is that of lines across the gap, and it is said.
+
+    Bound on the attitude: the largest second derivative of the rates (their sinusoids at most
+    0.7 Hz) times T^3 / 12, T = 0.05 s, by the error of the trapezoid.
+    """
+    t_ns = with_gap(length_s=0.05)
+    imu, reference = recorded(t_ns)
+    bridged = run(imu, reference, on_gap='bridge')
+    whole = run(*recorded(stamps(100.0)))
+    cost = abs(end_errors(bridged)[1] - end_errors(whole)[1])
+    rate = np.linalg.norm(imu.omega, axis=1).max()
+    bound = rate * (2 * math.pi * 0.7) ** 2 * 0.05 ** 3 / 12.0
+    with capsys.disabled():
+        print(f'\nbridging 0.05 s costs {cost:.3g} rad (bound {bound:.3g})')
+    assert cost < bound
+    assert len(bridged.states) == 1
+    assert any('1 gaps bridged' in n for n in bridged.notes)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.integers(0, 30), min_size=2, max_size=25))
+def test_as_few_stamps_as_possible_are_dropped(values):
+    """Against the quadratic textbook method; what is left rises."""
+    t_ns = np.array(values, dtype=np.int64)
+    longest = [1] * len(values)
+    for k in range(len(values)):
+        for j in range(k):
+            if values[j] < values[k]:
+                longest[k] = max(longest[k], longest[j] + 1)
+    imu = RecordedImu(t_ns, np.zeros((len(t_ns), 3)), np.zeros((len(t_ns), 3)),
+                      np.full((len(t_ns), 4), np.nan))
+    if max(longest) < 2:
+        with pytest.raises(ValueError, match='expected at least two good ones'):
+            ordered(imu)
+        return
+    kept, losses = ordered(imu)
+    assert (np.diff(kept.t_ns) > 0).all()
+    assert len(kept) == max(longest) == len(values) - losses.out_of_order
+
+
+def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
+    """The solution is the one of the record without them."""
+    imu, reference = recorded(stamps(100.0))
+    clean = np.delete(np.arange(len(imu)), [500, 900])
+    omega, t_ns = imu.omega.copy(), imu.t_ns.copy()
+    omega[500, 1] = np.nan
+    # one stamp far ahead must cost itself alone
+    t_ns[900] += 3600 * SECOND
+    got = run(replace(imu, omega=omega, t_ns=t_ns), reference)
+    expected = run(imu[clean], reference)
+    assert (got.figures['not_finite'], got.figures['out_of_order']) == (1, 1)
+    assert np.array_equal(got.states[0].q_nb, expected.states[0].q_nb)
+    assert list(gaps(got.states[0].t_ns, 3.0)) == []
+
+
+def test_a_solution_that_runs_away_is_cut_and_said():
+    """Degrees per second for radians: no NaN, no traceback."""
+    imu, reference = recorded(stamps(100.0, 300.0))
+    got = run(replace(imu, omega=imu.omega * 57.3, f=imu.f * 9.8 * 1000.0), reference)
+    assert any('runs away' in n for n in got.notes)
+    assert all(np.isfinite(s.q_nb).all() and np.isfinite(s.lat).all() for s in got.states)

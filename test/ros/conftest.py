@@ -1,0 +1,19 @@
+"""Fixtures of the tests of nodes."""
+
+import pytest
+from support.live import Chain
+from support.talker import Talker
+
+
+@pytest.fixture
+def talker(ros_domain):
+    talker = Talker(ros_domain)
+    yield talker
+    talker.close()
+
+
+@pytest.fixture
+def chain(ros_domain, tmp_path):
+    chain = Chain(ros_domain, tmp_path)
+    yield chain
+    chain.end()

@@ -1,0 +1,20 @@
+"""What a node imports at its start: nothing heavy."""
+
+import subprocess
+import sys
+
+import pytest
+from support.places import ROOT
+
+
+@pytest.mark.parametrize('node', ['motion_generator', 'imu_sensor', 'strapdown', 'gnss',
+                                  'velocity_meter', 'aided_navigator'])
+def test_a_node_imports_nothing_heavy(node):
+    """No SciPy, Numba or matplotlib on the way of a node's start."""
+    pytest.importorskip('rclpy')
+    code = (f'import sys, ins_sim.ros.nodes.{node}\n'
+            'heavy = {"scipy", "numba", "matplotlib", "rosbags", "rich"}\n'
+            'print(sorted(heavy & set(sys.modules)))')
+    found = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                           check=True, cwd=ROOT)
+    assert found.stdout.strip() == '[]'

@@ -1,0 +1,77 @@
+"""What a transport drops comes: soon while a node runs, and before it has left."""
+
+import os
+import re
+import signal
+import time
+import xml.etree.ElementTree as ElementTree
+
+from ins_sim import resources
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.messages import topics
+from ins_sim.ros.transport.repairs import use_profile, VARIABLE
+from support.live import Chain, GUARD_S
+import pytest
+
+pytest.importorskip('rclpy')
+
+LENGTH_S = 4
+RATE_HZ = 1000
+
+
+@pytest.fixture
+def chain(ros_domain, tmp_path, monkeypatch):
+    """Yield a Chain whose nodes must find the profile themselves, and end it."""
+    monkeypatch.delenv(VARIABLE)
+    chain = Chain(ros_domain, tmp_path)
+    yield chain
+    chain.end()
+
+
+def test_a_profile_that_the_user_has_named_stays(monkeypatch):
+    """Without one it is ours, and a file."""
+    monkeypatch.setenv(VARIABLE, '/theirs.xml')
+    use_profile()
+    assert os.environ[VARIABLE] == '/theirs.xml'
+    monkeypatch.delenv(VARIABLE)
+    use_profile()
+    assert os.path.isfile(os.environ[VARIABLE])
+
+
+def test_writers_ask_what_readers_miss_every_tenth_of_a_second():
+    """The heartbeat of our profile; Fast DDS alone asks every 3 s."""
+    root = ElementTree.parse(resources.middleware_profile('fastdds')).getroot()
+    period, = (e for e in root.iter() if e.tag.endswith('heartbeatPeriod'))
+    assert {e.tag.split('}')[-1]: e.text for e in period} == {'nanosec': '100000000'}
+
+
+@pytest.mark.live
+def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
+    """
+    A recorder that is held up until the generator would have ended gets everything.
+
+    The segment of shared memory is 512 KiB; what is sent meanwhile is several times that.
+    """
+    wanted = [topic.name for topic in (*topics.TRUTH, topics.CLOCK_TOPIC)]
+    recorder = chain.start_verb('record', *wanted, '-o', tmp_path / 'bag')
+    chain.wait_text(recorder, 'waiting for')
+    generator = chain.start('motion_generator', {
+        'rate_hz': float(RATE_HZ), 'duration_s': float(LENGTH_S), 'publish_clock': 'true'})
+    end, file = time.monotonic() + GUARD_S, tmp_path / 'bag' / 'bag_0.mcap'
+    while not file.exists() or file.stat().st_size < 10000:
+        assert time.monotonic() < end, chain.text(recorder)
+        time.sleep(0.05)
+    recorder.send_signal(signal.SIGSTOP)
+    try:
+        chain.wait_text(generator, 'finished')
+        time.sleep(0.3)
+        running = generator.poll() is None
+    finally:
+        recorder.send_signal(signal.SIGCONT)
+    assert generator.wait(GUARD_S) == 0, chain.text(generator)
+    assert set(chain.end().values()) == {0}
+    text = chain.text(recorder)
+    assert running
+    assert re.findall(r'recorded, (\d+) lost', text) == ['0'] * len(wanted), text
+    with open_bag(tmp_path / 'bag') as bag:
+        assert {s.last_ns for s in bag.spans().values()} == {LENGTH_S * 10**9}

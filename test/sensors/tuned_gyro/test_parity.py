@@ -1,0 +1,93 @@
+"""The parity test: silent while the channels are healthy, loud when one of them is not."""
+
+import numpy as np
+import pytest
+from support.studies import settings
+
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
+from ins_sim.core.sensors.tuned_gyro.parity import parity_windows, ParityTest
+from ins_sim.settings.presets import preset
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.numerics.units import DEG_H
+
+DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
+FAULT = {'gyro.dtg.fault.start_s': 10.0, 'gyro.dtg.fault.end_s': 20.0}
+TABLE = {'motion.kind': 'static'}
+
+
+def windows_of(values, duration_s=30.0):
+    """Return the windows of a run."""
+    s = settings({**DTG, **values}, source='motion', duration_s=duration_s)
+    generator = s.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    imu = ImuSamples.concatenate(sense(s, motion))
+    return parity_windows(s.imu_sensor, PairInstrument(s.imu_sensor), imu)
+
+
+@pytest.mark.parametrize('motion', [
+    TABLE, {'motion.kind': 'two_axis'}, {'motion.kind': 'rocking', 'motion.rocking.axis': 'x'},
+    {'motion.kind': 'sinusoids'}, {'motion.kind': 'aggressive'}])
+@pytest.mark.parametrize('arrangement', ['paper', 'turned'])
+@pytest.mark.parametrize('errors', [{}, preset('tactical_dtg')], ids=['perfect', 'tactical'])
+def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
+    """At rest, turning, rocking and in flight; errors of the preset or none; five seeds."""
+    closest = 0.0
+    for seed in range(5 if errors else 1):
+        found = windows_of({**motion, **errors, 'seed': seed,
+                            'gyro.dtg.arrangement': arrangement})
+        assert len(found) == 30 and not found[:, 3].any()
+        closest = max(closest, (np.abs(found[:, 1]) / found[:, 2]).max())
+    print(f'\n{motion["motion.kind"]}, {arrangement}: at most {closest:.3f} of the threshold')
+
+
+@pytest.mark.parametrize('arrangement, channel, seen', [
+    ('paper', 'gyro_1_y', True), ('paper', 'gyro_2_z', True),
+    ('paper', 'gyro_1_z', False), ('paper', 'gyro_2_y', False),
+    *(('turned', c, True) for c in ('gyro_1_y', 'gyro_1_z', 'gyro_2_y', 'gyro_2_z'))])
+def test_a_fault_is_seen_where_the_parity_can_see_it(arrangement, channel, seen):
+    """50 deg/h on one channel of the tactical preset, from 10 to 20 s."""
+    found = windows_of({**TABLE, **preset('tactical_dtg'), **FAULT, 'seed': 2,
+                        'gyro.dtg.arrangement': arrangement, 'gyro.dtg.fault.channel':
+                            channel, 'gyro.dtg.fault.bias_deg_h': 50.0})
+    inside = (found[:, 0] > 11.0) & (found[:, 0] < 20.0)
+    print(f'\n{arrangement} {channel}: mean parity {found[inside, 1].mean() / DEG_H:.2f} deg/h, '
+          f'threshold {found[inside, 2].mean() / DEG_H:.2f}')
+    assert found[inside, 3].all() == seen
+    assert not found[(found[:, 0] <= 10.0) | (found[:, 0] > 21.0), 3].any()
+
+
+def test_a_dead_channel_is_seen_while_it_turns():
+    """A reading that stays at zero is a fault only of a gyro that turns."""
+    dead = {**FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.scale': 0.0,
+            **preset('tactical_dtg')}
+    turning = windows_of({**dead, 'motion.kind': 'rocking', 'motion.rocking.axis': 'x',
+                          'motion.rocking.frequency_hz': 0.05,
+                          'motion.rocking.amplitude_deg': 30.0})
+    assert turning[(turning[:, 0] > 11.0) & (turning[:, 0] < 14.0), 3].all()
+    assert not windows_of({**dead, **TABLE, 'earth.rotation': False})[:, 3].any()
+
+
+def test_a_fixed_threshold_and_window():
+    """They hold as they are given."""
+    values = {**TABLE, 'gyro.dtg.parity.threshold_deg_h': 2.0, 'gyro.dtg.parity.window_s': 0.5,
+              **FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 2.9}
+    found = windows_of(values)
+    assert len(found) == 60 and np.allclose(found[:, 2], 2.0 * DEG_H)
+    inside = (found[:, 0] > 10.0) & (found[:, 0] < 20.0)
+    # 2.9/sqrt 2 deg/h is beyond 2 deg/h by 2.5 %
+    assert np.allclose(found[inside, 1], 2.9 * DEG_H / np.sqrt(2.0), rtol=1e-6)
+    assert np.array_equal(found[:, 3] == 1.0, inside)
+
+
+def test_before_the_first_window():
+    """Nothing is said, and a reset says nothing again."""
+    s = settings({**DTG, **TABLE}).imu_sensor
+    test = ParityTest(s, PairInstrument(s))
+    for _ in range(2):
+        assert not test.exceeded and test.mean == 0.0 and test.threshold == np.inf
+        for k in range(99):
+            assert not test.push(k, (0.0, 0.0, 0.0), (0.0, 0.0, 9.8), 1.0)
+        assert test.push(99, (0.0, 0.0, 0.0), (0.0, 0.0, 9.8), 1.0) and test.exceeded
+        test.reset()

@@ -1,0 +1,200 @@
+"""Parameters and parameter files: every shipped one loads and runs, every bad one is named."""
+
+from dataclasses import replace
+import runpy
+
+from hypothesis import given, strategies as st
+import pytest
+import yaml
+
+from ins_sim import parameter_files, resources
+from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.by_node import ALL_NAMES
+from ins_sim.settings.by_node import NODES
+from support.studies import run_offline
+from support.places import ROOT
+
+# those of other commands are in test_dtg_study and test_navigate_command
+CONFIG = sorted(p.stem for p in (ROOT / 'config').glob('*.yaml')
+                if p.stem != 'navigate' and not p.stem.startswith('dtg_study_'))
+NUMBERS = [(node, name) for node, cls in NODES.items() for name, f in flatten(cls).items()
+           if f.type is float]
+
+
+def test_default_yaml_is_the_catalogue():
+    """config/default.yaml is what tools/make_config.py writes, and names every key."""
+    documents = runpy.run_path(str(ROOT / 'tools' / 'make_config.py'))['documents']()
+    for name, text in documents.items():
+        assert (ROOT / 'config' / name).read_text() == text
+    made = documents['default.yaml']
+    settings = parameter_files.read([resources.config('default')])
+    for node, cls in NODES.items():
+        assert getattr(settings, node) == cls()
+        for name in flatten(cls):
+            assert f' {name.rsplit(".", 1)[-1]}:' in made
+
+
+@pytest.mark.parametrize('name', [name for name in CONFIG if name != 'default'])
+def test_an_overlay_wins_over_the_default(name):
+    """For ROS a key of a node in default.yaml wins over the same key in /** of a later file."""
+    default, overlay = (yaml.safe_load(resources.config(n).read_text()) for n in ('default', name))
+
+    def names(section, prefix=''):
+        for key, value in section.items():
+            yield from names(value, f'{prefix}{key}.') if isinstance(value, dict) else (
+                prefix + key,)
+    of_nodes = {key for node, section in default.items() if node != '/**'
+                for key in names(section['ros__parameters'])}
+    shared = overlay.get('/**', {'ros__parameters': {}})['ros__parameters']
+    assert not set(names(shared)) & of_nodes
+
+
+@pytest.mark.parametrize('name', CONFIG)
+def test_every_shipped_file_runs(name, shared_flight):
+    """Each overlay over the default runs for two seconds offline."""
+    assignments = ['duration_s:=2.0']
+    if name == 'recorded_flight':
+        assignments.append(f'motion.recording.path:="{shared_flight}"')
+    settings = parameter_files.read([resources.config('default'), resources.config(name)],
+                                    assignments)
+    assert len(run_offline(settings).errors) == 201
+    alone = parameter_files.read([resources.config(name)], assignments)
+    assert alone == settings
+
+
+@pytest.fixture
+def shared_flight(request):
+    """Return the recorded flight where the overlay needs it."""
+    if request.node.callspec.params['name'] != 'recorded_flight':
+        return None
+    return request.getfixturevalue('shared_data') / 'flights' / 'cruise_gv_acclip_rf01.csv.gz'
+
+
+def test_dump_and_read_are_inverse(tmp_path):
+    """The parameters written beside a run give the run again."""
+    settings = parameter_files.read([resources.config('aggressive')], ['rate_hz:=37.5'])
+    path = tmp_path / 'p.yaml'
+    path.write_text(parameter_files.dump(settings))
+    assert parameter_files.read([path]) == settings
+    for node in NODES:
+        one = getattr(settings, node)
+        assert build(type(one), values_of(one)) == one
+
+
+BAD_ASSIGNMENTS = [
+    ('gyro.delay_us.w:=1', "unknown parameter 'gyro.delay_us.w'; the nearest known one is "
+                           "'gyro.delay_us."),
+    ('gyro.dely_us.x:=1', "the nearest known one is 'gyro.delay_us.x'"),
+    ('rate_hz:=-100.0', 'motion_generator: rate_hz is -100 Hz; expected 0.01 to 20000 Hz'),
+    ('gyro.delay_us.x:=.nan', 'imu_sensor: gyro.delay_us.x is nan; expected a finite number'),
+    ('datum.latitude_deg:=91', 'datum.latitude_deg is 91 deg; expected -89.9 to 89.9 deg'),
+    ('gyro.delay_us.x:=2e6', 'gyro.delay_us.x is 2e+06 us; expected -1e+06 to 1e+06 us'),
+    ('rate_hz:=fast', "rate_hz is 'fast'; expected a number"),
+    ('rate_hz:=true', 'rate_hz is True; expected a number'),
+    ('output_every:=1.5', 'output_every is 1.5; expected a whole number'),
+    ('earth.rotation:=1', 'earth.rotation is 1; expected true or false'),
+    ('motion.kind:=rockng', "motion.kind is 'rockng'; expected one of static, "),
+    ('initial.position_error_m:=[1.0, 2.0]', 'has 2 entries; expected 3'),
+    ('initial.position_error_m:=3.0', 'expected a list'),
+    ('pacing.window:=2001', 'pacing.window is 2001 steps; expected 1 to 2000 steps'),
+    ('topics.depth:=100', 'pacing.window is 200; expected at most topics.depth, 100'),
+    ('motion.kind:=recording', 'motion.recording.path is empty'),
+    ('rate_hz=5', "-p 'rate_hz=5' has no \":=\"; expected NAME:=VALUE"),
+    ('rate_hz:=[', 'is not YAML'),
+]
+
+
+@pytest.mark.parametrize('assignment, sentence', BAD_ASSIGNMENTS)
+def test_bad_assignments(assignment, sentence):
+    """One sentence that names key, value and expectation."""
+    with pytest.raises(ValueError) as error:
+        parameter_files.read([], [assignment])
+    assert sentence in str(error.value)
+    assert '\n' not in str(error.value)
+
+
+BAD_FILES = [
+    (b'', 'holds no parameters'), (b'[]', 'holds no parameters'), (b'a: [', 'is not YAML'),
+    (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
+    (b'strapdown:\n  rate_hz: 1.0', 'expects exactly one mapping, "ros__parameters"'),
+    (b'strapdown:\n  ros__parameters: {gyro: {delay_us: {x: 1.0}}}',
+     "unknown parameter 'gyro.delay_us.x'"),
+    (b'strapdown:\n  ros__parameters: {rate_hz: .inf}', 'rate_hz is inf; expected a finite'),
+    ('strapdown: ö'.encode('latin-1'), 'is not UTF-8 text')]
+
+
+@pytest.mark.parametrize('content, sentence', BAD_FILES)
+def test_bad_files(tmp_path, content, sentence):
+    """One sentence that names the file."""
+    path = tmp_path / 'bad.yaml'
+    path.write_bytes(content)
+    with pytest.raises(ValueError) as error:
+        parameter_files.read([path])
+    assert sentence in str(error.value)
+    assert '\n' not in str(error.value)
+
+
+def test_what_ros_allows_is_allowed(tmp_path):
+    """ROS' own keys pass, sections of a namespace count, 1e-3 and 100 are numbers."""
+    path = tmp_path / 'ok.yaml'
+    path.write_text('/**:\n  ros__parameters: {use_sim_time: true, rate_hz: 50}\n'
+                    '/robot/imu_sensor:\n  ros__parameters: {gyro: {delay_us: {x: 1e-3}}}\n')
+    settings = parameter_files.read([path])
+    assert settings.strapdown.rate_hz == 50.0
+    assert settings.imu_sensor.gyro.delay_us.x == 0.001
+
+
+@given(st.sampled_from(NUMBERS), st.floats())
+def test_any_number_is_taken_or_refused_in_a_sentence(key, value):
+    """No value gets past its bounds, and none raises anything but ValueError."""
+    node, name = key
+    f = flatten(NODES[node])[name]
+    low, high = f.metadata['low'], f.metadata['high']
+    try:
+        settings = build(NODES[node], {name: value})
+    except ValueError as error:
+        assert str(error).startswith(name) or name.split('.')[-1] in str(error)
+        assert not low <= value <= high
+    else:
+        assert values_of(settings)[name] == value and low <= value <= high
+
+
+def test_every_number_has_bounds_and_a_doc():
+    """The descriptors that ROS shows are complete."""
+    for cls in NODES.values():
+        for name, f in flatten(cls).items():
+            assert f.metadata['doc'], name
+            if f.type in (int, float):
+                assert f.metadata['low'] is not None, name
+    assert len(ALL_NAMES) > 60
+
+
+def test_harmonics_need_as_many_phases():
+    """A list of phases that does not fit is refused when the motion is made."""
+    settings = parameter_files.read([], ['motion.kind:=harmonics', 'duration_s:=1.0',
+                                         'motion.harmonics.psi_deg:=[1.0]'])
+    with pytest.raises(ValueError, match='psi_phase_deg has 3 entries; expected 1'):
+        run_offline(settings)
+
+
+def test_endless_and_too_long_runs_are_refused(shared_data):
+    """An offline run has a length, and a recording an end."""
+    settings = parameter_files.read([], ['duration_s:=0.0'])
+    with pytest.raises(ValueError, match='duration_s is 0, endless'):
+        run_offline(settings)
+    path = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
+    settings = parameter_files.read([], ['motion.kind:=recording', 'duration_s:=900.0',
+                                         f'motion.recording.path:="{path}"'])
+    with pytest.raises(ValueError, match='expected at most .* s, the end of the recording'):
+        run_offline(settings)
+    generator = replace(settings.motion_generator, duration_s=0.5)
+    assert len(run_offline(replace(settings, motion_generator=generator)).errors) == 51
+
+
+def test_an_assignment_may_name_its_node():
+    """NODE:NAME:=VALUE as ROS has it reaches that node alone; an unknown node is said."""
+    settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
+    assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
+    assert settings.simulation.imu_sensor.seed == 0
+    with pytest.raises(ValueError, match="unknown parameter 'meter:seed'"):
+        parameter_files.read_aided([], ['meter:seed:=7'])

@@ -1,0 +1,1 @@
+"""What tests share: settings, flights, bags, node processes, figures."""

@@ -1,0 +1,164 @@
+"""Node processes and a listener for the tests that talk over DDS."""
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import Writer
+from support.places import ROOT
+
+# How long tests wait for what must come. Only a hang takes as long, so a busy machine fails none.
+GUARD_S = 120.0
+
+
+class Chain:
+    """Node processes of one ROS domain; ``texts()`` ends them and gives what they wrote."""
+
+    def __init__(self, domain, folder):
+        self.environment = {**os.environ, 'ROS_DOMAIN_ID': str(domain),
+                            'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+                            'PYTHONPATH': str(ROOT)}
+        self._folder = Path(folder)
+        self.processes = {}
+
+    def start(self, node, parameters=(), arguments=()):
+        """Start a node with {name: value} parameters and further ROS arguments."""
+        command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
+        for name, value in dict(parameters).items():
+            command += ['-p', f'{name}:={value}']
+        return self.run(node, command)
+
+    def start_verb(self, *words):
+        """Start a verb of ``ins_sim``."""
+        words = [str(word) for word in words]
+        return self.run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words])
+
+    def run(self, name, command):
+        """Start any command."""
+        key = f'{name}_{len(self.processes)}'
+        with open(self._folder / key, 'wb') as log:
+            self.processes[key] = subprocess.Popen(command, env=self.environment, stdout=log,
+                                                   stderr=log)
+        return self.processes[key]
+
+    def text(self, process):
+        """Return what a process has written so far."""
+        key = next(k for k, p in self.processes.items() if p is process)
+        return (self._folder / key).read_text()
+
+    def wait_text(self, process, part, timeout_s=GUARD_S):
+        """Wait until a process has written this."""
+        end = time.monotonic() + timeout_s
+        while part not in self.text(process):
+            assert time.monotonic() < end, f'{part!r} not in: {self.text(process)}'
+            time.sleep(0.05)
+
+    def end(self):
+        """Interrupt what still runs, and return the exit codes."""
+        for process in self.processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        try:
+            return {key: p.wait(GUARD_S) for key, p in self.processes.items()}
+        finally:
+            for process in self.processes.values():
+                process.kill()
+
+
+def wait_handlers(process, timeout_s=GUARD_S):
+    """Wait until a process catches SIGTERM: before that no program can end cleanly."""
+    end = time.monotonic() + timeout_s
+    while time.monotonic() < end:
+        for line in Path(f'/proc/{process.pid}/status').read_text().splitlines():
+            if line.startswith('SigCgt:') and int(line.split()[1], 16) >> 14 & 1:
+                return
+        time.sleep(0.002)
+    raise TimeoutError(f'no handler of SIGTERM within {timeout_s} s')
+
+
+class Listener:
+    """
+    Hears Topics as {topic name: {stamp_ns: doubles}} in a context of its own; raw: their bytes.
+
+    It acknowledges as 'listener' what it has heard on all of them.  ``repeats`` counts messages
+    whose stamp was heard before.
+    """
+
+    def __init__(self, domain, wanted, namespace=''):
+        import rclpy
+        from ins_sim.ros.transport.qos import ack_publisher
+        from ins_sim.ros.transport.backlog import HandQueue
+        self.context = rclpy.Context()
+        self.context.init(domain_id=domain)
+        self.node = rclpy.create_node('listener', context=self.context, namespace=namespace)
+        self._queues = [(HandQueue(self.node, topic, 100000), topic.reader(), topic.name)
+                        for topic in wanted]
+        self.heard = {topic.name: {} for topic in wanted}
+        self.raw = {topic.name: {} for topic in wanted}
+        self.repeats = 0
+        self._ack, self._publisher = Writer(topics.HEADER, 'listener'), ack_publisher(self.node)
+
+    def poll(self):
+        """Take what has come."""
+        for queue, reader, name in self._queues:
+            while (data := queue.take()) is not None:
+                stamp_ns, *runs = reader.read(data)
+                # the last one heard stands last, be it a repeated stamp of a run that starts anew
+                self.repeats += self.heard[name].pop(stamp_ns, None) is not None
+                self.heard[name][stamp_ns] = sum(runs, ())
+                self.raw[name][stamp_ns] = data
+        if all(self.heard.values()):
+            common = min(next(reversed(stamps)) for stamps in self.heard.values())
+            self._publisher.publish(self._ack.pack(common))
+
+    def poll_until(self, condition, timeout_s=GUARD_S):
+        """Take what comes until the condition holds."""
+        end = time.monotonic() + timeout_s
+        while not condition():
+            assert time.monotonic() < end, {k: len(v) for k, v in self.heard.items()}
+            self.poll()
+            time.sleep(0.02)
+
+    def poll_for(self, length_s):
+        """Take what comes in this time: longer than a dropped message takes to come."""
+        end = time.monotonic() + length_s
+        self.poll_until(lambda: time.monotonic() > end)
+
+    def spin_until(self, condition, timeout_s=GUARD_S):
+        """Serve the node's ordinary subscriptions and clients until the condition holds."""
+        from rclpy.executors import SingleThreadedExecutor
+        executor = SingleThreadedExecutor(context=self.context)
+        executor.add_node(self.node)
+        end = time.monotonic() + timeout_s
+        while not condition():
+            assert time.monotonic() < end, 'timeout'
+            executor.spin_once(timeout_sec=0.1)
+        executor.remove_node(self.node)
+        executor.shutdown()
+
+    def call(self, cls, name, request=None):
+        """Call a service and return the response."""
+        client = self.node.create_client(cls, name)
+        assert client.wait_for_service(GUARD_S)
+        future = client.call_async(request or cls.Request())
+        self.spin_until(future.done)
+        self.node.destroy_client(client)
+        return future.result()
+
+    def diagnostics(self):
+        """Return a list that grows by (node, level, message) while the node spins."""
+        from diagnostic_msgs.msg import DiagnosticArray
+        seen = []
+        self.node.create_subscription(
+            DiagnosticArray, '/diagnostics',
+            lambda array: seen.extend((s.name, s.level, s.message) for s in array.status), 10)
+        return seen
+
+    def close(self):
+        """Leave the domain."""
+        self.node.destroy_node()
+        self.context.shutdown()

@@ -1,0 +1,86 @@
+"""Settings of the studies the tests share, and their runs."""
+
+from concurrent.futures import ProcessPoolExecutor
+from functools import lru_cache
+import multiprocessing
+import os
+
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.io.motion import read_motion
+from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.inertial import sense, simulate
+from ins_sim.settings.simulation import SimulationSettings
+
+DEG_PER_HOUR = 206264.806
+
+MOTION_1 = {'motion.kind': 'rocking', 'motion.psi_deg': 45.0, 'motion.theta_deg': 0.0,
+            'gyro.delay_us.x': 1.0}
+MOTION_2 = {'motion.kind': 'two_axis', 'gyro.delay_us.y': 1.0}
+FLIGHT = {'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0, 'gyro.delay_us.y': 1.0,
+          'gyro.delay_us.x': 2.0, 'gyro.delay_us.z': 3.0}
+
+
+def settings(values=None, **more):
+    """Return Settings of {dotted name: value}; double underscores in keywords are dots."""
+    values = {'source': 'motion', **(values or {}),
+              **{k.replace('__', '.'): v for k, v in more.items()}}
+    known = {node: flatten(cls) for node, cls in NODES.items()}
+    unused = set(values) - set().union(*known.values())
+    assert not unused, unused
+    return SimulationSettings(**{
+        node: build(cls, {k: v for k, v in values.items() if k in known[node]})
+        for node, cls in NODES.items()})
+
+
+def streamed(s):
+    """Return the ImuSamples of a run through the stream, and its truth as push takes it."""
+    generator = s.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    expected = ImuSamples.concatenate(sense(s, motion))
+    frame, truth = MapFrame(generator.datum, True), motion.at(expected.t_ns)
+    return expected, list(zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
+                              truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))
+
+
+def run_offline(chosen, twin=True):
+    """Return the SimulationResult of SimulationSettings."""
+    return simulate(chosen, read_motion(chosen.motion_generator), twin)
+
+
+def prediction_of(chosen):
+    """Return the Prediction of SimulationSettings."""
+    return predict(chosen, read_motion(chosen.motion_generator))
+
+
+def study(values, twin=True):
+    """
+    Return errors and twin errors (or None) of the run of {dotted name: value}.
+
+    The newest few are kept: tests that look at the same run, which carry the same xdist_group,
+    compute it once.
+    """
+    return _study(tuple(sorted(values.items())), twin)
+
+
+@lru_cache(maxsize=3)
+def _study(values, twin):
+    chosen = settings(dict(values))
+    result = run_offline(chosen, twin)
+    return result.errors, result.twin
+
+
+def spread(function, *arguments):
+    """
+    Return what a function gives for each of the arguments, computed on all cores.
+
+    A worker of pytest-xdist has its neighbours on the other cores and computes one by one.
+    """
+    if 'PYTEST_XDIST_WORKER' in os.environ:
+        return list(map(function, *arguments))
+    # Forked: a function of a test module has no name that a new process could import.
+    with ProcessPoolExecutor(mp_context=multiprocessing.get_context('fork')) as pool:
+        return list(pool.map(function, *arguments))
