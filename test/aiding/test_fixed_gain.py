@@ -88,7 +88,10 @@ def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
     if gain < 1.0:
         assert ratio < 3.0 * len(left) * roots(gain).max() ** (len(left) - 1) + 0.02
     else:
-        assert roots(gain).max() == pytest.approx(1.0) and ratio > 0.3
+        # the roots are +-i: after three periods of four windows the error is what it was, but for
+        # 1 % a window
+        assert roots(gain).max() == pytest.approx(1.0)
+        assert ratio == pytest.approx(1.0, abs=0.01 * len(left))
 
 
 def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):

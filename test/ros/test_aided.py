@@ -16,7 +16,7 @@ from ins_sim.messages.convert import aided_fix_one, aided_odometry_one
 from support.live import Chain, Listener
 import numpy as np
 import pytest
-from support.stream import DT, SECOND, Stream
+from support.stream import DT, offline_fixes, SECOND, Stream
 from support.aided_streams import chosen_settings, VALUES
 
 pytest.importorskip('rclpy')
@@ -66,7 +66,7 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    Every topic to the rounding of truth and solution in Cartesian messages, as in test_live_graph.
+    Every topic to the rounding of truth and solution in Cartesian messages, as in test_graph.
 
     Then the same bits with the nodes started in another order on a busy machine, whoever waits
     for whom, and once more when the generator goes back to sample 0 on the way.
@@ -125,7 +125,6 @@ def send_both(stream, first, stop):
 
 def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path):
     """After 5 s the navigator says so and goes on; when records come it waits for them again."""
-    from test_live_meter import offline
     stream = Stream(ros_domain, tmp_path, (topics.AIDED_ERRORS[1],),
                     {'motion.kind': 'racetrack'}, ALONE)
     values = {'window.cycles': 100, 'limits.height_max_m': 2e4}
@@ -141,7 +140,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         stream.wait_ack(150 * DT)
         stream.listener.poll_until(lambda: 150 * DT in errors)
         stream.wait_diagnosis('going on without velocity_meter')
-        fixes = offline(stream, np.arange(0, 301) * DT, values)
+        fixes = offline_fixes(stream, np.arange(0, 301) * DT, values)
         # wrong by 5 m/s, so that it shows
         late = replace(fixes[0], velocity=(fixes[0].velocity[0] - 5.0, fixes[0].velocity[1]))
         stream.send_bytes(topics.METER_RECORD, velocity_record.pack(late, 0))

@@ -1,13 +1,10 @@
 """The node velocity_meter by itself: its records are the fixes of the core, bit for bit."""
 
-from ins_sim.settings.catalogue import build
-from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
-from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.messages import topics, velocity_record
 from support.live import Chain
 import numpy as np
 import pytest
-from support.stream import DT, SECOND, Stream
+from support.stream import DT, offline_fixes, SECOND, Stream
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
@@ -30,16 +27,6 @@ class Record:
 
 
 HEARD = (Record, topics.METER_VELOCITY)
-
-
-def offline(stream, stamps_ns, values, with_ins=True):
-    """Return the VelocityFixes of the core from the same odometry, the INS being the truth."""
-    meter, fixes = VelocityMeter(build(VelocityMeterSettings, values)), []
-    for t_ns, r_m, q_mb, v_b, _ in stream.odometry(stamps_ns):
-        fixes += meter.push_truth(t_ns, v_b, stream.frame.geodetic_one(r_m, q_mb, v_b)[2])
-        if with_ins:
-            fixes += meter.push_ins(t_ns, v_b)
-    return fixes
 
 
 def records(stream):
@@ -73,7 +60,7 @@ def test_the_records_are_the_fixes_of_the_core(mode, ros_domain, tmp_path):
         assert 3 * SECOND not in stream.heard[Record.name]
         stream.send(stamps[304:])
         stream.wait_counts({Record: 6, topics.METER_VELOCITY: 6})
-        expected = offline(stream, stamps, values)
+        expected = offline_fixes(stream, stamps, values)
         assert repr(records(stream)) == repr(expected) and len(expected) == 6
         assert all(f.valid and f.arrival_ns == f.end_ns + 50_000_000 for f in expected)
         assert len({f.tan_alpha for f in expected}) == 6
@@ -148,7 +135,7 @@ def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
         stamps = np.arange(0, 401) * DT
         stream.send(stamps[1:])
         stream.wait_counts({Record: 4, topics.METER_VELOCITY: 2})
-        expected = offline(stream, stamps, values, with_ins=False)
+        expected = offline_fixes(stream, stamps, values, with_ins=False)
         assert repr(records(stream)) == repr(expected)
         assert [f.valid for f in expected] == [True, False, False, True]
         stream.listener.spin_until(lambda: said.get('windows') == '4')

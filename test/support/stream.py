@@ -4,8 +4,10 @@ from dataclasses import replace
 import time
 
 from ins_sim.settings.catalogue import build
+from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import LAYOUTS
@@ -99,3 +101,13 @@ class Stream:
         for process in self.chain.processes.values():
             assert 'Traceback' not in self.chain.text(process), self.chain.text(process)
         return codes
+
+
+def offline_fixes(stream, stamps_ns, values, with_ins=True):
+    """Return the VelocityFixes of the core from the same odometry, the INS being the truth."""
+    meter, fixes = VelocityMeter(build(VelocityMeterSettings, values)), []
+    for t_ns, r_m, q_mb, v_b, _ in stream.odometry(stamps_ns):
+        fixes += meter.push_truth(t_ns, v_b, stream.frame.geodetic_one(r_m, q_mb, v_b)[2])
+        if with_ins:
+            fixes += meter.push_ins(t_ns, v_b)
+    return fixes

@@ -1,0 +1,40 @@
+"""The tests are a house too: short files, small folders, nothing timed, one place to share."""
+
+import ast
+
+import pytest
+from support.places import ROOT
+
+TESTS = ROOT / 'test'
+FILES = {str(path.relative_to(TESTS)): path for path in sorted(TESTS.rglob('*.py'))}
+FOLDERS = sorted({path.parent for path in FILES.values()})
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_a_file_is_short(name):
+    """At most 300 lines, as everywhere."""
+    assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= 300
+
+
+@pytest.mark.parametrize('folder', FOLDERS, ids=lambda folder: str(folder.relative_to(ROOT)))
+def test_a_folder_is_a_table_of_contents(folder):
+    """At most 24 entries."""
+    assert len([path for path in folder.iterdir() if path.name != '__pycache__']) <= 24
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_nothing_is_imported_from_a_test_and_no_path_is_set(name):
+    """What tests share stands in test/support; sys.path is that of setup.cfg."""
+    tree = ast.parse(FILES[name].read_text(encoding='utf-8'))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            assert not any(part.startswith('test_') for part in (node.module or '').split('.'))
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            assert (node.value.id, node.attr) != ('sys', 'path')
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_nothing_is_timed(name):
+    """Speed is measured by benchmarks; a clock in a test may only guard against a hang."""
+    text = FILES[name].read_text(encoding='utf-8')
+    assert 'perf_' + 'counter' not in text and 'time.time' + '()' not in text
