@@ -93,3 +93,16 @@ def test_links_of_the_readme_lead_somewhere():
     """Relative links name files that are there."""
     for link in re.findall(r'\]\(([^)#:]+)\)', README):
         assert (ROOT / link).exists(), link
+
+
+def test_what_docstrings_cite_can_be_opened():
+    """Cited headings of docs/theory.md exist, and nothing cites a file that is not shipped."""
+    headings = set(re.findall(r'^## (.+)$', (ROOT / 'docs' / 'theory.md').read_text('utf-8'),
+                              re.MULTILINE))
+    cited = set()
+    for path in [*(ROOT / 'ins_sim').rglob('*.py'), *(ROOT / 'config').glob('*.yaml')]:
+        # A citation may go on in the next line, of a comment too.
+        text = re.sub(r'\s+#?\s*', ' ', path.read_text(encoding='utf-8'))
+        cited |= set(re.findall(r'docs/theory\.md, "([^"]+)"', text))
+        assert not re.search(r'\bspec/\w', text), path
+    assert cited and cited <= headings

@@ -2,10 +2,8 @@
 Orientation from body rates by three algorithms: Poisson's equation, Euler vector, quaternion.
 
 Each algorithm advances the orientation by one rotation vector. The quaternion algorithm is exact
-for
-a rotation about a fixed axis; the other two integrate their differential equation by one step of
-RK4
-(docs/theory.md, "Orientation algorithms").
+for a rotation about a fixed axis; the other two integrate their differential equation by one step
+of RK4 (docs/theory.md, "Dynamically tuned gyro", Orientation).
 """
 
 import math

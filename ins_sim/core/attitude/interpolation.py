@@ -2,8 +2,7 @@
 Interpolation of sampled motion: Hermite and Newton polynomials, and quaternions between samples.
 
 ``hermite`` and ``newton`` reconstruct a continuous motion from streamed truth without looking
-ahead
-(docs/theory.md, "Delayed channels").
+ahead (docs/theory.md, "Streamed truth").
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """
 Continuous motion from streamed truth, without looking ahead.
 
-See docs/theory.md, "Delayed channels".
+See docs/theory.md, "Streamed truth".
 """
 
 from collections import deque

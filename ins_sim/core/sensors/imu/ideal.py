@@ -1,7 +1,7 @@
 """
 The ideal inertial measurement unit whose channels are late.
 
-See docs/theory.md, "Delayed channels".
+See docs/theory.md, "The late gyro".
 """
 
 import math
