@@ -6,7 +6,7 @@ import re
 from ins_sim.settings.aided_navigator import FILTERS
 import pytest
 
-PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'extending_filter.md'
+PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'extending_filter.md'
 
 
 @pytest.fixture
