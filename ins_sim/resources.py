@@ -3,6 +3,8 @@
 from pathlib import Path
 import sys
 
+from ins_sim.settings.suggest import nearest
+
 PACKAGE = 'ins_sim'
 
 
@@ -59,6 +61,8 @@ def _find(folder, name, suffix):
             return path
     known = sorted({path.name.removesuffix(suffix) for directory in share_directories()
                     for path in (directory / folder).glob(f'*{suffix}')})
-    raise FileNotFoundError(f'no {folder} named {name!r}; ' + (
-        'expected one of ' + ', '.join(known) if known else
-        'none was installed in ' + ', '.join(str(path) for path in share_directories())))
+    if not known:
+        raise FileNotFoundError(f'no {folder} named {name!r}; none was installed in '
+                                + ', '.join(str(path) for path in share_directories()))
+    raise FileNotFoundError(f'no {folder} named {name!r}; expected one of {", ".join(known)} '
+                            f'(nearest: {nearest(name, known)})')

@@ -3,7 +3,7 @@
 
 def nearest(name, known):
     """Return the known text that is most like name."""
-    # on the way of an error only, and off the way of a node's start
+    # Imported only when there is an error to report: nodes start faster without it.
     from difflib import get_close_matches
     return get_close_matches(str(name), sorted(known), n=1, cutoff=0.0)[0]
 

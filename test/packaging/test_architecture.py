@@ -74,7 +74,7 @@ MAY_IMPORT = {
     'bags': {'messages', 'settings.suggest'},
     'io': CORE | {'bags', 'messages', 'settings'},
     'parameter_files': {'settings'},
-    'resources': set(),
+    'resources': {'settings.suggest'},
     'graph': {'messages'},
     'report': CORE | {'settings', 'studies', 'parameter_files'},
     'ros': FILES_AND_BAGS,
