@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ins_sim import parameter_files, resources
 from ins_sim.bags.storages import is_bag
@@ -15,10 +14,29 @@ from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.io.published import read_imu
 from ins_sim.report import allan, allan_figure, noise_terms, storage
 from ins_sim.studies.at_rest import resting_record
+from . import arguments
+from .progress import ProgressBar
 
 MARK = 'allan.json'
 DURATION_S = 10800.0
 EXPECTED = 'expected noise, such as that of "--params-file imu_tactical_fog"'
+DESCRIPTION = ('Show Allan deviations and the noise coefficients fitted to them: of a run of '
+               '"simulate", of the Imu messages of a bag, or, without SOURCE, of the instrument '
+               'of the parameters simulated at rest.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    parser.add_argument('source', nargs='?', default=None, metavar='SOURCE',
+                        help='folder of a run or of a rosbag2 bag')
+    arguments.add_settings(parser)
+    parser.add_argument('--topic', default=None, metavar='NAME',
+                        help='topic of the bag, where it has more than one of sensor_msgs/msg/Imu')
+    parser.add_argument('--duration', type=float, default=None, metavar='S',
+                        help='length of the simulated record, s (default: 10800)')
+    parser.add_argument('-o', '--output', default='ins_sim_allan', metavar='DIR',
+                        help='folder of the two figures (default: %(default)s)')
+    parser.add_argument('--force', action='store_true', help='replace the figures in DIR')
 
 
 def run(chosen):
@@ -91,9 +109,8 @@ def _simulated(settings, length_s, console):
         raise ValueError(f'--duration is {length_s:g} s; expected {allan.LEAST * dt_s:g} to 1e+07 '
                          's')
     blocks = []
-    with Progress(TextColumn('simulating'), BarColumn(), TextColumn('{task.percentage:>3.0f} %'),
-                  TimeRemainingColumn(), console=console, transient=True) as progress:
-        task = progress.add_task('', total=length_s)
+    with ProgressBar(console) as progress:
+        task = progress.add_task('simulating', total=length_s)
         for block in resting_record(settings, length_s):
             blocks.append(block)
             progress.update(task, advance=len(block.t_ns) * dt_s)

@@ -8,7 +8,6 @@ import os
 import signal
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.motion.factory import make_motion
@@ -17,8 +16,29 @@ from ins_sim.report import filter_study as report
 from ins_sim.report import storage
 from ins_sim.settings.aided_navigator import FILTERS
 from ins_sim.studies.filters import FilterCase, fly_filters, run_settings
+from . import arguments
+from .progress import ProgressBar
 
 MARK = 'comparison.json'
+DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and seeds, on all '
+               'cores, and show table and figure.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    arguments.add_settings(parser, 'route_flight and grade_mid')
+    parser.add_argument('--runs', type=int, default=24, metavar='N', help='flights, each with '
+                        'seeds of its own (default: %(default)s)')
+    parser.add_argument('--filters', nargs='+', choices=FILTERS, default=None, metavar='NAME',
+                        help=f'of {", ".join(FILTERS)} (default: all)')
+    parser.add_argument('--cycles', nargs='+', type=int, default=None, metavar='N',
+                        help='cycles of a fix: the first for all filters, the others for eskf as '
+                        'well (default: window.cycles)')
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
+                        'as many as cores)')
+    parser.add_argument('-o', '--output', default='ins_sim_filters', metavar='DIR',
+                        help='folder of figure and numbers (default: %(default)s)')
+    parser.add_argument('--force', action='store_true', help='replace what is in DIR')
 
 
 def run(chosen):
@@ -63,16 +83,14 @@ def _cases(chosen, cycles):
 def _fly_all(settings, cases, runs, jobs, console):
     """Return the list of Flown of each run, in their order."""
     flights = [None] * runs
-    with Progress(TextColumn('flying'), BarColumn(), TextColumn('{task.completed:.0f} of '
-                  '{task.total:.0f} flights'), TimeRemainingColumn(), console=console,
-                  transient=True) as progress:
-        task = progress.add_task('', total=runs)
+    with ProgressBar(console, 'flights') as progress:
+        watch = progress.watch('flying', runs)
         with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
             futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
             try:
-                for future in as_completed(futures):
+                for done, future in enumerate(as_completed(futures), 1):
                     flights[futures[future]] = future.result()
-                    progress.advance(task)
+                    watch(done)
             except BaseException:
                 # a flight takes minutes, which nobody waits for who wants to end
                 for worker in active_children():

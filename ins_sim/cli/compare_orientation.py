@@ -3,7 +3,6 @@
 import math
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from ins_sim.core.attitude.integration import KINDS
@@ -11,21 +10,26 @@ from ins_sim.io.motion import read_motion
 from ins_sim.report.summary import DEG_PER_HOUR
 from ins_sim.report.table import number
 from ins_sim.studies.orientation import compare_orientations
-from . import settings as chosen_settings
+from . import arguments
+from .progress import ProgressBar
+
+DESCRIPTION = ("Navigate one offline run by quaternion, Poisson's equation and Euler vector, and "
+               'compare them.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    arguments.add_settings(parser)
 
 
 def run(chosen):
     """Compare and show; return the exit code."""
-    settings = chosen_settings.read(chosen)
+    settings = arguments.read(chosen)
     console = Console()
-    with Progress(TextColumn('navigating'), BarColumn(),
-                  TextColumn('{task.completed:.0f} of {task.total:.0f} algorithms'),
-                  console=console, transient=True) as progress:
-        task = progress.add_task('', total=len(KINDS))
-        results = compare_orientations(
-            settings, read_motion(settings.motion_generator),
-            lambda done: progress.update(task, completed=done))
-    table = Table(title=chosen_settings.title(settings))
+    with ProgressBar(console, 'algorithms') as progress:
+        results = compare_orientations(settings, read_motion(settings.motion_generator),
+                                       progress.watch('navigating', len(KINDS)))
+    table = Table(title=arguments.title(settings))
     table.add_column('figure')
     table.add_column('unit')
     for r in results:

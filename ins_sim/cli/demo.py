@@ -7,7 +7,6 @@ import shutil
 import sys
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.prediction.predict import predict
@@ -15,9 +14,24 @@ from ins_sim.io.motion import read_motion
 from ins_sim.io.published import read_errors
 from ins_sim.report import figure, storage, summary, table
 from ins_sim.settings.node import Pacing
-from . import settings as chosen_settings
+from . import arguments
+from .progress import ProgressBar
 
 EVERY = 10
+DESCRIPTION = ('Start the three nodes, run them in lock-step, record their topics into a bag and '
+               'compare with the prediction.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    parser.add_argument('-o', '--output', default='ins_sim_demo', metavar='DIR',
+                        help='folder of bags and figures, replaced (default: %(default)s)')
+    parser.add_argument('--recording', metavar='CSV', default=None, help='recorded flight of the '
+                        'second part (default: the closed-form cruise)')
+    parser.add_argument('--start', type=float, default=1000.0, metavar='S', help='where in the '
+                        'recording to start, s after its first row (default: %(default)s)')
+    parser.add_argument('--duration', type=float, default=3600.0, metavar='S',
+                        help='simulated length of each part, s (default: %(default)s)')
 
 
 def run(chosen):
@@ -77,15 +91,13 @@ def _part(name, settings, folder, console):
 
 def _run(name, settings, work, folder, console):
     from ins_sim.ros.session import Session
-    title = chosen_settings.title(settings)
+    title = arguments.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
-    with Progress(TextColumn(f'{name}: three nodes in lock-step'), BarColumn(),
-                  TextColumn('{task.completed:.0f} of {task.total:.0f} s'),
-                  TimeRemainingColumn(), console=console, transient=True) as progress:
-        task = progress.add_task('', total=length_s)
+    with ProgressBar(console, 's') as progress:
+        watch = progress.watch(f'{name}: three nodes in lock-step', length_s)
         with Session(settings, work, work / 'bag', namespace) as session:
-            counts = session.run(lambda t_s: progress.update(task, completed=t_s))
+            counts = session.run(watch)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
     figure.save(work / 'errors.png', title, errors, prediction)

@@ -3,15 +3,29 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
 
 from ins_sim import parameter_files, resources
 from ins_sim.report import dtg_study as report
 from ins_sim.settings.tuned_gyro_study import DtgStudySettings
 from ins_sim.studies import tuned_gyro as study
+from .progress import ProgressBar
 
 NODE = 'dtg_study'
 SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')
+
+DESCRIPTION = ('Recover a rocking base through two dynamically tuned gyros as the paper does, '
+               'and compare with what it prints.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    parser.add_argument('--params-file', action='append', default=[], metavar='FILE',
+                        help='parameter file of one table, or the name of a shipped one; may be '
+                        'repeated (default: dtg_study_frequency and dtg_study_speed)')
+    parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
+                        help='one parameter, for every table')
+    parser.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
+                        help='folder of the figures (default: %(default)s)')
 
 
 def run(chosen):
@@ -41,9 +55,7 @@ def _study(name, settings, console):
     step_s, limits = 1e-3 * settings.step_ms, ()
     if settings.sweep == 'rotor_speed' and settings.method == 'rk4':
         limits = study.stability_limits(study.gyro_at(settings), step_s)
-    with Progress(TextColumn('{task.description}'), BarColumn(),
-                  TextColumn('{task.completed:.0f} of {task.total:.0f}'), console=console,
-                  transient=True) as progress:
+    with ProgressBar(console, 'values') as progress:
         task = progress.add_task(name, total=len(settings.values) + len(settings.curve_values))
         cells = study.study_table(settings, lambda: progress.advance(task))
         curve = study.study_curve(settings, lambda: progress.advance(task)) or cells

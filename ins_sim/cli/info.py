@@ -7,6 +7,13 @@ from rich.console import Console
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages.cdr import SECOND
 
+DESCRIPTION = ('Show storage, topics, counts, rates and times of a bag, and whether it is whole.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    parser.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
+
 
 def run(chosen):
     """Show a bag; return the exit code."""

@@ -7,16 +7,24 @@ from rich.table import Table
 from ins_sim.core.prediction.predict import predict
 from ins_sim.io.motion import read_motion
 from ins_sim.report import summary, table
-from . import settings as chosen_settings
+from . import arguments
+
+DESCRIPTION = ('Predict the mean drift and the position error by the linear theory, without a '
+               'simulation.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    arguments.add_settings(parser)
 
 
 def run(chosen):
     """Predict and show; return the exit code."""
-    settings = chosen_settings.read(chosen)
+    settings = arguments.read(chosen)
     prediction = predict(settings, read_motion(settings.motion_generator))
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
-    shown = Table(title=chosen_settings.title(settings))
+    shown = Table(title=arguments.title(settings))
     for head in ('figure', 'unit', 'predicted', 'paper / re-derived'):
         shown.add_column(head, justify='left' if head in ('figure', 'unit') else 'right')
     for axis, name in enumerate(('east', 'north', 'up')):

@@ -4,6 +4,30 @@ import json
 
 from ins_sim.ros.main import recorder
 
+DESCRIPTION = ('Record live topics into a rosbag2 bag, until Ctrl-C. Behind --ros-args stand '
+               'remappings and the namespace.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    parser.add_argument('topics', nargs='*', metavar='TOPIC', help='topic to record; one that is '
+                        'not there yet is waited for')
+    parser.add_argument('--all', action='store_true', help='record every topic')
+    parser.add_argument('-o', '--output', default='ins_sim_bag', metavar='DIR',
+                        help='folder of the bag (default: %(default)s)')
+    parser.add_argument('--force', action='store_true', help='replace the bag in DIR')
+    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
+                        help='storage of the bag (default: %(default)s)')
+    parser.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
+                        help='compression of its chunks, of mcap (default: %(default)s)')
+    parser.add_argument('--max-size', type=float, default=0.0, metavar='MB',
+                        help='begin another file where one is as large')
+    parser.add_argument('--max-duration', type=float, default=0.0, metavar='S',
+                        help='begin another file where one spans as much')
+    parser.add_argument('--log-time', choices=('stamp', 'received'), default='stamp',
+                        help='log a message at the stamp of its header, or when it came '
+                        '(default: %(default)s)')
+
 
 def run(chosen):
     """Record until a signal comes; return the exit code of the node."""

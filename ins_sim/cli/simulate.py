@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ins_sim.core.prediction.drift import NoPrediction
 from ins_sim.core.prediction.predict import predict
@@ -11,15 +10,35 @@ from ins_sim.core.simulation.aided import make_instruments, simulate_aided
 from ins_sim.core.simulation.inertial import simulate
 from ins_sim.io.motion import read_motion
 from ins_sim.report import storage, summary, table
-from . import settings as chosen_settings
+from . import arguments
+from .progress import ProgressBar
+
+DESCRIPTION = ('Run motion, IMU and strapdown offline, with the zero-delay twin, and write the '
+               'run into a folder.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb."""
+    arguments.add_settings(parser)
+    parser.add_argument('-o', '--output', default='ins_sim_run', metavar='DIR',
+                        help='folder of the run (default: %(default)s)')
+    parser.add_argument('--force', action='store_true', help='replace the run in DIR')
+    parser.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
+    parser.add_argument('--aided', action='store_true', help='also run velocity meter, GNSS and '
+                        'aided navigator on the same readings of the IMU')
+    parser.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
+                        'the nodes would publish into a rosbag2 bag')
+    arguments.add_storage(parser)
+    parser.add_argument('--topics', nargs='+', metavar='TOPIC', default=None,
+                        help='topics of the bag (default: all)')
 
 
 def run(chosen):
     """Run, write and show; return the exit code."""
-    settings, aided = chosen_settings.read_simulation(chosen)
+    settings, aided = arguments.read_simulation(chosen)
     storage.check_free(chosen.output, chosen.force)
     write_bag = _bag_writer(chosen, settings)
-    title = chosen_settings.title(settings)
+    title = arguments.title(settings)
     console = Console()
     motion = read_motion(settings.motion_generator)
     # Made before the run, so that settings that do not fit are refused before it.
@@ -29,12 +48,10 @@ def run(chosen):
     except NoPrediction as reason:
         prediction = None
         console.print(str(reason))
-    with Progress(TextColumn('{task.description}'), BarColumn(),
-                  TextColumn('{task.percentage:>3.0f} %'), TimeRemainingColumn(),
-                  console=console, transient=True) as progress:
-        result = simulate(settings, motion, not chosen.no_twin, _watch(progress, 'simulating'))
+    with ProgressBar(console) as progress:
+        result = simulate(settings, motion, not chosen.no_twin, progress.watch('simulating'))
         flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
-                                                          _watch(progress, 'aiding'))
+                                                          progress.watch('aiding'))
     rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
     report = None if aided is None else _report(aided, flown, result)
     storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force, report)
@@ -47,12 +64,6 @@ def run(chosen):
     if write_bag is not None:
         write_bag(result, console, None if aided is None else (aided, flown))
     return 0
-
-
-def _watch(progress, name):
-    """Return the function that shows a fraction done under a name."""
-    task = progress.add_task(name, total=1.0)
-    return lambda done: progress.update(task, completed=done)
 
 
 def _report(settings, flown, result):
