@@ -1,7 +1,6 @@
 """The strapdown that can be corrected: an explicit carry, copied to step back in time."""
 
 import copy
-import math
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import turn
@@ -90,10 +89,8 @@ class CorrectedStrapdown:
         position m; velocity m/s; turned: rotation vector of the attitude, q_nb = exp(turned)
         q_nb_true, rad.
         """
-        r_n, r_e = ellipsoid.radii(math.sin(self.lat))
-        self.lon -= position[0] / ((r_e + self.height) * math.cos(self.lat))
-        self.lat -= position[1] / (r_n + self.height)
-        self.height -= position[2]
+        self.lat, self.lon, self.height = ellipsoid.moved(
+            self.lat, self.lon, self.height, (-position[0], -position[1], -position[2]))
         self.v = (self.v[0] - velocity[0], self.v[1] - velocity[1], self.v[2] - velocity[2])
         back = quaternion.exponential((-turned[0], -turned[1], -turned[2]))
         self._set_attitude(quaternion.normalise(quaternion.multiply(back, self.q_nb)))

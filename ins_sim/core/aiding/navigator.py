@@ -68,7 +68,7 @@ class AidedNavigator:
                 GNSS: settings.gnss_model.use and entry.takes_gnss}
         self.sources = tuple(source for source, use in used.items() if use)
         self._altimeter = settings.vertical.channel == 'altimeter'
-        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._first_ns = self._ins = self.filter = None
         self._pending, self._samples, self._log = [], deque(), []
         self._snapshots = deque()

@@ -17,6 +17,11 @@ GRAVITY_EQUATOR = 9.7803253359
 GRAVITY_FORMULA = 0.00193185265241
 
 
+def rotation_rate(rotates):
+    """Return the rotation rate of an Earth that rotates or does not, rad/s."""
+    return ROTATION_RATE if rotates else 0.0
+
+
 def radii(sin_lat):
     """Return the meridian radius R_N and the transverse radius R_E, m (Groves 2.105, 2.106)."""
     w2 = 1.0 - ECCENTRICITY2 * (sin_lat * sin_lat)
@@ -64,13 +69,40 @@ def geodetic(x, y, z):
     return lat, math.atan2(y, x), height
 
 
-def displaced(lat, lon, height, offset):
+def level_angles(east, north, sin_lat, cos_lat, height):
     """
-    Return lat, lon, height of a point East, North, Up (offset, m) of another, floats.
+    Return the changes of latitude and longitude, rad, over distances East and North, m.
 
-    By the radii there: off the straight offset d by d^2 / 2R, 1e-5 m in 10 m and 0.1 m in 1 km.
+    The radii are those at the latitude given; rates, m/s, give angular rates.
     """
-    r_n, r_e = radii(math.sin(lat))
-    east, north, up = offset
-    return (lat + north / (r_n + height), lon + east / ((r_e + height) * math.cos(lat)),
-            height + up)
+    r_n, r_e = radii(sin_lat)
+    return north / (r_n + height), east / ((r_e + height) * cos_lat)
+
+
+def level_metres(d_lat, d_lon, sin_lat, cos_lat, height):
+    """Return the distances East and North, m, of changes of latitude and longitude, rad."""
+    r_n, r_e = radii(sin_lat)
+    return d_lon * (r_e + height) * cos_lat, d_lat * (r_n + height)
+
+
+def moved(lat, lon, height, enu):
+    """
+    Return latitude, longitude and height of a point East, North, Up (m) of another.
+
+    Metres become angles by the radii at the first point, a float, which leaves the straight
+    offset d by d^2 / 2R: 1e-5 m in 10 m and 0.1 m in 1 km. The offset may be arrays or Series.
+    """
+    east, north, up = enu
+    d_lat, d_lon = level_angles(east, north, math.sin(lat), math.cos(lat), height)
+    return lat + d_lat, lon + d_lon, height + up
+
+
+def offset(lat, lon, height, other):
+    """
+    Return East, North, Up, m, from a point to another, floats; the inverse of ``moved``.
+
+    other: (lat, lon, height). Longitudes may differ by whole turns.
+    """
+    east, north = level_metres(other[0] - lat, math.remainder(other[1] - lon, 2.0 * math.pi),
+                               math.sin(lat), math.cos(lat), height)
+    return east, north, other[2] - height

@@ -28,7 +28,7 @@ class MapFrame:
         self._q_em = local_level(math.sin(lat / 2), math.cos(lat / 2),
                                  math.sin(lon / 2), math.cos(lon / 2))
         self._origin = ellipsoid.ecef(sl, cl, math.sin(lon), math.cos(lon), datum.height_m)
-        spin = ellipsoid.ROTATION_RATE if rotation else 0.0
+        spin = ellipsoid.rotation_rate(rotation)
         self.omega_ie_m = (0.0, spin * cl, spin * sl)
 
     def pose(self, lat, lon, height, v_n, q_nb):

@@ -15,11 +15,9 @@ def rate_of_n(lat, height, v_n, earth_rotation):
     Groves 5.44, in ENU; without rotation of the Earth it is omega_en_n.
     """
     s, c = np.sin(lat), np.cos(lat)
-    r_n, r_e = ellipsoid.radii(s)
-    spin = ellipsoid.ROTATION_RATE if earth_rotation else 0.0
-    lon_rate = v_n[:, 0] / ((r_e + height) * c)
-    return np.stack((-v_n[:, 1] / (r_n + height), (spin + lon_rate) * c, (spin + lon_rate) * s),
-                    axis=-1)
+    lat_rate, lon_rate = ellipsoid.level_angles(v_n[:, 0], v_n[:, 1], s, c, height)
+    spin = ellipsoid.rotation_rate(earth_rotation)
+    return np.stack((-lat_rate, (spin + lon_rate) * c, (spin + lon_rate) * s), axis=-1)
 
 
 def rate_on_earth(lat, q_nb, omega_ib_b, spin):

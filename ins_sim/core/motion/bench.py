@@ -16,21 +16,17 @@ BODY_AXES = {'x': 0, 'y': 1, 'z': 2}
 
 
 class _Place:
-    """The datum, and small excursions about it; the radii at the datum only scale the path."""
+    """The datum, and small excursions about it."""
 
     def __init__(self, datum):
         self.lat, self.lon = math.radians(datum.latitude_deg), math.radians(datum.longitude_deg)
         self.height = datum.height_m
-        meridian, transverse = ellipsoid.radii(math.sin(self.lat))
-        self.north = meridian + self.height
-        self.east = (transverse + self.height) * math.cos(self.lat)
 
     def coordinates(self, t, excursion):
         """Return lat, lon, height of E, N, U (Series or None)."""
         if excursion is None:
             return t.constant(self.lat), t.constant(self.lon), t.constant(self.height)
-        e, n, u = excursion
-        return n / self.north + self.lat, e / self.east + self.lon, u + self.height
+        return ellipsoid.moved(self.lat, self.lon, self.height, excursion)
 
 
 def _base(motion, t):

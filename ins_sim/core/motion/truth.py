@@ -26,7 +26,7 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
     v_value = tuple(x.value for x in v)
     v_rate = tuple(x.derivative().value for x in v)
 
-    spin = ellipsoid.ROTATION_RATE if earth_rotation else 0.0
+    spin = ellipsoid.rotation_rate(earth_rotation)
     sin_lat, cos_lat = s.value, c.value
     spin_rate = spin + lon_rate.value
     omega_in_n = (-lat_rate.value, spin_rate * cos_lat, spin_rate * sin_lat)

@@ -9,10 +9,7 @@ from ins_sim.core.earth.frames import level_frame
 
 def position_error(lat, lon, height, lat_t, lon_t, height_t):
     """Return East, North, Up from the true point (..._t) to another, floats, m."""
-    r_n, r_e = ellipsoid.radii(math.sin(lat_t))
-    east = math.remainder(lon - lon_t, 2.0 * math.pi)
-    return (east * (r_e + height_t) * math.cos(lat_t), (lat - lat_t) * (r_n + height_t),
-            height - height_t)
+    return ellipsoid.offset(lat_t, lon_t, height_t, (lat, lon, height))
 
 
 def level_errors(solution, truth):

@@ -23,7 +23,7 @@ class Strapdown:
 
     def __init__(self, settings):
         self._settings = settings
-        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._integrated = settings.input == 'integrated'
         self._channel = CHANNELS[settings.vertical.channel]
         self._damping = mechanization.damping(settings.vertical.time_constant_s)
@@ -77,7 +77,7 @@ class Strapdown:
         initial = self._settings.initial
         error = quaternion.exponential(tuple(map(math.radians, initial.attitude_error_deg)))
         q_ib = frames.inertial_attitude(lat, lon, quaternion.multiply(error, q_nb))
-        lat, lon, off_height = ellipsoid.displaced(lat, lon, height, initial.position_error_m)
+        lat, lon, off_height = ellipsoid.moved(lat, lon, height, initial.position_error_m)
         v = tuple(a + b for a, b in zip(v, initial.velocity_error_m_s))
         if self._channel != mechanization.FROM_TRUTH:
             height = off_height

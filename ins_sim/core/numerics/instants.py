@@ -11,8 +11,3 @@ def seconds(t_ns):
     sign, t_ns = ('-', -t_ns) if t_ns < 0 else ('', t_ns)
     whole, fraction = divmod(int(t_ns), 1_000_000_000)
     return f'{sign}{whole}.{fraction:09d} s'
-
-
-def seconds_text(t_ns):
-    """Return a stamp as text, s, without trailing zeros."""
-    return f'{t_ns / 1e9:.4f}'.rstrip('0').rstrip('.')

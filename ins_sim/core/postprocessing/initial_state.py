@@ -65,7 +65,7 @@ class Starter:
         self._s, self._imu, self._broken = settings, imu, broken
         self._reference, self._odometry = sources.reference, sources.odometry
         self._wheels = None if self._odometry is None else self._odometry.as_enu()
-        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
 
     def begin(self, first, last, again=False):
         """

@@ -119,7 +119,7 @@ class _Replay:
     def __init__(self, settings, sources, imu, step_ns, notes, progress):
         self._s, self._imu, self._step_ns, self._notes = settings, imu, step_ns, notes
         self._progress = progress
-        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._damped = settings.vertical.channel == 'damped'
         self._heights = np.full(len(imu), np.nan)
         if self._damped:

@@ -1,7 +1,6 @@
 """What a solution is compared with: position, velocity and attitude, each at its own stamps."""
 
 from dataclasses import dataclass
-import math
 
 import numpy as np
 
@@ -128,9 +127,7 @@ class OdometryReference:
         headings = to_compass(np.array([own, q_nb]))[2]
         turn = quaternion.exponential((0.0, 0.0, float(headings[0] - headings[1])))
         r = quaternion.rotate(turn, (self.r - origin).T)
-        r_n, r_e = ellipsoid.radii(math.sin(lat))
-        position = (lat + r[1] / (r_n + height),
-                    lon + r[0] / ((r_e + height) * math.cos(lat)), height + r[2])
+        position = ellipsoid.moved(lat, lon, height, r)
         q = quaternion.multiply(turn, tuple(self.q.T))
         v = quaternion.rotate(q, self.v_b.T)
         tracks = (SampledTrack(self.t_ns, np.stack(x, axis=-1)) for x in (position, v, q))

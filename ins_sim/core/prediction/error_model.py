@@ -31,7 +31,7 @@ def propagate(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, posi
         ends = (x[per_step::per_step] - x[:-1:per_step]) / (2.0 * per_step)
         return body + ends
 
-    spin = ellipsoid.ROTATION_RATE if rotation else 0.0
+    spin = ellipsoid.rotation_rate(rotation)
     sin, cos = np.sin(truth.lat), np.cos(truth.lat)
     r_n, r_e = ellipsoid.radii(sin)
     g = ellipsoid.gravity(sin, truth.height)

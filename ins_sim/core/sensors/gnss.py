@@ -34,7 +34,7 @@ class Gnss:
                              f'of rate_hz, {self._dt_ns * 1e-9:.9g} s: a fix needs a sample of '
                              'the truth')
         self.latency_ns = round(1e6 * settings.gnss.latency_ms)
-        self._spin = ellipsoid.ROTATION_RATE if settings.earth.rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._outages = _spans(settings.outages.start_s, settings.outages.end_s)
         jump = settings.jump
         self._jumps = _spans((jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
@@ -124,7 +124,7 @@ class Gnss:
         lever = self._settings.lever_arm_m
         off = _sum(off, quaternion.rotate(q_nb, lever))
         v_n = _sum(_sum(v_n, quaternion.rotate(q_nb, quaternion.cross(rate, lever))), slip)
-        lat, lon, height = ellipsoid.displaced(lat, lon, height, off)
+        lat, lon, height = ellipsoid.moved(lat, lon, height, off)
         return GnssFix(t_ns, lat, math.remainder(lon, 2.0 * math.pi), height, v_n,
                        self._position_sigma, self._velocity_sigma, arrival_ns=arrival_ns)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.numerics.instants import seconds_text
+from ins_sim.core.numerics.instants import seconds
 
 # A missing row makes an interval of 2 medians; half an interval is left for jitter.
 GAP_MEDIANS = 2.5
@@ -37,10 +37,9 @@ class Fault:
 def displacements(lat, lon, height):
     """Return (n - 1, 3) east, north, up from row to row, m; lat, lon in rad."""
     mean = 0.5 * (lat[1:] + lat[:-1])
-    meridian, transverse = ellipsoid.radii(np.sin(mean))
-    level = 0.5 * (height[1:] + height[:-1])
-    return np.stack([np.diff(lon) * (transverse + level) * np.cos(mean),
-                     np.diff(lat) * (meridian + level), np.diff(height)], axis=-1)
+    east, north = ellipsoid.level_metres(np.diff(lat), np.diff(lon), np.sin(mean), np.cos(mean),
+                                         0.5 * (height[1:] + height[:-1]))
+    return np.stack([east, north, np.diff(height)], axis=-1)
 
 
 def excess(steps, dt):
@@ -76,10 +75,10 @@ def find_faults(rows, turns):
     dt = np.diff(rows.t_ns) * 1e-9
     faults, median = [], median_interval(dt)
     for k in np.flatnonzero(dt <= 0.0).tolist():
-        what = 'repeated' if dt[k] == 0.0 else f'{seconds_text(rows.t_ns[k])} goes back to'
-        faults.append(Fault(k, 'stamps', f'{what} {seconds_text(rows.t_ns[k + 1])} s'))
+        what = 'repeated' if dt[k] == 0.0 else f'{seconds(rows.t_ns[k])} goes back to'
+        faults.append(Fault(k, 'stamps', f'{what} {seconds(rows.t_ns[k + 1])}'))
     for k in np.flatnonzero(dt > GAP_MEDIANS * median).tolist():
-        faults.append(Fault(k, 'gaps', f'{seconds_text(rows.t_ns[k])} s ({dt[k]:.3g} s long)'))
+        faults.append(Fault(k, 'gaps', f'{seconds(rows.t_ns[k])} ({dt[k]:.3g} s long)'))
     steps = displacements(np.radians(rows.lat_deg), np.radians(rows.lon_deg), rows.height_m)
     angle = np.degrees(np.sqrt((turns ** 2).sum(axis=1)))
     for first, last in _between([fault.index for fault in faults], len(dt)):
@@ -105,7 +104,7 @@ def _jumps(t_ns, first, dt, far, turned, angle):
         size = (f'{far[k]:.3g} m beyond its neighbours' if jumped[k] else
                 f'{angle[k]:.3g} deg of rotation')
         faults.append(Fault(first + k, 'jumps',
-                            f'{seconds_text(t_ns[first + k])} s ({size}, in {dt[k]:.3g} s)'))
+                            f'{seconds(t_ns[first + k])} ({size}, in {dt[k]:.3g} s)'))
     return faults
 
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.numerics.instants import seconds_text
+from ins_sim.core.numerics.instants import seconds
 from .faults import displacements, excess
 
 # Below 10 mg nobody sees the noise beside the motion of a vehicle.
@@ -51,11 +51,10 @@ def rounding_noise(resolution, lat, height, interval_s, smoothing_s):
     resolution: rounding steps (deg, deg, m) of lat, lon, height; a step q has the standard
     deviation q / sqrt(12); lat (rad) and height (m) scale degrees to metres.
     """
-    meridian, transverse = ellipsoid.radii(math.sin(lat))
-    step_m = (math.radians(resolution[1]) * (transverse + height) * math.cos(lat),
-              math.radians(resolution[0]) * (meridian + height), resolution[2])
+    level = ellipsoid.level_metres(math.radians(resolution[0]), math.radians(resolution[1]),
+                                   math.sin(lat), math.cos(lat), height)
     gain = spline_gain(smoothing_s / interval_s) / interval_s ** 2
-    return np.array([q / math.sqrt(12.0) * gain for q in step_m])
+    return np.array([q / math.sqrt(12.0) * gain for q in (*level, resolution[2])])
 
 
 def sample_noise(t, lat, lon, height):
@@ -108,13 +107,13 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
         worst = steps[np.argmax(far[steps])]
         sentences.append(
             f'{path}: {_count(steps, "position step")}{_cadence(t, steps)}, the largest '
-            f'{far[worst]:.3g} m after t_s = {seconds_text(start_ns + round(t[worst] * 1e9))}; '
+            f'{far[worst]:.3g} m after t_s = {seconds(start_ns + round(t[worst] * 1e9))}; '
             f'the spline makes about {far[worst] / dt[worst] ** 2:.2g} m/s^2 of it')
     turned = np.degrees(excess(turns, dt))
     steps = _stand_out(turned, STEP_DEG_S * interval_s)
     if len(steps):
         worst = steps[np.argmax(turned[steps])]
-        at = seconds_text(start_ns + round(t[worst] * 1e9))
+        at = seconds(start_ns + round(t[worst] * 1e9))
         sentences.append(
             f'{path}: {_count(steps, "attitude step")}{_cadence(t, steps)}, '
             f'the largest {turned[worst]:.3g} deg after t_s = {at}')

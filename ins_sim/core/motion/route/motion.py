@@ -45,7 +45,7 @@ class RouteMotion:
 
     def __init__(self, settings, earth_settings):
         self._rotation = earth_settings.rotation
-        self._spin = ellipsoid.ROTATION_RATE if self._rotation else 0.0
+        self._spin = ellipsoid.rotation_rate(self._rotation)
         self._height, self._airspeed = settings.height_m, settings.airspeed_m_s
         self._attack = math.radians(settings.attack_deg)
         self.route = GreatCircleRoute.of_points(settings.points)
@@ -83,9 +83,8 @@ class RouteMotion:
                 east, north = east + along * sin + right * cos, north + along * cos - right * sin
                 course = psi
         sin_lat, cos_lat = taylor.sincos(lat)
-        r_n, r_e = ellipsoid.radii(sin_lat)
-        lon = lon + east / ((r_e + self._height) * cos_lat)
-        lat = lat + north / (r_n + self._height)
+        d_lat, d_lon = ellipsoid.level_angles(east, north, sin_lat, cos_lat, self._height)
+        lat, lon = lat + d_lat, lon + d_lon
         # no bank holds a great circle but against Coriolis' force
         turn = course.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
         bank = taylor.atan2(turn * self._airspeed, psi.constant(STANDARD_GRAVITY))

@@ -51,8 +51,7 @@ class Flow:
         """
         a_e, a_n = sin_psi * self.airspeed, cos_psi * self.airspeed
         v_e, v_n = a_e + self.wind[0], a_n + self.wind[1]
-        r_n, r_e = ellipsoid.radii(sin_lat)
-        lat_rate, lon_rate = v_n / (r_n + self.height), v_e / ((r_e + self.height) * cos_lat)
+        lat_rate, lon_rate = ellipsoid.level_angles(v_e, v_n, sin_lat, cos_lat, self.height)
         m_e, m_n, by_e, by_n = _metric(sin_lat, cos_lat, self.height)
         p, q = v_e * m_e, v_n * m_n
         sin_c = sin_lat * FLATTENING2 / (1.0 - _K * (sin_lat * sin_lat)) ** 0.5
