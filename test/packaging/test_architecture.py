@@ -132,6 +132,14 @@ def test_core_opens_no_file(name):
     assert not tops(IMPORTS[name]) & {'os', 'pathlib', 'io', 'gzip', 'csv', 'tempfile', 'yaml'}
 
 
+@pytest.mark.parametrize('name', inside('core'))
+def test_core_reads_no_setting_of_a_node(name):
+    """Depths of queues, pacing and the epoch are the node's: it passes what a stage needs."""
+    read = {node.attr for node in ast.walk(TREES[name])
+            if isinstance(node, ast.Attribute) and 'settings' in ast.unparse(node.value)}
+    assert not read & {'topics', 'pacing', 'time'}
+
+
 @pytest.mark.parametrize('name', inside('settings'))
 def test_settings_need_only_python(name):
     """A node reads its settings without NumPy."""

@@ -12,7 +12,7 @@ import math
 
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.streams.matching import MatchedStreams
+from ins_sim.core.streams.matching import MatchedStreams, TRUTH_LENGTH
 from ins_sim.core.streams.restarts import RestartDetector
 from .fix_checks import check_ahead, check_gnss, check_velocity
 from .navigator import AidedNavigator, GNSS, METER
@@ -48,13 +48,14 @@ class FixSchedule:
             first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
             due_ns = (t_ns - latency_ns) // step_ns * step_ns
             if due_ns >= first_ns and source not in self.silent and (
-                    self._runs[source].lead or self._newest.get(source, -math.inf) < due_ns):
+                    not self._runs[source].same_run
+                    or self._newest.get(source, -math.inf) < due_ns):
                 late.append(source)
         return late
 
     def of_the_past(self, source, t_ns):
         """Return whether a fix goes on with the run before that of the samples."""
-        return self._runs[source].lead > 0 and t_ns > self._newest[source]
+        return self._runs[source].first_is_ahead and t_ns > self._newest[source]
 
     def came(self, source, t_ns, sample_ns):
         """
@@ -66,7 +67,7 @@ class FixSchedule:
         newest_ns, runs = self._newest.get(source), self._runs[source]
         self._newest[source] = t_ns
         # the instant of the last fix again: that of the new run if the samples have begun one
-        if t_ns == newest_ns and runs.lead <= 0:
+        if t_ns == newest_ns and not runs.first_is_ahead:
             return False
         if newest_ns is not None and t_ns <= newest_ns:
             runs.second_jumps(t_ns, sample_ns)
@@ -76,7 +77,7 @@ class FixSchedule:
         """Follow the samples back to t_ns; return the sources still to follow."""
         for source, newest_ns in self._newest.items():
             self._runs[source].first_jumps(t_ns, newest_ns)
-        return {source for source, runs in self._runs.items() if runs.lead > 0}
+        return {source for source, runs in self._runs.items() if runs.first_is_ahead}
 
     def give_up(self, source):
         """Wait for a source no longer, until it delivers again."""
@@ -92,10 +93,10 @@ class AidedStream(MatchedStreams):
     JudgedFix for every fix that was processed; the owner empties it.
     """
 
-    def __init__(self, settings):
+    def __init__(self, settings, truth_length=TRUTH_LENGTH):
         self.judged, self._fixes = [], []
         self._schedule = FixSchedule(settings, AidedNavigator(settings).sources)
-        super().__init__(settings)
+        super().__init__(settings, truth_length)
 
     def begin(self):
         """Forget the solution.  Fixes are no state: those that have come stay."""

@@ -74,7 +74,7 @@ class Gnss:
         if not first:
             # denser truth than expected does no harm
             if not 0 < t_ns - last_ns <= self._dt_ns:
-                check_interval('truth', t_ns, last_ns, self._dt_ns, 0.2)
+                check_interval('truth', t_ns, last_ns, self._dt_ns)
             due_ns = t_ns // self.period_ns * self.period_ns
             if last_ns < due_ns < t_ns:
                 raise StreamFault(f'truth steps from {seconds(last_ns)} to {seconds(t_ns)} over '

@@ -98,7 +98,7 @@ class _Chain:
         """Take one sample; return whether its instant is put out."""
         try:
             if self._last_ns is not None:
-                check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
+                check_interval('imu', t_ns, self._last_ns, self._dt_ns)
         except StreamFault as fault:
             self._fault(fault)
         self._last_ns = t_ns

@@ -120,7 +120,7 @@ def _gap(now_ns, last_ns, dt_ns):
     """Return the StreamFault of an interval that is none, or None."""
     if last_ns is not None:
         try:
-            check_interval('imu', now_ns, last_ns, dt_ns, 0.2)
+            check_interval('imu', now_ns, last_ns, dt_ns)
         except StreamFault as fault:
             return fault
     return None

@@ -4,6 +4,10 @@ import math
 
 from ins_sim.core.numerics.instants import seconds
 
+# How far an interval may be off the sampling period, as a fraction of it: jitter of the stamps,
+# but no lost sample.
+INTERVAL_TOLERANCE = 0.2
+
 
 class StreamFault(ValueError):
     """
@@ -39,14 +43,14 @@ def check_unit(name, t_ns, q):
                           restart=False)
 
 
-def check_interval(name, t_ns, last_ns, expected_ns, tolerance):
+def check_interval(name, t_ns, last_ns, expected_ns):
     """
-    Raise StreamFault unless t_ns follows last_ns by expected_ns within a relative tolerance.
+    Raise StreamFault unless t_ns follows last_ns by expected_ns within INTERVAL_TOLERANCE.
 
     A repeated stamp is dropped; a backwards stamp, a gap and another rate call for a restart.
     """
     step = t_ns - last_ns
-    if abs(step - expected_ns) <= tolerance * expected_ns:
+    if abs(step - expected_ns) <= INTERVAL_TOLERANCE * expected_ns:
         return
     if step == 0:
         raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '

@@ -7,14 +7,17 @@ from ins_sim.core.numerics.instants import period_ns, seconds
 from .faults import check_finite, check_interval, check_unit, StreamFault
 from .restarts import RestartDetector
 
+# Samples of truth that are kept for the readings to come: 100 s at 100 Hz.
+TRUTH_LENGTH = 10_000
+
 
 class MatchedStreams:
     """
     What a navigator does with live readings of the IMU and the truth of the same stamps.
 
     A subclass has begin(), which forgets the solution, ``navigates``, and advance(t_ns, omega, f,
-    truth) -> outputs, truth being (lat, lon, height, v_n, q_nb).  settings: with datum, earth,
-    topics and rate_hz.
+    truth) -> outputs, truth being (lat, lon, height, v_n, q_nb).  settings: with datum, earth
+    and rate_hz; truth_length: of how many samples the truth is kept that waits for the IMU.
 
     processed_ns is the motion time of the last IMU sample that was used, or None.
 
@@ -25,11 +28,11 @@ class MatchedStreams:
     other brings of the time before are not matched.
     """
 
-    def __init__(self, settings):
+    def __init__(self, settings, truth_length=TRUTH_LENGTH):
         self._settings = settings
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._dt_ns = period_ns(settings.rate_hz)
-        self._truth = deque(maxlen=settings.topics.depth)
+        self._truth = deque(maxlen=truth_length)
         self._joined_ns = self._truth_ns = None
         # the IMU is the first of the two
         self._runs = RestartDetector()
@@ -78,11 +81,11 @@ class MatchedStreams:
 
     def _check_interval(self, t_ns):
         try:
-            check_interval('imu', t_ns, self._last_ns, self._dt_ns, 0.2)
+            check_interval('imu', t_ns, self._last_ns, self._dt_ns)
         except StreamFault as fault:
             if t_ns < self._last_ns:
                 self._runs.first_jumps(t_ns, self._truth_ns)
-                if self._runs.lead > 0:
+                if self._runs.first_is_ahead:
                     self._truth.clear()
             if not self._imu or t_ns <= self._last_ns:
                 raise
@@ -103,7 +106,7 @@ class MatchedStreams:
             self._truth.clear()
             self._runs.second_jumps(t_ns, self._last_ns)
         self._truth_ns = t_ns
-        if self._runs.lead > 0:
+        if self._runs.first_is_ahead:
             return []
         if not self._truth:
             self._joined_ns = t_ns
@@ -114,7 +117,7 @@ class MatchedStreams:
         """Use what can be used; return the outputs."""
         outputs = []
         imu, truth = self._imu, self._truth
-        while imu and truth and not self._runs.lead:
+        while imu and truth and self._runs.same_run:
             t_ns, omega, f = imu[0]
             while len(truth) > 1 and truth[0][0] < t_ns:
                 truth.popleft()

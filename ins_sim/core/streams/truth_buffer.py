@@ -66,7 +66,7 @@ class TruthBuffer:
             return
         start = self._last[0]
         step_ns = t_ns - start[0]
-        check_interval('truth', t_ns, start[0], self._step_ns or max(step_ns, 1), 0.2)
+        check_interval('truth', t_ns, start[0], self._step_ns or max(step_ns, 1))
         h = step_ns * 1e-9
         if h * max(map(abs, omega_mb_b)) > TURN_LIMIT:
             raise StreamFault(

@@ -24,7 +24,7 @@ class AidedNavigatorNode(NavigatorNode):
     def make_navigator(self):
         """Return the navigator."""
         self._route = GreatCircleRoute.of_points(self.settings.motion.route.points)
-        return AidedStream(self.settings)
+        return AidedStream(self.settings, self.settings.topics.depth)
 
     def make_outputs(self):
         """Make publishers and readers, and the queues of the fixes."""

@@ -19,7 +19,7 @@ class StrapdownNode(NavigatorNode):
     def make_navigator(self):
         """Return the navigator."""
         self._sample_clock = SampleClock(self.settings, period_ns(self.settings.rate_hz))
-        return Navigator(self.settings)
+        return Navigator(self.settings, self.settings.topics.depth)
 
     def instant(self, stamp_ns):
         """Return the instant of a reading by its stamp, motion time."""

@@ -9,7 +9,8 @@ from collections import deque
 import math
 
 from ins_sim.core.numerics.instants import period_ns, seconds
-from ins_sim.core.streams.faults import check_finite, check_interval, StreamFault
+from ins_sim.core.streams.faults import (
+    check_finite, check_interval, INTERVAL_TOLERANCE, StreamFault)
 from ins_sim.core.streams.restarts import RestartDetector
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
 from .reading import Reading
@@ -76,13 +77,13 @@ class VelocityMeter:
         """
         check_finite('truth', t_ns, v_b, (height,))
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
-        if abs(t_ns - index * self._dt_ns) > 0.2 * self._dt_ns:
+        if abs(t_ns - index * self._dt_ns) > INTERVAL_TOLERANCE * self._dt_ns:
             raise StreamFault(f'truth at {seconds(t_ns)} lies between the cycles of rate_hz; '
                               f'expected whole periods of {self._dt_ns * 1e-9:.9g} s; the sample '
                               'was dropped', restart=False)
         if self._truth_ns is not None and t_ns < self._truth_ns:
             self._runs.first_jumps(t_ns, self._last_ins_ns)
-            if self._runs.lead > 0:
+            if self._runs.first_is_ahead:
                 self._ins = {}
         self._truth_ns = t_ns
         forward, left, up = v_b
@@ -92,7 +93,7 @@ class VelocityMeter:
         elif t_ns == self._last[0] and self._repeatable:
             return []
         else:
-            check_interval('truth', t_ns, self._last[0], self._dt_ns, 0.2)
+            check_interval('truth', t_ns, self._last[0], self._dt_ns)
             self._repeatable = False
             self._cycle(index, self._last, v, height)
         self._last = (t_ns, v, height)
@@ -119,7 +120,7 @@ class VelocityMeter:
             self._runs.second_jumps(t_ns, self._truth_ns)
             self._ins = {}
         self._last_ins_ns = t_ns
-        if self._runs.lead > 0:
+        if self._runs.first_is_ahead:
             return []
         end_ns = -(-(t_ns - self._dt_ns // 2) // self._span_ns) * self._span_ns
         last = self._ins.get(end_ns, (0.0, 0.0, 0.0))
@@ -138,7 +139,7 @@ class VelocityMeter:
         fixes = [self._fix(index, why_not, total, *UNSEEN)
                  for index, why_not, total in self._waiting]
         self._waiting.clear()
-        if self._runs.lead:
+        if not self._runs.same_run:
             self._forget_ins()
         return fixes
 
@@ -213,7 +214,7 @@ class VelocityMeter:
         """Return VALID or why not, tan(alpha) and sideslip by the INS; None: not known yet."""
         if not self._waits:
             return VALID, 0.0, None
-        if self._runs.lead or self._last_ins_ns is None \
+        if not self._runs.same_run or self._last_ins_ns is None \
                 or self._last_ins_ns < end_ns - self._dt_ns // 2:
             return UNSEEN if self._last[0] >= end_ns + WAIT_NS else None
         if end_ns not in self._ins:
