@@ -10,8 +10,8 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid, frames
 from ins_sim.core.navigation import mechanization
 from ins_sim.core.postprocessing.comparison import compare_with_reference, error_rows
-from ins_sim.core.navigation.mechanization import increments
-from ins_sim.core.navigation.strapdown import FreeNavigation
+from ins_sim.core.navigation.mechanization import uneven_increments
+from ins_sim.core.navigation.recorded import RecordedNavigator
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
 from ins_sim.core.postprocessing.imu_record import RecordedImu
@@ -80,10 +80,10 @@ def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_inst
     def mean(x, y, start, end):
         return tuple((x + y * (0.5 * (start + end))).tolist())
 
-    means = increments('integrated', (mean(a, b, -before, 0.0), mean(c, d, -before, 0.0)),
-                       (mean(a, b, 0.0, now), mean(c, d, 0.0, now)), now, before)
-    ends = increments('instant', (tuple(a.tolist()), tuple(c.tolist())),
-                      (mean(a, b, now, now), mean(c, d, now, now)), now, before)
+    means = uneven_increments('integrated', (mean(a, b, -before, 0.0), mean(c, d, -before, 0.0)),
+                              (mean(a, b, 0.0, now), mean(c, d, 0.0, now)), now, before)
+    ends = uneven_increments('instant', (tuple(a.tolist()), tuple(c.tolist())),
+                             (mean(a, b, now, now), mean(c, d, now, now)), now, before)
     assert np.abs(np.array(means) - np.array(ends)).max() < 1e-16
     # and the coning of the interval in closed form: b x a dt^3 / 12 with the sign of a x b
     alpha = np.array(mean(a, b, 0.0, now)) * now
@@ -172,17 +172,17 @@ def test_the_sections_name_the_settings():
 
 
 def test_free_navigation_is_the_kernel_of_the_strapdown():
-    """One step is strapdown.step on the increments, bit by bit."""
+    """One step is mechanization.advance on the increments, bit by bit."""
     imu, _ = recorded(stamps(100.0, 0.01))
     truth = MOTION.at(imu.t_ns)
     state = (float(truth.lat[0]), float(truth.lon[0]), float(truth.height[0]),
              tuple(truth.v_n[0].tolist()), tuple(truth.q_nb[0].tolist()))
     samples = [(tuple(w), tuple(f)) for w, f in zip(imu.omega.tolist(), imu.f.tolist())]
-    nav = FreeNavigation('instant', ellipsoid.ROTATION_RATE, int(imu.t_ns[0]), *samples[0], state)
+    spin = ellipsoid.ROTATION_RATE
+    nav = RecordedNavigator('instant', spin, int(imu.t_ns[0]), *samples[0], state)
     nav.step(int(imu.t_ns[1]), *samples[1])
-    _, u = increments('instant', *samples, 0.01, 0.01)
+    _, u = uneven_increments('instant', *samples, 0.01, 0.01)
     q_ib = frames.inertial_attitude(state[0], state[1], state[4])
-    lat, lon, height, v, _ = mechanization.step(
-        q_ib, *state[:4], u, 0.01, ellipsoid.ROTATION_RATE, ellipsoid.ROTATION_RATE * 0.005,
-        mechanization.FREE, ())
-    assert nav.solution()[:4] == (lat, lon, height, v)
+    position, v, _ = mechanization.advance(
+        q_ib, state[:3], state[3], u, 0.01, spin, spin * 0.005, mechanization.FREE, ())
+    assert nav.solution[:4] == (*position, v)

@@ -13,6 +13,7 @@ import math
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
+from ins_sim.core.navigation.mechanization import FREE, FROM_TRUTH
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
@@ -129,8 +130,9 @@ class AidedNavigator:
         tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
         error = quaternion.exponential((tilt * draw[4], tilt * draw[5], azimuth * draw[6]))
         place = lat, lon, height, v, quaternion.multiply(error, q_nb)
+        channel = FROM_TRUTH if self._altimeter else FREE
         self._ins = CorrectedStrapdown(t_ns, omega, f, self._dt_ns * 1e-9, place, self._spin,
-                                       self._settings.input == 'integrated')
+                                       self._settings.input == 'integrated', channel)
         p, s = initial.position_sigma_m, initial.velocity_sigma_m_s
         self._ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
                           velocity=(-s * draw[2], -s * draw[3], 0.0))
@@ -144,7 +146,7 @@ class AidedNavigator:
             filter_.begin_window(ins)
             self._window_start_ns = ins.t_ns
         before, last_ns = (ins.q_nb, ins.v_b, ins.v), ins.t_ns
-        u = ins.advance(t_ns, omega, f, vertical)
+        u = ins.take(t_ns, omega, f, vertical)
         filter_.step(ins, before, u, (t_ns - last_ns) * 1e-9)
 
     def _keep(self):

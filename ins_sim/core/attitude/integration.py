@@ -6,7 +6,9 @@ for a rotation about a fixed axis; the other two integrate their differential eq
 of RK4 (docs/theory.md, "Dynamically tuned gyro", Orientation).
 """
 
+from collections.abc import Callable
 import math
+from typing import NamedTuple
 
 from . import quaternion
 from .matrix import dcm_of, quaternion_of
@@ -86,14 +88,45 @@ def turn(q, phi):
     return quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
 
 
+def _turn_quaternion(q, phi, dt):
+    return turn(q, phi)
+
+
+def _turn_dcm(c, phi, dt):
+    return step_poisson(c, _constant_rate(phi, dt), dt)
+
+
+def _turn_euler_vector(theta, phi, dt):
+    return step_euler_vector(theta, _constant_rate(phi, dt), dt)
+
+
+def _constant_rate(phi, dt):
+    return ((phi[0] / dt, phi[1] / dt, phi[2] / dt),) * 4
+
+
 def _same(q):
     return q
 
 
-# kind: (step, state of a quaternion, quaternion of a state)
-_ALGORITHMS = {'poisson': (step_poisson, dcm_of, quaternion_of),
-               'euler_vector': (step_euler_vector, quaternion.logarithm, quaternion.exponential),
-               'quaternion': (step_quaternion, _same, _same)}
+class Algorithm(NamedTuple):
+    """
+    An algorithm as functions of its state: nine, three or four floats that are never changed.
+
+    step(state, rates, dt): as of Orientation.step; turn(state, phi, dt): as of
+    Orientation.advance; state_of(q) and quaternion_of(state).
+    """
+
+    step: Callable
+    turn: Callable
+    state_of: Callable
+    quaternion_of: Callable
+
+
+ALGORITHMS = {
+    'poisson': Algorithm(step_poisson, _turn_dcm, dcm_of, quaternion_of),
+    'euler_vector': Algorithm(step_euler_vector, _turn_euler_vector, quaternion.logarithm,
+                              quaternion.exponential),
+    'quaternion': Algorithm(step_quaternion, _turn_quaternion, _same, _same)}
 
 
 class Orientation:
@@ -105,30 +138,26 @@ class Orientation:
     """
 
     def __init__(self, kind, q=quaternion.IDENTITY):
-        if kind not in _ALGORITHMS:
+        if kind not in ALGORITHMS:
             raise ValueError(f'orientation is {kind!r}; expected {", ".join(KINDS)}')
-        self._step, to_state, self._to_quaternion = _ALGORITHMS[kind]
-        self.state = to_state(tuple(q))
+        self._algorithm = ALGORITHMS[kind]
+        self.state = self._algorithm.state_of(tuple(q))
 
     def step(self, rates, dt):
         """Advance by dt, s; rates: four vectors at start, middle, middle, end, rad/s."""
-        self.state = self._step(self.state, rates, dt)
+        self.state = self._algorithm.step(self.state, rates, dt)
 
     def advance(self, phi, dt):
         """Advance by the rotation vector phi, rad, of an interval dt, s, at its constant rate."""
-        if self._step is step_quaternion:
-            self.state = turn(self.state, phi)
-        else:
-            rate = (phi[0] / dt, phi[1] / dt, phi[2] / dt)
-            self.state = self._step(self.state, (rate,) * 4, dt)
+        self.state = self._algorithm.turn(self.state, phi, dt)
 
     @property
     def q(self):
         """The attitude as unit quaternion q_nb."""
-        return self._to_quaternion(self.state)
+        return self._algorithm.quaternion_of(self.state)
 
     @property
     def dcm(self):
         """C_nb as nine floats, row by row."""
         state = self.state
-        return state if len(state) == 9 else dcm_of(self._to_quaternion(state))
+        return state if len(state) == 9 else dcm_of(self.q)

@@ -41,32 +41,51 @@ def two_sample_increments(alpha, nu, alpha_last, nu_last):
     return phi, u
 
 
-def step(q_ib, lat, lon, height, v, u, dt, spin, turned, channel, reference):
+def advance(q_ib, position, velocity, delta_v, dt, earth_rate, earth_angle, channel, reference):
     """
-    Return lat, lon, height, v, wander at the end of one interval.
+    Advance velocity and position over one sampling interval.
 
-    q_ib, lat, lon, height, v: state at its start, v = (V_E, V_N, V_U); the attitude is advanced
-    apart (``attitude.integration``).  u: velocity increment in b of its start, m/s.  spin: rate of
-    the Earth; turned: angle of the Earth at mid-interval since i and e coincided, rad.  channel
-    and reference: FROM_TRUTH with (height, V_U) at the end; FREE with (); DAMPED with (reference
-    height, c1, c2, c3, wander) of the third-order damping.
+    The attitude is integrated separately (``attitude.integration``). Latitude, longitude and
+    velocity at mid-interval are found in two passes, which makes the error second order in dt
+    (docs/theory.md, "Strapdown"; Savage, JGCD 21, 1998).
+
+    Parameters
+    ----------
+    q_ib : quaternion of the body relative to the inertial frame, at the start of the interval
+    position : latitude (rad), longitude (rad), height (m) at the start
+    velocity : east, north, up velocity relative to the Earth at the start, m/s
+    delta_v : integral of specific force, rotated to the body axes at the start, m/s
+    dt : length of the interval, s
+    earth_rate : rotation rate of the Earth, rad/s; 0 for an Earth that does not rotate
+    earth_angle : rotation of the Earth since i and e coincided, at mid-interval, rad
+    channel : how height and vertical velocity are found: FROM_TRUTH, FREE or DAMPED
+    reference : for FROM_TRUTH height and vertical velocity at the end of the interval; for FREE
+        empty; for DAMPED the reference height, c1, c2, c3 of ``damping`` and the vertical bias
+
+    Returns
+    -------
+    position, velocity : as above, at the end of the interval
+    vertical_bias : bias of the vertical acceleration that the damping has estimated, m/s^2; 0 in
+        the other channels
+
     """
-    v_e, v_n, v_u = v
-    x, y, z = quaternion.rotate(q_ib, u)
+    lat, lon, height = position
+    v_e, v_n, v_u = velocity
+    x, y, z = quaternion.rotate(q_ib, delta_v)
     half = 0.5 * dt
-    # the middle of the interval, first guessed from the start, then from both ends
+    # The middle of the interval is guessed from the start first, then from both ends.
     m_e, m_n, m_u, m_h = v_e, v_n, v_u, height
-    quarter_e, quarter_n = v_e, v_n
+    mean_v_e, mean_v_n = v_e, v_n
     lat_m, lon_m = lat, lon
     cos_m = math.cos(lat)
-    wander = 0.0
+    vertical_bias = 0.0
     for _ in range(2):
         r_n, r_e = ellipsoid.radii(math.sin(lat_m))
-        lat_m = lat + half * quarter_n / (r_n + m_h)
-        lon_m = lon + half * quarter_e / ((r_e + m_h) * cos_m)
+        lat_m = lat + half * mean_v_n / (r_n + m_h)
+        lon_m = lon + half * mean_v_e / ((r_e + m_h) * cos_m)
         sin_m, cos_m = math.sin(lat_m), math.cos(lat_m)
-        sin_l, cos_l = math.sin(lon_m + turned), math.cos(lon_m + turned)
-        # velocity increment in n: C_ni at mid-interval
+        sin_l, cos_l = math.sin(lon_m + earth_angle), math.cos(lon_m + earth_angle)
+        # Resolve the velocity increment in n at mid-interval.
         level = cos_l * x + sin_l * y
         d_e = cos_l * y - sin_l * x
         d_n = cos_m * z - sin_m * level
@@ -75,8 +94,8 @@ def step(q_ib, lat, lon, height, v, u, dt, spin, turned, channel, reference):
         r_n, r_e = r_n + m_h, r_e + m_h
         # V' = f + g - (2 Omega + rho) x V
         w_e = -m_n / r_n
-        w_n = 2.0 * spin * cos_m + m_e / r_e
-        w_u = 2.0 * spin * sin_m + m_e * sin_m / (cos_m * r_e)
+        w_n = 2.0 * earth_rate * cos_m + m_e / r_e
+        w_u = 2.0 * earth_rate * sin_m + m_e * sin_m / (cos_m * r_e)
         e = v_e + d_e - dt * (w_n * m_u - w_u * m_n)
         n = v_n + d_n - dt * (w_u * m_e - w_e * m_u)
         if channel == FROM_TRUTH:
@@ -89,10 +108,11 @@ def step(q_ib, lat, lon, height, v, u, dt, spin, turned, channel, reference):
                 off = m_h - wanted
                 h -= dt * c1 * off
                 up -= dt * (c2 * off + held)
-                wander = held + dt * c3 * off
+                vertical_bias = held + dt * c3 * off
         m_e, m_n, m_u, m_h = 0.5 * (v_e + e), 0.5 * (v_n + n), 0.5 * (v_u + up), 0.5 * (height + h)
-        quarter_e, quarter_n = 0.5 * (v_e + m_e), 0.5 * (v_n + m_n)
-    return (lat + dt * m_n / r_n, lon + dt * m_e / (r_e * cos_m), h, (e, n, up), wander)
+        mean_v_e, mean_v_n = 0.5 * (v_e + m_e), 0.5 * (v_n + m_n)
+    position = (lat + dt * m_n / r_n, lon + dt * m_e / (r_e * cos_m), h)
+    return position, (e, n, up), vertical_bias
 
 
 def damping(time_constant):
@@ -106,11 +126,26 @@ def damping(time_constant):
     return 3.0 * r, 3.0 * r * r + 2.0 * ellipsoid.GRAVITY_EQUATOR / ellipsoid.SEMI_MAJOR, r * r * r
 
 
-def increments(kind, last, now, dt, dt_last):
+def integrals(omega, f, dt):
+    """Return the integrals of a rate and a specific force that are constant over dt, s."""
+    return (omega[0] * dt, omega[1] * dt, omega[2] * dt), (f[0] * dt, f[1] * dt, f[2] * dt)
+
+
+def fixed_rate_increments(integrated, now, last):
+    """
+    Return the rotation vector and the velocity increment of an interval as long as the last.
+
+    integrated: whether the readings are plain integrals, else they are these increments; now,
+    last: ``integrals`` over this interval and the one before.
+    """
+    return two_sample_increments(now[0], now[1], last[0], last[1]) if integrated else now
+
+
+def uneven_increments(kind, last, now, dt, dt_last):
     """
     Return the rotation vector and the velocity increment of the interval that ends now.
 
-    kind: one of navigate_settings.INPUTS; last, now: (omega, f) at the stamps; dt, dt_last: this
+    kind: one of settings.navigate.INPUTS; last, now: (omega, f) at the stamps; dt, dt_last: this
     interval and the one before, s.  Rate and force are taken to be straight lines in time.  Two
     values at the ends of one interval have the cross products of twice their product with the
     trapezoid; two means over unequal intervals those of the earlier one, scaled.

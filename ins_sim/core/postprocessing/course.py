@@ -5,20 +5,20 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude.angles import to_compass
-from ins_sim.core.navigation.strapdown import FreeNavigation
+from ins_sim.core.navigation.recorded import RecordedNavigator
 
 
 def headings(imu, state, kind, spin):
     """
     Yield stamp and heading, ns and rad, behind the first sample of a RecordedImu.
 
-    state: (lat, lon, height, v_n, q_nb) at that sample; kind, spin: as in FreeNavigation.
+    state: (lat, lon, height, v_n, q_nb) at that sample; kind, spin: as in RecordedNavigator.
     """
     samples = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()))
-    nav = FreeNavigation(kind, spin, *next(samples), state)
+    nav = RecordedNavigator(kind, spin, *next(samples), state)
     for sample in samples:
         nav.step(*sample)
-        yield sample[0], float(to_compass(np.array(nav.solution()[4]))[2])
+        yield sample[0], float(to_compass(np.array(nav.solution[4]))[2])
 
 
 def course(turning, displacements, start_ns, distance_m, search_s):

@@ -8,7 +8,8 @@ import numpy as np
 from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
-from ins_sim.core.navigation.strapdown import FreeNavigation, runs_away
+from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.navigation.strapdown import runs_away
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
 from . import mounting
@@ -165,10 +166,10 @@ class _Replay:
                    self._heights[k:end].tolist())
         t_ns, omega, f, held = next(rows)
         held = begin.state[2] if math.isnan(held) else held
-        nav = FreeNavigation(
+        nav = RecordedNavigator(
             self._s.input, self._spin, t_ns, omega, f, begin.state,
             self._s.vertical.time_constant_s if self._damped else None)
-        stamps, solutions, whole = [t_ns], [nav.solution()], True
+        stamps, solutions, whole = [t_ns], [nav.solution], True
         for j, (t_ns, omega, f, height) in enumerate(rows, k + 1):
             # without a newer height of the reference the last one stands
             held = held if math.isnan(height) else height
@@ -176,7 +177,7 @@ class _Replay:
                 nav.bridge(t_ns, omega, f, self._step_ns, held)
             else:
                 nav.step(t_ns, omega, f, held)
-            solution = nav.solution()
+            solution = nav.solution
             if runs_away(solution):
                 self._notes.append(f'the solution runs away at {seconds(t_ns)} and ends there: '
                                    'the initial values or the units of the IMU cannot be right')

@@ -7,7 +7,7 @@ import numpy as np
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.sample_clock import SampleClock
-from ins_sim.core.navigation.strapdown import Strapdown
+from ins_sim.core.navigation.navigator import InertialNavigator
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.sampling import Sampler
@@ -84,7 +84,8 @@ def navigate(settings, motion, blocks, faults=None):
     as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
     the list faults, or ValueError is raised.
     """
-    nav, every, dt_ns = Strapdown(settings), settings.output_every, period_ns(settings.rate_hz)
+    nav, every = InertialNavigator(settings), settings.output_every
+    dt_ns = period_ns(settings.rate_hz)
     clock = SampleClock(settings, dt_ns)
     first_ns = last_ns = None
     for imu in blocks:
@@ -101,15 +102,15 @@ def navigate(settings, motion, blocks, faults=None):
                     raise ValueError(str(fault))
                 if faults is not None:
                     faults.append(str(fault))
-                nav = Strapdown(settings)
+                nav = InertialNavigator(settings)
             last_ns = now_ns
-            if not nav.step(now_ns, omega, f, now):
+            error = nav.step(now_ns, omega, f, now)
+            if error is None:
                 continue
-            error = nav.errors(now_ns, now)
             first_ns = now_ns if first_ns is None else first_ns
             if (now_ns - first_ns + dt_ns // 2) // dt_ns % every == 0:
                 kept.append(k)
-                solutions.append(nav.solution(now_ns))
+                solutions.append(nav.solution)
                 errors.append(error)
         if kept:
             yield (truth[kept], NavStates(t_ns[kept], *map(np.array, zip(*solutions))),
