@@ -163,9 +163,7 @@ class AidedStream(MatchedStreams):
 
     def advance(self, t_ns, omega, f, truth):
         """Take matched samples, and the fixes that are there by then; return the outputs."""
-        while self._fixes and self._fixes[0][0] <= t_ns:
-            _, source, fix = self._fixes.pop(0)
-            self.navigator.take(source, fix)
+        self.navigator.take_arrived(self._fixes, t_ns)
         judged = self.navigator.step(t_ns, omega, f, truth)
         if judged is None:
             return []

@@ -123,6 +123,17 @@ class AidedNavigator:
             check_ahead(source, fix.t_ns, self._ins.t_ns, self._dt_ns + self._buffer_ns)
         insort(self._pending, _Entry(source, fix), key=_arrival)
 
+    def take_arrived(self, waiting, t_ns):
+        """
+        Take the fixes that have arrived by t_ns out of a list, as ``take`` does.
+
+        waiting: (arrival_ns, source, fix) in the order of arrival.  A fix that is refused has left
+        the list too.
+        """
+        while waiting and waiting[0][0] <= t_ns:
+            _, source, fix = waiting.pop(0)
+            self.take(source, fix)
+
     def _start(self, t_ns, omega, f, truth):
         lat, lon, height, v, q_nb = truth
         draw = indexed_noise(self._settings.seed, self._run, 'aided.initial', 7).normal(0)

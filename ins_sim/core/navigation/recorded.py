@@ -1,48 +1,93 @@
 """The inertial navigator of a recorded IMU: any initial state, uneven intervals, gaps."""
 
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.streams.faults import StreamFault
 from . import mechanization
+from .loop import NavigationLoop
 from .mechanization import DAMPED, FREE
 from .strapdown import Strapdown
 
 
 class RecordedNavigator:
     """
-    The strapdown of a recorded IMU, from an initial state.
+    The strapdown of a recorded IMU, from an initial state at the first sample.
 
-    kind: one of settings.navigate.INPUTS; spin: rate of the Earth, rad/s; t_ns, omega, f: the
-    sample at the start; initial: lat, lon, height, v_n, q_nb there; time_constant_s: of the damped
-    vertical channel, None for the free one.
+    kind: one of settings.navigate.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
+    height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one.
     """
 
-    def __init__(self, kind, spin, t_ns, omega, f, initial, time_constant_s=None):
-        self._kind = kind
-        channel, damping = FREE, ()
+    def __init__(self, kind, spin, initial, time_constant_s=None):
+        self._kind, self._spin, self._initial = kind, spin, initial
+        self._channel, self._damping = FREE, ()
         if time_constant_s is not None:
-            channel, damping = DAMPED, mechanization.damping(time_constant_s)
-        self._strapdown = Strapdown(t_ns, initial, spin, channel, damping)
-        self._last, self._dt_last = (omega, f), None
+            self._channel, self._damping = DAMPED, mechanization.damping(time_constant_s)
+        self._strapdown = self._bridge_ns = None
 
-    @property
-    def solution(self):
-        """Return lat, lon, height, v_n, q_nb at the last sample."""
-        return self._strapdown.solution
+    def bridge_next(self, step_ns):
+        """
+        Go straight from the last sample to the next one, in steps of about step_ns.
+
+        Rate and force between the two are taken to be straight lines in time.
+        """
+        self._bridge_ns = step_ns
 
     def step(self, t_ns, omega, f, height=None):
-        """Take the sample of stamp t_ns; height: that of the reference, for the damping, m."""
-        self._advance(self._kind, t_ns, (omega, f), height)
+        """
+        Take the sample of stamp t_ns; return lat, lon, height, v_n, q_nb then.
 
-    def bridge(self, t_ns, omega, f, step_ns, height=None):
-        """Step over a gap: rate and force go straight from the last sample to this one."""
-        first_ns, (w0, f0) = self._strapdown.t_ns, self._last
-        count = max(1, round((t_ns - first_ns) / step_ns))
+        height: that of the reference, for the damping, m.
+        """
+        if self._strapdown is None:
+            self._strapdown = Strapdown(t_ns, self._initial, self._spin, self._channel,
+                                        self._damping)
+            self._last, self._dt_last = (omega, f), None
+        elif self._bridge_ns is not None:
+            self._bridge(t_ns, (omega, f), height)
+            self._bridge_ns = None
+        else:
+            self._advance(self._kind, t_ns, (omega, f), height)
+        return self._strapdown.solution
+
+    def _bridge(self, t_ns, end, height):
+        first_ns, start = self._strapdown.t_ns, self._last
+        count = max(1, round((t_ns - first_ns) / self._bridge_ns))
         for k in range(1, count + 1):
             part = k / count
             now = tuple(tuple(a + part * (b - a) for a, b in zip(*ends))
-                        for ends in ((w0, omega), (f0, f)))
+                        for ends in zip(start, end))
             self._advance('instant', first_ns + (t_ns - first_ns) * k // count, now, height)
 
     def _advance(self, kind, t_ns, now, height):
         dt = (t_ns - self._strapdown.t_ns) * 1e-9
         phi, u = mechanization.uneven_increments(kind, self._last, now, dt, self._dt_last or dt)
-        self._strapdown.advance(t_ns, phi, u, () if height is None else (height,))
+        self._strapdown.advance(t_ns, phi, u, (height,))
         self._last, self._dt_last = now, dt
+
+
+class RecordedLoop(NavigationLoop):
+    """
+    Steps a RecordedNavigator as far as a gap, or over all gaps by straight lines.
+
+    step_ns: typical step of the stamps; limit_ns: the longest one that is no gap; bridges: whether
+    gaps are bridged.  gap: the gap at which it has ended, or None; bridged: how many were bridged.
+    """
+
+    def __init__(self, make_navigator, step_ns, limit_ns, bridges):
+        super().__init__(make_navigator, step_ns)
+        self._limit_ns, self._bridges = limit_ns, bridges
+        self.gap, self.bridged = None, 0
+
+    def check(self, t_ns, last_ns):
+        """Raise StreamFault for a gap; other steps may be of any length."""
+        if t_ns - last_ns > self._limit_ns:
+            raise StreamFault(f'gap of {(t_ns - last_ns) * 1e-9:.6g} s from {seconds(last_ns)}',
+                              restart=True)
+
+    def recover(self, fault):
+        """Bridge the gap, or end; return whether the loop goes on."""
+        if not self._bridges:
+            self.gap = str(fault)
+            return False
+        self.navigator.bridge_next(self._dt_ns)
+        self.bridged += 1
+        return True

@@ -15,10 +15,10 @@ def headings(imu, state, kind, spin):
     state: (lat, lon, height, v_n, q_nb) at that sample; kind, spin: as in RecordedNavigator.
     """
     samples = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()))
-    nav = RecordedNavigator(kind, spin, *next(samples), state)
+    nav = RecordedNavigator(kind, spin, state)
+    nav.step(*next(samples))
     for sample in samples:
-        nav.step(*sample)
-        yield sample[0], float(to_compass(np.array(nav.solution[4]))[2])
+        yield sample[0], float(to_compass(np.array(nav.step(*sample)[4]))[2])
 
 
 def course(turning, displacements, start_ns, distance_m, search_s):

@@ -91,5 +91,9 @@ def _rising(stamps):
 
 def gaps(t_ns, factor):
     """Return the indices k whose step to k + 1 is longer than factor times the median step."""
-    steps = np.diff(t_ns)
-    return np.flatnonzero(steps > factor * np.median(steps))
+    return np.flatnonzero(np.diff(t_ns) > gap_limit_ns(t_ns, factor))
+
+
+def gap_limit_ns(t_ns, factor):
+    """Return the longest step that is no gap: factor times the median step."""
+    return float(factor * np.median(np.diff(t_ns)))

@@ -1,6 +1,7 @@
 """Navigate on a recording: clean, mount, begin, step, compare; every departure is a note."""
 
 from dataclasses import dataclass
+from functools import partial
 import math
 
 import numpy as np
@@ -8,13 +9,13 @@ import numpy as np
 from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
-from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.navigation.recorded import RecordedLoop, RecordedNavigator
 from ins_sim.core.navigation.strapdown import runs_away
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
 from . import mounting
 from .comparison import compare_with_reference
-from .imu_record import gaps, ordered
+from .imu_record import gap_limit_ns, gaps, ordered
 from .initial_state import Starter
 
 # A solution of one step shows nothing.
@@ -63,8 +64,8 @@ def navigate(settings, sources, progress=None):
     if settings.duration_s:
         stop_ns = imu.t_ns[begin.index] + round(settings.duration_s * 1e9)
         last = min(last, int(np.searchsorted(imu.t_ns, stop_ns, side='right')))
-    run = _Replay(settings, sources, imu, step_ns, notes, progress)
-    states = run.segments(begin, broken, last, Starter(settings, sources, imu, broken))
+    run = _Replay(settings, sources, imu, notes, progress)
+    states = run.segments(begin, last, Starter(settings, sources, imu, broken))
     if not states:
         raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
                          f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or an '
@@ -117,8 +118,9 @@ def _mounting(settings, sources, imu, first, notes):
 class _Replay:
     """Steps through the samples, from gap to gap."""
 
-    def __init__(self, settings, sources, imu, step_ns, notes, progress):
-        self._s, self._imu, self._step_ns, self._notes = settings, imu, step_ns, notes
+    def __init__(self, settings, sources, imu, notes, progress):
+        self._s, self._imu, self._step_ns, self._notes = settings, imu, imu.step_ns, notes
+        self._gap_limit_ns = gap_limit_ns(imu.t_ns, settings.gap_factor)
         self._progress = progress
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._damped = settings.vertical.channel == 'damped'
@@ -130,62 +132,56 @@ class _Replay:
                                  'expected vertical.channel free')
             self._heights = track.at(imu.t_ns)[:, 2]
 
-    def segments(self, begin, broken, last, starter):
+    def segments(self, begin, last, starter):
         """Return the NavStates of each segment, and note what was done at each gap."""
         states, bridged = [], 0
         while True:
-            cut = broken[(broken >= begin.index) & (broken < last - 1)]
-            bridging = self._s.on_gap == 'bridge'
-            end = last if bridging or not len(cut) else int(cut[0]) + 1
-            part, whole = self._segment(begin, end, set(cut.tolist()) if bridging else ())
+            loop = RecordedLoop(self._navigator(begin), self._step_ns, self._gap_limit_ns,
+                                self._s.on_gap == 'bridge')
+            part = self._segment(loop, begin, last)
             if len(part.t_ns) >= FEWEST:
                 states.append(part)
-            bridged += len(cut) if bridging else 0
-            if end == last or not whole:
+            bridged += loop.bridged
+            if loop.gap is None:
                 break
-            a, b = self._imu.t_ns[end - 1], self._imu.t_ns[end]
-            gap = f'gap of {(b - a) * 1e-9:.6g} s from {seconds(a)}'
             if self._s.on_gap == 'stop':
-                self._notes.append(f'{gap}: the solution ends there (on_gap stop)')
+                self._notes.append(f'{loop.gap}: the solution ends there (on_gap stop)')
                 break
             try:
-                begin = starter.begin(end, last, again=True)
+                begin = starter.begin(begin.index + len(part.t_ns), last, again=True)
             except ValueError as error:
-                self._notes.append(f'{gap}: no restart: {error}')
+                self._notes.append(f'{loop.gap}: no restart: {error}')
                 break
-            self._notes.append(f'{gap}: restarted')
+            self._notes.append(f'{loop.gap}: restarted')
             self._notes += begin.notes
         if bridged:
             self._notes.append(f'{bridged} gaps bridged by straight lines of rate and force')
         return states
 
-    def _segment(self, begin, end, bridges):
-        """Return the NavStates from a InitialState to end (not included); whether it got there."""
-        imu, k = self._imu, begin.index
-        rows = zip(imu.t_ns[k:end].tolist(), imu.omega[k:end].tolist(), imu.f[k:end].tolist(),
-                   self._heights[k:end].tolist())
-        t_ns, omega, f, held = next(rows)
-        held = begin.state[2] if math.isnan(held) else held
-        nav = RecordedNavigator(
-            self._s.input, self._spin, t_ns, omega, f, begin.state,
-            self._s.vertical.time_constant_s if self._damped else None)
-        stamps, solutions, whole = [t_ns], [nav.solution], True
-        for j, (t_ns, omega, f, height) in enumerate(rows, k + 1):
-            # without a newer height of the reference the last one stands
-            held = held if math.isnan(height) else height
-            if j - 1 in bridges:
-                nav.bridge(t_ns, omega, f, self._step_ns, held)
-            else:
-                nav.step(t_ns, omega, f, held)
-            solution = nav.solution
-            if runs_away(solution):
-                self._notes.append(f'the solution runs away at {seconds(t_ns)} and ends there: '
-                                   'the initial values or the units of the IMU cannot be right')
-                whole = False
+    def _navigator(self, begin):
+        return partial(RecordedNavigator, self._s.input, self._spin, begin.state,
+                       self._s.vertical.time_constant_s if self._damped else None)
+
+    def _segment(self, loop, begin, last):
+        """Return the NavStates from an InitialState to a gap or to last, which is left out."""
+        stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
+        for j, solution, _ in loop.run(self._samples(begin, last)):
+            if solutions and runs_away(solution):
+                self._notes.append(f'the solution runs away at {seconds(stamps[j])} and ends '
+                                   'there: the initial values or the units of the IMU cannot be '
+                                   'right')
                 break
-            stamps.append(t_ns)
             solutions.append(solution)
-            if self._progress is not None and j % 1000 == 0:
-                self._progress((j - k) / (len(imu) - k))
-        lat, lon, height, v_n, q_nb = map(np.array, zip(*solutions))
-        return NavStates(np.array(stamps, dtype=np.int64), lat, lon, height, v_n, q_nb), whole
+            if self._progress is not None and (k + j) % 1000 == 0:
+                self._progress(j / (len(self._imu) - k))
+        return NavStates(stamps[:len(solutions)], *map(np.array, zip(*solutions)))
+
+    def _samples(self, begin, last):
+        """Yield stamps, omega, f and the height of the reference from an InitialState to last."""
+        part, held = slice(begin.index, last), begin.state[2]
+        imu = self._imu[part]
+        for t_ns, omega, f, height in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),
+                                          self._heights[part].tolist()):
+            # Without a newer height of the reference the last one holds.
+            held = held if math.isnan(height) else height
+            yield t_ns, omega, f, held

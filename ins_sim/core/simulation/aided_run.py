@@ -2,14 +2,16 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.navigation.errors import level_errors
+from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.streams.faults import check_interval, StreamFault
 from ins_sim.core.timeseries.histories import AidedErrors, NavStates, Truth
+from .inertial import samples_with_truth
 
 NONE = (np.nan,) * 3
 UNKNOWN = (NONE,) * 3
@@ -70,70 +72,45 @@ def aid(settings, blocks, meter=None, gnss=None, run=0):
     return chain.finish()
 
 
+class _AidedLoop(NavigationLoop):
+    """Gives the navigator the fixes that have arrived before each sample."""
+
+    # Fixes on their way: (arrival_ns, source, fix), in the order of arrival.
+    waiting = ()
+
+    def step(self, t_ns, *sample):
+        """Give the fixes and a sample to the navigator; return its output."""
+        self.navigator.take_arrived(self.waiting, t_ns)
+        return super().step(t_ns, *sample)
+
+
 class _Chain:
     def __init__(self, settings, run):
-        self._settings, self._run = settings, run
-        self._dt_ns = period_ns(settings.rate_hz)
-        self._nav = AidedNavigator(settings, run)
-        self._last_ns = self._first_ns = None
+        self._loop = _AidedLoop(partial(AidedNavigator, settings, run),
+                                period_ns(settings.rate_hz), settings.output_every,
+                                settings.on_fault)
         self._truth, self._solutions, self._errors = [], [], []
-        self._judged, self._faults, self._t_ns = [], [], []
-        self._waiting = []
+        self._judged, self._t_ns = [], []
 
     def block(self, imu, truth, fixes):
         """Step through a block; fixes: (arrival_ns, source, fix)."""
-        # one that is on its way from an earlier block may arrive behind one of this
-        self._waiting = sorted(self._waiting + fixes, key=lambda entry: entry[:2])
-        columns = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()),
-                      map(tuple, imu.f.tolist()), truth.lat.tolist(), truth.lon.tolist(),
-                      truth.height.tolist(), truth.v_n.tolist(), truth.q_nb.tolist())
-        kept = []
-        for k, (t_ns, omega, f, *now) in enumerate(columns):
-            if self._step(t_ns, omega, f, now):
+        # A fix that is on its way from an earlier block may arrive after one of this block.
+        self._loop.waiting = sorted([*self._loop.waiting, *fixes], key=lambda entry: entry[:2])
+        kept, samples = [], list(samples_with_truth(imu, imu.t_ns, truth))
+        for k, judged, due in self._loop.run(samples):
+            self._judged.extend(judged)
+            if due:
                 kept.append(k)
+                self._put_out(*samples[k])
         if kept:
             self._truth.append(truth[kept])
 
-    def _step(self, t_ns, omega, f, truth):
-        """Take one sample; return whether its instant is put out."""
-        try:
-            if self._last_ns is not None:
-                check_interval('imu', t_ns, self._last_ns, self._dt_ns)
-        except StreamFault as fault:
-            self._fault(fault)
-        self._last_ns = t_ns
-        while self._waiting and self._waiting[0][0] <= t_ns:
-            _, source, fix = self._waiting.pop(0)
-            try:
-                self._nav.take(source, fix)
-            except StreamFault as fault:
-                self._fault(fault)
-        try:
-            judged = self._nav.step(t_ns, omega, f, truth)
-        except StreamFault as fault:
-            self._fault(fault)
-            judged = self._nav.step(t_ns, omega, f, truth)
-        if judged is None:
-            return False
-        self._judged.extend(judged)
-        if self._first_ns is None:
-            self._first_ns = t_ns
-        steps = (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns
-        if steps % self._settings.output_every:
-            return False
-        solution, filter_ = self._nav.solution, self._nav.filter
+    def _put_out(self, t_ns, omega, f, truth):
+        solution, filter_ = self._loop.navigator.solution, self._loop.navigator.filter
         self._t_ns.append(t_ns)
         self._solutions.append(solution)
         self._errors.append((*level_errors(solution, truth), *(filter_.sigmas() or UNKNOWN)[::-1],
                              filter_.estimates, filter_.estimate_sigmas() or NONE))
-        return True
-
-    def _fault(self, fault):
-        if self._settings.on_fault == 'stop':
-            raise ValueError(str(fault))
-        self._faults.append(str(fault))
-        if fault.restart:
-            self._nav = AidedNavigator(self._settings, self._run)
 
     def finish(self):
         """Return the AidedResult."""
@@ -144,4 +121,4 @@ class _Chain:
         return AidedResult(Truth.concatenate(self._truth),
                            NavStates(t_ns, *map(np.array, zip(*self._solutions))),
                            AidedErrors(t_ns, *map(np.array, zip(*self._errors))),
-                           tuple(self._judged), tuple(self._faults))
+                           tuple(self._judged), tuple(self._loop.faults))

@@ -1,19 +1,20 @@
 """The whole chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.sample_clock import SampleClock
+from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.navigation.navigator import InertialNavigator
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import StreamImu
 from ins_sim.core.sensors.imu.with_errors import with_errors
-from ins_sim.core.streams.faults import check_interval, StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples, NavErrors, NavStates, Truth
 
 BLOCK = 4096
@@ -84,47 +85,29 @@ def navigate(settings, motion, blocks, faults=None):
     as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
     the list faults, or ValueError is raised.
     """
-    nav, every = InertialNavigator(settings), settings.output_every
     dt_ns = period_ns(settings.rate_hz)
+    loop = NavigationLoop(partial(InertialNavigator, settings), dt_ns, settings.output_every,
+                          settings.on_fault, faults)
     clock = SampleClock(settings, dt_ns)
-    first_ns = last_ns = None
     for imu in blocks:
         t_ns = clock.instant(imu.t_ns)
         truth = motion.at(t_ns)
         kept, solutions, errors = [], [], []
-        samples = zip(t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), truth.lat.tolist(),
-                      truth.lon.tolist(), truth.height.tolist(), truth.v_n.tolist(),
-                      truth.q_nb.tolist())
-        for k, (now_ns, omega, f, *now) in enumerate(samples):
-            fault = _gap(now_ns, last_ns, dt_ns)
-            if fault is not None:
-                if settings.on_fault == 'stop':
-                    raise ValueError(str(fault))
-                if faults is not None:
-                    faults.append(str(fault))
-                nav = InertialNavigator(settings)
-            last_ns = now_ns
-            error = nav.step(now_ns, omega, f, now)
-            if error is None:
-                continue
-            first_ns = now_ns if first_ns is None else first_ns
-            if (now_ns - first_ns + dt_ns // 2) // dt_ns % every == 0:
+        for k, error, due in loop.run(samples_with_truth(imu, t_ns, truth)):
+            if due:
                 kept.append(k)
-                solutions.append(nav.solution)
+                solutions.append(loop.navigator.solution)
                 errors.append(error)
         if kept:
             yield (truth[kept], NavStates(t_ns[kept], *map(np.array, zip(*solutions))),
                    NavErrors(t_ns[kept], *map(np.array, zip(*errors))))
 
 
-def _gap(now_ns, last_ns, dt_ns):
-    """Return the StreamFault of an interval that is none, or None."""
-    if last_ns is not None:
-        try:
-            check_interval('imu', now_ns, last_ns, dt_ns)
-        except StreamFault as fault:
-            return fault
-    return None
+def samples_with_truth(imu, t_ns, truth):
+    """Return an iterable of t_ns, omega, f and (lat, lon, height, v_n, q_nb) of the samples."""
+    poses = zip(truth.lat.tolist(), truth.lon.tolist(), truth.height.tolist(),
+                truth.v_n.tolist(), truth.q_nb.tolist())
+    return zip(t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()), poses)
 
 
 def simulate(settings, motion, twin=True, progress=None):

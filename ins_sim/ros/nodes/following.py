@@ -1,6 +1,7 @@
 """What the nodes that navigate share: readings of an IMU, and the truth that each waits for."""
 
 from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.navigation.loop import Decimation
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.messages import topics
 from ..transport import qos
@@ -26,9 +27,9 @@ class NavigatorNode(StageNode):
         """Return the navigator."""
         settings = self.settings
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
-        self._every, self._dt_ns = settings.output_every, period_ns(settings.rate_hz)
+        self._decimation = Decimation(settings.output_every, period_ns(settings.rate_hz))
         self._rates = {}
-        self._first_ns = self._newest_ns = None
+        self._newest_ns = None
         return self.make_navigator()
 
     def make_outputs(self):
@@ -88,10 +89,9 @@ class NavigatorNode(StageNode):
         while self.stage.faults:
             self.fault(str(self.stage.faults.pop(0)))
         for t_ns, *output in outputs:
-            if self._first_ns is None or t_ns < self._first_ns:
-                self._first_ns = t_ns
+            if self._decimation.begins(t_ns):
                 self.begin_run()
-            if (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns % self._every:
+            if not self._decimation.due(t_ns):
                 continue
             self.publish_one(t_ns + self.epoch_ns, self._rates.get(t_ns, AT_REST), *output)
             self.monitor.sent += 1
