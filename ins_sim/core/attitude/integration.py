@@ -83,13 +83,9 @@ def step_quaternion(q, rates, dt):
     return turn(q, phi)
 
 
-def turn(q, phi):
-    """Return the unit quaternion q after the rotation vector phi, rad: exact."""
+def turn(q, phi, dt=None):
+    """Return the unit quaternion q after the rotation vector phi, rad: exact for any dt."""
     return quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
-
-
-def _turn_quaternion(q, phi, dt):
-    return turn(q, phi)
 
 
 def _turn_dcm(c, phi, dt):
@@ -126,7 +122,7 @@ ALGORITHMS = {
     'poisson': Algorithm(step_poisson, _turn_dcm, dcm_of, quaternion_of),
     'euler_vector': Algorithm(step_euler_vector, _turn_euler_vector, quaternion.logarithm,
                               quaternion.exponential),
-    'quaternion': Algorithm(step_quaternion, _turn_quaternion, _same, _same)}
+    'quaternion': Algorithm(step_quaternion, turn, _same, _same)}
 
 
 class Orientation:

@@ -37,7 +37,7 @@ class Strapdown:
                  orientation='quaternion'):
         self.t_ns = self._start_ns = t_ns
         self.spin, self._channel, self._damping = spin, channel, damping
-        self._algorithm = ALGORITHMS[orientation]
+        _, self._turn, self._state_of, self._quaternion_of = ALGORITHMS[orientation]
         self._vertical_bias = 0.0
         self.lat, self.lon, self.height, self.v, q_nb = place
         self.set_attitude(q_nb)
@@ -49,8 +49,8 @@ class Strapdown:
     def set_attitude(self, q_nb):
         """Replace the attitude by another one relative to n."""
         q_ib = frames.inertial_attitude(self.lat, self.lon + self.spin * self.elapsed_s, q_nb)
-        self._orientation = self._algorithm.state_of(q_ib)
-        self.q_ib = self._algorithm.quaternion_of(self._orientation)
+        self._orientation = self._state_of(q_ib)
+        self.q_ib = self._quaternion_of(self._orientation)
 
     def advance(self, t_ns, phi, delta_v, reference=()):
         """
@@ -60,7 +60,7 @@ class Strapdown:
         start, m/s; reference: height, m, and vertical velocity, m/s, at its end for the channel
         FROM_TRUTH, height for DAMPED.
         """
-        last_ns, start_ns, algorithm = self.t_ns, self._start_ns, self._algorithm
+        last_ns, start_ns = self.t_ns, self._start_ns
         dt = (t_ns - last_ns) * 1e-9
         middle_s = 0.5 * (last_ns - start_ns + t_ns - start_ns) * 1e-9
         if self._damping:
@@ -68,8 +68,8 @@ class Strapdown:
         (self.lat, self.lon, self.height), self.v, self._vertical_bias = mechanization.advance(
             self.q_ib, (self.lat, self.lon, self.height), self.v, delta_v, dt, self.spin,
             self.spin * middle_s, self._channel, reference)
-        self._orientation = algorithm.turn(self._orientation, phi, dt)
-        self.q_ib = algorithm.quaternion_of(self._orientation)
+        self._orientation = self._turn(self._orientation, phi, dt)
+        self.q_ib = self._quaternion_of(self._orientation)
         self.t_ns = t_ns
 
     @property
