@@ -10,9 +10,9 @@ import re
 
 import yaml
 
-from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
 from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.settings.suggest import nearest, unknown
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')

@@ -10,8 +10,8 @@ from ins_sim import parameter_files
 from ins_sim.core.aiding.mounting_calibration import calibrate
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
-from ins_sim.settings.simulation import AidedSimulationSettings
 from ins_sim.core.simulation.aided_run import AidedResult
+from ins_sim.settings.simulation import AidedSimulationSettings
 from . import aided_arrays, aided_figure
 from .consistency import mean_interval, THREE_SIGMA
 

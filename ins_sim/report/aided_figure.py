@@ -1,15 +1,10 @@
 """The figure of an aided run: its errors within three sigma of the filter, outages and NIS."""
 
-import matplotlib
+import numpy as np
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-import numpy as np  # noqa: E402
-
-from .consistency import largest  # noqa: E402
-from .figure import COLOURS, MOST_POINTS  # noqa: E402
-from ins_sim.core.aiding.navigator import GNSS, METER  # noqa: E402
+from ins_sim.core.aiding.navigator import GNSS, METER
+from .consistency import largest
+from .plotting import COLOURS, new_figure, save_png, thinned
 
 SOURCES = {METER: ('tab:purple', 'velocity meter'), GNSS: ('tab:cyan', 'GNSS')}
 PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),
@@ -39,10 +34,10 @@ def save(path, title, flown, sources, gate_probability):
     def time(t_ns):
         return (np.asarray(t_ns, dtype=np.int64) - start_ns) * 1e-9 / per
 
-    errors = flown.errors[::max(1, len(flown.errors) // MOST_POINTS)]
+    errors = thinned(flown.errors)
     weighed = any(t.outcome.nis is not None for t in flown.judged)
     rows = len(PANELS) + weighed
-    figure = Figure(figsize=(10, 2.6 * rows), layout='constrained')
+    figure = new_figure(10, 2.6 * rows)
     panels = figure.subplots(rows, 1, sharex=True)
     for axes, (kind, label, components, factor) in zip(panels, PANELS):
         _show_errors(axes, time(errors.t_ns), getattr(errors, kind) * factor,
@@ -67,7 +62,7 @@ def save(path, title, flown, sources, gate_probability):
         axes.set_xlim(*time((start_ns, end_ns)))
         axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small', frameon=False)
     figure.suptitle(title)
-    figure.savefig(path, dpi=110)
+    save_png(figure, path)
 
 
 def _show_errors(axes, t, errors, sigmas, components):

@@ -1,13 +1,9 @@
 """The figure of an Allan deviation: the axes, the fit, and a guide for each coefficient."""
 
-import matplotlib
+import numpy as np
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-import numpy as np  # noqa: E402
-
-from .noise_terms import TRIADS  # noqa: E402
+from .noise_terms import TRIADS
+from .plotting import new_figure, save_png
 
 COLOURS = {'x': 'tab:red', 'y': 'tab:green', 'z': 'tab:blue'}
 GUIDES = {'Q': ':', 'N': '--', 'B': '-.', 'K': (0, (6, 2))}
@@ -18,7 +14,7 @@ def save(path, title, noise):
     terms = TRIADS[noise.triad]
     unit, si = next((t.unit, t.si) for t in terms if t.symbol == 'B')
     tau, deviation = noise.allan.tau_s, noise.allan.deviation / si
-    figure = Figure(figsize=(9, 6.5), layout='constrained')
+    figure = new_figure(9, 6.5)
     axes = figure.subplots()
     for axis, channel in zip(noise.axes, deviation.T):
         axes.loglog(tau, channel, '.-', ms=5, lw=0.8, color=COLOURS[axis], label=f'axis {axis}')
@@ -38,4 +34,4 @@ def save(path, title, noise):
     axes.grid(which='minor', alpha=0.15)
     axes.legend(fontsize='small')
     axes.set_title(f'{noise.triad}: {title}')
-    figure.savefig(path, dpi=110)
+    save_png(figure, path)

@@ -1,14 +1,10 @@
 """The study of the tuned-gyro paper in tables and figures."""
 
-import matplotlib
+from rich.markup import escape
+from rich.table import Table
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-from rich.markup import escape  # noqa: E402
-from rich.table import Table  # noqa: E402
-
-from ins_sim.settings.tuned_gyro_study import SWEEPS  # noqa: E402
+from ins_sim.settings.tuned_gyro_study import SWEEPS
+from .plotting import new_figure, save_png
 
 
 def title(settings):
@@ -50,7 +46,7 @@ def save_figure(path, settings, curve, cells, limits=()):
     curve: Cells of a dense sweep; cells: those of the table, the paper's values drawn in as
     points; limits: speeds, Hz, at which the program of the paper becomes unstable.
     """
-    figure = Figure(figsize=(8, 5), layout='constrained')
+    figure = new_figure(8, 5)
     axes = figure.subplots()
     true_deg = settings.amplitude_deg
     axes.plot([c.value for c in curve], [c.poisson_deg - true_deg for c in curve],
@@ -71,4 +67,4 @@ def save_figure(path, settings, curve, cells, limits=()):
     axes.set_title(title(settings), fontsize='medium')
     axes.grid(alpha=0.3)
     axes.legend()
-    figure.savefig(path, dpi=110)
+    save_png(figure, path)

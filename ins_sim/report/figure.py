@@ -1,24 +1,16 @@
 """The figure of a run: position, attitude and drift errors over time."""
 
-import matplotlib
+import numpy as np
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-import numpy as np  # noqa: E402
-
-from .summary import DEG_PER_HOUR  # noqa: E402
-
-COLOURS = {'east': 'tab:red', 'north': 'tab:blue', 'up': 'tab:green'}
-MOST_POINTS = 4000
+from .plotting import COLOURS, finish_panel, new_figure, save_png, thinned
+from .summary import DEG_PER_HOUR
 
 
 def save(path, title, errors, prediction=None):
     """Save the figure as PNG; errors: NavErrors, prediction: Prediction or None."""
-    every = max(1, len(errors.t_ns) // MOST_POINTS)
-    errors = errors[::every]
+    errors = thinned(errors)
     t_min = (errors.t_ns - errors.t_ns[0]) * 1e-9 / 60.0
-    figure = Figure(figsize=(9, 9), layout='constrained')
+    figure = new_figure(9, 9)
     top, middle, bottom = figure.subplots(3, 1, sharex=True)
     for axis, name in enumerate(('east', 'north')):
         top.plot(t_min, errors.position[:, axis], color=COLOURS[name], label=f'{name}, measured')
@@ -42,9 +34,7 @@ def save(path, title, errors, prediction=None):
     for axes, label in ((top, 'position error [m]'),
                         (middle, 'inertial attitude error [arcsec]'),
                         (bottom, 'drift since the start [deg/h]')):
-        axes.set_ylabel(label)
-        axes.grid(alpha=0.3)
-        axes.legend(loc='best', fontsize='small')
+        finish_panel(axes, label)
     bottom.set_xlabel('time [min]')
     figure.suptitle(title)
-    figure.savefig(path, dpi=110)
+    save_png(figure, path)

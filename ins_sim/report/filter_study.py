@@ -2,16 +2,12 @@
 
 from dataclasses import dataclass
 
-import matplotlib
+import numpy as np
+from rich import box
+from rich.table import Table
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-import numpy as np  # noqa: E402
-from rich import box  # noqa: E402
-from rich.table import Table  # noqa: E402
-
-from .consistency import mean_interval  # noqa: E402
+from .consistency import mean_interval
+from .plotting import new_figure, save_png
 
 COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
            'paper_corrected': 'tab:orange', 'window_kf': 'tab:blue', 'eskf': 'tab:green'}
@@ -91,7 +87,7 @@ def save_figure(path, title, cases, flown):
 
     cases: list of Case; flown: for each the list of Flown.
     """
-    figure = Figure(figsize=(9, 9), layout='constrained')
+    figure = new_figure(9, 9)
     top, bottom = figure.subplots(2, 1, sharex=True)
     # what coincides shows through: free under paper, and window_kf under eskf for a while
     styles, seen = ('-', '--', ':', '-.'), {'paper': 0, 'window_kf': 0}
@@ -121,4 +117,4 @@ def save_figure(path, title, cases, flown):
         axes.grid(which='both', alpha=0.3)
         axes.legend(fontsize='small', loc='lower right' if axes is top else 'upper left')
     figure.suptitle(title)
-    figure.savefig(path, dpi=110)
+    save_png(figure, path)

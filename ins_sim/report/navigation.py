@@ -3,23 +3,18 @@
 from dataclasses import asdict, fields
 import json
 
-import matplotlib
 import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
 
-matplotlib.use('Agg')
-
-from matplotlib.figure import Figure  # noqa: E402
-from rich.console import Console  # noqa: E402
-from rich.markup import escape  # noqa: E402
-from rich.table import Table  # noqa: E402
-
-from . import storage  # noqa: E402
-from .figure import MOST_POINTS  # noqa: E402
-from .table import number  # noqa: E402
-from ins_sim import parameter_files  # noqa: E402
-from ins_sim.core.postprocessing.comparison import error_rows  # noqa: E402
-from ins_sim.core.navigation.errors import position_error  # noqa: E402
-from ins_sim.core.postprocessing.reference import SampledTrack  # noqa: E402
+from ins_sim import parameter_files
+from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.postprocessing.comparison import error_rows
+from ins_sim.core.postprocessing.reference import SampledTrack
+from . import storage
+from .plotting import new_figure, save_png, thinned
+from .table import number
 
 MARK = 'nav.npz'
 OTHERS = ('tab:orange', 'tab:purple')
@@ -82,7 +77,7 @@ def write(folder, settings, title, result, force=False):
 
 def save_figure(path, title, result):
     """Save the way and the errors over time as PNG."""
-    figure = Figure(figsize=(13, 9), layout='constrained')
+    figure = new_figure(13, 9)
     grid = figure.add_gridspec(3, 2)
     way = figure.add_subplot(grid[:, 0])
     first = result.states[0]
@@ -96,7 +91,7 @@ def save_figure(path, title, result):
             inside = (track.t_ns >= start_ns) & (track.t_ns <= end_ns)
             tracks.append((reference.name, SampledTrack(track.t_ns[inside], track.values[inside])))
     for k, (name, track) in enumerate(tracks):
-        place = np.array([position_error(*p, *origin) for p in _thin(track.values).tolist()])
+        place = np.array([position_error(*p, *origin) for p in thinned(track.values).tolist()])
         if len(place):
             own = k < len(result.states)
             way.plot(place[:, 0], place[:, 1], lw=1.2, label=None if own and k else name,
@@ -112,8 +107,8 @@ def save_figure(path, title, result):
             track = getattr(comparison, kind)
             if track is None:
                 continue
-            t_s = (_thin(track.t_ns) - start_ns) * 1e-9
-            values = _thin(track.values) * unit
+            t_s = (thinned(track.t_ns) - start_ns) * 1e-9
+            values = thinned(track.values) * unit
             axes.plot(t_s, np.hypot(values[:, 0], values[:, 1]), style, color='tab:red',
                       label=f'{"tilt" if kind == "attitude" else "horizontal"}, '
                             f'{comparison.name}')
@@ -130,8 +125,4 @@ def save_figure(path, title, result):
     way.grid(alpha=0.3)
     way.legend(loc='best', fontsize='small')
     figure.suptitle(title)
-    figure.savefig(path, dpi=100)
-
-
-def _thin(values):
-    return values[::max(1, len(values) // MOST_POINTS)]
+    save_png(figure, path)

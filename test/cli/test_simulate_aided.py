@@ -8,6 +8,7 @@ from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.simulation.aided_run import aid, Reported, with_truth
 from ins_sim.report import aided, aided_figure
+from matplotlib.figure import Figure
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -125,8 +126,7 @@ def test_the_figure_shows_where_fixes_are_missing(monkeypatch, tmp_path):
                       'outages.start_s:=[30.0]', 'outages.end_s:=[60.0]')
     flight = flown(chosen)[-1]
     figures = []
-    monkeypatch.setattr(aided_figure.Figure, 'savefig',
-                        lambda figure, *_, **__: figures.append(figure))
+    monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
     aided_figure.save(tmp_path / 'x.png', 'title', flight, (METER, GNSS), 0.0)
     figure, = figures
     start_s = flight.errors.t_ns[0] * 1e-9
