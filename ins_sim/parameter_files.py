@@ -20,8 +20,9 @@ ROS_OWN = ('use_sim_time', 'start_type_description_service')
 
 def read(paths, assignments=()):
     """
-    Return SimulationSettings of parameter files, in order, and of NAME:=VALUE assignments.
+    Return SimulationSettings of parameter files, in order, and of assignments.
 
+    assignments: texts NAME:=VALUE, or {name: value}, whose values are taken as they are.
     A file may serve the recorder as well; its section is checked name by name.
 
     Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
@@ -49,14 +50,11 @@ def read_nodes(paths, assignments, nodes, known=None):
         for section, parameters in _sections(path, known):
             for name, value in _flat(parameters).items():
                 _assign(values, known, section, name, value, path)
-    for assignment in assignments:
-        name, separator, text = assignment.partition(':=')
-        if not separator:
-            raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
+    for name, value, where in _assigned(assignments):
         # NODE:NAME as ROS writes it, for one node
         node, separator, own = name.partition(':')
         section, name = (node, own) if separator and node in known else ('/**', name)
-        _assign(values, known, section, name, _parse(text, f'-p {assignment}'), '-p')
+        _assign(values, known, section, name, value, where)
     built = {}
     for node, cls in nodes.items():
         try:
@@ -64,6 +62,18 @@ def read_nodes(paths, assignments, nodes, known=None):
         except ValueError as error:
             raise ValueError(f'{node}: {error}') from None
     return built
+
+
+def _assigned(assignments):
+    """Yield (name, value, where it is said) of texts NAME:=VALUE or of {name: value}."""
+    if isinstance(assignments, Mapping):
+        yield from ((name, value, 'values') for name, value in assignments.items())
+        return
+    for assignment in assignments:
+        name, separator, text = assignment.partition(':=')
+        if not separator:
+            raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
+        yield name, _parse(text, f'-p {assignment}'), '-p'
 
 
 def _parse(text, where):

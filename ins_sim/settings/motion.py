@@ -95,15 +95,23 @@ class Recording(SettingsGroup):
                           choices=('refuse', 'cut'))
 
 
-MOTION_KINDS = ('static', 'rocking', 'two_axis', 'coning', 'sculling', 'sinusoids', 'harmonics',
-                'cruise', 'racetrack', 'aggressive', 'route', 'recording')
+_FOLDER = 'ins_sim.core.motion'
+_BENCH, _FLIGHT = f'{_FOLDER}.bench:bench_motion', f'{_FOLDER}.flights:flight_motion'
+# The one table of the motions: {kind: 'module:maker'}, where maker(MotionSettings, Datum, Earth)
+# returns a Motion. Makers are named by text and imported when a motion is made, because settings
+# need nothing but Python. None: the poses are in a file, which ins_sim.io.motion reads.
+MOTIONS = {
+    'static': _BENCH, 'rocking': _BENCH, 'two_axis': _BENCH, 'coning': _BENCH,
+    'sculling': _BENCH, 'sinusoids': _BENCH, 'harmonics': _BENCH,
+    'cruise': _FLIGHT, 'racetrack': _FLIGHT, 'aggressive': _FLIGHT,
+    'route': f'{_FOLDER}.route.motion:route_motion', 'recording': None}
 
 
 @settings_class
 class MotionSettings(SettingsGroup):
     """The motion; only the group of its kind is used."""
 
-    kind: str = setting('two_axis', 'which motion', choices=MOTION_KINDS)
+    kind: str = setting('two_axis', 'which motion', choices=MOTIONS)
     psi_deg: float = setting(0.0, 'mean or initial psi, counter-clockwise from north (bench '
                              'motions)', 'deg', -360.0, 360.0)
     theta_deg: float = setting(-30.0, 'mean or initial theta, nose up (bench motions)', 'deg',
@@ -118,6 +126,11 @@ class MotionSettings(SettingsGroup):
     harmonics: Harmonics = group(Harmonics)
     route: FlightRoute = group(FlightRoute)
     recording: Recording = group(Recording)
+
+    @property
+    def maker(self) -> str | None:
+        """The entry of the kind in the table MOTIONS."""
+        return MOTIONS[self.kind]
 
     def check(self):
         """Refuse a recording without a file."""

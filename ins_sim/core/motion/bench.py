@@ -175,9 +175,9 @@ _ATTITUDES = {'rocking': _rocking, 'two_axis': _two_axis, 'coning': _coning,
 _PATHS = {'sculling': _vibration, 'sinusoids': _sway}
 
 
-def bench_motion(motion, datum, earth_rotation):
+def bench_motion(motion, datum, earth):
     """
-    Return the bench motion of MotionSettings at a Datum.
+    Return the bench motion of MotionSettings at a Datum; earth: Earth.
 
     Raises ValueError on settings that no motion can have.
     """
@@ -188,4 +188,4 @@ def bench_motion(motion, datum, earth_rotation):
     def pose(t):
         return *place.coordinates(t, path(t)), orientation(t)
 
-    return Motion(pose, 2, earth_rotation, period_s)
+    return Motion(pose, 2, earth.rotation, period_s)

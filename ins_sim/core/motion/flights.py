@@ -6,6 +6,7 @@ from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
+from .motion import Motion
 
 TWO_PI = 2.0 * math.pi
 # (angle, amplitude in deg, cycles per s times 2 pi = factor of p, phase) added to the base angles
@@ -73,3 +74,8 @@ def _flight(path, trim_deg, wobble):
 FLIGHTS = {'cruise': _flight(_cruise, 3.0, CRUISE_WOBBLE),
            'racetrack': _flight(_racetrack, 3.0, CRUISE_WOBBLE),
            'aggressive': _flight(_aggressive, 0.0, AGGRESSIVE_WOBBLE)}
+
+
+def flight_motion(motion, datum, earth):
+    """Return the flight that MotionSettings name, from a Datum; earth: Earth."""
+    return Motion(FLIGHTS[motion.kind](datum), 3, earth.rotation)

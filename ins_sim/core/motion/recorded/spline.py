@@ -20,6 +20,7 @@ from ins_sim.core.attitude.interpolation import hermite
 from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
 from . import quality
+from ..motion import Motion
 from ..truth import truth_from_pose
 from .faults import median_interval, unbroken_part
 
@@ -46,18 +47,16 @@ _COS = [(-1.0) ** n / math.factorial(2 * n) for n in range(19, -1, -1)]
 _SINC = [(-1.0) ** n / math.factorial(2 * n + 1) for n in range(19, -1, -1)]
 
 
-class RecordedMotion:
+class RecordedMotion(Motion):
     """
     A recorded flight, valid from -3 s to end_s + 3 s of motion time.
 
     Motion time 0 is recorder time start_s after the first row; the recording must reach 3 s
     further on both sides (end effects of the splines; history of delayed channels).  end_s: last
     motion time to be used, s; zero_ns: the recorder's stamp of motion time 0.  warnings: what was
-    cut, smoothed or found noisy, in sentences.  period_s: None, for the callers that treat all
-    motions alike.
+    cut, smoothed or found noisy, in sentences.
     """
 
-    period_s = None
     end_name = 'the end of the recording'
 
     def __init__(self, poses, recording, earth):

@@ -19,6 +19,7 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
+from ..motion import Motion
 from ..truth import truth_from_pose
 from .gusts import Gusts
 from .track import Flow, leg_piece, RouteTrack
@@ -31,7 +32,7 @@ GUST_MARGIN = 3.0
 POLEMOST_DEG = 89.0
 
 
-class RouteMotion:
+class RouteMotion(Motion):
     """
     The flight of settings.FlightRoute, from the first turning point at motion time zero.
 
@@ -40,7 +41,6 @@ class RouteMotion:
     Raises ValueError in one sentence on a route that cannot be flown.
     """
 
-    period_s = None
     end_name = 'the arrival at the last turning point'
 
     def __init__(self, settings, earth_settings):
@@ -92,6 +92,11 @@ class RouteMotion:
         q_nb = quaternion.multiply(angles.from_angles(-psi, psi.constant(0.0), bank),
                                    angles.about_axis(1, psi.constant(-self._attack)))
         return truth_from_pose(t_ns, lat, lon, up + self._height, q_nb, self._rotation)
+
+
+def route_motion(motion, datum, earth):
+    """Return the flight along the route of MotionSettings, which needs no Datum; earth: Earth."""
+    return RouteMotion(motion.route, earth)
 
 
 def _wind(settings):
