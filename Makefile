@@ -13,7 +13,7 @@ help:
 	@echo 'make test-slow  run the slow tests'
 	@echo 'make figures    compute the long studies and render docs/validation.md'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
-	@echo 'make lint       check the style'
+	@echo 'make lint       check the style and the types'
 	@echo 'make lock       write requirements.lock again (UPGRADE=--upgrade: newest versions)'
 	@echo 'make clean      remove .venv, builds and caches'
 
@@ -38,6 +38,7 @@ bench:
 
 lint:
 	$(RUN) python -m flake8
+	$(RUN) python -m mypy
 
 # Needs uv.  The file holds versions, markers and hashes for every supported Python, and no index.
 lock:

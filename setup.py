@@ -25,7 +25,7 @@ setup(
         ('share/' + package_name + '/launch', sorted(glob('launch/*.launch.py'))),
     ],
     python_requires='>=3.10',
-    package_data={package_name + '.bags': ['message_types.json']},
+    package_data={package_name: ['py.typed'], package_name + '.bags': ['message_types.json']},
     install_requires=['numpy<3', 'scipy<2', 'pyyaml<7', 'matplotlib<4', 'rich<16'],
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.

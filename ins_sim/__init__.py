@@ -37,6 +37,55 @@ Angles of attitude
 psi: counter-clockwise from north in the bench motions (the paper's +psi), clockwise (true
 heading) in the flights.  theta: nose up.  gamma: right wing down.  ``C_nb`` of the paper's
 (right, forward, up) axes is Rz(psi) Rx(theta) Ry(gamma); see ``ins_sim.core.attitude.angles``.
+
+Public names
+------------
+The functions are in ``__all__``; each is imported when it is used first, so that ``import
+ins_sim`` itself loads neither NumPy nor YAML.  All else is importable by its module and may change
+until version 1.0.
 """
 
+from importlib import import_module
+from typing import Any, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ins_sim.api.inputs import presets, read_settings
+    from ins_sim.api.offline import predict, simulate, simulate_aided
+    from ins_sim.api.readers import open_bag, open_motion
+    from ins_sim.api.recorded import ImuRecord, Navigation, navigate
+    from ins_sim.api.results import AidedRun, Run
+    from ins_sim.bags.bag_reader import BagReader
+    from ins_sim.core.motion.motion import Motion
+    from ins_sim.core.prediction.predict import Prediction
+    from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
+
 __version__ = '0.1.0'
+
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ImuRecord', 'Motion', 'Navigation',
+           'Prediction', 'Run', 'SimulationSettings', 'navigate', 'open_bag', 'open_motion',
+           'predict', 'presets', 'read_settings', 'simulate', 'simulate_aided']
+_MODULES = {
+    'api.inputs': ('presets', 'read_settings'),
+    'api.offline': ('predict', 'simulate', 'simulate_aided'),
+    'api.readers': ('open_bag', 'open_motion'),
+    'api.recorded': ('ImuRecord', 'Navigation', 'navigate'),
+    'api.results': ('AidedRun', 'Run'),
+    'bags.bag_reader': ('BagReader',),
+    'core.motion.motion': ('Motion',),
+    'core.prediction.predict': ('Prediction',),
+    'settings.simulation': ('AidedSimulationSettings', 'SimulationSettings')}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is used first (PEP 562)."""
+    for module, names in _MODULES.items():
+        if name in names:
+            value = getattr(import_module(f'{__name__}.{module}'), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+
+
+def __dir__() -> list[str]:
+    """Return the names that are there and those that can be imported."""
+    return sorted({*globals(), *__all__})

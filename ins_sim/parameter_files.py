@@ -18,7 +18,7 @@ from ins_sim.settings.suggest import nearest, unknown
 ROS_OWN = ('use_sim_time', 'start_type_description_service')
 
 
-def read(paths, assignments=()):
+def read(paths, assignments=()) -> SimulationSettings:
     """
     Return SimulationSettings of parameter files, in order, and of assignments.
 
@@ -30,7 +30,7 @@ def read(paths, assignments=()):
     return SimulationSettings(**read_nodes(paths, assignments, NODES, ALL_NODES))
 
 
-def read_aided(paths, assignments=()):
+def read_aided(paths, assignments=()) -> AidedSimulationSettings:
     """Return AidedSimulationSettings as ``read`` does SimulationSettings."""
     built = read_nodes(paths, assignments, {**NODES, **AIDING}, ALL_NODES)
     simulation = SimulationSettings(**{node: built.pop(node) for node in NODES})

@@ -18,7 +18,7 @@ from .storages import SUFFIXES
 READERS = {'mcap': McapReader, 'sqlite3': SqliteReader}
 
 
-def open_bag(path):
+def open_bag(path) -> 'BagReader':
     """
     Return the BagReader of a bag: a folder with or without metadata.yaml, or one of its files.
 

@@ -1,7 +1,5 @@
 """Arguments that several verbs share, and the settings that they name."""
 
-from pathlib import Path
-
 from ins_sim import parameter_files, resources
 
 
@@ -39,14 +37,3 @@ def read_simulation(chosen):
     aided = parameter_files.read_aided(
         [resources.parameter_file(name) for name in chosen.params_file], chosen.param)
     return aided.simulation, aided
-
-
-def title(settings):
-    """Return a line that names motion and delays."""
-    motion, sensor = settings.motion_generator.motion, settings.imu_sensor
-    d = sensor.gyro.delay_us
-    name = motion.kind
-    if name == 'recording':
-        name = f'recording {Path(motion.recording.path).name}'
-    return (f'{name}, gyro delays x {d.x:g}, y {d.y:g}, z {d.z:g} us, {sensor.rate_hz:g} Hz, '
-            f'{settings.motion_generator.duration_s:g} s')

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from ins_sim.core.attitude.integration import KINDS
 from ins_sim.io.motion import read_motion
-from ins_sim.report.summary import DEG_PER_HOUR
+from ins_sim.report.summary import DEG_PER_HOUR, title
 from ins_sim.report.table import number
 from ins_sim.studies.orientation import compare_orientations
 from . import arguments
@@ -29,7 +29,7 @@ def run(chosen):
     with ProgressBar(console, 'algorithms') as progress:
         results = compare_orientations(settings, read_motion(settings.motion_generator),
                                        progress.watch('navigating', len(KINDS)))
-    table = Table(title=arguments.title(settings))
+    table = Table(title=title(settings))
     table.add_column('figure')
     table.add_column('unit')
     for r in results:

@@ -14,7 +14,6 @@ from ins_sim.io.motion import read_motion
 from ins_sim.io.published import read_errors
 from ins_sim.report import figure, storage, summary, table
 from ins_sim.settings.node import Pacing
-from . import arguments
 from .progress import ProgressBar
 
 EVERY = 10
@@ -91,7 +90,7 @@ def _part(name, settings, folder, console):
 
 def _run(name, settings, work, folder, console):
     from ins_sim.ros.session import Session
-    title = arguments.title(settings)
+    title = summary.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
     with ProgressBar(console, 's') as progress:

@@ -24,7 +24,7 @@ def run(chosen):
     prediction = predict(settings, read_motion(settings.motion_generator))
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
-    shown = Table(title=arguments.title(settings))
+    shown = Table(title=summary.title(settings))
     for head in ('figure', 'unit', 'predicted', 'paper / re-derived'):
         shown.add_column(head, justify='left' if head in ('figure', 'unit') else 'right')
     for axis, name in enumerate(('east', 'north', 'up')):

@@ -38,7 +38,7 @@ def run(chosen):
     settings, aided = arguments.read_simulation(chosen)
     storage.check_free(chosen.output, chosen.force)
     write_bag = _bag_writer(chosen, settings)
-    title = arguments.title(settings)
+    title = summary.title(settings)
     console = Console()
     motion = read_motion(settings.motion_generator)
     # Made before the run, so that settings that do not fit are refused before it.

@@ -34,6 +34,11 @@ def read_imu(path, settings):
         sources = Sources(path.name, csv_imu.read_imu(path), 'imu')
     else:
         sources = _bag(path, settings)
+    return with_reference(sources, settings)
+
+
+def with_reference(sources, settings):
+    """Return Sources with the reference of the file that NavigateSettings name, if any."""
     if settings.reference.path:
         sources = replace(sources, odometry=None,
                           reference=csv_imu.read_reference(settings.reference.path))

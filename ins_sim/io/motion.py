@@ -2,9 +2,10 @@
 
 from ins_sim.bags.storages import is_bag
 from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import Motion
 
 
-def read_motion(settings):
+def read_motion(settings) -> Motion:
     """
     Return the motion of MotionGeneratorSettings or ImuSensorSettings.
 

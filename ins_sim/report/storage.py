@@ -20,11 +20,11 @@ ARRAYS = 'run.npz'
 PARAMETERS = 'parameters.yaml'
 
 
-def check_free(folder, force, mark=MARK):
+def check_free(folder, force, mark=MARK, option='--force'):
     """
     Raise ValueError unless the folder may be written: absent, or with its mark and force given.
 
-    mark: the file by which what a command writes is known.
+    mark: the file by which what a command writes is known; option: how the caller spells force.
     """
     folder = Path(folder)
     parent = next(p for p in folder.absolute().parents if p.exists())
@@ -34,9 +34,9 @@ def check_free(folder, force, mark=MARK):
     if not folder.exists():
         return
     if not force:
-        raise ValueError(f'{folder} exists; expected a new folder (or --force)')
+        raise ValueError(f'{folder} exists; expected a new folder (or {option})')
     if not folder.is_dir() or (any(folder.iterdir()) and not (folder / mark).exists()):
-        raise ValueError(f'{folder} holds no {mark}; --force replaces only what the same command '
+        raise ValueError(f'{folder} holds no {mark}; {option} replaces only what the same command '
                          'wrote')
 
 

@@ -37,6 +37,9 @@ def eager(tree):
     stack = [tree]
     while stack:
         node = stack.pop()
+        if isinstance(node, ast.If) and ast.unparse(node.test) == 'TYPE_CHECKING':
+            # Read by type checkers only.
+            continue
         yield node
         if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             stack.extend(ast.iter_child_nodes(node))
@@ -77,9 +80,11 @@ MAY_IMPORT = {
     'resources': {'settings.suggest'},
     'graph': {'messages'},
     'report': CORE | {'settings', 'studies', 'parameter_files'},
+    'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS,
     'cli': FILES_AND_BAGS | {'ros', '__version__'},
-    '__init__': set(),
+    # The public names; what is not in api is imported for annotations.
+    '__init__': {'api', 'bags', 'core.motion', 'core.prediction', 'settings'},
 }
 
 

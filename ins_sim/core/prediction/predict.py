@@ -28,7 +28,7 @@ class Prediction:
     resonances: list
 
 
-def predict(settings, motion):
+def predict(settings, motion) -> Prediction:
     """
     Return the Prediction of SimulationSettings.
 

@@ -1,0 +1,142 @@
+"""Settings for the public functions, and the check of what they are given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+import os
+from pathlib import Path
+from typing import Any, Literal, overload, Union
+
+from ins_sim import parameter_files, resources
+from ins_sim.settings.presets import preset, PRESETS
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
+
+Name = Union[str, 'os.PathLike[str]']
+Names = Union[Name, Iterable[Name]]
+Values = Mapping[str, Any]
+
+
+@overload
+def read_settings(names: Names, values: Values | None = None,
+                  aided: Literal[False] = False) -> SimulationSettings:
+    ...
+
+
+@overload
+def read_settings(names: Names, values: Values | None = None, *,
+                  aided: Literal[True]) -> AidedSimulationSettings:
+    ...
+
+
+@overload
+def read_settings(names: Names, values: Values | None,
+                  aided: Literal[True]) -> AidedSimulationSettings:
+    ...
+
+
+def read_settings(names: Names, values: Values | None = None,
+                  aided: bool = False) -> SimulationSettings | AidedSimulationSettings:
+    """
+    Return the settings of a simulation.
+
+    Parameters
+    ----------
+    names : str, path, or a list of these
+        Parameter files, later ones win: names of shipped files, such as ``'motion_2'``, or paths.
+        An empty list gives the defaults.
+    values : mapping, optional
+        Values by the name of the parameter; they win over the files. ``'gyro.delay_us.y'`` goes
+        to every node that has such a parameter, ``'strapdown:output_every'`` to one node.
+    aided : bool, optional
+        Whether to read the settings of the aided navigator and its sensors too.
+
+    Returns
+    -------
+    SimulationSettings or AidedSimulationSettings
+        Immutable. A field is reached by its name: ``settings.imu_sensor.gyro.delay_us.y``.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, on an unknown name (with the nearest known one), and on a value of the
+        wrong type, out of range, or that does not fit the others.
+    FileNotFoundError
+        Where there is no such file.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings('motion_2', {'duration_s': 60.0, 'gyro.delay_us.y': 1.0})
+    >>> settings.imu_sensor.gyro.delay_us.y
+    1.0
+    >>> ins_sim.read_settings('motion_2', {'duration': 60.0})
+    Traceback (most recent call last):
+        ...
+    ValueError: values: unknown parameter 'duration'; the nearest known one is 'duration_s'
+    """
+    read = parameter_files.read_aided if aided else parameter_files.read
+    return read(files(names), plain(values))
+
+
+def files(names: Names) -> list[Path]:
+    """Return the paths of parameter files given by name or by path, one or several."""
+    given = [names] if isinstance(names, (str, os.PathLike)) else list(names)
+    return [resources.parameter_file(name) for name in given]
+
+
+def plain(values: Values | None) -> dict[str, Any]:
+    """Return values by name, arrays and numbers of NumPy as those of Python, bit by bit."""
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
+        raise ValueError(f'values are {values!r}; expected {{name of a parameter: value}}')
+    return {name: value.tolist() if hasattr(value, 'tolist') else value
+            for name, value in values.items()}
+
+
+@overload
+def presets(name: None = None) -> dict[str, str]:
+    ...
+
+
+@overload
+def presets(name: str) -> dict[str, Any]:
+    ...
+
+
+def presets(name: str | None = None) -> dict[str, Any]:
+    """
+    Return the presets of instrument errors.
+
+    Parameters
+    ----------
+    name : str, optional
+        One preset.
+
+    Returns
+    -------
+    dict
+        Without a name: the class of instruments of every preset, by name. With a name: the
+        values of that preset by parameter, which ``read_settings`` takes.
+
+    Raises
+    ------
+    ValueError
+        Where no preset has that name; the sentence gives the nearest one.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> sorted(ins_sim.presets())
+    ['navigation_rlg', 'tactical_dtg', 'tactical_fog', 'tactical_mems']
+    >>> settings = ins_sim.read_settings('motion_2', ins_sim.presets('tactical_fog'))
+    >>> settings.imu_sensor.gyro.errors.angle_random_walk_deg_sqrt_h
+    (0.012, 0.012, 0.012)
+    >>> ins_sim.presets('tactical_fox')
+    Traceback (most recent call last):
+        ...
+    ValueError: unknown instrument preset 'tactical_fox'; the nearest known one is 'tactical_fog'
+    """
+    if name is None:
+        return {key: entry.datasheet for key, entry in PRESETS.items()}
+    return {f'imu_sensor:{key}': value for key, value in preset(name).items()}

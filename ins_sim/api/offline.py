@@ -1,0 +1,160 @@
+"""Simulations and predictions from settings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Optional
+
+import numpy as np
+
+from ins_sim.core.motion.motion import Motion
+from ins_sim.core.prediction.predict import predict as predict_errors, Prediction
+from ins_sim.core.simulation import aided as aided_simulation, inertial
+from ins_sim.io.motion import read_motion
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
+from .results import AidedRun, Run
+
+Progress = Optional[Callable[[float], None]]
+
+
+def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress = None,
+             motion: Motion | None = None) -> Run:
+    """
+    Simulate motion, IMU and strapdown.
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+        Of ``read_settings``.
+    twin : bool, optional
+        Whether to simulate the zero-delay twin as well, if any channel has a delay.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1.
+    motion : Motion, optional
+        A motion of your own, in place of the one that the settings name.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ValueError
+        In one sentence, where the settings describe no run of finite length or no motion, and
+        where the motion returns arrays of wrong shapes or that are not finite.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings('motion_2', {'duration_s': 10.0})
+    >>> run = ins_sim.simulate(settings)
+    >>> run.errors.position.shape
+    (1001, 3)
+    >>> bool(abs(run.twin.position).max() < abs(run.errors.position).max())
+    True
+    """
+    _check_settings(settings, SimulationSettings)
+    flown = _motion(settings, motion)
+    result = inertial.simulate(settings, flown, twin, progress)
+    return Run(settings, flown, result, motion is not None)
+
+
+def predict(settings: SimulationSettings, motion: Motion | None = None) -> Prediction:
+    """
+    Predict drift and errors by the linear theory, without a simulation.
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion, optional
+        A motion of your own, in place of the one that the settings name.
+
+    Returns
+    -------
+    Prediction
+        drift (3,) rad/s, East, North, Up; t_s (n,); attitude (n, 3) rad and position (n, 3) m.
+
+    Raises
+    ------
+    ValueError
+        Where the settings describe no run of finite length, or no prediction is possible.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings('motion_2', {'duration_s': 60.0})
+    >>> east, north, up = ins_sim.predict(settings).drift
+    >>> f'{east * 180 / 3.141592653589793 * 3600:.4f} deg/h'
+    '0.0335 deg/h'
+    """
+    _check_settings(settings, SimulationSettings)
+    return predict_errors(settings, _motion(settings, motion))
+
+
+def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
+                   progress: Progress = None, motion: Motion | None = None) -> AidedRun:
+    """
+    Simulate motion, IMU, strapdown, velocity meter, GNSS and the aided navigator.
+
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+        Of ``read_settings(..., aided=True)``.
+    twin : bool, optional
+        Whether to simulate the zero-delay twin of the unaided part as well.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1: first by the unaided part, then by the aided one.
+    motion : Motion, optional
+        A motion of your own, in place of the one that the settings name.
+
+    Returns
+    -------
+    AidedRun
+
+    Raises
+    ------
+    ValueError
+        As ``simulate`` does, and where a sensor does not fit.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings(['route_flight', 'grade_mid'],
+    ...                                  {'duration_s': 3.0, 'window.cycles': 100}, aided=True)
+    >>> run = ins_sim.simulate_aided(settings)
+    >>> len(run.velocity_fixes), run.errors.position_sigma.shape[1]
+    (3, 3)
+    """
+    _check_settings(settings, AidedSimulationSettings)
+    instruments = aided_simulation.make_instruments(settings)
+    run = simulate(settings.simulation, twin, progress, motion)
+    result = aided_simulation.simulate_aided(settings, instruments, run.motion, run.result,
+                                             progress)
+    return AidedRun(settings, run, result)
+
+
+def _check_settings(settings: object, expected: type) -> None:
+    if not isinstance(settings, expected):
+        aided = expected is AidedSimulationSettings
+        raise ValueError(f'settings are {type(settings).__name__}; expected {expected.__name__} '
+                         f'of read_settings(..., aided={aided})')
+
+
+def _motion(settings: SimulationSettings, motion: Motion | None) -> Motion:
+    """Return the motion of the settings, or the one given once it is checked."""
+    generator = settings.motion_generator
+    if motion is None:
+        return read_motion(generator)
+    if not isinstance(motion, Motion):
+        raise ValueError(f'motion is {type(motion).__name__}; expected an object of a subclass '
+                         'of ins_sim.Motion')
+    truth = motion.at(np.array([round(generator.start_s * 1e9)], dtype=np.int64))
+    for name, values in truth.arrays().items():
+        size = {'v_n': (3,), 'q_nb': (4,), 'omega_ib_b': (3,), 'f_ib_b': (3,)}.get(name, ())
+        if np.shape(values) != (1, *size):
+            raise ValueError(f'motion.at gives {name} of shape {np.shape(values)} for one '
+                             f'instant; expected {(1, *size)}')
+        if not np.isfinite(values).all():
+            raise ValueError(f'motion.at gives {name} {values[0]} at {generator.start_s:g} s; '
+                             'expected finite numbers')
+    return motion

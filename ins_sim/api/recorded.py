@@ -1,0 +1,233 @@
+"""Navigation over a recorded IMU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import os
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
+
+from ins_sim import parameter_files
+from ins_sim.core.postprocessing import navigate as replay
+from ins_sim.core.postprocessing.imu_record import RecordedImu
+from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.timeseries.histories import NavStates
+from ins_sim.io import imu
+from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
+from .dataframes import columns, dataframe, history_dataframe
+from .inputs import files, Name, Names, plain, Values
+from .offline import Progress
+from .results import Folder
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True, eq=False)
+class ImuRecord:
+    """
+    A recorded IMU in arrays, in the axes of the sensor.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64 array
+        Rising stamps, ns.
+    omega : (n, 3) array
+        Angular rate, rad/s.
+    f : (n, 3) array
+        Specific force, m/s^2. At rest it points up.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, on other shapes or types, on numbers that are not finite, and on stamps
+        that do not rise.
+    """
+
+    t_ns: np.ndarray
+    omega: np.ndarray
+    f: np.ndarray
+
+    def __post_init__(self) -> None:
+        """Check the arrays."""
+        t_ns = _array('t_ns', self.t_ns, 'whole numbers of nanoseconds')
+        if t_ns.ndim != 1 or t_ns.dtype.kind not in 'iu':
+            raise ValueError(f't_ns is an array of {t_ns.dtype}, shape {t_ns.shape}; expected '
+                             'whole numbers of nanoseconds, int64, of shape (n,)')
+        if (t_ns[1:] <= t_ns[:-1]).any():
+            k = int(np.argmax(t_ns[1:] <= t_ns[:-1]))
+            raise ValueError(f't_ns[{k + 1}] is {t_ns[k + 1]} after {t_ns[k]}; expected rising '
+                             'stamps')
+        object.__setattr__(self, 't_ns', t_ns.astype(np.int64))
+        for name, unit in (('omega', 'rad/s'), ('f', 'm/s^2')):
+            values = _array(name, getattr(self, name), f'numbers in {unit}')
+            if values.dtype.kind not in 'fiu' or values.shape != (len(t_ns), 3):
+                raise ValueError(f'{name} is an array of {values.dtype}, shape {values.shape}; '
+                                 f'expected numbers in {unit} of shape ({len(t_ns)}, 3), a row '
+                                 'for each of t_ns')
+            if not np.isfinite(values).all():
+                k = int(np.argmin(np.isfinite(values).all(axis=1)))
+                raise ValueError(f'{name}[{k}] is {values[k].tolist()}; expected finite numbers')
+            object.__setattr__(self, name, values.astype(float))
+
+
+def _array(name: str, values: Any, expected: str) -> np.ndarray:
+    try:
+        return np.asarray(values)
+    except ValueError:
+        raise ValueError(f'{name} has rows of different lengths; expected {expected}') from None
+
+
+@dataclass(frozen=True, eq=False)
+class Navigation:
+    """
+    A navigation over a recorded IMU.
+
+    Attributes
+    ----------
+    settings : NavigateSettings
+    name : str
+        What was navigated.
+    result : NavigationResult
+        The arrays; the properties below give its fields.
+    """
+
+    settings: NavigateSettings
+    name: str
+    result: replay.NavigationResult
+
+    @property
+    def segments(self) -> list[NavStates]:
+        """The solution, a NavStates for each segment between gaps."""
+        return self.result.states
+
+    @property
+    def comparisons(self) -> list[Any]:
+        """Solution less reference, a Comparison for each reference."""
+        return self.result.comparisons
+
+    @property
+    def notes(self) -> list[str]:
+        """What was found and done, in sentences."""
+        return self.result.notes
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """The same as numbers by name."""
+        return self.result.figures
+
+    def to_dataframe(self, record: str = 'states', reference: int = 0) -> pandas.DataFrame:
+        """
+        Return the solution, or one of its errors, as a DataFrame.
+
+        Parameters
+        ----------
+        record : {'states', 'position', 'velocity', 'attitude'}
+            The solution, or its error at the stamps of a reference.
+        reference : int, optional
+            Which of ``comparisons``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The index ``t_ns`` is the stamp of the recording in whole nanoseconds. The columns
+            are named by field, component and unit: ``position_north_m``.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed.
+        ValueError
+            Where there is no such record or reference.
+        """
+        if record == 'states':
+            return history_dataframe(NavStates.concatenate(self.segments))
+        if record not in ('position', 'velocity', 'attitude'):
+            raise ValueError(f'record is {record!r}; expected one of states, position, velocity, '
+                             'attitude')
+        if not 0 <= reference < len(self.comparisons):
+            raise ValueError(f'reference is {reference}; the navigation was compared with '
+                             f'{len(self.comparisons)} references')
+        comparison = self.comparisons[reference]
+        track = getattr(comparison, record)
+        if track is None:
+            raise ValueError(f'{comparison.name} has no {record}; expected another record')
+        return dataframe(track.t_ns, columns(record, track.values))
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """
+        Write the navigation as ``ins_sim navigate -o`` does.
+
+        Parameters
+        ----------
+        folder : str or path
+            It appears when it is complete, with nav.npz, parameters.yaml, summary.json and
+            navigation.png.
+        overwrite : bool, optional
+            Replace the folder if it holds a navigation.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or holds no navigation.
+        """
+        from ins_sim.report import navigation, storage
+        storage.check_free(folder, overwrite, navigation.MARK, 'overwrite=True')
+        navigation.write(folder, self.settings, self.name, self.result, overwrite)
+
+
+def navigate(source: Name | ImuRecord, values: Values | None = None, names: Names = (),
+             progress: Progress = None) -> Navigation:
+    """
+    Run the strapdown over a recorded IMU, and compare it with a reference if there is one.
+
+    Parameters
+    ----------
+    source : str, path or ImuRecord
+        A rosbag2 bag, a CSV file, or arrays.
+    values : mapping, optional
+        Values of the parameters of ``navigate`` by name, such as ``{'initial.heading': 'given',
+        'initial.heading_deg': 90.0, 'reference.path': 'track.csv'}``.
+    names : str, path, or a list of these, optional
+        Parameter files with a section ``navigate``.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1.
+
+    Returns
+    -------
+    Navigation
+
+    Raises
+    ------
+    ValueError
+        In one sentence, on parameters or a recording that cannot be used.
+    FileNotFoundError
+        Where there is no such recording.
+
+    Examples
+    --------
+    Half a minute at rest at 45 degrees north, with the attitude given:
+
+    >>> import ins_sim, numpy as np
+    >>> t_ns = 10_000_000 * np.arange(3000)
+    >>> omega = np.tile([0.0, 5.16e-5, 5.16e-5], (3000, 1))
+    >>> f = np.tile([0.0, 0.0, 9.806], (3000, 1))
+    >>> start = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
+    ...          'initial.attitude': 'given', 'initial.heading_deg': 90.0,
+    ...          'initial.velocity': 'given'}
+    >>> result = ins_sim.navigate(ins_sim.ImuRecord(t_ns, omega, f), start)
+    >>> len(result.segments)
+    1
+    """
+    settings = parameter_files.read_nodes(files(names), plain(values), NAVIGATE)['navigate']
+    if isinstance(source, ImuRecord):
+        unknown = np.full((len(source.t_ns), 4), np.nan)
+        recorded = RecordedImu(source.t_ns, source.omega, source.f, unknown)
+        sources = imu.with_reference(Sources('ImuRecord', recorded, 'imu'), settings)
+    elif isinstance(source, (str, os.PathLike)):
+        sources = imu.read_imu(source, settings)
+    else:
+        raise ValueError(f'source is {type(source).__name__}; expected the path of a bag or a CSV '
+                         'file, or an ImuRecord')
+    return Navigation(settings, sources.name, replay.navigate(settings, sources, progress))

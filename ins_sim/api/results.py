@@ -1,0 +1,209 @@
+"""What the simulations return: arrays, tables, and a folder on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+import os
+from typing import Any, TYPE_CHECKING, Union
+
+from ins_sim.core.motion.motion import Motion
+from ins_sim.core.prediction.drift import NoPrediction
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.simulation.aided_run import AidedResult
+from ins_sim.core.simulation.inertial import SimulationResult
+from ins_sim.core.timeseries.fixes import GnssFix, VelocityFix
+from ins_sim.core.timeseries.histories import (AidedErrors, ImuSamples, NavErrors, NavStates,
+                                               Truth)
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
+from .dataframes import chosen, history_dataframe
+
+if TYPE_CHECKING:
+    import pandas
+
+Folder = Union[str, 'os.PathLike[str]']
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """
+    One simulated run.
+
+    Attributes
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+        The motion that was simulated.
+    result : SimulationResult
+        The arrays; the properties below give its fields.
+    own_motion : bool
+        Whether the motion was given as an object, so that the settings do not describe it.
+    """
+
+    settings: SimulationSettings
+    motion: Motion
+    result: SimulationResult
+    own_motion: bool = False
+
+    @property
+    def truth(self) -> Truth:
+        """The true motion at the output instants (n,)."""
+        return self.result.truth
+
+    @property
+    def imu(self) -> ImuSamples:
+        """Every reading of the IMU, in b: rad/s and m/s^2."""
+        return self.result.imu
+
+    @property
+    def states(self) -> NavStates:
+        """The solution of the strapdown at the output instants (n,)."""
+        return self.result.states
+
+    @property
+    def errors(self) -> NavErrors:
+        """Solution less truth, East, North, Up, at the output instants: rad, m/s, m, rad/s."""
+        return self.result.errors
+
+    @property
+    def twin(self) -> NavErrors | None:
+        """The errors of the same run without delays; None where it was not simulated."""
+        return self.result.twin
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """A sentence for each gap at which the strapdown started anew."""
+        return self.result.faults
+
+    def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
+        """
+        Return one record as a DataFrame.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth', 'imu', 'twin'}
+
+        Returns
+        -------
+        pandas.DataFrame
+            The index ``t_ns`` is motion time in whole nanoseconds, so that records can be joined
+            exactly. The columns are named by field, component and unit: ``position_north_m``.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed.
+        ValueError
+            Where the run has no such record.
+        """
+        names = ('errors', 'states', 'truth', 'imu', 'twin')
+        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """
+        Write the run as ``ins_sim simulate -o`` does.
+
+        The folder appears when it is complete. It holds run.npz, parameters.yaml, summary.json
+        and errors.png. A motion given as an object is in the arrays but not in parameters.yaml.
+
+        Parameters
+        ----------
+        folder : str or path
+        overwrite : bool, optional
+            Replace the folder if it holds a run.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or holds no run.
+        """
+        self._write(folder, overwrite, None)
+
+    def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
+        from ins_sim.report import storage, summary
+        storage.check_free(folder, overwrite, option='overwrite=True')
+        try:
+            prediction = predict(self.settings, self.motion)
+        except NoPrediction:
+            prediction = None
+        title = summary.title(self.settings)
+        rows = summary.summary_rows(self.settings, self.errors, self.twin, prediction)
+        if self.own_motion:
+            # Published figures belong to the motion of the settings.
+            rows = [replace(row, published=None) for row in rows]
+            title = f'{type(self.motion).__name__} given as an object'
+        storage.write(folder, self.settings, self.result, rows, prediction, title, overwrite,
+                      report)
+
+
+@dataclass(frozen=True, eq=False)
+class AidedRun:
+    """
+    One simulated run with velocity meter, GNSS and the aided navigator.
+
+    Attributes
+    ----------
+    settings : AidedSimulationSettings
+    run : Run
+        The unaided part: IMU, strapdown and its errors.
+    result : AidedResult
+        The arrays of the aided navigator; the properties below give its fields.
+    """
+
+    settings: AidedSimulationSettings
+    run: Run
+    result: AidedResult
+
+    @property
+    def truth(self) -> Truth:
+        """The true motion at the output instants of the aided navigator (n,)."""
+        return self.result.truth
+
+    @property
+    def states(self) -> NavStates:
+        """The aided solution (n,)."""
+        return self.result.states
+
+    @property
+    def errors(self) -> AidedErrors:
+        """Aided solution less truth, East, North, Up, and the standard deviations, (n, 3)."""
+        return self.result.errors
+
+    @property
+    def judged(self) -> Sequence[Any]:
+        """A JudgedFix for every fix, in the order of arrival: taken or not, and why."""
+        return self.result.judged
+
+    @property
+    def velocity_fixes(self) -> Sequence[VelocityFix]:
+        """What the velocity meter reported."""
+        return self.result.velocity_fixes
+
+    @property
+    def gnss_fixes(self) -> Sequence[GnssFix]:
+        """What GNSS reported."""
+        return self.result.gnss_fixes
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """A sentence for each fault at which the navigator started anew or dropped a fix."""
+        return self.result.faults
+
+    def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
+        """
+        Return one record as a DataFrame, as ``Run.to_dataframe`` does.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth'}
+            Records of the unaided part: ``run.to_dataframe``.
+        """
+        names = ('errors', 'states', 'truth')
+        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """Write the run as ``ins_sim simulate --aided -o`` does; see ``Run.save``."""
+        from ins_sim.report import aided
+        rows = aided.aided_rows(self.settings, self.result, self.run.states, self.run.errors)
+        self.run._write(folder, overwrite,
+                        aided.AidedReport(self.settings, self.result, rows))
