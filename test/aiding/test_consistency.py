@@ -99,7 +99,7 @@ def consistency(assignments, run):
     for imu in sense(settings.simulation, motion):
         truth = motion.at(imu.t_ns)
         fixes = sorted(((fix.t_ns, source, fix) for source, instrument in (
-            (METER, meter), (GNSS, gnss)) for fix in instrument.fixes(truth)), key=by_time)
+            (METER, meter), (GNSS, gnss)) for fix in instrument.advance(truth)), key=by_time)
         places = zip(truth.lat.tolist(), truth.lon.tolist(), truth.height.tolist(),
                      truth.v_n.tolist(), truth.q_nb.tolist())
         for t_ns, omega, f, place in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),

@@ -38,8 +38,8 @@ def flight():
 def fixes_of(settings, blocks):
     """Return the fixes of GNSS and of the velocity meter."""
     truth = Truth.concatenate(t for _, t in blocks)
-    return (Gnss(settings.gnss).fixes(truth),
-            MeterOnTruth(VelocityMeter(settings.velocity_meter)).fixes(truth))
+    return (Gnss(settings.gnss).advance(truth),
+            MeterOnTruth(VelocityMeter(settings.velocity_meter)).advance(truth))
 
 
 def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):

@@ -219,7 +219,7 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
     assert fix['status'].tolist() == [0, 0, 0, 0, 0, -1]
     assert not any(counts[t.name] for t in topics.AIDED_SIGMAS)
     assert set(aided['position_covariance_type'].tolist()) == {0}
-    expected = meter.fixes(motion.at(run.imu.t_ns))[:2]
+    expected = meter.advance(motion.at(run.imu.t_ns))[:2]
     assert [r.end_ns for r in records] == [2 * SECOND, 4 * SECOND] == list(logged)
     off = np.abs(np.subtract([r.velocity for r in records], [f.velocity for f in expected])).max()
     print(f'\nrecords and offline fixes are {off:.1e} m/s apart')

@@ -113,7 +113,7 @@ def test_the_antenna_moves_as_its_positions_do(kind):
     receiver = gnss({**PERFECT, 'lever_arm_m': tuple(lever.tolist()), 'gnss.rate_hz': 100.0})
     t_ns = np.arange(20000, 24000, dtype=np.int64) * DT
     truth = truth_of(kind, t_ns)
-    fixes = receiver.fixes(truth)
+    fixes = receiver.advance(truth)
     moved = np.array([position_error(b.lat, b.lon, b.height, a.lat, a.lon, a.height)
                       for a, b in zip(fixes, fixes[2:])]) / (2.0 * h)
     v = np.array([f.v_n for f in fixes])
@@ -185,7 +185,7 @@ FULL = {'errors.position_drift_m': (2.0, 2.0, 4.0), 'lever_arm_m': (1.0, 0.5, 2.
         'jump.end_s': 607.0, 'jump.offset_m': (10.0, 0.0, 0.0), 'seed': 4, 'gnss.rate_hz': 5.0}
 T_NS = np.arange(60000, 62001, dtype=np.int64) * DT
 FLIGHT = truth_of('aggressive', T_NS)
-WHOLE = gnss(FULL).fixes(FLIGHT)
+WHOLE = gnss(FULL).advance(FLIGHT)
 
 
 @settings(max_examples=20, deadline=None)
@@ -197,7 +197,7 @@ def test_any_cutting_in_any_order_gives_the_same_bits(cuts, order):
     order.shuffle(pieces)
     receiver, found = gnss(FULL), []
     for a, b in pieces:
-        found += receiver.fixes(FLIGHT[a:b])
+        found += receiver.advance(FLIGHT[a:b])
     assert repr(sorted(found, key=lambda fix: fix.t_ns)) == repr(WHOLE)
 
 
@@ -210,7 +210,7 @@ def test_the_stream_gives_the_bits_of_the_block():
             got += receiver.push(*sample)
         assert repr(got) == repr([f for f in WHOLE if f.t_ns >= T_NS[first]])
     for other in (gnss(FULL, run=1), gnss({**FULL, 'seed': 5})):
-        assert not {f.lat for f in other.fixes(FLIGHT) if f.valid} & {f.lat for f in WHOLE}
+        assert not {f.lat for f in other.advance(FLIGHT) if f.valid} & {f.lat for f in WHOLE}
 
 
 def test_over_the_date_line():
@@ -260,11 +260,11 @@ def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
             receiver.push(k * step, REST)
     truth = truth_of('static', np.arange(20) * step)
     with pytest.raises(ValueError, match='over the instant of a fix; expected a sample there'):
-        gnss({'gnss.rate_hz': 10.0}).fixes(truth)
+        gnss({'gnss.rate_hz': 10.0}).advance(truth)
     broken = truth_of('static', np.arange(200) * DT)
     broken.lat[100] = math.nan
     with pytest.raises(ValueError, match='truth at 1.000000000 s holds'):
-        gnss().fixes(broken)
+        gnss().advance(broken)
 
 
 @pytest.mark.parametrize('values, sentence', [

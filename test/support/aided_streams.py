@@ -55,8 +55,8 @@ def scene():
             run.imu.t_ns.tolist(), run.imu.omega.tolist(), run.imu.f.tolist())],
         'push_truth': [(t, *map(tuple, pose)) for t, pose in zip(truth.t_ns.tolist(), zip(
             *(p.tolist() for p in poses)))],
-        METER: [(METER, fix) for fix in meter.fixes(truth)],
-        GNSS: [(GNSS, fix) for fix in gnss.fixes(truth)]}
+        METER: [(METER, fix) for fix in meter.advance(truth)],
+        GNSS: [(GNSS, fix) for fix in gnss.advance(truth)]}
     return chosen, offline, streams
 
 

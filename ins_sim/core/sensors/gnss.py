@@ -15,9 +15,10 @@ from ins_sim.core.earth.rates import rate_on_earth
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.streams.faults import check_finite, check_interval, check_unit, StreamFault
 from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
+from .sensor import Sensor
 
 
-class Gnss:
+class Gnss(Sensor):
     """
     The GNSS receiver of GnssSettings as a consumer of streamed truth: samples in, fixes out.
 
@@ -83,7 +84,7 @@ class Gnss:
         self._last_ns, self._alone = t_ns, first
         return [] if t_ns % self.period_ns else [self.fix(t_ns, truth)]
 
-    def fixes(self, truth):
+    def advance(self, truth):
         """
         Return the fixes of a Truth record, or of a piece of one, as push gives them one by one.
 
@@ -95,15 +96,21 @@ class Gnss:
             raise ValueError(f'truth steps from {seconds(truth.t_ns[over[0]])} to '
                              f'{seconds(truth.t_ns[over[0] + 1])} over the instant of a fix; '
                              'expected a sample there')
-        at = truth[np.flatnonzero(rest == 0)]
         found = []
-        for t_ns, lat, lon, height, v_n, q_nb, omega in zip(
-                at.t_ns.tolist(), at.lat.tolist(), at.lon.tolist(), at.height.tolist(),
-                at.v_n.tolist(), at.q_nb.tolist(), at.omega_ib_b.tolist()):
-            rate = rate_on_earth(lat, q_nb, omega, self._spin)
+        for t_ns, sample in self.samples(truth[np.flatnonzero(rest == 0)]):
+            lat, lon, height, v_n, q_nb, rate = sample
             check_finite('truth', t_ns, (lat, lon, height), v_n, q_nb, rate)
-            found.append(self.fix(t_ns, (lat, lon, height, v_n, q_nb, rate)))
+            found.append(self.fix(t_ns, sample))
         return found
+
+    def samples(self, truth):
+        """Yield the arguments of push for each instant of a Truth record."""
+        for t_ns, lat, lon, height, v_n, q_nb, omega in zip(
+                truth.t_ns.tolist(), truth.lat.tolist(), truth.lon.tolist(),
+                truth.height.tolist(), truth.v_n.tolist(), truth.q_nb.tolist(),
+                truth.omega_ib_b.tolist()):
+            rate = rate_on_earth(lat, q_nb, omega, self._spin)
+            yield t_ns, (lat, lon, height, v_n, q_nb, rate)
 
     def fix(self, t_ns, truth):
         """

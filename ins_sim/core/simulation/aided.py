@@ -42,8 +42,8 @@ def simulate_aided(settings, instruments, motion, run, progress=None):
             progress(min(1.0, done / total))
 
     for truth in truth_blocks(generator, motion):
-        velocity_fixes += meter.fixes(truth)
-        gnss_fixes += gnss.fixes(truth)
+        velocity_fixes += meter.advance(truth)
+        gnss_fixes += gnss.advance(truth)
         went(len(truth))
     velocity_fixes += meter.finish()
 

@@ -41,7 +41,7 @@ class Reported:
     def __init__(self, fixes):
         self._fixes, self._next = fixes, 0
 
-    def fixes(self, truth):
+    def advance(self, truth):
         """Return the fixes up to the last instant of a Truth record that were not returned yet."""
         first, self._next = self._next, bisect_right(
             self._fixes, int(truth.t_ns[-1]), lo=self._next, key=lambda fix: fix.t_ns)
@@ -58,7 +58,7 @@ def aid(settings, blocks, meter=None, gnss=None, run=0):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
-    meter, gnss: the instruments, anything with fixes(Truth) -> list of fixes in the order of
+    meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
     arrival, or None; run: of the ensemble.  Faults are handled as on_fault says: the solution
     starts anew from the truth, or ValueError is raised.  Raises ValueError where there is no
     output.
@@ -68,7 +68,7 @@ def aid(settings, blocks, meter=None, gnss=None, run=0):
                if instrument is not None]
     for imu, truth in blocks:
         chain.block(imu, truth, [(fix.arrival_ns, source, fix) for source, instrument in sources
-                                 for fix in instrument.fixes(truth)])
+                                 for fix in instrument.advance(truth)])
     return chain.finish()
 
 

@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 
-from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.navigation.loop import NavigationLoop
@@ -67,12 +66,9 @@ def _ideal(settings, motion):
             yield imu.advance(min(BLOCK, left))
             left -= BLOCK
         return
-    imu, frame = StreamImu(sensor), MapFrame(sensor.datum, sensor.earth.rotation)
+    imu = StreamImu(sensor)
     for truth in truth_blocks(generator, motion):
-        readings = []
-        for sample in zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
-                          truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):
-            readings.extend(imu.push(*sample))
+        readings = imu.advance(truth)
         if readings:
             yield ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
 

@@ -5,6 +5,7 @@ import math
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
+from ..sensor import Sensor
 from .ideal import MotionImu, NODES, Triads
 from .with_errors import ImuWithErrors, with_errors
 
@@ -22,7 +23,13 @@ def make_imu(settings, motion=None):
     return imu if errors is None else ImuWithErrors(imu, errors)
 
 
-class StreamImu:
+def stream_samples(truth, frame):
+    """Return t_ns, q_mb, omega_ib_b, f_ib_b of each instant of a Truth record; frame: MapFrame."""
+    return zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(), truth.omega_ib_b.tolist(),
+               truth.f_ib_b.tolist())
+
+
+class StreamImu(Sensor):
     """
     The IMU that knows the motion only from the stream.
 
@@ -71,6 +78,10 @@ class StreamImu:
             self._next_ns += self._triads.dt_ns
         return readings
 
+    def samples(self, truth):
+        """Return the arguments of push for each instant of a Truth record."""
+        return stream_samples(truth, self._triads.frame)
+
     def _read(self, t_ns):
         triads, buffer = self._triads, self._buffer
         if triads.integrated:
@@ -91,7 +102,7 @@ class StreamImu:
         return [[cubic(t_ns + o - d, field) for o in offsets] for d in delays]
 
 
-class PacedImu:
+class PacedImu(Sensor):
     """The IMU that evaluates the motion of its own parameters; the stream only paces it."""
 
     def __init__(self, settings, motion):
@@ -125,6 +136,10 @@ class PacedImu:
         if not self._first:
             self._first = readings
         return readings
+
+    def samples(self, truth):
+        """Return the arguments of push for each instant of a Truth record."""
+        return stream_samples(truth, self._triads.frame)
 
     def _compute(self):
         """Compute a block ahead, never past the end of the motion; return whether there is one."""

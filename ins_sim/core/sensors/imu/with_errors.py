@@ -10,6 +10,7 @@ import numpy as np
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
+from ..sensor import Sensor
 
 
 def with_errors(settings):
@@ -69,12 +70,12 @@ class InstrumentErrors:
         return ImuSamples(imu.t_ns, np.array(omega), np.array(f), imu.parity)
 
 
-class ImuWithErrors:
+class ImuWithErrors(Sensor):
     """An IMU with push and reset whose readings pass through InstrumentErrors."""
 
     def __init__(self, imu, errors):
         self._imu, self._errors = imu, errors
-        self.reset, self.pair = imu.reset, imu.pair
+        self.reset, self.pair, self.samples = imu.reset, imu.pair, imu.samples
 
     def push(self, *sample):
         """Return the readings that a truth sample completes, as the ideal IMU does."""

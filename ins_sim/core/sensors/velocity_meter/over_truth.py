@@ -20,7 +20,7 @@ class MeterOnTruth:
         """Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s."""
         self._ins = t_ns, v_b
 
-    def fixes(self, truth):
+    def advance(self, truth):
         """Return the VelocityFixes that a Truth record completes, in the order of arrival."""
         v_b = body_velocity(truth)
         if self._ins is None:

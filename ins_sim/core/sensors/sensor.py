@@ -1,0 +1,54 @@
+"""The interface of a sensor: true motion in, readings out, one at a time or in blocks."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from ins_sim.core.timeseries.histories import Truth
+
+
+class Sensor:
+    """
+    Base class of the sensors. A subclass overrides ``reset``, ``push`` and ``samples``.
+
+    Readings are a function of the settings, the seed and motion time, so that neither a restart
+    nor the cutting of the stream into blocks changes them. ``core.numerics.noise.indexed_noise``
+    gives such noise.
+
+    The VelocityMeter is no Sensor: it listens to two streams, the truth and the INS, and has a
+    ``push_truth`` and a ``push_ins``.
+    """
+
+    def reset(self) -> None:
+        """Forget the stream; the next sample is the first."""
+        raise NotImplementedError
+
+    def push(self, t_ns: int, *sample: Any) -> list[Any]:
+        """
+        Take one sample of the true motion.
+
+        Parameters
+        ----------
+        t_ns : int
+            Motion time, ns.
+        *sample
+            What the sensor needs to know of the motion at that time, as ``samples`` gives it.
+
+        Returns
+        -------
+        list
+            The readings that this sample completes, none, one or several.
+
+        Raises
+        ------
+        StreamFault
+            On samples that cannot be used, such as a gap or NaN.
+        """
+        raise NotImplementedError
+
+    def samples(self, truth: Truth) -> Iterable[tuple[Any, ...]]:
+        """Return the arguments of ``push`` for each instant of a Truth record."""
+        raise NotImplementedError
+
+    def advance(self, truth: Truth) -> list[Any]:
+        """Return the readings of a Truth record or of a part of one, those of single pushes."""
+        return [reading for sample in self.samples(truth) for reading in self.push(*sample)]
