@@ -3,44 +3,35 @@
 import json
 from pathlib import Path
 
-from rich.console import Console
-
-from ins_sim import parameter_files, resources
-from ins_sim.bags.storages import is_bag
-from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.sensors.imu.with_errors import with_errors
-from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
-from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.io.published import read_imu
-from ins_sim.report import allan, allan_figure, noise_terms, storage
-from ins_sim.studies.at_rest import resting_record
 from . import arguments
-from .progress import ProgressBar
 
-MARK = 'allan.json'
-DURATION_S = 10800.0
-EXPECTED = 'expected noise, such as that of "--params-file imu_tactical_fog"'
+HELP = 'Allan deviation of a record or of simulated noise'
 DESCRIPTION = ('Show Allan deviations and the noise coefficients fitted to them: of a run of '
                '"simulate", of the Imu messages of a bag, or, without SOURCE, of the instrument '
                'of the parameters simulated at rest.')
+MARK = 'allan.json'
+DURATION_S = 10800.0
+EXPECTED = 'expected noise, such as that of "--params-file imu_tactical_fog"'
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('source', nargs='?', default=None, metavar='SOURCE',
                         help='folder of a run or of a rosbag2 bag')
     arguments.add_settings(parser)
     parser.add_argument('--topic', default=None, metavar='NAME',
                         help='topic of the bag, where it has more than one of sensor_msgs/msg/Imu')
     parser.add_argument('--duration', type=float, default=None, metavar='S',
-                        help='length of the simulated record, s (default: 10800)')
-    parser.add_argument('-o', '--output', default='ins_sim_allan', metavar='DIR',
-                        help='folder of the two figures (default: %(default)s)')
-    parser.add_argument('--force', action='store_true', help='replace the figures in DIR')
+                        help=f'length of the simulated record, s (default: {DURATION_S:.0f})')
+    arguments.add_output(parser, 'ins_sim_allan', 'folder of the two figures')
+    arguments.add_force(parser, 'the figures in DIR')
 
 
 def run(chosen):
     """Read or simulate, show and save; return the exit code."""
+    from rich.console import Console
+    from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
+    from ins_sim.report import allan, allan_figure, noise_terms, storage
     storage.check_free(chosen.output, chosen.force, MARK)
     console = Console()
     imu, settings, title = _record(chosen, console)
@@ -49,7 +40,7 @@ def run(chosen):
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
         tuned = settings and triad == 'gyro' and sensor.model == 'dtg'
-        # an axis of tuned gyros is made of one channel, or of two
+        # An axis of a pair of tuned gyros combines one channel, or two.
         factors = COVARIANCE_FACTORS if tuned else (1.0, 1.0, 1.0)
         noise = noise_terms.analyse(triad, samples, rate_hz, sensor and sensor.errors, factors)
         if noise is None:
@@ -72,7 +63,12 @@ def run(chosen):
 
 def _record(chosen, console):
     """Return the ImuSamples, the SimulationSettings behind them or None, and a title."""
-    given = [resources.parameter_file(name) for name in chosen.params_file]
+    from ins_sim import parameter_files
+    from ins_sim.bags.storages import is_bag
+    from ins_sim.core.sensors.imu.with_errors import with_errors
+    from ins_sim.io.published import read_imu
+    from ins_sim.report import storage
+    given = arguments.parameter_paths(chosen)
     if chosen.source is None:
         if chosen.topic is not None:
             raise ValueError(f'--topic is {chosen.topic}; expected a bag as SOURCE with it')
@@ -104,14 +100,21 @@ def _record(chosen, console):
 
 
 def _simulated(settings, length_s, console):
+    """Return the ImuSamples of the instrument at rest."""
+    from ins_sim.core.numerics.instants import period_ns
+    from ins_sim.core.timeseries.histories import ImuSamples
+    from ins_sim.report import allan
+    from ins_sim.studies.at_rest import resting_record
+    from .progress import progress_bars
     dt_s = period_ns(settings.imu_sensor.rate_hz) * 1e-9
     if not allan.LEAST * dt_s <= length_s <= 1e7:
         raise ValueError(f'--duration is {length_s:g} s; expected {allan.LEAST * dt_s:g} to 1e+07 '
                          's')
-    blocks = []
-    with ProgressBar(console) as progress:
-        task = progress.add_task('simulating', total=length_s)
+    blocks, count = [], 0
+    with progress_bars(console) as add_bar:
+        show = add_bar('simulating', length_s)
         for block in resting_record(settings, length_s):
             blocks.append(block)
-            progress.update(task, advance=len(block.t_ns) * dt_s)
+            count += len(block.t_ns)
+            show(count * dt_s)
     return ImuSamples.concatenate(blocks)

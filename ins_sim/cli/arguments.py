@@ -1,16 +1,25 @@
-"""Arguments that several verbs share, and the settings that they name."""
-
-from ins_sim import parameter_files, resources
+"""The arguments that several verbs share, and the settings that they lead to."""
 
 
 def add_settings(parser, default=''):
-    """Add --params-file and -p; default: the files that are read where none is named."""
+    """Add --params-file and -p; default: the files that are read if none is given."""
     parser.add_argument('--params-file', action='append', default=[], metavar='FILE',
                         help='ROS parameter file, or the name of a shipped one such as motion_2; '
                         'may be repeated, later ones win'
                         + (f' (default: {default})' if default else ''))
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                         help='one parameter, for every node that knows it')
+
+
+def add_output(parser, default, content):
+    """Add -o; default: a folder; content: what it is, such as 'folder of the run'."""
+    parser.add_argument('-o', '--output', default=default, metavar='DIR',
+                        help=f'{content} (default: %(default)s)')
+
+
+def add_force(parser, replaced):
+    """Add --force; replaced: what it replaces, such as 'the run in DIR'."""
+    parser.add_argument('--force', action='store_true', help=f'replace {replaced}')
 
 
 def add_storage(parser):
@@ -21,19 +30,20 @@ def add_storage(parser):
                         help='compression of its chunks, of mcap (default: %(default)s)')
 
 
-def read(chosen):
+def parameter_paths(chosen, default=()):
+    """Return the paths of --params-file, or of the shipped files named by default."""
+    from ins_sim import resources
+    return ([resources.parameter_file(name) for name in chosen.params_file]
+            or [resources.config(name) for name in default])
+
+
+def read_settings(chosen):
     """Return SimulationSettings of --params-file and -p."""
-    return parameter_files.read([resources.parameter_file(name) for name in chosen.params_file],
-                                chosen.param)
+    from ins_sim import parameter_files
+    return parameter_files.read(parameter_paths(chosen), chosen.param)
 
 
-def read_simulation(chosen):
-    """
-    Return SimulationSettings, and with --aided the AidedSimulationSettings that they are of, or
-    None.
-    """
-    if not chosen.aided:
-        return read(chosen), None
-    aided = parameter_files.read_aided(
-        [resources.parameter_file(name) for name in chosen.params_file], chosen.param)
-    return aided.simulation, aided
+def read_aided_settings(chosen, default=()):
+    """Return AidedSimulationSettings of --params-file, or the default files, and -p."""
+    from ins_sim import parameter_files
+    return parameter_files.read_aided(parameter_paths(chosen, default), chosen.param)

@@ -1,32 +1,23 @@
 """Verb compare-filters: all filters over the same flights and seeds, on all cores."""
 
-from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict
 import json
-from multiprocessing import active_children
 import os
 import signal
 
-from rich.console import Console
-
-from ins_sim import parameter_files, resources
-from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.motion.motion import check_length
-from ins_sim.report import filter_study as report
-from ins_sim.report import storage
-from ins_sim.settings.aided_navigator import FILTERS
-from ins_sim.studies.filters import FilterCase, fly_filters, run_settings
 from . import arguments
-from .progress import ProgressBar
+from ins_sim.settings.aided_navigator import FILTERS
 
-MARK = 'comparison.json'
+HELP = 'all filters of the aided navigator over the same flights'
 DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and seeds, on all '
                'cores, and show table and figure.')
+SHIPPED = ('route_flight', 'grade_mid')
+MARK = 'comparison.json'
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
-    arguments.add_settings(parser, 'route_flight and grade_mid')
+    """Add the arguments of the verb to its parser."""
+    arguments.add_settings(parser, ' and '.join(SHIPPED))
     parser.add_argument('--runs', type=int, default=24, metavar='N', help='flights, each with '
                         'seeds of its own (default: %(default)s)')
     parser.add_argument('--filters', nargs='+', choices=FILTERS, default=None, metavar='NAME',
@@ -36,22 +27,25 @@ def add_arguments(parser):
                         'well (default: window.cycles)')
     parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
                         'as many as cores)')
-    parser.add_argument('-o', '--output', default='ins_sim_filters', metavar='DIR',
-                        help='folder of figure and numbers (default: %(default)s)')
-    parser.add_argument('--force', action='store_true', help='replace what is in DIR')
+    arguments.add_output(parser, 'ins_sim_filters', 'folder of figure and numbers')
+    arguments.add_force(parser, 'what is in DIR')
 
 
 def run(chosen):
     """Fly, show and save; return the exit code."""
-    names = chosen.params_file or ['route_flight', 'grade_mid']
-    settings = parameter_files.read_aided(
-        [resources.parameter_file(name) for name in names], chosen.param)
+    from rich.console import Console
+    from ins_sim.core.motion.factory import make_motion
+    from ins_sim.core.motion.motion import check_length
+    from ins_sim.report import filter_study as report
+    from ins_sim.report import storage
+    from ins_sim.studies.filters import run_settings
+    settings = arguments.read_aided_settings(chosen, SHIPPED)
     if chosen.runs < 1 or chosen.jobs < 0:
         raise ValueError(f'--runs is {chosen.runs} and --jobs {chosen.jobs}; expected 1 or more '
                          'runs, and 0 (every core) or more jobs')
     storage.check_free(chosen.output, chosen.force, MARK)
     cases = _cases(chosen, settings.velocity_meter.window.cycles)
-    # what is wrong with the flight is said at once, and not by every worker
+    # Checked here, so that a flight that is refused is reported once and not by every worker.
     generator = run_settings(settings, 0).simulation.motion_generator
     check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
     console = Console()
@@ -59,7 +53,7 @@ def run(chosen):
     flown = list(zip(*flights))
     rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
     title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
-             + ', '.join(map(str, names)))
+             + ', '.join(chosen.params_file or SHIPPED))
     report.show(title, rows, console)
     with storage.whole(chosen.output, chosen.force, MARK) as folder:
         report.save_figure(folder / 'comparison.png', title, cases, flown)
@@ -70,29 +64,34 @@ def run(chosen):
 
 
 def _cases(chosen, cycles):
+    from ins_sim.studies.filters import FilterCase
     windows = chosen.cycles or [cycles]
     filters = list(dict.fromkeys(chosen.filters or FILTERS))
     for n in windows:
         if not 1 <= n <= 100000:
             raise ValueError(f'--cycles is {n}; expected 1 to 100000')
-    # the other filters are made for one window: it is the first
+    # All filters use the first window; the others are for the eskf alone.
     cases = [FilterCase(name, windows[0]) for name in filters]
     return cases + [FilterCase('eskf', n) for n in windows[1:] if 'eskf' in filters]
 
 
 def _fly_all(settings, cases, runs, jobs, console):
     """Return the list of Flown of each run, in their order."""
+    from concurrent.futures import as_completed, ProcessPoolExecutor
+    from multiprocessing import active_children
+    from ins_sim.studies.filters import fly_filters
+    from .progress import progress_bars
     flights = [None] * runs
-    with ProgressBar(console, 'flights') as progress:
-        watch = progress.watch('flying', runs)
+    with progress_bars(console, 'flights') as add_bar:
+        show = add_bar('flying', runs)
         with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
             futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
             try:
                 for done, future in enumerate(as_completed(futures), 1):
                     flights[futures[future]] = future.result()
-                    watch(done)
+                    show(done)
             except BaseException:
-                # a flight takes minutes, which nobody waits for who wants to end
+                # Running flights are not waited for: each takes minutes.
                 for worker in active_children():
                     worker.kill()
                 raise

@@ -2,39 +2,40 @@
 
 import math
 
-from rich.console import Console
-from rich.table import Table
-
-from ins_sim.core.attitude.integration import KINDS
-from ins_sim.io.motion import read_motion
-from ins_sim.report.summary import DEG_PER_HOUR, title
-from ins_sim.report.table import number
-from ins_sim.studies.orientation import compare_orientations
 from . import arguments
-from .progress import ProgressBar
 
+HELP = 'the orientation algorithms on one run'
 DESCRIPTION = ("Navigate one offline run by quaternion, Poisson's equation and Euler vector, and "
                'compare them.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
 
 
 def run(chosen):
     """Compare and show; return the exit code."""
-    settings = arguments.read(chosen)
+    from rich.console import Console
+    from rich.table import Table
+    from ins_sim.core.attitude.integration import KINDS
+    from ins_sim.io.motion import read_motion
+    from ins_sim.report import summary
+    from ins_sim.report.table import number
+    from ins_sim.studies.orientation import compare_orientations
+    from .progress import progress_bars
+    settings = arguments.read_settings(chosen)
     console = Console()
-    with ProgressBar(console, 'algorithms') as progress:
+    with progress_bars(console, 'algorithms') as add_bar:
         results = compare_orientations(settings, read_motion(settings.motion_generator),
-                                       progress.watch('navigating', len(KINDS)))
-    table = Table(title=title(settings))
+                                       add_bar('navigating', len(KINDS)))
+    table = Table(title=summary.title(settings))
     table.add_column('figure')
     table.add_column('unit')
     for r in results:
         table.add_column(r.kind, justify='right')
-    rows = [(f'mean drift {name}', 'deg/h', [r.drift[axis] * DEG_PER_HOUR for r in results])
+    rows = [(f'mean drift {name}', 'deg/h',
+             [r.drift[axis] * summary.DEG_PER_HOUR for r in results])
             for axis, name in enumerate(('east', 'north', 'up'))]
     rows += [(f'max |d{name}|', 'm', [r.position[axis] for r in results])
              for axis, name in ((1, 'N'), (0, 'E'))]

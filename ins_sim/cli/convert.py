@@ -1,17 +1,15 @@
 """Verb convert: a recorded flight or IMU between CSV and bag."""
 
-from rich.console import Console
-
-from ins_sim.io.convert import convert
 from . import arguments
 
+HELP = 'a flight or an IMU from CSV to a bag, or back'
 DESCRIPTION = ('Write a bag of truth from a recorded flight (CSV) at rate_hz, or of '
                'sensor_msgs/Imu from the CSV file of an IMU; or such a CSV file, plain or gzip, '
                'from a bag.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('source', metavar='SOURCE', help='CSV file (.csv, .csv.gz), or bag')
     parser.add_argument('target', metavar='TARGET', help='folder of the bag, or CSV file')
     arguments.add_settings(parser)
@@ -19,12 +17,14 @@ def add_arguments(parser):
                         'or the Odometry of a truth (default: truth/odometry if there is one, '
                         'else the only Imu; to a bag: imu/data_raw)')
     arguments.add_storage(parser)
-    parser.add_argument('--force', action='store_true', help='replace TARGET')
+    arguments.add_force(parser, 'TARGET')
 
 
 def run(chosen):
     """Convert and say what was written; return the exit code."""
-    settings = arguments.read(chosen).motion_generator
+    from rich.console import Console
+    from ins_sim.io.convert import convert
+    settings = arguments.read_settings(chosen).motion_generator
     written = convert(chosen.source, chosen.target, settings, chosen.topic, chosen.storage,
                       chosen.compression, chosen.force)
     Console().print(f'written: {written}', markup=False, highlight=False, soft_wrap=True)

@@ -6,25 +6,17 @@ from pathlib import Path
 import shutil
 import sys
 
-from rich.console import Console
+from . import arguments
 
-from ins_sim import parameter_files, resources
-from ins_sim.core.prediction.predict import predict
-from ins_sim.io.motion import read_motion
-from ins_sim.io.published import read_errors
-from ins_sim.report import figure, storage, summary, table
-from ins_sim.settings.node import Pacing
-from .progress import ProgressBar
-
-EVERY = 10
+HELP = 'run the three nodes over DDS and show the result'
 DESCRIPTION = ('Start the three nodes, run them in lock-step, record their topics into a bag and '
                'compare with the prediction.')
+EVERY = 10
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
-    parser.add_argument('-o', '--output', default='ins_sim_demo', metavar='DIR',
-                        help='folder of bags and figures, replaced (default: %(default)s)')
+    """Add the arguments of the verb to its parser."""
+    arguments.add_output(parser, 'ins_sim_demo', 'folder of bags and figures, replaced')
     parser.add_argument('--recording', metavar='CSV', default=None, help='recorded flight of the '
                         'second part (default: the closed-form cruise)')
     parser.add_argument('--start', type=float, default=1000.0, metavar='S', help='where in the '
@@ -40,6 +32,7 @@ def run(chosen):
     except ImportError as error:
         raise ValueError(f'rclpy cannot be imported ({error}); source ROS 2 Jazzy or install '
                          'ins_sim[ros]; "ins_sim simulate" needs no ROS') from None
+    from rich.console import Console
     console = Console()
     folder = Path(chosen.output)
     parts = [('motion_2', _settings('motion_2', chosen.duration))]
@@ -63,6 +56,9 @@ def run(chosen):
 
 def _settings(name, duration_s, assignments=()):
     """Return the settings of a shipped study as the demo runs it: lock-step, recorded."""
+    from ins_sim import parameter_files, resources
+    from ins_sim.io.motion import read_motion
+    from ins_sim.settings.node import Pacing
     settings = parameter_files.read(
         [resources.config('default'), resources.config(name)],
         [*assignments, f'output_every:={EVERY}', f'duration_s:={duration_s}'])
@@ -75,8 +71,9 @@ def _settings(name, duration_s, assignments=()):
 
 
 def _part(name, settings, folder, console):
+    from ins_sim.report import storage
     storage.check_free(folder, force=True, mark='parameters.yaml')
-    # what is there stays until the new part is complete
+    # The old folder stays until the new part is complete.
     work = folder.with_name(f'.{folder.name}.part')
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
@@ -89,14 +86,19 @@ def _part(name, settings, folder, console):
 
 
 def _run(name, settings, work, folder, console):
+    from ins_sim.core.prediction.predict import predict
+    from ins_sim.io.motion import read_motion
+    from ins_sim.io.published import read_errors
+    from ins_sim.report import figure, summary, table
     from ins_sim.ros.session import Session
+    from .progress import progress_bars
     title = summary.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
-    with ProgressBar(console, 's') as progress:
-        watch = progress.watch(f'{name}: three nodes in lock-step', length_s)
+    with progress_bars(console, 's') as add_bar:
+        show = add_bar(f'{name}: three nodes in lock-step', length_s)
         with Session(settings, work, work / 'bag', namespace) as session:
-            counts = session.run(watch)
+            counts = session.run(show)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
     figure.save(work / 'errors.png', title, errors, prediction)

@@ -1,22 +1,23 @@
 """Verb dtg-report: what the tuned gyros of the parameters are good for."""
 
-from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.sensors.tuned_gyro.instrument import parameters
-from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from . import arguments
 
+HELP = 'roots, bandwidth and margin of a tuned gyro'
 DESCRIPTION = ('Show what the tuned gyros of gyro.dtg.* are good for: roots, time constant, '
                'bandwidth, stability margin and the steps that RK4 allows.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
 
 
 def run(chosen):
     """Show roots, time constant, bandwidth, margin and the steps of RK4; return the exit code."""
-    sensor = arguments.read(chosen).imu_sensor
+    from ins_sim.core.numerics.instants import period_ns
+    from ins_sim.core.sensors.tuned_gyro.instrument import parameters
+    from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
+    sensor = arguments.read_settings(chosen).imu_sensor
     dtg = sensor.gyro.dtg
     p = parameters(dtg)
     nominal = tuned_gyro_report(p)

@@ -1,39 +1,35 @@
 """Verb dtg-study: tables, figures and limits of stability of the DTG paper, one file each."""
 
+from itertools import count
 from pathlib import Path
 
-from rich.console import Console
+from . import arguments
 
-from ins_sim import parameter_files, resources
-from ins_sim.report import dtg_study as report
-from ins_sim.settings.tuned_gyro_study import DtgStudySettings
-from ins_sim.studies import tuned_gyro as study
-from .progress import ProgressBar
-
+HELP = 'the tables and figures of the tuned-gyro paper'
+DESCRIPTION = ('Recover a rocking base through two dynamically tuned gyros as the paper does, and '
+               'compare with what it prints.')
 NODE = 'dtg_study'
 SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')
 
-DESCRIPTION = ('Recover a rocking base through two dynamically tuned gyros as the paper does, '
-               'and compare with what it prints.')
-
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('--params-file', action='append', default=[], metavar='FILE',
                         help='parameter file of one table, or the name of a shipped one; may be '
-                        'repeated (default: dtg_study_frequency and dtg_study_speed)')
+                        f'repeated (default: {" and ".join(SHIPPED)})')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                         help='one parameter, for every table')
-    parser.add_argument('-o', '--output', default='ins_sim_dtg_study', metavar='DIR',
-                        help='folder of the figures (default: %(default)s)')
+    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures')
 
 
 def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
-    paths = ([resources.parameter_file(name) for name in chosen.params_file]
-             or [resources.config(name) for name in SHIPPED])
+    from rich.console import Console
+    from ins_sim import parameter_files
+    from ins_sim.report import dtg_study as report
+    from ins_sim.settings.tuned_gyro_study import DtgStudySettings
     studies = {}
-    for path in paths:
+    for path in arguments.parameter_paths(chosen, SHIPPED):
         if path.stem in studies:
             raise ValueError(f'two parameter files are named {path.stem}; expected different '
                              'names, as the figures bear them')
@@ -52,13 +48,16 @@ def run(chosen):
 
 def _study(name, settings, console):
     """Show one table; return the Cells of the curve, those of the table, and the limits."""
+    from ins_sim.report import dtg_study as report
+    from ins_sim.studies import tuned_gyro as study
+    from .progress import progress_bars
     step_s, limits = 1e-3 * settings.step_ms, ()
     if settings.sweep == 'rotor_speed' and settings.method == 'rk4':
         limits = study.stability_limits(study.gyro_at(settings), step_s)
-    with ProgressBar(console, 'values') as progress:
-        task = progress.add_task(name, total=len(settings.values) + len(settings.curve_values))
-        cells = study.study_table(settings, lambda: progress.advance(task))
-        curve = study.study_curve(settings, lambda: progress.advance(task)) or cells
+    with progress_bars(console, 'points') as add_bar:
+        show, done = add_bar(name, len(settings.values) + len(settings.curve_values)), count(1)
+        cells = study.study_table(settings, lambda: show(next(done)))
+        curve = study.study_curve(settings, lambda: show(next(done))) or cells
     report.show(settings, cells, console)
     if limits:
         report.show_limits(settings, limits, console)

@@ -2,21 +2,20 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
-from ins_sim.bags.bag_reader import open_bag
-from ins_sim.messages.cdr import SECOND
-
-DESCRIPTION = ('Show storage, topics, counts, rates and times of a bag, and whether it is whole.')
+HELP = 'what is in a bag'
+DESCRIPTION = 'Show storage, topics, counts, rates and times of a bag, and whether it is whole.'
+SECOND_NS = 1_000_000_000
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
 
 
 def run(chosen):
     """Show a bag; return the exit code."""
+    from rich.console import Console
+    from ins_sim.bags.bag_reader import open_bag
     console = Console()
     with open_bag(chosen.bag) as bag:
         spans = bag.spans()
@@ -58,7 +57,7 @@ def _show_topics(bag, spans, console):
 
 
 def _seconds(t_ns):
-    whole, rest = divmod(t_ns, SECOND)
+    whole, rest = divmod(t_ns, SECOND_NS)
     return f'{whole}.{rest:09d}'
 
 
@@ -66,4 +65,4 @@ def _rate(span):
     """Return the mean rate between the first and the last message, or a dash."""
     if span.count < 2 or span.last_ns == span.first_ns:
         return '-'
-    return f'{(span.count - 1) * SECOND / (span.last_ns - span.first_ns):.6g}'
+    return f'{(span.count - 1) * SECOND_NS / (span.last_ns - span.first_ns):.6g}'

@@ -1,55 +1,32 @@
-"""
-The command ``ins_sim``: find the verb, parse its arguments, run it.
-
-Only the file of the verb that is asked for is imported, so that ``ins_sim --help`` is instant. It
-has a DESCRIPTION, ``add_arguments(parser)`` and ``run(chosen)``, which returns the exit code.
-"""
+"""The command ``ins_sim``: find the verb, run it, and turn what goes wrong into an exit code."""
 
 import argparse
-from importlib import import_module
 import signal
 import sys
 import warnings
 
+from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
+               info, navigate, play, predict, record, simulate)
 from ins_sim import __version__
 
 ROS_ARGS = '--ros-args'
+# In the order of the printed list.
+VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'record': record, 'play': play,
+         'predict': predict, 'navigate': navigate, 'demo': demo, 'dtg-study': dtg_study,
+         'dtg-report': dtg_report, 'compare-orientation': compare_orientation,
+         'compare-filters': compare_filters, 'allan': allan}
 NODE_VERBS = ('record', 'play')
-# The verbs in the order of the help.
-VERBS = {
-    'simulate': 'run offline and write the run',
-    'info': 'what is in a bag',
-    'convert': 'a flight or an IMU from CSV to a bag, or back',
-    'record': 'record live topics into a bag',
-    'play': 'publish the topics of a bag',
-    'predict': 'predict drift and position error',
-    'navigate': 'run the strapdown over a recorded IMU',
-    'demo': 'run the three nodes over DDS and show the result',
-    'dtg-study': 'the tables and figures of the tuned-gyro paper',
-    'dtg-report': 'roots, bandwidth and margin of a tuned gyro',
-    'compare-orientation': 'the orientation algorithms on one run',
-    'compare-filters': 'all filters of the aided navigator over the same flights',
-    'allan': 'Allan deviation of a record or of simulated noise',
-}
 
 
-def parser(verb=None):
-    """Return the parser of the command, with the arguments of one verb or, by default, of all."""
+def parser():
+    """Return the parser of all verbs."""
     top = argparse.ArgumentParser(prog='ins_sim', description='Simulate an inertial measurement '
                                   'unit and the strapdown navigation on it.')
     top.add_argument('--version', action='version', version=f'ins_sim {__version__}')
     verbs = top.add_subparsers(dest='verb', required=True, metavar='VERB')
-    for name, sentence in VERBS.items():
-        entry = verbs.add_parser(name, help=sentence)
-        if verb in (None, name):
-            module = _module(name)
-            entry.description = module.DESCRIPTION
-            module.add_arguments(entry)
+    for name, verb in VERBS.items():
+        verb.add_arguments(verbs.add_parser(name, help=verb.HELP, description=verb.DESCRIPTION))
     return top
-
-
-def _module(verb):
-    return import_module(f'ins_sim.cli.{verb.replace("-", "_")}')
 
 
 def main(arguments=None):
@@ -60,8 +37,7 @@ def main(arguments=None):
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
     cut = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
-    verb = next((word for word in words[:cut] if not word.startswith('-')), '')
-    top = parser(verb)
+    top = parser()
     chosen = top.parse_args(words[:cut])
     chosen.ros_args = words[cut:]
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
@@ -70,7 +46,7 @@ def main(arguments=None):
     warnings.showwarning = lambda sentence, *_: print(f'ins_sim {chosen.verb}: {sentence}',
                                                       file=sys.stderr)
     try:
-        return _module(chosen.verb).run(chosen)
+        return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:
         print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
         return 2

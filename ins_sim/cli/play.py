@@ -1,14 +1,12 @@
 """Verb play: a bag as live topics."""
 
-from ins_sim.ros.main import run as run_node
-from ins_sim.ros.recording.playing import Options
-
+HELP = 'publish the topics of a bag'
 DESCRIPTION = ('Publish the messages of a rosbag2 bag as they were recorded. Behind --ros-args '
                'stand remappings and the namespace.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('bag', metavar='BAG', help='folder of the bag, or one of its files')
     parser.add_argument('--topics', nargs='+', metavar='TOPIC', default=None,
                         help='topics to publish (default: all)')
@@ -30,13 +28,15 @@ def add_arguments(parser):
                         'than these nodes acknowledge, such as strapdown')
     parser.add_argument('--window', type=int, default=200, metavar='N', help='unanswered samples '
                         'allowed in lock-step (default: %(default)s)')
-    parser.add_argument('--timeout', type=float, default=30.0, metavar='S',
-                        help='wall time without an acknowledgement before the missing node is '
-                        'named (default: %(default)s)')
+    parser.add_argument('--timeout', type=float, default=30.0, metavar='S', help='wall time '
+                        'without an acknowledgement before the missing node is named (default: '
+                        '%(default)s)')
 
 
 def run(chosen):
     """Play; return the exit code of the node."""
+    from ins_sim.ros.main import run as run_node
+    from ins_sim.ros.recording.playing import Options
     options = Options(
         None if chosen.topics is None else tuple(chosen.topics), chosen.rate, chosen.start,
         chosen.duration, chosen.loop, chosen.wait, chosen.clock, tuple(chosen.lock_step),

@@ -1,26 +1,26 @@
 """Verb predict: what the linear theory expects."""
 
-import numpy as np
-from rich.console import Console
-from rich.table import Table
-
-from ins_sim.core.prediction.predict import predict
-from ins_sim.io.motion import read_motion
-from ins_sim.report import summary, table
 from . import arguments
 
+HELP = 'predict drift and position error'
 DESCRIPTION = ('Predict the mean drift and the position error by the linear theory, without a '
                'simulation.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
 
 
 def run(chosen):
     """Predict and show; return the exit code."""
-    settings = arguments.read(chosen)
+    import numpy as np
+    from rich.console import Console
+    from rich.table import Table
+    from ins_sim.core.prediction.predict import predict
+    from ins_sim.io.motion import read_motion
+    from ins_sim.report import summary, table
+    settings = arguments.read_settings(chosen)
     prediction = predict(settings, read_motion(settings.motion_generator))
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)

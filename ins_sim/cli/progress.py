@@ -1,22 +1,37 @@
-"""The progress bar of the verbs."""
+"""The progress bars of the verbs that take longer than a moment."""
+
+from contextlib import contextmanager
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 
-class ProgressBar(Progress):
+@contextmanager
+def progress_bars(console, unit=None):
     """
-    A bar for each task, on a terminal only, removed at the end; use it as a context manager.
+    Show progress bars on a console while the block runs, and remove them at its end.
 
-    unit: of the amounts that are shown, such as 'flights'; without one the bar shows per cent.
+    Parameters
+    ----------
+    console : rich.console.Console
+        Where the bars appear.
+    unit : str, optional
+        What is counted, such as 'flights': a bar shows '3 of 24 flights'. Without it a bar shows
+        a percentage.
+
+    Yields
+    ------
+    callable
+        ``add_bar(label, total=1.0)`` adds a bar and returns the function that takes how much of
+        the total is done.
     """
+    amount = ('{task.percentage:>3.0f} %' if unit is None else
+              f'{{task.completed:.0f}} of {{task.total:.0f}} {unit}')
+    with Progress(TextColumn('{task.description}', markup=False), BarColumn(),
+                  TextColumn(amount), TimeRemainingColumn(), console=console,
+                  transient=True) as progress:
 
-    def __init__(self, console, unit=None):
-        amount = ('{task.percentage:>3.0f} %' if unit is None
-                  else f'{{task.completed:.0f}} of {{task.total:.0f}} {unit}')
-        super().__init__(TextColumn('{task.description}'), BarColumn(), TextColumn(amount),
-                         TimeRemainingColumn(), console=console, transient=True)
+        def add_bar(label, total=1.0):
+            task = progress.add_task(label, total=total)
+            return lambda done: progress.update(task, completed=done)
 
-    def watch(self, name, total=1.0):
-        """Add a task; return the function that takes how much of total is done."""
-        task = self.add_task(name, total=total)
-        return lambda done: self.update(task, completed=done)
+        yield add_bar

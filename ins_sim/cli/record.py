@@ -2,24 +2,21 @@
 
 import json
 
-from ins_sim.ros.main import recorder
+from . import arguments
 
+HELP = 'record live topics into a bag'
 DESCRIPTION = ('Record live topics into a rosbag2 bag, until Ctrl-C. Behind --ros-args stand '
                'remappings and the namespace.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     parser.add_argument('topics', nargs='*', metavar='TOPIC', help='topic to record; one that is '
                         'not there yet is waited for')
     parser.add_argument('--all', action='store_true', help='record every topic')
-    parser.add_argument('-o', '--output', default='ins_sim_bag', metavar='DIR',
-                        help='folder of the bag (default: %(default)s)')
-    parser.add_argument('--force', action='store_true', help='replace the bag in DIR')
-    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
-                        help='storage of the bag (default: %(default)s)')
-    parser.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
-                        help='compression of its chunks, of mcap (default: %(default)s)')
+    arguments.add_output(parser, 'ins_sim_bag', 'folder of the bag')
+    arguments.add_force(parser, 'the bag in DIR')
+    arguments.add_storage(parser)
     parser.add_argument('--max-size', type=float, default=0.0, metavar='MB',
                         help='begin another file where one is as large')
     parser.add_argument('--max-duration', type=float, default=0.0, metavar='S',
@@ -31,6 +28,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Record until a signal comes; return the exit code of the node."""
+    from ins_sim.ros.main import recorder
     parameters = {
         'record.topics': chosen.topics, 'record.all_topics': chosen.all,
         'record.log_time': chosen.log_time, 'storage.path': chosen.output,
@@ -40,6 +38,6 @@ def run(chosen):
     words = chosen.ros_args or ['--ros-args']
     for name, value in parameters.items():
         if value != []:
-            # JSON is YAML, and quotes what YAML would take for something else
+            # JSON is YAML, and quotes what YAML would take for something else.
             words += ['-p', f'{name}:={json.dumps(value, ensure_ascii=False)}']
     return recorder(words)

@@ -2,27 +2,18 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
-from ins_sim.core.prediction.drift import NoPrediction
-from ins_sim.core.prediction.predict import predict
-from ins_sim.core.simulation.aided import make_instruments, simulate_aided
-from ins_sim.core.simulation.inertial import simulate
-from ins_sim.io.motion import read_motion
-from ins_sim.report import storage, summary, table
 from . import arguments
-from .progress import ProgressBar
 
+HELP = 'run offline and write the run'
 DESCRIPTION = ('Run motion, IMU and strapdown offline, with the zero-delay twin, and write the '
                'run into a folder.')
 
 
 def add_arguments(parser):
-    """Add the arguments of the verb."""
+    """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
-    parser.add_argument('-o', '--output', default='ins_sim_run', metavar='DIR',
-                        help='folder of the run (default: %(default)s)')
-    parser.add_argument('--force', action='store_true', help='replace the run in DIR')
+    arguments.add_output(parser, 'ins_sim_run', 'folder of the run')
+    arguments.add_force(parser, 'the run in DIR')
     parser.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
     parser.add_argument('--aided', action='store_true', help='also run velocity meter, GNSS and '
                         'aided navigator on the same readings of the IMU')
@@ -35,7 +26,16 @@ def add_arguments(parser):
 
 def run(chosen):
     """Run, write and show; return the exit code."""
-    settings, aided = arguments.read_simulation(chosen)
+    from rich.console import Console
+    from ins_sim.core.prediction.drift import NoPrediction
+    from ins_sim.core.prediction.predict import predict
+    from ins_sim.core.simulation.aided import make_instruments, simulate_aided
+    from ins_sim.core.simulation.inertial import simulate
+    from ins_sim.io.motion import read_motion
+    from ins_sim.report import storage, summary, table
+    from .progress import progress_bars
+    aided = arguments.read_aided_settings(chosen) if chosen.aided else None
+    settings = aided.simulation if aided else arguments.read_settings(chosen)
     storage.check_free(chosen.output, chosen.force)
     write_bag = _bag_writer(chosen, settings)
     title = summary.title(settings)
@@ -48,10 +48,10 @@ def run(chosen):
     except NoPrediction as reason:
         prediction = None
         console.print(str(reason))
-    with ProgressBar(console) as progress:
-        result = simulate(settings, motion, not chosen.no_twin, progress.watch('simulating'))
+    with progress_bars(console) as add_bar:
+        result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'))
         flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
-                                                          progress.watch('aiding'))
+                                                          add_bar('aiding'))
     rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
     report = None if aided is None else _report(aided, flown, result)
     storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force, report)
