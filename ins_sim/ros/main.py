@@ -49,5 +49,7 @@ recorder = partial(run, 'recorder')
 
 
 if __name__ == '__main__':
-    # python -m ins_sim.ros.main NODE [--ros-args ...]
+    if len(sys.argv) < 2 or sys.argv[1] not in NODES:
+        sys.exit(f'usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '
+                 f'{", ".join(NODES)}')
     sys.exit(run(sys.argv[1], sys.argv[1:]))
