@@ -24,7 +24,7 @@ from ins_sim.settings.velocity_meter import VelocityMeterSettings
 ROOT = Path(__file__).resolve().parents[1]
 RECORDING = ROOT.parent / 'shared' / 'data' / 'flights' / 'cruise_gv_acclip_rf01.csv.gz'
 EVERY_TERM = {
-    'turn_on_bias_sigma_deg_h': 1.0, 'in_run_bias_sigma_deg_h': 0.1,
+    'turn_on_bias_sigma_deg_h': 1.0, 'gauss_markov_sigma_deg_h': 0.1,
     'angle_random_walk_deg_sqrt_h': 0.01, 'rate_random_walk_deg_h_sqrt_h': 0.1,
     'bias_instability_deg_h': 0.1, 'scale_factor_ppm': 100.0, 'scale_asymmetry_ppm': 10.0,
     'cubic_ppm_s2_deg2': 0.01, 'misalignment_mrad': 0.1, 'non_orthogonality_mrad': 0.1,

@@ -102,12 +102,13 @@ def expected(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
     """
     Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
 
-    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); an in-run bias without end
-    counts as the random walk that it is.  factors: variance of an axis over that of a channel.
+    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); a Gauss-Markov process with an
+    infinite correlation time counts as the random walk that it is.  factors: variance of an axis
+    over that of a channel.
     """
     model = triad_model(errors, dt_s, name)
     endless = [s / 60.0 if math.isinf(t) else 0.0
-               for s, t in zip(model.in_run_sigma, model.in_run_time)]
+               for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time)]
     return np.sqrt(factors) * np.array([np.array(model.quantum) / math.sqrt(12.0), model.white,
                                         model.flicker, np.hypot(model.walk, endless)])
 
@@ -131,7 +132,8 @@ def analyse(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0)):
         model = triad_model(errors, 1.0 / rate_hz, name)
         wanted = expected(errors, 1.0 / rate_hz, name, factors)
         known = np.stack([factors[k] * allan.gauss_markov_variance(
-            found.tau_s, model.in_run_sigma[k], model.in_run_time[k]) for k in noisy], -1)
+            found.tau_s, model.gauss_markov_sigma[k], model.gauss_markov_time[k])
+            for k in noisy], -1)
     mean = known.mean(axis=-1)
     try:
         by_axis = tuple(allan.fit(found.channels([k]), known[:, k]) for k in range(len(noisy)))

@@ -21,9 +21,9 @@ def axes(doc, unit, low=0.0, high=MOST, default=0.0):
 
 BIAS = 'bias, the same in every run'
 TURN_ON = 'bias drawn once a run, standard deviation'
-IN_RUN = 'in-run bias, stationary Gauss-Markov process, standard deviation'
-IN_RUN_TIME = ('its correlation time; infinite = random walk of that standard deviation after one '
-               'hour')
+GAUSS_MARKOV = 'in-run bias, stationary Gauss-Markov process, standard deviation'
+GAUSS_MARKOV_TIME = ('its correlation time; infinite = random walk of that standard deviation '
+                     'after one hour')
 INSTABILITY = ('bias instability B of IEEE Std 952, flicker noise: the Allan deviation lies flat '
                'at 0.664 B')
 SCALE = 'scale factor error, the same in every run'
@@ -46,8 +46,8 @@ class GyroErrors(SettingsGroup):
 
     bias_deg_h: Axes = axes(BIAS, 'deg/h', -MOST)
     turn_on_bias_sigma_deg_h: Axes = axes(TURN_ON, 'deg/h')
-    in_run_bias_sigma_deg_h: Axes = axes(IN_RUN, 'deg/h')
-    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, math.inf, default=300.0)
+    gauss_markov_sigma_deg_h: Axes = axes(GAUSS_MARKOV, 'deg/h')
+    gauss_markov_time_s: Axes = axes(GAUSS_MARKOV_TIME, 's', 1e-3, math.inf, default=300.0)
     angle_random_walk_deg_sqrt_h: Axes = axes('angle random walk N', 'deg/sqrt(h)')
     rate_random_walk_deg_h_sqrt_h: Axes = axes('rate random walk K', 'deg/h/sqrt(h)')
     bias_instability_deg_h: Axes = axes(INSTABILITY, 'deg/h')
@@ -79,8 +79,8 @@ class AccelerometerErrors(SettingsGroup):
 
     bias_ug: Axes = axes(BIAS, 'ug', -MOST)
     turn_on_bias_sigma_ug: Axes = axes(TURN_ON, 'ug')
-    in_run_bias_sigma_ug: Axes = axes(IN_RUN, 'ug')
-    in_run_bias_time_s: Axes = axes(IN_RUN_TIME, 's', 1e-3, math.inf, default=300.0)
+    gauss_markov_sigma_ug: Axes = axes(GAUSS_MARKOV, 'ug')
+    gauss_markov_time_s: Axes = axes(GAUSS_MARKOV_TIME, 's', 1e-3, math.inf, default=300.0)
     velocity_random_walk_m_s_sqrt_h: Axes = axes('velocity random walk N', 'm/s/sqrt(h)')
     acceleration_random_walk_ug_sqrt_h: Axes = axes('acceleration random walk K', 'ug/sqrt(h)')
     bias_instability_ug: Axes = axes(INSTABILITY, 'ug')

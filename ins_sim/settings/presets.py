@@ -129,8 +129,8 @@ _DTG = _preset(
     'torquer 200 ppm, asymmetry 30 ppm, 200 deg/s, axes 0.2 mrad, ARW 0.005 deg/sqrt(h), pulses '
     '0.3 arcsec; accelerometer: repeatability 100 ug, in-run 7 ug, VRW 0.01 m/s/sqrt(h), range 20 '
     'g',
-    {'turn_on_bias_sigma_deg_h': 1.0, 'in_run_bias_sigma_deg_h': 0.02,
-     'in_run_bias_time_s': 100.0, 'angle_random_walk_deg_sqrt_h': 0.005,
+    {'turn_on_bias_sigma_deg_h': 1.0, 'gauss_markov_sigma_deg_h': 0.02,
+     'gauss_markov_time_s': 100.0, 'angle_random_walk_deg_sqrt_h': 0.005,
      'bias_instability_deg_h': 0.05, 'rate_random_walk_deg_h_sqrt_h': 0.25,
      'scale_factor_sigma_ppm': 200.0, 'scale_asymmetry_ppm': 30.0, 'cubic_ppm_s2_deg2': 0.001,
      'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,

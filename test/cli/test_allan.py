@@ -171,8 +171,8 @@ def test_a_perfect_axis_is_left_out():
 
 def test_expected_coefficients_of_the_settings():
     """Pulses over sqrt(12); an endless in-run bias of 0.3 deg/h adds to a walk of 0.4."""
-    errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, in_run_bias_sigma_deg_h=(0.3,) * 3,
-                        in_run_bias_time_s=(float('inf'), float('inf'), 100.0),
+    errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, gauss_markov_sigma_deg_h=(0.3,) * 3,
+                        gauss_markov_time_s=(float('inf'), float('inf'), 100.0),
                         rate_random_walk_deg_h_sqrt_h=(0.4,) * 3)
     units = [[term.si] for term in noise_terms.TRIADS['gyro']]
     q, n, b, k = noise_terms.expected(errors, 0.01, 'gyro.errors') / units

@@ -30,10 +30,10 @@ def three(value):
     (GyroErrors, 'angle_random_walk_deg_sqrt_h', three(-0.1), 'is -0.1 deg/sqrt(h); expected 0'),
     (GyroErrors, 'rate_random_walk_deg_h_sqrt_h', (0.0, -1.0, 0.0), 'is -1 deg/h/sqrt(h); exp'),
     (GyroErrors, 'bias_instability_deg_h', three(-1e-9), 'expected 0 to'),
-    (GyroErrors, 'in_run_bias_time_s', three(0.0), 'is 0 s; expected 0.001 to'),
-    (GyroErrors, 'in_run_bias_time_s', three(-5.0), 'is -5 s; expected 0.001 to'),
-    (GyroErrors, 'in_run_bias_time_s', three(math.nan), 'expected a finite number'),
-    (GyroErrors, 'in_run_bias_time_s', 100.0, 'expected 3 correlation times'),
+    (GyroErrors, 'gauss_markov_time_s', three(0.0), 'is 0 s; expected 0.001 to'),
+    (GyroErrors, 'gauss_markov_time_s', three(-5.0), 'is -5 s; expected 0.001 to'),
+    (GyroErrors, 'gauss_markov_time_s', three(math.nan), 'expected a finite number'),
+    (GyroErrors, 'gauss_markov_time_s', 100.0, 'expected 3 correlation times'),
     (GyroErrors, 'turn_on_bias_sigma_deg_h', three(-1.0), 'expected 0 to'),
     (GyroErrors, 'bias_deg_h', three(math.inf), 'expected a finite number'),
     (GyroErrors, 'bias_deg_h', (1.0, 2.0), 'has 2 entries; expected 3'),
@@ -43,7 +43,7 @@ def three(value):
     (GyroErrors, 'quantisation_arcsec', three(-1.0), 'expected 0 to'),
     (GyroErrors, 'saturation_deg_s', three(-1.0), 'expected 0 to'),
     (AccelerometerErrors, 'velocity_random_walk_m_s_sqrt_h', three(-1.0), 'expected 0 to'),
-    (AccelerometerErrors, 'in_run_bias_time_s', three(0.0), 'expected 0.001 to')])
+    (AccelerometerErrors, 'gauss_markov_time_s', three(0.0), 'expected 0.001 to')])
 def test_a_bad_value_is_refused(cls, key, value, says):
     """One sentence names key, value and expectation."""
     with pytest.raises(ValueError) as raised:
@@ -69,10 +69,10 @@ def test_saturation_below_noise_is_refused(terms, says):
 
 def test_infinite_correlation_time():
     """A random walk, in parameter files too; no other key takes infinity."""
-    key = 'in_run_bias_time_s'
-    model = triad_model(GyroErrors(in_run_bias_time_s=three(math.inf)), DT)
-    assert model.in_run_time == three(math.inf)
-    assert build(GyroErrors, {key: three(math.inf)}).in_run_bias_time_s == three(math.inf)
+    key = 'gauss_markov_time_s'
+    model = triad_model(GyroErrors(gauss_markov_time_s=three(math.inf)), DT)
+    assert model.gauss_markov_time == three(math.inf)
+    assert build(GyroErrors, {key: three(math.inf)}).gauss_markov_time_s == three(math.inf)
     with pytest.raises(ValueError, match='bias_deg_h is inf; expected a finite number'):
         build(GyroErrors, {'bias_deg_h': three(math.inf)})
 

@@ -25,8 +25,8 @@ SHOWN = {('navigation_rlg', 'gyro'): slice(1)}
 def ratios(model, record, rate_hz=RATE):
     """Return fitted over simulated N, B, K of a record of three axes."""
     found = allan.estimate(record, rate_hz)
-    c = allan.fit(found, allan.gauss_markov_variance(found.tau_s, model.in_run_sigma[0],
-                                                     model.in_run_time[0]))
+    c = allan.fit(found, allan.gauss_markov_variance(found.tau_s, model.gauss_markov_sigma[0],
+                                                     model.gauss_markov_time[0]))
     return (c.random_walk / model.white[0], c.instability / model.flicker[0],
             c.rate_random_walk / model.walk[0])
 

@@ -33,7 +33,7 @@ def three(value):
 
 FULL = GyroErrors(
     bias_deg_h=three(1.0), turn_on_bias_sigma_deg_h=three(1.0),
-    in_run_bias_sigma_deg_h=three(0.1), angle_random_walk_deg_sqrt_h=three(0.01),
+    gauss_markov_sigma_deg_h=three(0.1), angle_random_walk_deg_sqrt_h=three(0.01),
     rate_random_walk_deg_h_sqrt_h=three(0.1), bias_instability_deg_h=three(0.1),
     scale_factor_ppm=three(100.0), scale_factor_sigma_ppm=three(10.0),
     scale_asymmetry_ppm=three(10.0), cubic_ppm_s2_deg2=three(0.01),
@@ -210,8 +210,8 @@ def test_flicker_is_flat_at_its_floor():
 def test_in_run_terms_have_their_units():
     """Sample variance over 200 runs of one hour's end: Gauss-Markov and both random walks."""
     end = 3600.0
-    for terms, sigma in (({'in_run_bias_sigma_deg_h': 0.3}, 0.3),
-                         ({'in_run_bias_sigma_deg_h': 0.3, 'in_run_bias_time_s': math.inf}, 0.3),
+    for terms, sigma in (({'gauss_markov_sigma_deg_h': 0.3}, 0.3),
+                         ({'gauss_markov_sigma_deg_h': 0.3, 'gauss_markov_time_s': math.inf}, 0.3),
                          ({'rate_random_walk_deg_h_sqrt_h': 0.2}, 0.2)):
         errors = GyroErrors(**{k: three(v) for k, v in terms.items()})
         z = np.array([errors_of(errors, run=run, dt=0.1).step(36000, (0.0,) * 3, F, end)

@@ -70,7 +70,7 @@ EVERYTHING = {
     ERRORS + 'speed_ppm': [5.0, -5.0], ERRORS + 'hunting_ppm': [20.0, 10.0],
     ERRORS + 'spin_rate_product': 1.0, OUT + 'angle_random_walk_deg_sqrt_h': [0.01] * 3,
     OUT + 'quantisation_arcsec': [0.3] * 3, OUT + 'bandwidth_hz': [80.0] * 3,
-    OUT + 'in_run_bias_sigma_deg_h': [0.1] * 3, OUT + 'misalignment_sigma_mrad': [0.2] * 3}
+    OUT + 'gauss_markov_sigma_deg_h': [0.1] * 3, OUT + 'misalignment_sigma_mrad': [0.2] * 3}
 
 
 @pytest.mark.parametrize('more', [{}, {'gyro.dtg.steps_per_sample': 3, 'gyro.dtg.fault.channel':

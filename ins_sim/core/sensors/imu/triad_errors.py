@@ -215,8 +215,9 @@ def make_noise(model, seed, run, name, dt_s):
         normals = indexed_noise(seed, run, f'{name}.white', 3).normal_block
         terms.append(lambda b: white * normals(b))
     hour = tuple(s / 60.0 if math.isinf(t) else s
-                 for s, t in zip(model.in_run_sigma, model.in_run_time))
-    for term, sigma, time in (('in_run_bias', hour, model.in_run_time),
+                 for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time))
+    # The stream of the Gauss-Markov process keeps its old name: seeds keep their numbers.
+    for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
                               ('walk', model.walk, (math.inf,) * 3)):
         if any(sigma):
             terms.append(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s).block)

@@ -18,8 +18,8 @@ class TriadModel:
     """
     Coefficients by axis, tuples of three, in rad/s or m/s^2 (here: U), rad, s and kelvin.
 
-    bias, turn_on_sigma, in_run_sigma, flicker U; in_run_time s; white U sqrt(s); walk U/sqrt(s);
-    scale, scale_sigma, asymmetry 1; quadratic 1/U; cubic 1/U^2; misalignment,
+    bias, turn_on_sigma, gauss_markov_sigma, flicker U; gauss_markov_time s; white U sqrt(s);
+    walk U/sqrt(s); scale, scale_sigma, asymmetry 1; quadratic 1/U; cubic 1/U^2; misalignment,
     misalignment_sigma, non_orthogonality rad; g_linear U/(m/s^2), g_quadratic U/(m/s^2)^2;
     bandwidth_hz Hz, order 1 or 2; saturation U, quantum U s, 0 = none; temperature_bias U/K,
     temperature_scale 1/K; reported_sigma U, negative = that of the noise.
@@ -27,8 +27,8 @@ class TriadModel:
 
     bias: tuple
     turn_on_sigma: tuple
-    in_run_sigma: tuple
-    in_run_time: tuple
+    gauss_markov_sigma: tuple
+    gauss_markov_time: tuple
     white: tuple
     walk: tuple
     flicker: tuple
@@ -52,7 +52,7 @@ class TriadModel:
 
 
 _COMMON = {
-    'in_run_bias_time_s': ('in_run_time', 1.0),
+    'gauss_markov_time_s': ('gauss_markov_time', 1.0),
     'scale_factor_ppm': ('scale', 1e-6),
     'scale_factor_sigma_ppm': ('scale_sigma', 1e-6),
     'scale_asymmetry_ppm': ('asymmetry', 1e-6),
@@ -68,7 +68,7 @@ KEYS = {
     GyroErrors: _COMMON | {
         'bias_deg_h': ('bias', DEG_H),
         'turn_on_bias_sigma_deg_h': ('turn_on_sigma', DEG_H),
-        'in_run_bias_sigma_deg_h': ('in_run_sigma', DEG_H),
+        'gauss_markov_sigma_deg_h': ('gauss_markov_sigma', DEG_H),
         'angle_random_walk_deg_sqrt_h': ('white', DEG / SQRT_H),
         'rate_random_walk_deg_h_sqrt_h': ('walk', DEG_H / SQRT_H),
         'bias_instability_deg_h': ('flicker', DEG_H),
@@ -83,7 +83,7 @@ KEYS = {
     AccelerometerErrors: _COMMON | {
         'bias_ug': ('bias', UG),
         'turn_on_bias_sigma_ug': ('turn_on_sigma', UG),
-        'in_run_bias_sigma_ug': ('in_run_sigma', UG),
+        'gauss_markov_sigma_ug': ('gauss_markov_sigma', UG),
         'velocity_random_walk_m_s_sqrt_h': ('white', 1.0 / SQRT_H),
         'acceleration_random_walk_ug_sqrt_h': ('walk', UG / SQRT_H),
         'bias_instability_ug': ('flicker', UG),
@@ -109,7 +109,7 @@ def triad_model(settings, dt_s, name=''):
     known = {f.name: f for f in fields(settings)}
     for key, (coefficient, unit) in keys.items():
         value = getattr(settings, key)
-        if key == 'in_run_bias_time_s':
+        if key == 'gauss_markov_time_s':
             _check_times(prefix + key, value, known[key])
         else:
             value = check(prefix + key, value, known[key])

@@ -50,7 +50,7 @@ class ParityTest:
         shaken = max(map(abs, errors.vibration_2n_deg_s))
         shaken = math.radians(shaken) * abs(p.vibration_2n_factor) if shaken else 0.0
         self._bias = math.hypot(
-            _most(model.bias, model.turn_on_sigma, model.in_run_sigma, model.flicker,
+            _most(model.bias, model.turn_on_sigma, model.gauss_markov_sigma, model.flicker,
                   [60.0 * k for k in model.walk]), offset, shaken)
         axes = math.hypot(*model.misalignment, *model.misalignment_sigma,
                           *model.non_orthogonality)
