@@ -102,9 +102,9 @@ def expected(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
     """
     Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
 
-    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); a Gauss-Markov process with an
-    infinite correlation time counts as the random walk that it is.  factors: variance of an axis
-    over that of a channel.
+    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); a Gauss-Markov process with
+    an infinite correlation time counts as the random walk that it is.  factors: variance of an
+    axis over that of a channel.
     """
     model = triad_model(errors, dt_s, name)
     endless = [s / 60.0 if math.isinf(t) else 0.0

@@ -11,7 +11,7 @@ from .field import group, setting, settings_class, SettingsGroup
 
 MOST = 1e9
 # Names of the rotors whose parameters are in ``core.sensors.tuned_gyro.rotor.PRESETS``.
-ROTORS = ('paper', 'paper_damped', 'tactical')
+ROTORS = ('sapegin_2016', 'sapegin_2016_damped', 'tactical')
 
 
 def by_gyro(doc, unit, low=0.0, high=MOST):
@@ -114,8 +114,9 @@ class Dtg(SettingsGroup):
     """Two dynamically tuned gyros in place of the ideal triad."""
 
     preset: str = setting('tactical', 'parameters of both gyros '
-                          '(sensors.tuned_gyro.rotor.PRESETS), or custom; the undamped rotor of '
-                          'the paper is unstable, and only RK4 at 0.332 to 1.099 ms damps it',
+                          '(sensors.tuned_gyro.rotor.PRESETS), or custom; sapegin_2016, the '
+                          'rotor of that paper, is unstable, and only RK4 at 0.332 to 1.099 ms '
+                          'damps it',
                           choices=(*ROTORS, 'custom'))
     custom: CustomDtg = group(CustomDtg)
     arrangement: str = setting('paper', 'paper: gyro 1 senses x and y, gyro 2 senses z and x; '

@@ -24,7 +24,8 @@ class DtgStudySettings(SettingsGroup):
                                      'rad/s', 1e-3, 1e4)
     rotor_speed_hz: float = setting(230.0, 'speed of the rotors where the base rate is swept, and '
                                     'where the search for the limits begins', 'Hz', 1e-3, 1e4)
-    preset: str = setting('paper', 'parameters of both gyros (sensors.tuned_gyro.rotor.PRESETS)',
+    preset: str = setting('sapegin_2016', 'parameters of both gyros '
+                          '(sensors.tuned_gyro.rotor.PRESETS)',
                           choices=ROTORS)
     method: str = setting('rk4', 'integration of the gyros: rk4 as in the paper, or exact',
                           choices=('rk4', 'exact'))

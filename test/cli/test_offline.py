@@ -114,7 +114,7 @@ def test_dtg_report(capsys):
     text = capsys.readouterr().out
     assert 'tuned gyro tactical, closed loop, rotor at 230 Hz' in text and 'stable' in text
     assert '-3 dB at 86.75 Hz' in text and 'gyro 1, 100 ppm off: roots' in text
-    assert main(['dtg-report', '-p', 'gyro.dtg.preset:=paper']) == 0
+    assert main(['dtg-report', '-p', 'gyro.dtg.preset:=sapegin_2016']) == 0
     text = capsys.readouterr().out
     assert 'UNSTABLE' in text and 'time constant 0.133652 s' in text
     assert 'RK4 decays for steps of 0.3322 to 1.099 ms' in text
@@ -142,7 +142,7 @@ def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
     assert 'beyond the threshold in' in text and 'the strapdown started anew' in text
     arrays = np.load(tmp_path / 'a' / 'run.npz')
     assert arrays['imu_parity'].shape == arrays['imu_t_ns'].shape
-    paper = ['-p', 'gyro.dtg.preset:=paper', '-p', 'gyro.dtg.method:=rk4', '-p',
+    paper = ['-p', 'gyro.dtg.preset:=sapegin_2016', '-p', 'gyro.dtg.method:=rk4', '-p',
              'gyro.dtg.steps_per_sample:=13']
     assert main([*dtg, *paper, '-o', str(tmp_path / 'b')]) == 0
     text = ' '.join(capsys.readouterr().out.split())

@@ -17,7 +17,7 @@ from support.places import ROOT
 CONFIG = ROOT / 'config'
 FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))
 
-# what the `paper` preset gives by the specification, deg
+# what the `sapegin_2016` preset gives by the specification, deg
 SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
              130.0: 9.972, 143.0: 9.966, 170.0: 9.952, 200.0: 9.933, 250.0: 9.896, 270.0: 9.879,
              320.0: 9.832, 337.0: 9.814}
@@ -77,18 +77,18 @@ def test_both_algorithms_agree(tables):
 
 def test_amplitudes_are_those_of_a_first_order_lag(tables):
     """To 1e-3 deg: 10 / sqrt(1 + (w T)^2), as A is small and the gyro settles in 20 s."""
-    lag = tuned_gyro_report(PRESETS['paper']).time_constant_s
+    lag = tuned_gyro_report(PRESETS['sapegin_2016']).time_constant_s
     for c in tables['frequency']:
         assert c.poisson_deg == pytest.approx(10.0 / math.hypot(1.0, c.value * lag), abs=1e-3)
 
 
 def test_exact_propagation_of_the_damped_preset(tables):
-    """`paper_damped`, physically stable, gives the same tables to 1e-4 deg."""
+    """`sapegin_2016_damped`, physically stable, gives the same tables to 1e-4 deg."""
     cells = [c for name in tables
-             for c in study_table(read(name, 'preset:=paper_damped', 'method:=exact'))]
+             for c in study_table(read(name, 'preset:=sapegin_2016_damped', 'method:=exact'))]
     off = max(abs(a.poisson_deg - b.poisson_deg)
               for a, b in zip(cells, (*tables['frequency'], *tables['speed'])))
-    print(f'\nexact, paper_damped: off by {off:.1e} deg')
+    print(f'\nexact, sapegin_2016_damped: off by {off:.1e} deg')
     assert off <= 1e-4
 
 
@@ -110,7 +110,7 @@ def test_unstable_speeds_are_refused():
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which this gyro grows'):
         study_curve(read('speed', 'curve_values:=[340.0]'))
     with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
-        stability_limits(PRESETS['paper'], 2e-3)
+        stability_limits(PRESETS['sapegin_2016'], 2e-3)
 
 
 def test_progress_is_told_and_the_amplitude_scales():
@@ -142,7 +142,8 @@ def test_every_shipped_study_runs(path, tmp_path, capsys):
     ('values:=[]', 'paper_deg has 5 entries; expected none or 0'),
     ('values:=[-1.0, 1.0, 2.0, 4.0, 8.0]', 'values is -1; expected 0.001 to 10000'),
     ('paper_limits_hz:=[130.0]', 'paper_limits_hz has 1 entries; expected none or 2'),
-    ('preset:=papr', 'preset is \'papr\'; expected one of paper, paper_damped, tactical'),
+    ('preset:=sapegin', 'preset is \'sapegin\'; expected one of sapegin_2016, '
+     'sapegin_2016_damped, tactical'),
     ('step_ms:=0.0', 'step_ms is 0 ms; expected 0.001 to 100 ms'),
 ])
 def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):

@@ -90,7 +90,7 @@ def test_everything_on_live_is_offline_and_reset_forgets(more):
 
 def test_steps_per_sample_bring_rk4_to_a_slow_imu():
     """The paper's rotor at 100 Hz: 13 steps of 0.77 ms are inside its window, one of 10 is not."""
-    rotor = {'gyro.dtg.preset': 'paper', 'gyro.dtg.method': 'rk4'}
+    rotor = {'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.method': 'rk4'}
     with pytest.raises(ValueError, match='RK4 step is 10 ms, at which this gyro grows; expected '
                        'between 0.332'):
         instrument(rotor)
@@ -102,14 +102,14 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
     # open loop: the gain at rest is -j c/(k2 - j c) = 1
     np.testing.assert_allclose(omega, RATE, rtol=1e-9)
     with pytest.raises(ValueError, match='unstable: a root grows with 7.447'):
-        instrument({'gyro.dtg.preset': 'paper'})
+        instrument({'gyro.dtg.preset': 'sapegin_2016'})
     with pytest.warns(UserWarning, match='unstable: a root grows'):
-        instrument({'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn'})
+        instrument({'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'})
 
 
 def test_rotors_that_run_away_are_a_fault():
     """Not an infinite reading: one sentence, and a restart settles them anew."""
-    values = {**DTG, 'gyro.dtg.preset': 'paper', 'gyro.dtg.on_unstable': 'warn',
+    values = {**DTG, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn',
               OUT + 'quantisation_arcsec': [0.3] * 3}
     with pytest.warns(UserWarning, match='unstable'):
         s = settings(values, duration_s=200.0, source='motion')

@@ -110,12 +110,12 @@ def test_state_can_be_kept_and_set_back():
 def test_response_is_that_of_the_simulation(axis):
     """Rocking about each body axis at 10 Hz, two different gyros."""
     w, count = 20 * math.pi, 1000
-    gyros = GyroPair((TACTICAL, PRESETS['paper_damped']), DT)
+    gyros = GyroPair((TACTICAL, PRESETS['sapegin_2016_damped']), DT)
 
     def rate(t):
         return [np.cos(w * t) if k == axis else 0.0 * t for k in range(3)]
 
-    # the slow root of paper_damped decays with 7.5 1/s
+    # the slow root of sapegin_2016_damped decays with 7.5 1/s
     settle = 3000
     found = gyros.advance(steps(rate, settle + count))[0][settle:]
     t = DT * (settle + np.arange(count))
@@ -129,7 +129,7 @@ BAD = {"arrangement is 'heap'; expected paper or turned": lambda: pair('heap'),
        "channel is 'x'; expected 0 to 3 or one of gyro_1_y": lambda: pair().inject('x'),
        'channel is 4; expected 0 to 3': lambda: pair().inject(4),
        'bias_rad_s is inf and scale is 1': lambda: pair().inject(0, bias_rad_s=math.inf),
-       'the gyro is unstable': lambda: GyroPair(PRESETS['paper'], DT)}
+       'the gyro is unstable': lambda: GyroPair(PRESETS['sapegin_2016'], DT)}
 
 
 @pytest.mark.parametrize('sentence', BAD)

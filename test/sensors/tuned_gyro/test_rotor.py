@@ -10,7 +10,8 @@ from ins_sim.core.sensors.tuned_gyro.rotor import (loop_gains, PRESETS, state_sp
                                                    TunedGyroParameters)
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 
-PAPER, DAMPED, TACTICAL = (PRESETS[k] for k in ('paper', 'paper_damped', 'tactical'))
+SAPEGIN, DAMPED, TACTICAL = (
+    PRESETS[k] for k in ('sapegin_2016', 'sapegin_2016_damped', 'tactical'))
 
 
 def draws(count, seed=3):
@@ -36,7 +37,7 @@ def real_form(p, w):
 @pytest.mark.parametrize('w', [-3.0, 0.7, 60.0, 2500.0])
 def test_transfer_function_is_that_of_the_real_equations(w):
     """The complex form with v = theta' + u is the real one, to rounding."""
-    for p in [PAPER, DAMPED, *draws(20)]:
+    for p in [SAPEGIN, DAMPED, *draws(20)]:
         direct, cross = state_space(p).axis_responses(w)
         expected = real_form(p, w)
         np.testing.assert_allclose([direct, cross], expected, rtol=1e-10,
@@ -70,7 +71,7 @@ def test_margin_tells_stability():
 
 def test_figures_of_paper():
     """Time constant, growth of the nutation and RK4 window of the spec, to its digits."""
-    found = tuned_gyro_report(PAPER)
+    found = tuned_gyro_report(SAPEGIN)
     print('\n' + '\n'.join(found.lines()))
     assert found.time_constant_s == pytest.approx(0.133652, abs=5e-7)
     assert found.roots[0].real == pytest.approx(7.45, abs=0.005) and not found.stable
@@ -98,7 +99,7 @@ def test_figures_of_tactical():
 
 def test_the_printed_equation_diverges():
     """With one sign of the coupling in both rows it grows as exp(2575 t)."""
-    p = PAPER
+    p = SAPEGIN
     a, f, h, c = p.transverse_inertia, p.damping, p.momentum, p.coupling
     grow = np.roots([a, f - h, -c]).real.max()
     print(f'\nthe printed equation grows with {grow:.0f} 1/s')
@@ -107,11 +108,11 @@ def test_the_printed_equation_diverges():
 
 def test_residual_stiffness_of_another_speed():
     """Hinges fixed at the nominal speed leave k2 = -2 K_t dOmega / Omega (section 6)."""
-    hinges = (1e-7 - 0.5 * 1.5e-7) * PAPER.omega ** 2
-    assert PAPER.stiffness() == 0.0
-    assert PAPER.stiffness(230.0 * (1 + 1e-6)) == pytest.approx(-2e-6 * hinges, rel=1e-5)
-    given = replace(PAPER, hinge_stiffness_n_m_rad=hinges)
-    assert given.stiffness(231.0) == pytest.approx(PAPER.stiffness(231.0), rel=1e-9)
+    hinges = (1e-7 - 0.5 * 1.5e-7) * SAPEGIN.omega ** 2
+    assert SAPEGIN.stiffness() == 0.0
+    assert SAPEGIN.stiffness(230.0 * (1 + 1e-6)) == pytest.approx(-2e-6 * hinges, rel=1e-5)
+    given = replace(SAPEGIN, hinge_stiffness_n_m_rad=hinges)
+    assert given.stiffness(231.0) == pytest.approx(SAPEGIN.stiffness(231.0), rel=1e-9)
 
 
 BAD = {
@@ -136,5 +137,5 @@ BAD = {
 def test_parameters_that_no_instrument_has(sentence):
     """One sentence that names key, value and expectation."""
     with pytest.raises(ValueError, match=sentence) as caught:
-        replace(PAPER, **BAD[sentence])
+        replace(SAPEGIN, **BAD[sentence])
     assert '\n' not in str(caught.value)

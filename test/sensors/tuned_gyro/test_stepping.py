@@ -12,8 +12,9 @@ from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
 from ins_sim.core.sensors.tuned_gyro.stability import rk4_amplification
 from ins_sim.core.sensors.tuned_gyro.stepping import TunedGyro
 
-PAPER, DAMPED, TACTICAL = (PRESETS[k] for k in ('paper', 'paper_damped', 'tactical'))
-STABLE = {'paper_damped': DAMPED, 'tactical': TACTICAL,
+SAPEGIN, DAMPED, TACTICAL = (
+    PRESETS[k] for k in ('sapegin_2016', 'sapegin_2016_damped', 'tactical'))
+STABLE = {'sapegin_2016_damped': DAMPED, 'tactical': TACTICAL,
           'tactical, zeta 0.7': replace(TACTICAL, damping_ratio=0.7)}
 
 
@@ -81,7 +82,7 @@ def test_frequency_response_by_simulation(hz):
         assert error <= bound
 
 
-@pytest.mark.parametrize('p', [PAPER, TACTICAL], ids=['paper', 'tactical'])
+@pytest.mark.parametrize('p', [SAPEGIN, TACTICAL], ids=['sapegin_2016', 'tactical'])
 def test_rk4_matrices_are_the_program_of_the_paper(p):
     """The linear map of a step equals the four stages written out, to rounding."""
     dt, space, gyro = 0.75e-3, state_space(p), TunedGyro(p, 0.75e-3, method='rk4')
@@ -144,18 +145,18 @@ def test_change_of_speed():
         steady = gyro.step(1.0, 1.0, 1.0)
     assert steady == pytest.approx(1.001, abs=1e-12)
     # open loop: the read-out is the nominal one, k2 turns the reading into the other axis
-    c = PAPER.rotating_damping_n_m_s * 2 * math.pi * 231.0 + PAPER.cross_feedback_n_m_rad
-    expected = 231.0 / 230.0 * PAPER.coupling / complex(c, PAPER.stiffness(231.0))
-    assert state_space(PAPER, 231.0).response(0.0) == pytest.approx(expected, rel=1e-12)
+    c = SAPEGIN.rotating_damping_n_m_s * 2 * math.pi * 231.0 + SAPEGIN.cross_feedback_n_m_rad
+    expected = 231.0 / 230.0 * SAPEGIN.coupling / complex(c, SAPEGIN.stiffness(231.0))
+    assert state_space(SAPEGIN, 231.0).response(0.0) == pytest.approx(expected, rel=1e-12)
 
 
 UNSTABLE = {
-    'the gyro is unstable: a root grows with 7.447 1/s at 408.7 Hz': (PAPER, 1e-3, {}),
+    'the gyro is unstable: a root grows with 7.447 1/s at 408.7 Hz': (SAPEGIN, 1e-3, {}),
     'the RK4 step is 0.3 ms, .* expected between 0.3322 and 1.099 ms':
-        (PAPER, 0.3e-3, {'method': 'rk4'}),
-    'the RK4 step is 1.1 ms, .* expected between': (PAPER, 1.1e-3, {'method': 'rk4'}),
+        (SAPEGIN, 0.3e-3, {'method': 'rk4'}),
+    'the RK4 step is 1.1 ms, .* expected between': (SAPEGIN, 1.1e-3, {'method': 'rk4'}),
     'unstable and no RK4 step damps it':
-        (replace(PAPER, cross_feedback_n_m_rad=20.0), 1e-3, {'method': 'rk4'}),
+        (replace(SAPEGIN, cross_feedback_n_m_rad=20.0), 1e-3, {'method': 'rk4'}),
     'method is .euler.; expected exact or rk4': (DAMPED, 1e-3, {'method': 'euler'}),
     'hold is .cubic.; expected quadratic or linear': (DAMPED, 1e-3, {'hold': 'cubic'}),
     'dt_s is 0.0; expected a finite number above 0': (DAMPED, 0.0, {}),
@@ -176,8 +177,9 @@ def test_instruments_that_would_grow_are_refused(sentence):
 @pytest.mark.parametrize('dt', [0.34e-3, 0.75e-3, 1.09e-3])
 def test_rk4_inside_its_window_takes_the_paper_preset(dt):
     """No warning, no refusal; a constant rate is read but for what is left of the transient."""
-    gyro = TunedGyro(PAPER, dt, method='rk4')
+    gyro = TunedGyro(SAPEGIN, dt, method='rk4')
     last = [gyro.step(1.0, 1.0, 1.0) for _ in range(20000)][-1]
-    left = np.abs(rk4_amplification(dt * np.array(tuned_gyro_report(PAPER).roots))).max() ** 20000
+    roots = np.array(tuned_gyro_report(SAPEGIN).roots)
+    left = np.abs(rk4_amplification(dt * roots)).max() ** 20000
     print(f'{dt} s: off by {abs(last - 1.0):.1e}, transient {left:.1e}')
     assert abs(last - 1.0) < left + 1e-12

@@ -163,11 +163,12 @@ class TunedGyroParameters:
 _ROTOR = {'rotor_axial_kg_m2': 5.0e-6, 'rotor_equatorial_kg_m2': 2.82e-6,
           'ring_axial_kg_m2': 1.5e-7, 'ring_equatorial_kg_m2': 1.0e-7,
           'rotating_damping_n_m_s': 1.0e-7, 'speed_hz': 230.0}
-# ``paper`` is physically unstable (nutation +7.45 1/s); RK4 at 0.75 ms hides it.
+# The rotor of Sapegin, Romanov and Bugaiov (2016) is physically unstable (nutation +7.45 1/s);
+# RK4 at 0.75 ms hides it.
 PRESETS = MappingProxyType({
-    'paper': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550),
-    'paper_damped': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550,
-                                        case_damping_n_m_s=3.80e-5),
+    'sapegin_2016': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550),
+    'sapegin_2016_damped': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550,
+                                               case_damping_n_m_s=3.80e-5),
     'tactical': TunedGyroParameters(**_ROTOR, case_damping_n_m_s=6.0e-7, loop='closed')})
 
 
