@@ -26,15 +26,15 @@ def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
     from rich.console import Console
     from ins_sim import parameter_files
-    from ins_sim.report import dtg_study as report
-    from ins_sim.settings.tuned_gyro_study import DtgStudySettings
+    from ins_sim.report import tuned_gyro_study as report
+    from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
     studies = {}
     for path in arguments.parameter_paths(chosen, SHIPPED):
         if path.stem in studies:
             raise ValueError(f'two parameter files are named {path.stem}; expected different '
                              'names, as the figures bear them')
         studies[path.stem] = parameter_files.read_nodes([path], chosen.param,
-                                                        {NODE: DtgStudySettings})[NODE]
+                                                        {NODE: TunedGyroStudySettings})[NODE]
     console = Console()
     figures = [(name, settings, *_study(name, settings, console))
                for name, settings in studies.items()]
@@ -48,7 +48,7 @@ def run(chosen):
 
 def _study(name, settings, console):
     """Show one table; return the Cells of the curve, those of the table, and the limits."""
-    from ins_sim.report import dtg_study as report
+    from ins_sim.report import tuned_gyro_study as report
     from ins_sim.studies import tuned_gyro as study
     from .progress import progress_bars
     step_s, limits = 1e-3 * settings.step_ms, ()

@@ -5,7 +5,7 @@ from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temper
 from .motion import MotionSettings
 from .node import Time, Topics
 from .place import Datum, Earth
-from .tuned_gyro import Dtg
+from .tuned_gyro import TunedGyroPairSettings
 
 
 @settings_class
@@ -28,7 +28,7 @@ class Gyro(SettingsGroup):
 
     model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
                          'integrated)', choices=('ideal', 'dtg'))
-    dtg: Dtg = group(Dtg)
+    dtg: TunedGyroPairSettings = group(TunedGyroPairSettings)
     delay_us: DelaysUs = group(DelaysUs)
     errors: GyroErrors = group(GyroErrors)
 

@@ -25,7 +25,7 @@ def by_channel(doc, unit, low=-MOST, high=MOST):
 
 
 @settings_class
-class CustomDtg(SettingsGroup):
+class CustomTunedGyro(SettingsGroup):
     """The gyro of preset custom; by default that of preset tactical."""
 
     rotor_axial_kg_m2: float = setting(5.0e-6, 'axial inertia of the rotor, Jr', 'kg m^2', 0.0,
@@ -54,7 +54,7 @@ class CustomDtg(SettingsGroup):
 
 
 @settings_class
-class DtgErrors(SettingsGroup):
+class TunedGyroErrors(SettingsGroup):
     """What disturbs the rotors and their pick-offs (the read-out: gyro.errors)."""
 
     mass_unbalance_deg_h_g: tuple[float, ...] = by_channel(
@@ -88,7 +88,7 @@ class DtgErrors(SettingsGroup):
 
 
 @settings_class
-class DtgFault(SettingsGroup):
+class TunedGyroFault(SettingsGroup):
     """A fault of one channel, in time or by the service ~/fault."""
 
     channel: str = setting('none', 'which channel',
@@ -110,7 +110,7 @@ class ParitySettings(SettingsGroup):
 
 
 @settings_class
-class Dtg(SettingsGroup):
+class TunedGyroPairSettings(SettingsGroup):
     """Two dynamically tuned gyros in place of the ideal triad."""
 
     preset: str = setting('tactical', 'parameters of both gyros '
@@ -118,7 +118,7 @@ class Dtg(SettingsGroup):
                           'rotor of that paper, is unstable, and only RK4 at 0.332 to 1.099 ms '
                           'damps it',
                           choices=(*ROTORS, 'custom'))
-    custom: CustomDtg = group(CustomDtg)
+    custom: CustomTunedGyro = group(CustomTunedGyro)
     arrangement: str = setting('paper', 'paper: gyro 1 senses x and y, gyro 2 senses z and x; '
                                'turned: each pick-off pair turned 45 deg about its spin axis',
                                choices=('paper', 'turned'))
@@ -130,6 +130,6 @@ class Dtg(SettingsGroup):
                                     1000)
     on_unstable: str = setting('refuse', 'rotors or steps that grow: refuse them, or warn and run',
                                choices=('refuse', 'warn'))
-    errors: DtgErrors = group(DtgErrors)
-    fault: DtgFault = group(DtgFault)
+    errors: TunedGyroErrors = group(TunedGyroErrors)
+    fault: TunedGyroFault = group(TunedGyroFault)
     parity: ParitySettings = group(ParitySettings)

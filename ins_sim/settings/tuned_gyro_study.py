@@ -7,7 +7,7 @@ SWEEPS = {'base_rate': 'base rate [rad/s]', 'rotor_speed': 'rotor speed [Hz]'}
 
 
 @settings_class
-class DtgStudySettings(SettingsGroup):
+class TunedGyroStudySettings(SettingsGroup):
     """One table and its figure: a rocking base recovered through two tuned gyros."""
 
     sweep: str = setting('base_rate', 'what the values are: angular frequency of the base or '

@@ -77,7 +77,7 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
 
 
 def gyro_at(settings, speed_hz=None):
-    """Return the TunedGyroParameters of DtgStudySettings, tuned at a speed or at its own."""
+    """Return the TunedGyroParameters of TunedGyroStudySettings, tuned at a speed or at its own."""
     return at_speed(PRESETS[settings.preset], speed_hz or settings.rotor_speed_hz)
 
 
@@ -88,7 +88,7 @@ def at_speed(parameters, speed_hz):
 
 def study_table(settings, progress=None):
     """
-    Return a Cell for each of the values of DtgStudySettings, with what the paper prints.
+    Return a Cell for each of the values of TunedGyroStudySettings, with what the paper prints.
 
     progress: function called after each cell.  Raises ValueError for an unstable gyro.
     """
@@ -97,7 +97,7 @@ def study_table(settings, progress=None):
 
 
 def study_curve(settings, progress=None):
-    """Return a Cell for each of the curve_values of DtgStudySettings, as ``table`` does."""
+    """Return a Cell for each of the curve_values of TunedGyroStudySettings, as ``study_table`` does."""
     return _cells(settings, settings.curve_values, (None,) * len(settings.curve_values), progress)
 
 

@@ -98,7 +98,7 @@ def test_an_unknown_verb_is_exit_code_2(capsys):
 
 
 def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
-    """The cells and the limits are held in test_dtg_study; here they reach the person."""
+    """The cells and the limits are held in test_tuned_gyro; here they reach the person."""
     assert main(['dtg-study', '-o', str(tmp_path / 'study')]) == 0
     shown = capsys.readouterr().out
     for text in ('9.9777', '9.8140', '129.4 to 337.4 Hz', '9.65', '[rad/s]'):

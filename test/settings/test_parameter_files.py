@@ -14,7 +14,7 @@ from ins_sim.settings.by_node import NODES
 from support.studies import run_offline
 from support.places import ROOT
 
-# those of other commands are in test_dtg_study and test_navigate_command
+# those of other commands are in test_tuned_gyro and test_navigate_command
 CONFIG = sorted(p.stem for p in (ROOT / 'config').glob('*.yaml')
                 if p.stem != 'navigate' and not p.stem.startswith('dtg_study_'))
 NUMBERS = [(node, name) for node, cls in NODES.items() for name, f in flatten(cls).items()

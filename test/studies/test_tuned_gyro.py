@@ -9,7 +9,7 @@ from ins_sim import parameter_files
 from ins_sim.cli.main import main
 from ins_sim.studies.tuned_gyro import (gyro_at, half_peak_to_peak, stability_limits, study_curve,
                                         study_table)
-from ins_sim.settings.tuned_gyro_study import DtgStudySettings
+from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from support.places import ROOT
@@ -24,9 +24,9 @@ SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
 
 
 def read(name, *assignments):
-    """Return the DtgStudySettings of config/dtg_study_<name>.yaml."""
+    """Return the TunedGyroStudySettings of config/dtg_study_<name>.yaml."""
     return parameter_files.read_nodes([CONFIG / f'dtg_study_{name}.yaml'], assignments,
-                                      {'dtg_study': DtgStudySettings})['dtg_study']
+                                      {'dtg_study': TunedGyroStudySettings})['dtg_study']
 
 
 @pytest.fixture(scope='module')

@@ -148,6 +148,6 @@ def test_bad_gyros_are_refused(key, value, says):
 def test_channels_have_the_names_of_the_settings():
     """The choices of the fault are the channels."""
     from dataclasses import fields
-    from ins_sim.settings.tuned_gyro import DtgFault
-    choices = {f.name: f.metadata['choices'] for f in fields(DtgFault)}['channel']
+    from ins_sim.settings.tuned_gyro import TunedGyroFault
+    choices = {f.name: f.metadata['choices'] for f in fields(TunedGyroFault)}['channel']
     assert choices == ('none', *CHANNELS)

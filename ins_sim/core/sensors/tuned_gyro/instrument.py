@@ -18,7 +18,7 @@ from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.settings.instrument_errors import GyroErrors
-from ins_sim.settings.tuned_gyro import DtgErrors
+from ins_sim.settings.tuned_gyro import TunedGyroErrors
 from ..imu.triad_model import noise_variance, reported_variance, triad_model
 from .pair import GyroPair
 from .rotor import PRESETS, TunedGyroParameters
@@ -29,7 +29,11 @@ NAMES = ('gyro.errors.gyro_1', 'gyro.errors.gyro_2')
 
 
 def parameters(dtg):
-    """Return the TunedGyroParameters that settings Dtg name; ValueError for no such instrument."""
+    """
+    Return the TunedGyroParameters that TunedGyroPairSettings name.
+
+    Raises ValueError where the rotor of preset custom is impossible.
+    """
     if dtg.preset != 'custom':
         return PRESETS[dtg.preset]
     values = {f.name: getattr(dtg.custom, f.name) for f in fields(dtg.custom)}
@@ -82,7 +86,8 @@ class PairInstrument:
         self.nodes = tuple(0.5 * k / self._steps for k in range(2 * self._steps + 1))
         self._disturbances = None
         errors = dtg.errors
-        if replace(errors, speed_ppm=(0.0, 0.0), hunting_hz=DtgErrors().hunting_hz) != DtgErrors():
+        perfect = TunedGyroErrors()
+        if replace(errors, speed_ppm=(0.0, 0.0), hunting_hz=perfect.hunting_hz) != perfect:
             from .pair_errors import RotorErrors
             self._disturbances = RotorErrors(errors, self.pair, settings.seed, self.dt_s)
         self._read_out = None

@@ -30,7 +30,7 @@ class RotorErrors:
     """
     The disturbances of both gyros, sampling period by sampling period.
 
-    errors: settings DtgErrors; pair: GyroPair; dt_s: sampling period, s.  The noise of the
+    errors: TunedGyroErrors; pair: GyroPair; dt_s: sampling period, s.  The noise of the
     pick-offs is a function of (seed, index).  Raises ValueError for a rotor of which the vibration
     is not defined.
     """

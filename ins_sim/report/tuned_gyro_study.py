@@ -8,7 +8,7 @@ from .plotting import new_figure, save_png
 
 
 def title(settings):
-    """Return a line that says what is constant in the study of DtgStudySettings."""
+    """Return a line that says what is constant in the study of TunedGyroStudySettings."""
     held = (f'rotors at {settings.rotor_speed_hz:g} Hz' if settings.sweep == 'base_rate' else
             f'base at {settings.base_rate_rad_s:g} rad/s')
     return (f'{settings.amplitude_deg:g} deg of roll, {held}, preset {settings.preset}, '
