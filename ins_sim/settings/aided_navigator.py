@@ -6,7 +6,7 @@ from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming, Window
 from .node import Time, Topics
 from .place import Datum, Earth
-from .route import FlownRoute
+from .route import RouteSettings
 
 # A filter: where its class is ('module:class'), and the instruments whose fixes it processes.
 FilterEntry = namedtuple('FilterEntry', 'location takes_velocity takes_gnss',
@@ -90,13 +90,20 @@ class GnssModel(SettingsGroup):
 
 
 @settings_class
+class ReferenceRoute(SettingsGroup):
+    """The route that orthodromic coordinates refer to, under the names of the motion's."""
+
+    route: RouteSettings = group(RouteSettings)
+
+
+@settings_class
 class AidedNavigatorSettings(SettingsGroup):
     """Node aided_navigator."""
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
     time: Time = group(Time)
-    motion: FlownRoute = group(FlownRoute)
+    motion: ReferenceRoute = group(ReferenceRoute)
     topics: Topics = group(Topics)
     window: Window = group(Window)
     gnss: GnssTiming = group(GnssTiming)

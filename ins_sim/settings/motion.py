@@ -3,7 +3,7 @@
 from .field import group, setting, settings_class, SettingsGroup
 from .node import Pacing, Time, Topics
 from .place import Datum, Earth
-from .route import FlightRoute
+from .route import FlownRouteSettings
 
 
 @settings_class
@@ -124,7 +124,7 @@ class MotionSettings(SettingsGroup):
     sculling: Sculling = group(Sculling)
     sinusoids: Sinusoids = group(Sinusoids)
     harmonics: Harmonics = group(Harmonics)
-    route: FlightRoute = group(FlightRoute)
+    route: FlownRouteSettings = group(FlownRouteSettings)
     recording: Recording = group(Recording)
 
     @property

@@ -23,10 +23,16 @@ class TurningPoints(SettingsGroup):
 
 
 @settings_class
-class FlightRoute(SettingsGroup):
-    """A flight along great circles, with turns inside the corners."""
+class RouteSettings(SettingsGroup):
+    """A route by its turning points alone."""
 
     points: TurningPoints = group(TurningPoints)
+
+
+@settings_class
+class FlownRouteSettings(RouteSettings):
+    """A flight along great circles, with turns inside the corners."""
+
     airspeed_m_s: float = setting(200.0, 'airspeed', 'm/s', 1.0, 1000.0)
     height_m: float = setting(500.0, 'height above the ellipsoid', 'm', -500.0, 50000.0)
     turn_rate_deg_s: float = setting(1.2, 'rate of the heading in a turn', 'deg/s', 0.01, 100.0)
@@ -47,17 +53,3 @@ class FlightRoute(SettingsGroup):
     gust_length_m: float = setting(500.0, 'length of the turbulence', 'm', 1.0, 1e5)
     gust_seed: int = setting(0, 'seed of the gusts: the same seed, the same flight', '', 0,
                              2147483647)
-
-
-@settings_class
-class RoutePoints(SettingsGroup):
-    """A route by its turning points alone."""
-
-    points: TurningPoints = group(TurningPoints)
-
-
-@settings_class
-class FlownRoute(SettingsGroup):
-    """The route that orthodromic coordinates refer to, under the names of the motion's."""
-
-    route: RoutePoints = group(RoutePoints)

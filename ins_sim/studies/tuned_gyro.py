@@ -97,7 +97,7 @@ def study_table(settings, progress=None):
 
 
 def study_curve(settings, progress=None):
-    """Return a Cell for each of the curve_values of TunedGyroStudySettings, as ``study_table`` does."""
+    """Return a Cell for each of the curve_values, as ``study_table`` does for the values."""
     return _cells(settings, settings.curve_values, (None,) * len(settings.curve_values), progress)
 
 

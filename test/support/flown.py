@@ -6,7 +6,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.place import Earth
 from ins_sim.core.motion.route.motion import RouteMotion
-from ins_sim.settings.route import FlightRoute
+from ins_sim.settings.route import FlownRouteSettings
 
 POINTS = {'points.latitude_deg': (55.0, 56.0, 55.8, 57.0),
           'points.longitude_deg': (37.0, 38.0, 40.0, 41.0)}
@@ -21,7 +21,7 @@ def route(*groups, **more):
     values = dict(POINTS)
     for group in groups:
         values.update(group)
-    return RouteMotion(build(FlightRoute, {**values, **more}), Earth())
+    return RouteMotion(build(FlownRouteSettings, {**values, **more}), Earth())
 
 
 def instants(motion, step_s, first_s=0.0):

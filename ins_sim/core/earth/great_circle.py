@@ -147,7 +147,7 @@ class GreatCircleRoute:
 
     @classmethod
     def of_points(cls, points):
-        """Return the Route of settings.TurningPoints."""
+        """Return the GreatCircleRoute of settings.TurningPoints."""
         try:
             return cls([math.radians(x) for x in points.latitude_deg],
                        [math.radians(x) for x in points.longitude_deg])

@@ -34,7 +34,7 @@ POLEMOST_DEG = 89.0
 
 class RouteMotion(Motion):
     """
-    The flight of settings.FlightRoute, from the first turning point at motion time zero.
+    The flight of settings.FlownRouteSettings, from the first turning point at motion time zero.
 
     end_s: the arrival at the last one.  route: the Route; gusts, or None; turns: (start, end) of
     each turn, s.  Weave and gusts come on top of the track: they displace it by metres.
