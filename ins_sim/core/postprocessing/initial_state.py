@@ -1,6 +1,7 @@
 """The start of a navigation over a recording: first sample, initial state, gyro bias, and why."""
 
 from dataclasses import dataclass
+from functools import cached_property
 import math
 
 import numpy as np
@@ -54,26 +55,26 @@ class InitialState:
     figures: dict
 
 
-class Starter:
+def choose_start(settings, sources, imu, broken, first, last, again=False):
     """
-    Finds Beginnings in a record that is in b.
+    Return the InitialState in the samples first to last (not included).
 
-    settings: NavigateSettings; broken: indices of the samples before a gap.
+    settings: NavigateSettings; sources: Sources; imu: RecordedImu in the body frame; broken:
+    indices of the samples before a gap; again: after a gap, where given values no longer hold.
+    Raises ValueError in one sentence where no sample can be the start.
     """
+    return _Search(settings, sources, imu, broken).start(first, last, again)
+
+
+class _Search:
+    """Search for an InitialState; the arguments are those of ``choose_start``."""
 
     def __init__(self, settings, sources, imu, broken):
         self._s, self._imu, self._broken = settings, imu, broken
         self._reference, self._odometry = sources.reference, sources.odometry
-        self._wheels = None if self._odometry is None else self._odometry.as_enu()
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
 
-    def begin(self, first, last, again=False):
-        """
-        Return the InitialState in the samples first to last (not included).
-
-        again: behind a gap, where given values no longer hold.  Raises ValueError where there is
-        none, in one sentence.
-        """
+    def start(self, first, last, again):
         source = self._s.initial.attitude
         if again:
             known = self._reference is not None and self._reference.attitude is not None
@@ -82,7 +83,11 @@ class Starter:
             return self._aligned(first, last, again)
         return self._moving(first, last, source, again)
 
-    def speed_at(self, t_ns):
+    @cached_property
+    def _wheels(self):
+        return None if self._odometry is None else self._odometry.as_enu()
+
+    def _speed_at(self, t_ns):
         """Return the speed of a reference that measures velocity, (n,) m/s, NaN where unknown."""
         if self._reference is not None and self._reference.velocity is not None:
             return np.linalg.norm(self._reference.velocity_at(t_ns), axis=1)
@@ -119,7 +124,7 @@ class Starter:
     def _standstill(self, first, last, expected, longest=False):
         try:
             return alignment.find_standstill(self._imu[first:last], self._s.alignment,
-                                             self.speed_at, longest)
+                                             self._speed_at, longest)
         except ValueError as error:
             raise ValueError(f'{error}; expected {expected}') from None
 

@@ -16,7 +16,7 @@ from ins_sim.core.timeseries.histories import NavStates
 from . import mounting
 from .comparison import compare_with_reference
 from .imu_record import gap_limit_ns, gaps, ordered
-from .initial_state import Starter
+from .initial_state import choose_start
 
 # A solution of one step shows nothing.
 FEWEST = 10
@@ -56,7 +56,7 @@ def navigate(settings, sources, progress=None):
     q_bs = _mounting(settings, sources, imu, first, notes)
     figures['mounting_xyzw'] = list(q_bs)
     imu = imu.turned(q_bs)
-    begin = Starter(settings, sources, imu, broken).begin(first, last)
+    begin = choose_start(settings, sources, imu, broken, first, last)
     notes += begin.notes
     figures.update(begin.figures)
     if begin.bias is not None:
@@ -65,7 +65,7 @@ def navigate(settings, sources, progress=None):
         stop_ns = imu.t_ns[begin.index] + round(settings.duration_s * 1e9)
         last = min(last, int(np.searchsorted(imu.t_ns, stop_ns, side='right')))
     run = _Replay(settings, sources, imu, notes, progress)
-    states = run.segments(begin, last, Starter(settings, sources, imu, broken))
+    states = run.segments(begin, last, partial(choose_start, settings, sources, imu, broken))
     if not states:
         raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
                          f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or an '
@@ -132,8 +132,12 @@ class _Replay:
                                  'expected vertical.channel free')
             self._heights = track.at(imu.t_ns)[:, 2]
 
-    def segments(self, begin, last, starter):
-        """Return the NavStates of each segment, and note what was done at each gap."""
+    def segments(self, begin, last, restart):
+        """
+        Return the NavStates of each segment, and note what was done at each gap.
+
+        restart: function (first, last, again) that returns an InitialState.
+        """
         states, bridged = [], 0
         while True:
             loop = RecordedLoop(self._navigator(begin), self._step_ns, self._gap_limit_ns,
@@ -148,7 +152,7 @@ class _Replay:
                 self._notes.append(f'{loop.gap}: the solution ends there (on_gap stop)')
                 break
             try:
-                begin = starter.begin(begin.index + len(part.t_ns), last, again=True)
+                begin = restart(begin.index + len(part.t_ns), last, again=True)
             except ValueError as error:
                 self._notes.append(f'{loop.gap}: no restart: {error}')
                 break
