@@ -87,8 +87,8 @@ def main(seconds=3600.0):
         start = process_time()
         run = simulate(settings, read_motion(settings.motion_generator), twin=False)
         middle = process_time()
-        counts = simulated.write(Path(folder) / 'bag', settings, run,
-                                 simulated.select(settings, None))
+        counts = simulated.write_bag(Path(folder) / 'bag', settings, run,
+                                     simulated.select_topics(settings, None))
         end = process_time()
     print(f'{float(seconds):g} s of {len(counts)} topics at 100 Hz: {middle - start:.1f} s to '
           f'simulate, {end - middle:.1f} s to write {sum(counts.values())} messages: '

@@ -13,7 +13,7 @@ import numpy as np
 from ins_sim.core.sensors.velocity_meter import reading as fit
 from ins_sim.settings.catalogue import build
 from ins_sim.core.timeseries.fixes import VALID
-from ins_sim.core.sensors.velocity_meter.antennas import geometry
+from ins_sim.core.sensors.velocity_meter.antennas import antenna_geometry
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
 
@@ -51,7 +51,7 @@ def readings(cycles, windows, beta=0.0, biased=None, **signal):
             functions = correlator.functions([sum(part) for part in parts], cycles)
         else:
             functions = sum(map(correlator.functions_of, signals)) / cycles
-        found.append(fit.read_correlations(functions, s.lag_s, geometry(s.antennas), 0.0))
+        found.append(fit.read_correlations(functions, s.lag_s, antenna_geometry(s.antennas), 0.0))
     return found
 
 

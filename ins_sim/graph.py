@@ -50,7 +50,7 @@ REPLAYS = {
 }
 
 
-def command(process, params_files=(), parameters=(), namespace=''):
+def process_command(process, params_files=(), parameters=(), namespace=''):
     """
     Return the argument list that starts a process without ``ros2 run``.
 

@@ -13,7 +13,7 @@ import yaml
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
 from ins_sim.settings.catalogue import build, flatten, values_of
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
-from ins_sim.settings.suggest import nearest, unknown
+from ins_sim.settings.suggest import nearest_name, unknown_key
 
 ROS_OWN = ('use_sim_time', 'start_type_description_service')
 
@@ -98,7 +98,7 @@ def _sections(path, nodes):
         node = _node_of(section, nodes)
         if node is None:
             raise ValueError(f'{path}: unknown section {section!r}; the nearest known one is '
-                             f'{nearest(section, ["/**", *nodes])!r}')
+                             f'{nearest_name(section, ["/**", *nodes])!r}')
         if not isinstance(body, Mapping) or list(body) != ['ros__parameters'] or not isinstance(
                 body['ros__parameters'], Mapping):
             raise ValueError(f'{path}: section {section!r} expects exactly one mapping, '
@@ -132,7 +132,7 @@ def _assign(values, nodes, section, name, value, where):
     known = {node: flatten(cls) for node, cls in nodes.items() if section in ('/**', node)}
     takers = [node for node, names in known.items() if name in names]
     if not takers:
-        raise ValueError(f'{where}: {unknown(name, set().union(*known.values()))}')
+        raise ValueError(f'{where}: {unknown_key(name, set().union(*known.values()))}')
     for node in takers:
         kind = known[node][name].type
         values[node][name] = _number(value) if kind is float else value

@@ -3,7 +3,7 @@
 from pathlib import Path
 import sys
 
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 
 PACKAGE = 'ins_sim'
 
@@ -65,4 +65,4 @@ def _find(folder, name, suffix):
         raise FileNotFoundError(f'no {folder} named {name!r}; none was installed in '
                                 + ', '.join(str(path) for path in share_directories()))
     raise FileNotFoundError(f'no {folder} named {name!r}; expected one of {", ".join(known)} '
-                            f'(nearest: {nearest(name, known)})')
+                            f'(nearest: {nearest_name(name, known)})')

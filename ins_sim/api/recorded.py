@@ -174,7 +174,7 @@ class Navigation:
         """
         from ins_sim.report import navigation, storage
         storage.check_free(folder, overwrite, navigation.MARK, 'overwrite=True')
-        navigation.write(folder, self.settings, self.name, self.result, overwrite)
+        navigation.write_navigation(folder, self.settings, self.name, self.result, overwrite)
 
 
 def navigate(source: Name | ImuRecord, values: Values | None = None, names: Names = (),

@@ -132,8 +132,8 @@ class Run:
             # Published figures belong to the motion of the settings.
             rows = [replace(row, published=None) for row in rows]
             title = f'{type(self.motion).__name__} given as an object'
-        storage.write(folder, self.settings, self.result, rows, prediction, title, overwrite,
-                      report)
+        storage.write_run(folder, self.settings, self.result, rows, prediction, title, overwrite,
+                          report)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from ins_sim.messages import columns
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 from . import metadata
 from .mcap_reader import McapReader
 from .piece import in_log_order
@@ -105,7 +105,7 @@ class BagReader:
             name = '/' + name.lstrip('/')
         if name not in self.topics:
             raise ValueError(f'{self.path} has no topic {name}; ' + (
-                f'the nearest is {nearest(name, self.topics)}' if self.topics else
+                f'the nearest is {nearest_name(name, self.topics)}' if self.topics else
                 'it has none at all'))
         return self.topics[name]
 
@@ -150,7 +150,7 @@ class BagReader:
             for number, piece in part.by_channel(_ids(part, channels)):
                 name = part.channels[number].name
                 out = tables[name].more(piece.log_ns)
-                self._checked(channels[name], columns.read, piece, out)
+                self._checked(channels[name], columns.read_columns, piece, out)
         return {name: table.in_order() for name, table in zip(wanted, tables.values())}
 
     def frames(self, name):
@@ -158,7 +158,7 @@ class BagReader:
         channel = self._readable(name, None)
         columns.column_dtype(channel.type_name)
         found = [texts for _, piece in self.pieces([channel.name])
-                 for texts in self._checked(channel, columns.strings, piece)]
+                 for texts in self._checked(channel, columns.read_strings, piece)]
         return list(dict.fromkeys(found))
 
     def _readable(self, name, type_name):

@@ -8,10 +8,10 @@ import numpy as np
 
 from . import mcap_format as form
 from . import mcap_writer, metadata, qos, sqlite_writer
-from .compression import library, NAMES
-from .definitions import define
+from .compression import compression_library, NAMES
+from .definitions import message_definition
 from .piece import Channel
-from .records import arrange, fill, Records
+from .records import arrange_records, fill_records, Records
 
 WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
            'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
@@ -35,7 +35,7 @@ class BagWriter:
 
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
                  split_ns=None):
-        check(path, storage, compression, replace)
+        check_target(path, storage, compression, replace)
         self.path, self.storage = Path(path), storage
         self._compression = '' if compression == 'none' else compression
         self._split_bytes, self._split_ns = split_bytes, split_ns
@@ -81,9 +81,9 @@ class BagWriter:
         name = '/' + name.lstrip('/')
         if name in self.topics:
             raise ValueError(f'{name} is declared twice in {self.path}')
-        qos.profiles(profile)
+        qos.read_profiles(profile)
         if definition is None:
-            definition, type_hash = define(type_name)
+            definition, type_hash = message_definition(type_name)
         channel = Channel(len(self.topics) + 1, name, type_name, encoding, definition,
                           definition_encoding, type_hash, profile)
         self.topics[name] = channel
@@ -146,7 +146,7 @@ class BagWriter:
         if not ready:
             return
         self._seal()
-        order = arrange(ready)
+        order = arrange_records(ready)
         ends = np.cumsum(order.sizes)
         first = 0
         while first < len(ends):
@@ -155,7 +155,7 @@ class BagWriter:
             stop = min(len(ends), int(np.searchsorted(ends, before + room)) + 1)
             start = self._take(int(ends[stop - 1]) - before)
             starts = ends[first:stop] - order.sizes[first:stop] - before + start
-            fill(order, first, stop, np.frombuffer(self._buffer, dtype=np.uint8), starts)
+            fill_records(order, first, stop, np.frombuffer(self._buffer, dtype=np.uint8), starts)
             self._columns.append((order.channel[first:stop], order.log_ns[first:stop], starts))
             if self._used >= CHUNK_BYTES:
                 self.flush()
@@ -237,7 +237,8 @@ class BagWriter:
             self._close_file()
             target = self.folder / metadata.NAME
             part = target.with_name(target.name + '.part')
-            part.write_text(metadata.text(self.storage, self.topics.values(), self._files),
+            part.write_text(metadata.metadata_text(self.storage, self.topics.values(),
+                                                   self._files),
                             encoding='utf-8')
             part.rename(target)
             if self.folder != self.path:
@@ -269,7 +270,7 @@ class BagWriter:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def check(path, storage, compression, replace):
+def check_target(path, storage, compression, replace):
     """Raise ValueError unless a bag may be written so: a new one, or one to be replaced."""
     if storage not in WRITERS:
         raise ValueError(f'the storage is {storage!r}; expected one of {", ".join(WRITERS)}')
@@ -280,7 +281,7 @@ def check(path, storage, compression, replace):
         raise ValueError(f'sqlite3 cannot be compressed by {compression}; expected the storage '
                          'mcap, or the compression none')
     if compression != 'none':
-        library(compression)
+        compression_library(compression)
     path = Path(path)
     if not path.exists():
         return

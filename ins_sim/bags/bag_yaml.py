@@ -11,7 +11,7 @@ _PLAIN = re.compile(r'(?!(?:true|false|yes|no|on|off|y|n|null)$)[A-Za-z_/][\w/.\
 _DEEPEST = 50
 
 
-def dump(tree):
+def dump_yaml(tree):
     """Return dicts, lists, texts, whole numbers, truth values and None in the style of rosbag2."""
     return '\n'.join(_lines(tree))
 
@@ -40,7 +40,7 @@ def _scalar(value):
     return json.dumps(value)
 
 
-def load(text):
+def load_yaml(text):
     """Return the tree of a YAML text; ValueError if it is none."""
     try:
         return yaml.load(text, _loader(text))

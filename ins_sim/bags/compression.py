@@ -14,7 +14,7 @@ LARGEST = 1 << 30
 
 
 @lru_cache(maxsize=None)
-def library(name):
+def compression_library(name):
     """Return the module for 'lz4' or 'zstd'; ValueError where none is installed."""
     for module in MODULES[name]:
         try:
@@ -28,9 +28,9 @@ def library(name):
 def compress(data, name):
     """Return bytes compressed by 'lz4' or 'zstd' at the fastest level; '' leaves them."""
     if name == 'lz4':
-        return library(name).compress(data, store_size=True)
+        return compression_library(name).compress(data, store_size=True)
     if name == 'zstd':
-        zstd = library(name)
+        zstd = compression_library(name)
         if zstd.__name__ == 'zstandard':
             return zstd.ZstdCompressor(level=1).compress(data)
         return zstd.compress(data, level=1)
@@ -50,9 +50,9 @@ def decompress(data, name, size):
     elif name == 'lz4':
         if size > _LZ4_RATIO * len(data):
             raise ValueError(f'{len(data)} bytes of lz4 cannot have {size} bytes')
-        raw = _whole(library(name).LZ4FrameDecompressor(), data, size, RuntimeError)
+        raw = _whole(compression_library(name).LZ4FrameDecompressor(), data, size, RuntimeError)
     elif name == 'zstd':
-        zstd = library(name)
+        zstd = compression_library(name)
         if zstd.__name__ == 'zstandard':
             raw = _read(zstd, data, size)
         else:

@@ -10,7 +10,7 @@ SEPARATOR = '=' * 80
 
 
 @lru_cache(maxsize=None)
-def define(type_name):
+def message_definition(type_name):
     """
     Return the definition and the hash of a message type of ROS 2 Jazzy.
 

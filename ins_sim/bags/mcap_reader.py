@@ -5,9 +5,9 @@ from zlib import crc32
 import numpy as np
 
 from . import mcap_format as form
-from .compression import decompress, library, MODULES
+from .compression import compression_library, decompress, MODULES
 from .mcap_index import BEHIND_LENGTH, Chunk, LATEST_NS, McapIndex
-from .piece import apart, BagPiece, joined
+from .piece import BagPiece, join_pieces, split_by_channel
 from .records import HEAD
 
 
@@ -24,7 +24,7 @@ class McapReader(McapIndex):
         # Ask for the library here: later its absence would pass for a chunk that is corrupt.
         for name in {chunk.compression for chunk in self.chunks} & MODULES.keys():
             try:
-                library(name)
+                compression_library(name)
             except ValueError as error:
                 raise ValueError(f'{self.path} cannot be read: {error}') from None
         self._look_into_chunks()
@@ -92,7 +92,7 @@ class McapReader(McapIndex):
         for chunk, own in self._by_chunk(wanted, lambda c: (c.start_ns, c.position)):
             pieces = [piece for _, piece in own]
             if pieces:
-                piece = joined(pieces)
+                piece = join_pieces(pieces)
                 if piece.log_ns.min() < chunk.start_ns:
                     raise self.corrupt(chunk.position, f'a chunk that begins at {chunk.start_ns} '
                                        f'ns has a message of {piece.log_ns.min()} ns')
@@ -108,11 +108,12 @@ class McapReader(McapIndex):
         """Yield (chunk, pairs of channel id and Piece) of the chunks, sorted by a key."""
         loose = self._loose_piece()
         if loose is not None:
-            yield Chunk(0, 0, 0, 0, '', 0, 0), (x for x in apart(loose) if x[0] in wanted)
+            pieces = (x for x in split_by_channel(loose) if x[0] in wanted)
+            yield Chunk(0, 0, 0, 0, '', 0, 0), pieces
         for chunk in sorted(self.chunks, key=key):
             if chunk.index is None:
                 piece = self._scan(chunk, self._open(chunk))
-                yield chunk, (x for x in apart(piece) if x[0] in wanted)
+                yield chunk, (x for x in split_by_channel(piece) if x[0] in wanted)
                 continue
             own = [number for number in wanted if number in chunk.index]
             if own:
@@ -196,4 +197,4 @@ class McapReader(McapIndex):
 def _spans(piece):
     """Return {channel: (count, first, last log time)} of a Piece."""
     return {number: (len(own), int(own.log_ns.min()), int(own.log_ns.max()))
-            for number, own in apart(piece)}
+            for number, own in split_by_channel(piece)}

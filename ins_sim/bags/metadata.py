@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from .bag_yaml import dump, load
-from .qos import profiles
+from .bag_yaml import dump_yaml, load_yaml
+from .qos import read_profiles
 
 NAME = 'metadata.yaml'
 TOP = 'rosbag2_bagfile_information'
@@ -33,7 +33,7 @@ def read_metadata(folder):
     except UnicodeDecodeError:
         raise ValueError(f'{path} is no UTF-8') from None
     try:
-        tree = load(content)
+        tree = load_yaml(content)
     except ValueError as error:
         raise ValueError(f'{path} is no YAML: {error}') from None
     info = tree.get(TOP) if isinstance(tree, dict) else None
@@ -66,21 +66,21 @@ class FileCounts:
     last_ns: int | None
 
 
-def text(storage, topics, files):
+def metadata_text(storage, topics, files):
     """
     Return metadata.yaml as rosbag2 of ROS 2 Jazzy writes it (version 9).
 
     topics: Channels; files: FileCounts in order.
     """
-    return dump({TOP: tree(storage, topics, files)}) + '\n'
+    return dump_yaml({TOP: metadata_tree(storage, topics, files)}) + '\n'
 
 
 def inner_text(storage, topics, files):
     """Return what rosbag2 keeps of it within a file of the bag."""
-    return dump(tree(storage, topics, files))
+    return dump_yaml(metadata_tree(storage, topics, files))
 
 
-def tree(storage, topics, files):
+def metadata_tree(storage, topics, files):
     """Return metadata.yaml as dicts and lists."""
     firsts = [f.first_ns for f in files if f.first_ns is not None]
     lasts = [f.last_ns for f in files if f.last_ns is not None]
@@ -95,7 +95,7 @@ def tree(storage, topics, files):
                 'name': topic.name,
                 'type': topic.type_name,
                 'serialization_format': topic.encoding,
-                'offered_qos_profiles': profiles(topic.qos),
+                'offered_qos_profiles': read_profiles(topic.qos),
                 'type_description_hash': topic.type_hash},
              'message_count': sum(f.counts.get(topic.name, 0) for f in files)}
             for topic in topics],

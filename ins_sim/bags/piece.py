@@ -82,13 +82,13 @@ def _merged(pieces):
         yield number, t_ns, bytes(views[k][start:stop])
 
 
-def apart(piece):
+def split_by_channel(piece):
     """Yield (channel id, Piece of its messages) of a Piece."""
     for number in np.unique(piece.channel).tolist():
         yield number, piece[piece.channel == number]
 
 
-def joined(pieces):
+def join_pieces(pieces):
     """Return the messages of pieces of the same data as one Piece."""
     if len(pieces) == 1:
         return pieces[0]

@@ -2,28 +2,28 @@
 
 from functools import lru_cache
 
-from .bag_yaml import dump, load
+from .bag_yaml import dump_yaml, load_yaml
 
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
-def profile(durability='volatile', reliability='reliable'):
+def profile_yaml(durability='volatile', reliability='reliable'):
     """Return one offered profile as YAML, as a recorder finds it by discovery."""
-    return dump([{
+    return dump_yaml([{
         'history': 'unknown', 'depth': 0, 'reliability': reliability, 'durability': durability,
         'deadline': _FOREVER, 'lifespan': _FOREVER, 'liveliness': 'automatic',
         'liveliness_lease_duration': _FOREVER, 'avoid_ros_namespace_conventions': False}])
 
 
-RELIABLE = profile()
-LATCHED = profile('transient_local')
+RELIABLE = profile_yaml()
+LATCHED = profile_yaml('transient_local')
 
 
 @lru_cache(maxsize=100)
-def profiles(text):
+def read_profiles(text):
     """Return the profiles of a YAML list; ValueError if it is none."""
     try:
-        tree = load(text) or []
+        tree = load_yaml(text) or []
     except ValueError as error:
         raise ValueError(f'{text!r} is no YAML: {error}') from None
     if not isinstance(tree, list) or not all(isinstance(p, dict) for p in tree):

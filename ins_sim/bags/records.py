@@ -40,7 +40,7 @@ class Order:
     blocks: list
 
 
-def arrange(blocks):
+def arrange_records(blocks):
     """
     Return the Order of blocks (channel id, log_ns (n,), messages (n,)).
 
@@ -71,7 +71,7 @@ def _lengths(messages):
     return np.array([len(message) for message in messages], dtype=np.int64)
 
 
-def fill(order, first, stop, data, starts):
+def fill_records(order, first, stop, data, starts):
     """Put the records first to stop of an Order into data (uint8), where they start in it."""
     for rank, messages in zip(order.ranks, order.blocks):
         a, b = np.searchsorted(rank, (first, stop))

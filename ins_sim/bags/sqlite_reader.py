@@ -5,7 +5,7 @@ import sqlite3
 
 import numpy as np
 
-from .piece import apart, BagPiece, Channel
+from .piece import BagPiece, Channel, split_by_channel
 
 ROWS = 1000
 # what a sound file needs at most: some thirty operations for a message of twenty bytes
@@ -139,7 +139,7 @@ class SqliteReader:
     def by_channel(self, wanted):
         """Yield (channel id, Piece) of the wanted channels, in the order they were written."""
         for piece in self._select(wanted):
-            yield from apart(piece)
+            yield from split_by_channel(piece)
 
     def _times(self, wanted):
         """Return number and time of the messages of channels, as written."""

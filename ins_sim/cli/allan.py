@@ -42,7 +42,8 @@ def run(chosen):
         tuned = settings and triad == 'gyro' and sensor.model == 'dtg'
         # An axis of a pair of tuned gyros combines one channel, or two.
         factors = COVARIANCE_FACTORS if tuned else (1.0, 1.0, 1.0)
-        noise = noise_terms.analyse(triad, samples, rate_hz, sensor and sensor.errors, factors)
+        noise = noise_terms.analyse_noise(triad, samples, rate_hz, sensor and sensor.errors,
+                                          factors)
         if noise is None:
             console.print(f'{triad}: constant throughout, no noise to show')
         else:
@@ -50,13 +51,13 @@ def run(chosen):
     if not found:
         raise ValueError(f'{title}: both triads are constant throughout; {EXPECTED}')
     title = f'{title}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'
-    with storage.whole(chosen.output, chosen.force, MARK) as work:
+    with storage.whole_folder(chosen.output, chosen.force, MARK) as work:
         for noise in found:
-            allan_figure.save(work / f'{noise.triad}.png', title, noise)
+            allan_figure.save_figure(work / f'{noise.triad}.png', title, noise)
         rows = [row for noise in found for row in noise.rows()]
         (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
     for noise in found:
-        noise_terms.show(noise, title, console)
+        noise_terms.show_noise(noise, title, console)
         console.print(f'figure: {Path(chosen.output) / noise.triad}.png', soft_wrap=True)
     return 0
 

@@ -5,8 +5,8 @@ import json
 import os
 import signal
 
-from . import arguments
 from ins_sim.settings.aided_navigator import FILTERS
+from . import arguments
 
 HELP = 'all filters of the aided navigator over the same flights'
 DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and seeds, on all '
@@ -54,8 +54,8 @@ def run(chosen):
     rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
     title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
              + ', '.join(chosen.params_file or SHIPPED))
-    report.show(title, rows, console)
-    with storage.whole(chosen.output, chosen.force, MARK) as folder:
+    report.show_filter_study(title, rows, console)
+    with storage.whole_folder(chosen.output, chosen.force, MARK) as folder:
         report.save_figure(folder / 'comparison.png', title, cases, flown)
         (folder / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                    encoding='utf-8')

@@ -21,7 +21,7 @@ def run(chosen):
     from ins_sim.core.attitude.integration import KINDS
     from ins_sim.io.motion import read_motion
     from ins_sim.report import summary
-    from ins_sim.report.table import number
+    from ins_sim.report.table import number_text
     from ins_sim.studies.orientation import compare_orientations
     from .progress import progress_bars
     settings = arguments.read_settings(chosen)
@@ -42,6 +42,6 @@ def run(chosen):
     rows.append(('off the quaternion', 'deg', [math.degrees(r.apart) for r in results]))
     rows.append(('CPU of a step', 'us', [1e6 * r.step_s for r in results]))
     for name, unit, values in rows:
-        table.add_row(name, unit, *map(number, values))
+        table.add_row(name, unit, *map(number_text, values))
     console.print(table)
     return 0

@@ -23,9 +23,9 @@ def add_arguments(parser):
 def run(chosen):
     """Convert and say what was written; return the exit code."""
     from rich.console import Console
-    from ins_sim.io.convert import convert
+    from ins_sim.io.convert import convert_recording
     settings = arguments.read_settings(chosen).motion_generator
-    written = convert(chosen.source, chosen.target, settings, chosen.topic, chosen.storage,
-                      chosen.compression, chosen.force)
+    written = convert_recording(chosen.source, chosen.target, settings, chosen.topic,
+                                chosen.storage, chosen.compression, chosen.force)
     Console().print(f'written: {written}', markup=False, highlight=False, soft_wrap=True)
     return 0

@@ -101,7 +101,7 @@ def _run(name, settings, work, folder, console):
             counts = session.run(show)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
-    figure.save(work / 'errors.png', title, errors, prediction)
-    table.show(title, summary.summary_rows(settings, errors, None, prediction), console)
+    figure.save_figure(work / 'errors.png', title, errors, prediction)
+    table.show_table(title, summary.summary_rows(settings, errors, None, prediction), console)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
                   f'figure: {folder / "errors.png"}')

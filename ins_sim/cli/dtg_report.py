@@ -15,11 +15,11 @@ def add_arguments(parser):
 def run(chosen):
     """Show roots, time constant, bandwidth, margin and the steps of RK4; return the exit code."""
     from ins_sim.core.numerics.instants import period_ns
-    from ins_sim.core.sensors.tuned_gyro.instrument import parameters
+    from ins_sim.core.sensors.tuned_gyro.instrument import rotor_parameters
     from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
     sensor = arguments.read_settings(chosen).imu_sensor
     dtg = sensor.gyro.dtg
-    p = parameters(dtg)
+    p = rotor_parameters(dtg)
     nominal = tuned_gyro_report(p)
     print(f'tuned gyro {dtg.preset}, {p.loop} loop, rotor at {p.speed_hz:g} Hz')
     print('\n'.join(nominal.lines()))

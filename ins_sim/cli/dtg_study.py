@@ -58,7 +58,7 @@ def _study(name, settings, console):
         show, done = add_bar(name, len(settings.values) + len(settings.curve_values)), count(1)
         cells = study.study_table(settings, lambda: show(next(done)))
         curve = study.study_curve(settings, lambda: show(next(done))) or cells
-    report.show(settings, cells, console)
+    report.show_study(settings, cells, console)
     if limits:
         report.show_limits(settings, limits, console)
     return curve, cells, limits

@@ -33,7 +33,7 @@ def run(chosen):
     console = Console()
     with progress_bars(console) as add_bar:
         result = navigate(settings, sources, add_bar('navigating'))
-    navigation.write(chosen.output, settings, sources.name, result, chosen.force)
-    navigation.show(sources.name, result, console)
+    navigation.write_navigation(chosen.output, settings, sources.name, result, chosen.force)
+    navigation.show_navigation(sources.name, result, console)
     console.print(f'written: {chosen.output}')
     return 0

@@ -35,7 +35,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Play; return the exit code of the node."""
-    from ins_sim.ros.main import run as run_node
+    from ins_sim.ros.main import run_node
     from ins_sim.ros.recording.playing import Options
     options = Options(
         None if chosen.topics is None else tuple(chosen.topics), chosen.rate, chosen.start,

@@ -29,12 +29,12 @@ def run(chosen):
         shown.add_column(head, justify='left' if head in ('figure', 'unit') else 'right')
     for axis, name in enumerate(('east', 'north', 'up')):
         shown.add_row(f'mean drift {name}', 'deg/h',
-                      table.number(prediction.drift[axis] * summary.DEG_PER_HOUR),
-                      table.number(drift and drift[axis]))
+                      table.number_text(prediction.drift[axis] * summary.DEG_PER_HOUR),
+                      table.number_text(drift and drift[axis]))
     largest = np.abs(prediction.position).max(axis=0)
     for axis, name in ((1, 'N'), (0, 'E')):
-        shown.add_row(f'max |d{name}|', 'm', table.number(largest[axis]),
-                      table.number(place and place[1 - axis]))
+        shown.add_row(f'max |d{name}|', 'm', table.number_text(largest[axis]),
+                      table.number_text(place and place[1 - axis]))
     console = Console()
     console.print(shown)
     table.show_resonances(prediction.resonances, console)

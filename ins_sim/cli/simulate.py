@@ -54,9 +54,11 @@ def run(chosen):
                                                           add_bar('aiding'))
     rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
     report = None if aided is None else _report(aided, flown, result)
-    storage.write(chosen.output, settings, result, rows, prediction, title, chosen.force, report)
-    table.show(title, rows, console)
-    for line in (*summary.gaps(result.faults), *summary.parity(settings.imu_sensor, result.imu)):
+    storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
+                      report)
+    table.show_table(title, rows, console)
+    for line in (*summary.gap_lines(result.faults),
+                 *summary.parity_lines(settings.imu_sensor, result.imu)):
         console.print(line)
     if report is not None:
         report.show(console)
@@ -81,12 +83,12 @@ def _bag_writer(chosen, settings):
         return None
     from ins_sim.bags import bag_writer, digest
     from ins_sim.io import simulated
-    wanted = simulated.select(settings, chosen.topics, chosen.aided)
-    bag_writer.check(chosen.bag, chosen.storage, chosen.compression, chosen.force)
+    wanted = simulated.select_topics(settings, chosen.topics, chosen.aided)
+    bag_writer.check_target(chosen.bag, chosen.storage, chosen.compression, chosen.force)
 
     def write_bag(result, console, aided):
-        counts = simulated.write(chosen.bag, settings, result, wanted, chosen.storage,
-                                 chosen.compression, chosen.force, aided=aided)
+        counts = simulated.write_bag(chosen.bag, settings, result, wanted, chosen.storage,
+                                     chosen.compression, chosen.force, aided=aided)
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):

@@ -8,7 +8,7 @@ from ins_sim.core.motion.recorded.poses import poses_of_truth
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
 from .csv_flight import USED
-from .topic_choice import choose
+from .topic_choice import choose_topic
 
 KEY = 'motion.recording.topic'
 # beside an odometry whose name ends in truth/odometry
@@ -26,7 +26,8 @@ def read_poses(path, topic, datum, key=KEY):
     one sentence where the topic is missing, of another type, or holds what is no motion.
     """
     with open_bag(path) as bag:
-        name = choose(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name, needed=True)
+        name = choose_topic(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name,
+                            needed=True)
         table = bag.arrays(name, ('position', 'orientation', 'linear', 'angular'))
         beside = _beside(bag, name)
     where = f'{path}: {name}'

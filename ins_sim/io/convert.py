@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.bags.bag_writer import check
+from ins_sim.bags.bag_writer import check_target
 from ins_sim.bags.storages import is_bag
 from ins_sim.bags.windows import write_windows
 from ins_sim.core.earth.frames import MapFrame
@@ -17,13 +17,13 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from . import bag_imu, csv_flight, csv_imu, csv_table, csv_writer
 from .bag_truth import read_poses
-from .topic_choice import choose, short
+from .topic_choice import choose_topic, short_names
 
 WINDOW = 4096
 
 
-def convert(source, target, settings, topic=None, storage='mcap', compression='none',
-            force=False):
+def convert_recording(source, target, settings, topic=None, storage='mcap', compression='none',
+                      force=False):
     """
     Write target from source, a CSV file from a bag or a bag from a CSV file; return a sentence.
 
@@ -45,7 +45,7 @@ def convert(source, target, settings, topic=None, storage='mcap', compression='n
     if from_bag:
         _check_file(target, force)
         return _to_csv(source, target, settings.datum, topic)
-    check(target, storage, compression, force)
+    check_target(target, storage, compression, force)
     how = dict(storage=storage, compression=compression, replace=force)
     if csv_imu.IMU[0] in csv_table.read_header(source):
         return _imu_to_bag(source, target, settings, topic, how)
@@ -66,14 +66,15 @@ def _to_csv(source, target, datum, topic):
     with open_bag(source) as bag:
         types = [topics.ODOMETRY, topics.IMU]
         wanted = 'auto' if topic is None else topic
-        name = choose(bag, types[:1] if topic is None else types, wanted, '--topic',
-                      topics.TRUTH_ODOMETRY.name, needed=topic is not None)
+        name = choose_topic(bag, types[:1] if topic is None else types, wanted, '--topic',
+                            topics.TRUTH_ODOMETRY.name, needed=topic is not None)
         if name is None:
             if not any(c.type_name == topics.IMU for c in bag.topics.values()):
-                raise ValueError(f'{source} has neither a {short(types[:1])} whose name ends in '
-                                 f'{topics.TRUTH_ODOMETRY.name} nor a {short(types[1:])}; it has '
+                raise ValueError(f'{source} has neither a {short_names(types[:1])} whose name '
+                                 f'ends in {topics.TRUTH_ODOMETRY.name} nor a '
+                                 f'{short_names(types[1:])}; it has '
                                  f'{", ".join(sorted(bag.topics)) or "no topic"}')
-            name = choose(bag, types[1:], wanted, '--topic', needed=True)
+            name = choose_topic(bag, types[1:], wanted, '--topic', needed=True)
         if bag.topics[name].type_name == topics.IMU:
             imu, _, _ = bag_imu.read_imu_messages(bag, name)
             csv_writer.write_imu(target, imu)

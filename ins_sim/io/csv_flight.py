@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ins_sim.core.attitude.angles import from_compass
-from ins_sim.core.attitude.interpolation import continuous
+from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.motion.recorded.poses import RecordedPoses
 from .csv_table import LONGEST_STAMP_S, nanoseconds, Table
 
@@ -91,4 +91,4 @@ def read_poses(path):
     q_nb = from_compass(*(np.radians(a) for a in (rows.roll_deg, rows.pitch_deg,
                                                   rows.heading_deg)))
     return RecordedPoses(rows.path, rows.t_ns, rows.lat_deg, rows.lon_deg, rows.height_m,
-                         continuous(q_nb), rows.resolution)
+                         continuous_quaternions(q_nb), rows.resolution)

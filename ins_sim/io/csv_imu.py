@@ -3,10 +3,10 @@
 import numpy as np
 
 from ins_sim.core.attitude.angles import from_compass
-from ins_sim.core.attitude.interpolation import continuous
+from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.reference import keep_rising, Reference, SampledTrack
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 from . import csv_table
 
 IMU = ('gx_rps', 'gy_rps', 'gz_rps', 'ax_mps2', 'ay_mps2', 'az_mps2')
@@ -26,8 +26,8 @@ def read_columns(path, required):
     for name in ('t_s', *required):
         if name not in header:
             raise ValueError(f'{path} has no column {name}; the nearest is '
-                             f'{nearest(name, header)!r}; expected {", ".join(required)} beside '
-                             't_s')
+                             f'{nearest_name(name, header)!r}; expected {", ".join(required)} '
+                             'beside t_s')
     if not rows:
         raise ValueError(f'{path} has a header and no rows; expected samples')
     columns = {name: _floats(path, name, lines, texts)
@@ -74,7 +74,8 @@ def read_reference(path):
     if all(name in columns for name in ATTITUDE):
         angles = (np.radians(columns[name]) for name in ATTITUDE)
         track = _track(t_ns, from_compass(*angles))
-        tracks['attitude'] = track and SampledTrack(track.t_ns, continuous(track.values))
+        tracks['attitude'] = track and SampledTrack(track.t_ns,
+                                                    continuous_quaternions(track.values))
     if tracks['position'] is None:
         raise ValueError(f'{path} has no row with {", ".join(POSITION)}; expected a reference')
     return Reference(str(path).rpartition('/')[2], **tracks)

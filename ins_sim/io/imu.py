@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.core.attitude.interpolation import continuous
+from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.postprocessing.initial_state import Sources
 from ins_sim.core.postprocessing.reference import (keep_rising, OdometryReference, Reference,
                                                    SampledTrack)
 from ins_sim.messages import topics, transforms
 from . import bag_imu, csv_imu
 from .csv_table import SUFFIXES
-from .topic_choice import choose
+from .topic_choice import choose_topic
 
 TWIST = 'geometry_msgs/msg/TwistStamped'
 TWIST_WITH_COVARIANCE = 'geometry_msgs/msg/TwistWithCovarianceStamped'
@@ -48,9 +48,9 @@ def with_reference(sources, settings):
 def _bag(path, settings):
     wanted = settings.reference
     with open_bag(path) as bag:
-        topic = choose(bag, [topics.IMU], settings.topic, 'topic', needed=True)
+        topic = choose_topic(bag, [topics.IMU], settings.topic, 'topic', needed=True)
         fix, odometry, velocity = (
-            choose(bag, types, getattr(wanted, key), f'reference.{key}')
+            choose_topic(bag, types, getattr(wanted, key), f'reference.{key}')
             for key, types in (('fix', [topics.FIX]), ('odometry', [topics.ODOMETRY]),
                                ('velocity', [TWIST, TWIST_WITH_COVARIANCE])))
         imu, frame, notes = bag_imu.read_imu_messages(bag, topic)
@@ -99,10 +99,8 @@ def _odometry(bag, topic):
     if track is None:
         return None
     v, frame = track.values, bag.frames(topic)[-1][0]
-    return OdometryReference(topic, frame, track.t_ns, v[:, :3],
-                             continuous(v[:, 3:7] / np.linalg.norm(v[:, 3:7],
-                                        axis=1, keepdims=True)),
-                             v[:, 7:])
+    q = continuous_quaternions(v[:, 3:7] / np.linalg.norm(v[:, 3:7], axis=1, keepdims=True))
+    return OdometryReference(topic, frame, track.t_ns, v[:, :3], q, v[:, 7:])
 
 
 def _static_transforms(bag):
@@ -122,7 +120,7 @@ def _rotations(bag, channel):
                          'expected cdr')
     for _, log_ns, data in bag.messages([channel.name]):
         try:
-            yield from transforms.rotations(data)
+            yield from transforms.read_rotations(data)
         except ValueError as error:
             raise ValueError(f'{bag.path}: {channel.name} has a message at {log_ns} ns that is '
                              f'no {TF} ({error})') from None

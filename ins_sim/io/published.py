@@ -6,7 +6,7 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.core.timeseries.histories import ImuSamples, NavErrors
 from ins_sim.messages import topics
 from . import bag_imu
-from .topic_choice import choose
+from .topic_choice import choose_topic
 
 
 def read_errors(path, namespace=''):
@@ -38,7 +38,7 @@ def read_imu(path, topic=None):
     more than one to choose from.
     """
     with open_bag(path) as bag:
-        topic = choose(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',
-                       needed=True)
+        topic = choose_topic(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',
+                             needed=True)
         imu, _, _ = bag_imu.read_imu_messages(bag, topic)
     return ImuSamples(imu.t_ns, imu.omega, imu.f)

@@ -11,7 +11,7 @@ from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 from .motion import read_motion
 from .simulated_aiding import AidingSource
 
@@ -20,7 +20,7 @@ WINDOW = 4096
 CLOCK_HZ = 100.0
 
 
-def published(settings, aided=False):
+def published_topics(settings, aided=False):
     """
     Return the Topics that the nodes of Settings publish, in the order of equal stamps.
 
@@ -31,32 +31,33 @@ def published(settings, aided=False):
     return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()))
 
 
-def select(settings, names, aided=False):
+def select_topics(settings, names, aided=False):
     """
-    Return the Topics of these names, in the order of ``published``; all where names is None.
+    Return the Topics of these names, in the order of ``published_topics``; all where names is
+    None.
 
-    aided: as of ``published``.
+    aided: as of ``published_topics``.
 
     Raises ValueError, naming the nearest one, for a topic that the nodes do not publish.
     """
-    known = {topic.name.lstrip('/'): topic for topic in published(settings, aided)}
+    known = {topic.name.lstrip('/'): topic for topic in published_topics(settings, aided)}
     if names is None:
         return tuple(known.values())
     wanted = {name.lstrip('/') for name in names}
     for name in sorted(wanted):
         if name not in known:
             raise ValueError(f'the nodes publish no topic {name!r}; the nearest is '
-                             f'{nearest(name, known)!r}')
+                             f'{nearest_name(name, known)!r}')
     return tuple(topic for name, topic in known.items() if name in wanted)
 
 
-def write(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
-          progress=None, aided=None):
+def write_bag(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
+              progress=None, aided=None):
     """
     Write a SimulationResult into a bag that appears only if it is whole; return {topic: message
     count}.
 
-    settings: SimulationSettings; chosen: Topics of ``select``; the rest as of BagWriter;
+    settings: SimulationSettings; chosen: Topics of ``select_topics``; the rest as of BagWriter;
     progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
     this run, or None.  A message is logged at its own stamp.
     """

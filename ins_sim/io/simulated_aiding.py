@@ -85,7 +85,7 @@ def _velocity_messages(fixes, epoch_ns):
     pack = topics.METER_VELOCITY.writer().pack
     records, shown = [], []
     for fix in fixes:
-        records.append((fix.end_ns, velocity_record.pack(fix, epoch_ns)))
+        records.append((fix.end_ns, velocity_record.pack_fix(fix, epoch_ns)))
         if fix.valid:
             t_ns, *runs = velocity_record.velocity_one(fix)
             shown.append((t_ns, pack(t_ns + epoch_ns, *runs)))

@@ -1,9 +1,9 @@
 """Which topic of a bag is meant, said in one sentence where there is none or more than one."""
 
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 
 
-def choose(bag, types, wanted, key, ending='', needed=False):
+def choose_topic(bag, types, wanted, key, ending='', needed=False):
     """
     Return the name of the topic of one of the types that is meant, or None.
 
@@ -18,25 +18,25 @@ def choose(bag, types, wanted, key, ending='', needed=False):
     if wanted == 'auto':
         known = [name for name in known if f'/{name}'.endswith(f'/{ending}' if ending else '')]
         if len(known) > 1:
-            raise ValueError(f'{bag.path} has {len(known)} topics of {short(types)}: '
+            raise ValueError(f'{bag.path} has {len(known)} topics of {short_names(types)}: '
                              f'{", ".join(known)}; expected {key} to name one'
                              + ('' if needed else ', or none'))
         if needed and not known:
             where = f' whose name ends in {ending}' if ending else ''
-            raise ValueError(f'{bag.path} has no {short(types)}{where}; it has '
+            raise ValueError(f'{bag.path} has no {short_names(types)}{where}; it has '
                              f'{", ".join(sorted(bag.topics)) or "no topic"}')
         return known[0] if known else None
     name = wanted if wanted in bag.topics else '/' + wanted.lstrip('/')
     if name not in bag.topics:
-        what = f'; the nearest is {nearest(name, known)!r}' if known else ''
+        what = f'; the nearest is {nearest_name(name, known)!r}' if known else ''
         raise ValueError(f'{bag.path} has no topic {wanted!r}, which is {key}{what}')
     type_name = bag.topics[name].type_name
     if type_name not in types:
-        raise ValueError(f'{bag.path}: {name}, which is {key}, has type {short([type_name])}; '
-                         f'expected {short(types)}')
+        raise ValueError(f'{bag.path}: {name}, which is {key}, has type '
+                         f'{short_names([type_name])}; expected {short_names(types)}')
     return name
 
 
-def short(types):
+def short_names(types):
     """Return type names as people write them: sensor_msgs/Imu or ..."""
     return ' or '.join(t.replace('/msg/', '/') for t in types)

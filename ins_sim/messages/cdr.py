@@ -47,7 +47,7 @@ LAYOUTS = {
 }
 
 
-def aligned(offset, size):
+def aligned_offset(offset, size):
     """Return the first multiple of size at or behind an offset."""
     return (offset + size - 1) // size * size
 
@@ -70,15 +70,15 @@ class Writer:
         self.runs = layout.runs if runs is None else tuple(runs)
         body = bytearray(8)
         for text in strings:
-            body += bytes(aligned(len(body), 4) - len(body))
+            body += bytes(aligned_offset(len(body), 4) - len(body))
             data = text.encode() + b'\x00'
             body += struct.pack('<I', len(data)) + data
         status_at = len(ENCAPSULATION) + len(body)
         if layout.fix:
             body += struct.pack('<b', numbers[0])
-            body += bytes(aligned(len(body), 2) - len(body)) + struct.pack('<H', numbers[1])
+            body += bytes(aligned_offset(len(body), 2) - len(body)) + struct.pack('<H', numbers[1])
         if layout.doubles:
-            body += bytes(aligned(len(body), 8) - len(body))
+            body += bytes(aligned_offset(len(body), 8) - len(body))
         first = len(ENCAPSULATION) + len(body)
         doubles = [0.0] * layout.doubles
         for index, value in (constants or {}).items():
@@ -147,7 +147,7 @@ def stamp_of(data):
 
 def _middle(offset, layout):
     """Return the offset behind the status of a fix, a byte and a 16-bit number."""
-    return aligned(offset + 1, 2) + 2 if layout.fix else offset
+    return aligned_offset(offset + 1, 2) + 2 if layout.fix else offset
 
 
 class Reader:
@@ -184,7 +184,7 @@ class Reader:
         texts, offset = [], 12
         self.read(buffer)
         for _ in range(self._layout.strings):
-            offset = aligned(offset, 4)
+            offset = aligned_offset(offset, 4)
             length, = _LENGTH(buffer, offset)
             texts.append(bytes(buffer[offset + 4:offset + 3 + length]).decode(errors='replace'))
             offset += 4 + length
@@ -195,9 +195,9 @@ class Reader:
         self.read(buffer)
         offset = 16 + _LENGTH(buffer, 12)[0]
         status, = struct.unpack_from('<b', buffer, offset)
-        offset = aligned(offset + 1, 2)
+        offset = aligned_offset(offset + 1, 2)
         service, = struct.unpack_from('<H', buffer, offset)
-        offset = 4 + aligned(offset - 2, 8) + 8 * self._layout.doubles
+        offset = 4 + aligned_offset(offset - 2, 8) + 8 * self._layout.doubles
         return status, service, buffer[offset]
 
     def _lengths(self, buffer):
@@ -206,16 +206,16 @@ class Reader:
         first, = _LENGTH(buffer, 12)
         if self._layout.strings == 1:
             return first
-        return first, _LENGTH(buffer, aligned(16 + first, 4))[0]
+        return first, _LENGTH(buffer, aligned_offset(16 + first, 4))[0]
 
     def _find(self, key):
         """Return the slots of the doubles for these string lengths and remember them."""
         offset = 8
         if self._layout.strings:
             for length in key if isinstance(key, tuple) else (key,):
-                offset = aligned(offset, 4) + 4 + length
+                offset = aligned_offset(offset, 4) + 4 + length
         offset = _middle(offset, self._layout)
-        first = 4 + (aligned(offset, 8) if self._layout.doubles else offset)
+        first = 4 + (aligned_offset(offset, 8) if self._layout.doubles else offset)
         slots = []
         for start, stop in self._runs:
             # the skipped rest is unpacked too, so that a message cut anywhere is found short

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .cdr import aligned, LAYOUTS, SECOND
+from .cdr import aligned_offset, LAYOUTS, SECOND
 
 _POSE = (('position', 3), ('orientation', 4), ('pose_covariance', 36))
 _TWIST = (('linear', 3), ('angular', 3), ('twist_covariance', 36))
@@ -48,14 +48,14 @@ def message_dtype(type_name, lengths=None):
     layout = LAYOUTS[type_name]
     offset = _HEAD.itemsize
     for length in (1,) * layout.strings if lengths is None else lengths:
-        offset = aligned(offset, 4) + 4 + length
+        offset = aligned_offset(offset, 4) + 4 + length
     columns, small = [], []
     if layout.fix:
-        small = [('status', '<i1', offset), ('service', '<u2', aligned(offset + 1, 2))]
-        offset = aligned(offset + 1, 2) + 2
+        small = [('status', '<i1', offset), ('service', '<u2', aligned_offset(offset + 1, 2))]
+        offset = aligned_offset(offset + 1, 2) + 2
     if layout.doubles:
         # CDR counts from behind the encapsulation, of four bytes
-        offset = 4 + aligned(offset - 4, 8)
+        offset = 4 + aligned_offset(offset - 4, 8)
     for name, width in DOUBLES[type_name]:
         columns.append((name, '<f8' if width == 1 else ('<f8', (width,)), offset))
         offset += 8 * width
@@ -70,7 +70,7 @@ def message_dtype(type_name, lengths=None):
 
 def column_dtype(type_name, fields=None):
     """
-    Return the dtype of ``read``: 'log_ns', 'stamp_ns' and the fields, by default all.
+    Return the dtype of ``read_columns``: 'log_ns', 'stamp_ns' and the fields, by default all.
 
     Raises ValueError for a type without a layout and for an unknown field.
     """
@@ -86,7 +86,7 @@ def column_dtype(type_name, fields=None):
                              for name in (whole.names if fields is None else fields)])
 
 
-def read(type_name, data, starts, sizes, out):
+def read_columns(type_name, data, starts, sizes, out):
     """
     Read messages into an array of ``column_dtype``, but for its 'log_ns'.
 
@@ -108,7 +108,7 @@ def read(type_name, data, starts, sizes, out):
             out[rows] = part
 
 
-def strings(type_name, data, starts, sizes):
+def read_strings(type_name, data, starts, sizes):
     """Return the distinct strings (frame ids) of messages: a list of tuples as they appear."""
     found = {}
     if not len(starts):
@@ -118,7 +118,7 @@ def strings(type_name, data, starts, sizes):
     for rows, lengths in _by_lengths(type_name, data, starts, sizes):
         offset, parts = _HEAD.itemsize, []
         for length in lengths:
-            offset = aligned(offset, 4) + 4
+            offset = aligned_offset(offset, 4) + 4
             parts.append((offset, max(0, length - 1)))
             offset += length
         texts = _Messages(data, starts[rows]).take(_HEAD.itemsize, offset - _HEAD.itemsize)
@@ -180,7 +180,7 @@ def _by_lengths(type_name, data, starts, sizes):
                          'little-endian CDR')
     offset, lengths = _HEAD.itemsize, []
     for _ in range(layout.strings):
-        offset = aligned(offset, 4)
+        offset = aligned_offset(offset, 4)
         _check_sizes(type_name, sizes, offset + 4)
         if isinstance(offset, int):
             length = messages.take(offset, 4).view('<u4').astype(np.int64)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 import struct
 
-from .cdr import aligned, ENCAPSULATION, SECOND, stamp_of
+from .cdr import aligned_offset, ENCAPSULATION, SECOND, stamp_of
 
 OK, WARN = 0, 1
 # the shortest status: a byte and, aligned, the lengths of four strings and of the values
@@ -21,7 +21,7 @@ class Status:
     values: tuple = ()
 
 
-def pack(stamp_ns, frame, statuses):
+def pack_diagnostics(stamp_ns, frame, statuses):
     """Return the message of a stamp, a frame id and Statuses; the padding is zero."""
     body = bytearray(struct.pack('<iI', *divmod(stamp_ns, SECOND)))
 
@@ -31,7 +31,7 @@ def pack(stamp_ns, frame, statuses):
         body.extend(data)
 
     def put_number(number):
-        body.extend(bytes(aligned(len(body), 4) - len(body)) + struct.pack('<I', number))
+        body.extend(bytes(aligned_offset(len(body), 4) - len(body)) + struct.pack('<I', number))
 
     put(frame)
     put_number(len(statuses))
@@ -46,7 +46,7 @@ def pack(stamp_ns, frame, statuses):
     return ENCAPSULATION + bytes(body)
 
 
-def read(buffer):
+def read_diagnostics(buffer):
     """Return stamp_ns, frame id and the list of Statuses; ValueError on a bad message."""
     try:
         return _read(bytes(buffer))
@@ -64,8 +64,8 @@ def _read(buffer):
 
     def number():
         nonlocal offset
-        value, = struct.unpack_from('<I', buffer, aligned(offset, 4))
-        offset = aligned(offset, 4) + 4
+        value, = struct.unpack_from('<I', buffer, aligned_offset(offset, 4))
+        offset = aligned_offset(offset, 4) + 4
         return value
 
     def text():

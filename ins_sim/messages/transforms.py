@@ -2,7 +2,7 @@
 
 import struct
 
-from .cdr import aligned, ENCAPSULATION
+from .cdr import aligned_offset, ENCAPSULATION
 
 _LENGTH = struct.Struct('<I').unpack_from
 _STAMP_SIZE = 8
@@ -11,7 +11,7 @@ _DOUBLES = struct.Struct('<7d')
 _MOST_PADDING = 3
 
 
-def rotations(data):
+def read_rotations(data):
     """
     Return the frames and rotations of a TFMessage.
 
@@ -36,9 +36,9 @@ def rotations(data):
         count, = _LENGTH(body, 0)
         found, offset = [], 4
         for _ in range(count):
-            parent, offset = _string(body, aligned(offset, 4) + _STAMP_SIZE)
-            child, offset = _string(body, aligned(offset, 4))
-            offset = aligned(offset, 8)
+            parent, offset = _string(body, aligned_offset(offset, 4) + _STAMP_SIZE)
+            child, offset = _string(body, aligned_offset(offset, 4))
+            offset = aligned_offset(offset, 8)
             quaternion = _DOUBLES.unpack_from(body, offset)[3:]
             offset += _DOUBLES.size
             found.append((parent, child, quaternion))

@@ -15,7 +15,7 @@ _FLOATS = (('velocity', ('velocity_x', 'velocity_y')), ('sigma', ('sigma_x', 'si
            ('tau', ('tau12', 'tau23')), ('g', ('g12', 'g23')))
 
 
-def pack(fix, epoch_ns):
+def pack_fix(fix, epoch_ns):
     """Return the message velocity_meter/record of a VelocityFix; epoch_ns: stamp of zero."""
     values = [('window_start_ns', str(fix.start_ns + epoch_ns)),
               ('window_end_ns', str(fix.end_ns + epoch_ns)), ('cycles', str(fix.cycles)),
@@ -24,13 +24,13 @@ def pack(fix, epoch_ns):
                for key, value in zip(keys, getattr(fix, field))]
     values += [('status', fix.status), ('arrival_ns', str(fix.arrival_ns + epoch_ns))]
     level = diagnostic_array.OK if fix.valid else diagnostic_array.WARN
-    return diagnostic_array.pack(fix.end_ns + epoch_ns, topics.METER_RECORD.frames[0],
-                                 [Status(level, NAME, fix.status, '', tuple(values))])
+    return diagnostic_array.pack_diagnostics(fix.end_ns + epoch_ns, topics.METER_RECORD.frames[0],
+                                             [Status(level, NAME, fix.status, '', tuple(values))])
 
 
-def read(data, epoch_ns):
+def read_fix(data, epoch_ns):
     """Return the VelocityFix of a message; ValueError, one sentence, where it holds none."""
-    _, _, statuses = diagnostic_array.read(data)
+    _, _, statuses = diagnostic_array.read_diagnostics(data)
     if len(statuses) != 1 or statuses[0].name != NAME:
         raise ValueError(f'{topics.METER_RECORD.name} holds the statuses '
                          f'{[status.name for status in statuses]}; expected one of {NAME}')

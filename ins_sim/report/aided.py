@@ -7,7 +7,7 @@ import numpy as np
 from rich.table import Table
 
 from ins_sim import parameter_files
-from ins_sim.core.aiding.mounting_calibration import calibrate
+from ins_sim.core.aiding.mounting_calibration import calibrate_mounting
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
 from ins_sim.core.simulation.aided_run import AidedResult
@@ -49,7 +49,7 @@ class AidedRow:
 
 @dataclass(frozen=True)
 class AidedReport:
-    """What ``storage.write`` keeps of an aided run; rows: of ``rows``."""
+    """What ``storage.write_run`` keeps of an aided run; rows: of ``rows``."""
 
     settings: AidedSimulationSettings
     flown: AidedResult
@@ -58,14 +58,14 @@ class AidedReport:
     @property
     def title(self):
         """Return a line that names filter and instruments."""
-        told = [_described(self.settings, source) for source in sources(self.settings)]
+        told = [_described(self.settings, source) for source in aiding_sources(self.settings)]
         if not told:
             return 'not aided by any fix'
         return f'aided by {self.settings.aided_navigator.filter}: {", ".join(told)}'
 
     def arrays(self):
         """Return {name: array} for run.npz."""
-        return aided_arrays.arrays(self.flown)
+        return aided_arrays.aided_arrays(self.flown)
 
     def parameters(self):
         """Return the text of the parameter file of all six nodes."""
@@ -73,17 +73,18 @@ class AidedReport:
 
     def show(self, console):
         """Print the rows, and what went wrong."""
-        show(self.title, self.rows, console)
-        for line in faults(self.flown):
+        show_aided(self.title, self.rows, console)
+        for line in fault_lines(self.flown):
             console.print(line, markup=False)
 
     def save_figures(self, folder):
         """Save the figure into a folder."""
-        aided_figure.save(folder / FIGURE, self.title, self.flown, sources(self.settings),
-                          self.settings.aided_navigator.gate_probability)
+        aided_figure.save_figure(folder / FIGURE, self.title, self.flown,
+                                 aiding_sources(self.settings),
+                                 self.settings.aided_navigator.gate_probability)
 
 
-def sources(settings):
+def aiding_sources(settings):
     """Return the instruments that aid, of AidedSimulationSettings."""
     return AidedNavigator(settings.aided_navigator).sources
 
@@ -101,10 +102,10 @@ def aided_rows(settings, flown, states, errors):
     and errors.
     """
     table = _error_rows(flown.errors, errors) + _inside_rows(flown.errors)
-    for source in sources(settings):
+    for source in aiding_sources(settings):
         table += _fix_rows(source, flown)
     table += _estimate_rows(settings, flown.errors)
-    if len(sources(settings)) == 2:
+    if len(aiding_sources(settings)) == 2:
         table += _by_hand_rows(settings.velocity_meter, flown, states)
     return table
 
@@ -202,7 +203,7 @@ def _estimate_rows(settings, errors):
 def _by_hand_rows(meter, flown, states):
     """Return azimuth and mounting by the two manoeuvres, of the free strapdown, if there are."""
     try:
-        found = calibrate(states, flown.gnss_fixes, flown.velocity_fixes)
+        found = calibrate_mounting(states, flown.gnss_fixes, flown.velocity_fixes)
     except ValueError:
         # too few fixes of either instrument, or no turn while GNSS works
         return []
@@ -216,7 +217,7 @@ def _by_hand_rows(meter, flown, states):
                      sigma=found.dpsi_sigma / ARCMIN)]
 
 
-def show(title, rows, console):
+def show_aided(title, rows, console):
     """Print a table of the rows, and below it a line about the fixes of each instrument."""
     columns = [column for column in COLUMNS if any(column.value(row) for row in rows)]
     table = Table(title=title, caption='; '.join(c.meaning for c in columns if c.meaning))
@@ -253,7 +254,7 @@ COLUMNS = (
             'expected of a NIS: the interval that holds 95 % of consistent runs'))
 
 
-def faults(flown):
+def fault_lines(flown):
     """Return the lines about what made the aided solution start anew, or dropped a fix."""
     if not flown.faults:
         return []

@@ -10,7 +10,7 @@ GNSS_COLUMNS = ('t_ns', 'lat', 'lon', 'height', 'v_n', 'position_sigma', 'veloci
                 'status', 'arrival_ns')
 
 
-def arrays(flown):
+def aided_arrays(flown):
     """
     Return the arrays of an AidedResult by name.
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ins_sim.core.aiding.navigator import GNSS, METER
-from .consistency import largest
+from .consistency import chi_square_limit
 from .plotting import COLOURS, new_figure, save_png, thinned
 
 SOURCES = {METER: ('tab:purple', 'velocity meter'), GNSS: ('tab:cyan', 'GNSS')}
@@ -20,7 +20,7 @@ GAP = 5.0
 STRIP = 0.04
 
 
-def save(path, title, flown, sources, gate_probability):
+def save_figure(path, title, flown, sources, gate_probability):
     """
     Save the figure as PNG.
 
@@ -103,7 +103,8 @@ def _show_nis(axes, taken, sources, gate_probability, time):
                 axes.plot(t[good][part][count - 1:], mean, color=colour, lw=1.6, label=label)
                 label = None
         if gate_probability:
-            axes.axhline(largest(freedom, gate_probability) / freedom, color=colour, ls='--',
+            axes.axhline(chi_square_limit(freedom, gate_probability) / freedom, color=colour,
+                         ls='--',
                          lw=0.8, label='gate')
     axes.set_yscale('log')
     axes.axhline(1.0, color='k', lw=0.8)

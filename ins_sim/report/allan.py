@@ -15,7 +15,7 @@ import math
 import numpy as np
 from scipy.optimize import least_squares, nnls
 
-from ins_sim.core.numerics.allan_deviation import overlapping
+from ins_sim.core.numerics.allan_deviation import overlapping_deviation
 
 PER_DECADE = 8
 # The longest tau leaves this many intervals in the record.
@@ -107,7 +107,7 @@ def _terms(tau):
                      tau / 3.0], axis=-1)
 
 
-def estimate(samples, rate_hz):
+def estimate_deviation(samples, rate_hz):
     """
     Return the Allan deviation of samples (n,) or (n, channels), taken at rate_hz.
 
@@ -123,11 +123,11 @@ def estimate(samples, rate_hz):
     most = len(samples) // FEWEST
     factors = np.unique(np.round(
         np.geomspace(1, most, round(PER_DECADE * math.log10(most)) + 1)).astype(int))
-    deviations = [overlapping(channel, factors) for channel in samples.T]
+    deviations = [overlapping_deviation(channel, factors) for channel in samples.T]
     return Allan(factors / rate_hz, np.stack(deviations, axis=-1), len(samples) / rate_hz)
 
 
-def fit(allan, known=0.0):
+def fit_coefficients(allan, known=0.0):
     """
     Return the Coefficients that fit the mean Allan variance of all channels best.
 

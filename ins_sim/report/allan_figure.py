@@ -9,7 +9,7 @@ COLOURS = {'x': 'tab:red', 'y': 'tab:green', 'z': 'tab:blue'}
 GUIDES = {'Q': ':', 'N': '--', 'B': '-.', 'K': (0, (6, 2))}
 
 
-def save(path, title, noise):
+def save_figure(path, title, noise):
     """Save the Allan deviations of a Noise, its fit and its guides as PNG."""
     terms = TRIADS[noise.triad]
     unit, si = next((t.unit, t.si) for t in terms if t.symbol == 'B')

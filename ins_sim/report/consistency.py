@@ -14,6 +14,6 @@ def mean_interval(count, freedom, probability=0.95):
     return tuple(float(chi2.ppf(p, freedom * count) / count) for p in (tail, 1.0 - tail))
 
 
-def largest(freedom, probability):
+def chi_square_limit(freedom, probability):
     """Return what a chi-square of so many degrees of freedom exceeds with a probability."""
     return float(chi2.isf(probability, freedom))

@@ -6,7 +6,7 @@ from .plotting import COLOURS, finish_panel, new_figure, save_png, thinned
 from .summary import DEG_PER_HOUR
 
 
-def save(path, title, errors, prediction=None):
+def save_figure(path, title, errors, prediction=None):
     """Save the figure as PNG; errors: NavErrors, prediction: Prediction or None."""
     errors = thinned(errors)
     t_min = (errors.t_ns - errors.t_ns[0]) * 1e-9 / 60.0

@@ -58,7 +58,7 @@ def _rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def show(title, rows, console):
+def show_filter_study(title, rows, console):
     """Print the table, and below it why fixes were not taken."""
     # as wide as a terminal, with every figure whole
     table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,

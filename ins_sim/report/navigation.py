@@ -14,7 +14,7 @@ from ins_sim.core.postprocessing.comparison import error_rows
 from ins_sim.core.postprocessing.reference import SampledTrack
 from . import storage
 from .plotting import new_figure, save_png, thinned
-from .table import number
+from .table import number_text
 
 MARK = 'nav.npz'
 OTHERS = ('tab:orange', 'tab:purple')
@@ -27,7 +27,7 @@ def _span(result):
     return int(result.states[0].t_ns[0]), int(result.states[-1].t_ns[-1])
 
 
-def show(title, result, console=None):
+def show_navigation(title, result, console=None):
     """Print the notes of a Navigation and a table of errors for each reference."""
     console = console or Console()
     for note in result.notes:
@@ -42,11 +42,11 @@ def show(title, result, console=None):
         for _, head in COLUMNS:
             table.add_column(escape(head), justify='right')
         for row in error_rows(comparison, start_ns, end_ns):
-            table.add_row(*(number(getattr(row, name)) for name, _ in COLUMNS))
+            table.add_row(*(number_text(getattr(row, name)) for name, _ in COLUMNS))
         console.print(table)
 
 
-def write(folder, settings, title, result, force=False):
+def write_navigation(folder, settings, title, result, force=False):
     """
     Write a Navigation into a folder that appears only when complete.
 
@@ -54,7 +54,7 @@ def write(folder, settings, title, result, force=False):
     error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables.
     """
     start_ns, end_ns = _span(result)
-    with storage.whole(folder, force, MARK) as work:
+    with storage.whole_folder(folder, force, MARK) as work:
         arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
                   for f in fields(result.states[0])}
         arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])

@@ -98,7 +98,7 @@ def _values(coefficients):
     return tuple(getattr(coefficients, f.name) for f in fields(coefficients))
 
 
-def expected(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
+def expected_coefficients(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
     """
     Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
 
@@ -113,37 +113,38 @@ def expected(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
                                         model.flicker, np.hypot(model.walk, endless)])
 
 
-def analyse(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0)):
+def analyse_noise(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0)):
     """
     Return the Noise of samples (n, 3) of a triad, SI; None where they are constant.
 
     errors: GyroErrors or AccelerometerErrors of the settings, where they are known: a Gauss-Markov
     bias in them is taken for known, as no Allan deviation tells it from B and K.  factors: as in
-    ``expected``.
+    ``expected_coefficients``.
     """
     size = np.abs(samples).max()
     noisy = [k for k in range(3) if np.ptp(samples[:, k]) > ROUNDING * size]
     if not noisy:
         return None
-    found = allan.estimate(samples[:, noisy], rate_hz)
+    found = allan.estimate_deviation(samples[:, noisy], rate_hz)
     known, wanted = np.zeros_like(found.deviation), None
     if errors is not None:
         name = f'{triad}.errors'
         model = triad_model(errors, 1.0 / rate_hz, name)
-        wanted = expected(errors, 1.0 / rate_hz, name, factors)
+        wanted = expected_coefficients(errors, 1.0 / rate_hz, name, factors)
         known = np.stack([factors[k] * allan.gauss_markov_variance(
             found.tau_s, model.gauss_markov_sigma[k], model.gauss_markov_time[k])
             for k in noisy], -1)
     mean = known.mean(axis=-1)
     try:
-        by_axis = tuple(allan.fit(found.channels([k]), known[:, k]) for k in range(len(noisy)))
-        together = allan.fit(found, mean)
+        by_axis = tuple(allan.fit_coefficients(found.channels([k]), known[:, k])
+                        for k in range(len(noisy)))
+        together = allan.fit_coefficients(found, mean)
     except ValueError as error:
         raise ValueError(f'{triad}: {error}') from None
     return Noise(triad, tuple(AXES[k] for k in noisy), found, mean, by_axis, together, wanted)
 
 
-def show(noise, title, console):
+def show_noise(noise, title, console):
     """Print the rows of a Noise."""
     names = ', '.join(f'{t.symbol} {t.name}' for t in TRIADS[noise.triad])
     table = Table(title=f'{noise.triad}: {title}',

@@ -41,7 +41,7 @@ def check_free(folder, force, mark=MARK, option='--force'):
 
 
 @contextmanager
-def whole(folder, force=False, mark=MARK):
+def whole_folder(folder, force=False, mark=MARK):
     """
     Give a folder to write into that takes the place of ``folder`` once the block is through.
 
@@ -62,7 +62,7 @@ def whole(folder, force=False, mark=MARK):
         raise
 
 
-def write(folder, settings, run, rows, prediction, title, force=False, aided=None):
+def write_run(folder, settings, run, rows, prediction, title, force=False, aided=None):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder that appears when
     complete.
@@ -70,7 +70,7 @@ def write(folder, settings, run, rows, prediction, title, force=False, aided=Non
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.Report`` on this run, which goes into the same files, or None.
     """
-    with whole(folder, force) as work:
+    with whole_folder(folder, force) as work:
         arrays = {}
         for name in ('truth', 'imu', 'states', 'errors', 'twin'):
             record = getattr(run, name)
@@ -86,7 +86,7 @@ def write(folder, settings, run, rows, prediction, title, force=False, aided=Non
             aided.save_figures(work)
         np.savez(work / ARRAYS, **arrays)
         (work / PARAMETERS).write_text(parameters, encoding='utf-8')
-        figure.save(work / 'errors.png', title, run.errors, prediction)
+        figure.save_figure(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
 

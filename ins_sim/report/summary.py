@@ -104,7 +104,7 @@ def summary_rows(settings, errors, twin=None, prediction=None):
     return table
 
 
-def gaps(faults):
+def gap_lines(faults):
     """Return the lines about the gaps at which the strapdown started anew."""
     if not faults:
         return []
@@ -112,7 +112,7 @@ def gaps(faults):
             f'{faults[0]}']
 
 
-def parity(sensor, imu):
+def parity_lines(sensor, imu):
     """Return the lines about the parity of tuned gyros; sensor: ImuSensorSettings."""
     if imu.parity is None:
         return []

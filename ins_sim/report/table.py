@@ -7,12 +7,12 @@ from rich.table import Table
 from .summary import DEG_PER_HOUR
 
 
-def number(value):
+def number_text(value):
     """Return a figure with six significant digits, or a dash."""
     return '-' if value is None else f'{value + 0.0:.6g}'
 
 
-def show(title, rows, console=None):
+def show_table(title, rows, console=None):
     """Print the rows of ``summary.rows``; columns that are empty throughout are left out."""
     columns = [('predicted', 'predicted'), ('measured', 'measured'), ('twin', 'zero-delay twin'),
                ('published', 'paper / re-derived')]
@@ -23,7 +23,7 @@ def show(title, rows, console=None):
     for _, head in columns:
         table.add_column(head, justify='right')
     for row in rows:
-        table.add_row(row.name, row.unit, *(number(getattr(row, c)) for c, _ in columns))
+        table.add_row(row.name, row.unit, *(number_text(getattr(row, c)) for c, _ in columns))
     (console or Console()).print(table)
 
 
@@ -35,6 +35,6 @@ def show_resonances(resonances, console=None):
     for head in ('resonance', "psi' [rad/s]", 'drift east [deg/h]', 'drift north [deg/h]'):
         table.add_column(escape(head), justify='left' if head == 'resonance' else 'right')
     for name, rate, drift in resonances:
-        table.add_row(name, number(rate), number(drift[0] * DEG_PER_HOUR),
-                      number(drift[1] * DEG_PER_HOUR))
+        table.add_row(name, number_text(rate), number_text(drift[0] * DEG_PER_HOUR),
+                      number_text(drift[1] * DEG_PER_HOUR))
     (console or Console()).print(table)

@@ -7,7 +7,7 @@ from ins_sim.settings.tuned_gyro_study import SWEEPS
 from .plotting import new_figure, save_png
 
 
-def title(settings):
+def study_title(settings):
     """Return a line that says what is constant in the study of TunedGyroStudySettings."""
     held = (f'rotors at {settings.rotor_speed_hz:g} Hz' if settings.sweep == 'base_rate' else
             f'base at {settings.base_rate_rad_s:g} rad/s')
@@ -15,10 +15,10 @@ def title(settings):
             f'{settings.method} at {settings.step_ms:g} ms')
 
 
-def show(settings, cells, console):
+def show_study(settings, cells, console):
     """Print the Cells of a table beside what the paper prints, where it does."""
     compared = any(cell.paper_deg is not None for cell in cells)
-    table = Table(title=title(settings))
+    table = Table(title=study_title(settings))
     for head in (SWEEPS[settings.sweep], 'Poisson [deg]', 'Euler vector [deg]',
                  *(('paper [deg]', 'ours - paper') if compared else ())):
         # rich would take [rad/s] for a style
@@ -64,7 +64,7 @@ def save_figure(path, settings, curve, cells, limits=()):
             label = None
     axes.set_xlabel(SWEEPS[settings.sweep])
     axes.set_ylabel('error of the roll amplitude [deg]')
-    axes.set_title(title(settings), fontsize='medium')
+    axes.set_title(study_title(settings), fontsize='medium')
     axes.grid(alpha=0.3)
     axes.legend()
     save_png(figure, path)

@@ -23,7 +23,7 @@ NODES = {
 }
 
 
-def run(name, args=None, **options):
+def run_node(name, args=None, **options):
     """
     Run a node of the table as a process and return its exit code.
 
@@ -39,17 +39,17 @@ def _load(name):
 
 
 # The entry points of the console scripts. The player needs a bag and is started by "ins_sim play".
-motion_generator = partial(run, 'motion_generator')
-imu_sensor = partial(run, 'imu_sensor')
-strapdown = partial(run, 'strapdown')
-velocity_meter = partial(run, 'velocity_meter')
-gnss = partial(run, 'gnss')
-aided_navigator = partial(run, 'aided_navigator')
-recorder = partial(run, 'recorder')
+motion_generator = partial(run_node, 'motion_generator')
+imu_sensor = partial(run_node, 'imu_sensor')
+strapdown = partial(run_node, 'strapdown')
+velocity_meter = partial(run_node, 'velocity_meter')
+gnss = partial(run_node, 'gnss')
+aided_navigator = partial(run_node, 'aided_navigator')
+recorder = partial(run_node, 'recorder')
 
 
 if __name__ == '__main__':
     if len(sys.argv) < 2 or sys.argv[1] not in NODES:
         sys.exit(f'usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '
                  f'{", ".join(NODES)}')
-    sys.exit(run(sys.argv[1], sys.argv[1:]))
+    sys.exit(run_node(sys.argv[1], sys.argv[1:]))

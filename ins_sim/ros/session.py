@@ -66,7 +66,7 @@ class Session:
         for process in graph.PROCESSES:
             with open(self._log(process.name), 'wb') as log:
                 self._processes[process.name] = subprocess.Popen(
-                    graph.command(process, [parameters], namespace=self.namespace),
+                    graph.process_command(process, [parameters], namespace=self.namespace),
                     stdout=log, stderr=log, stdin=subprocess.DEVNULL)
         return self
 

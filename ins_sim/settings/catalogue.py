@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 import math
 
-from .suggest import nearest, unknown
+from .suggest import nearest_name, unknown_key
 
 
 def flatten(cls, prefix=''):
@@ -41,8 +41,8 @@ def build(cls, values):
     checked = {}
     for name, value in values.items():
         if name not in known:
-            raise ValueError(unknown(name, known))
-        checked[name] = check(name, value, known[name])
+            raise ValueError(unknown_key(name, known))
+        checked[name] = check_value(name, value, known[name])
     return _assemble(cls, checked, '')
 
 
@@ -57,7 +57,7 @@ def _assemble(cls, values, prefix):
     return cls(**arguments)
 
 
-def check(name, value, f):
+def check_value(name, value, f):
     """Return the value in the type of its field f; raise ValueError on anything unfit."""
     kind, unit = f.type, f.metadata['unit']
     if kind in (bool, int, float, str):
@@ -78,7 +78,7 @@ def check(name, value, f):
             raise ValueError(f'{name} is {v}; expected a finite number')
         if choices and v not in choices:
             raise ValueError(f'{name} is {v!r}; expected one of {", ".join(choices)} (nearest: '
-                             f'{nearest(v, choices)})')
+                             f'{nearest_name(v, choices)})')
         if low is not None and not low <= v <= high:
             raise ValueError(f'{name} is {v:g}{" " + unit if unit else ""}; expected {low:g} to '
                              f'{high:g}{" " + unit if unit else ""}')

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from .instrument_errors import AccelerometerErrors, GyroErrors
-from .suggest import nearest
+from .suggest import nearest_name
 
 GYRO, ACCELEROMETER = 'gyro.errors.', 'accelerometer.errors.'
 ROTORS = 'gyro.dtg.errors.'
@@ -163,11 +163,11 @@ def preset(name):
     """
     if name not in PRESETS:
         raise ValueError(f'unknown instrument preset {name!r}; the nearest known one is '
-                         f'{nearest(name, PRESETS)!r}')
+                         f'{nearest_name(name, PRESETS)!r}')
     return dict(PRESETS[name].values)
 
 
-def triads(name):
+def preset_triads(name):
     """Return (GyroErrors, AccelerometerErrors) of the preset of that name."""
     values = preset(name)
     return tuple(cls(**{key.removeprefix(prefix): value for key, value in values.items()

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.settings.instrument_errors import Sampling
 from ins_sim.settings.motion import MotionSettings
 
@@ -21,4 +21,5 @@ def resting_record(settings, duration_s):
     """Yield blocks of ImuSamples of the instrument at rest (see ``at_rest``)."""
     settings = at_rest(settings, duration_s)
     generator = settings.motion_generator
-    yield from sense(settings, make_motion(generator.motion, generator.datum, generator.earth))
+    yield from imu_blocks(settings,
+                          make_motion(generator.motion, generator.datum, generator.earth))

@@ -9,7 +9,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
 from ins_sim.core.simulation.aided import make_instruments
-from ins_sim.core.simulation.aided_run import aid, with_truth
+from ins_sim.core.simulation.aided_run import navigate_aided, with_truth
 from ins_sim.settings.aided_navigator import FILTERS
 
 STEP_S = 5.0
@@ -74,7 +74,7 @@ def fly_filters(settings, cases, run):
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
-    blocks = list(with_truth(motion, inertial.sense(settings.simulation, motion)))
+    blocks = list(with_truth(motion, inertial.imu_blocks(settings.simulation, motion)))
     return [_fly(settings, case, blocks) for case in cases]
 
 
@@ -89,7 +89,7 @@ def _fly(settings, case, blocks):
                                 gnss_model=replace(navigator.gnss_model,
                                                    use=navigator.gnss_model.use
                                                    and FILTERS[case.filter].takes_gnss)))
-    flown = aid(settings.aided_navigator, blocks, *make_instruments(settings))
+    flown = navigate_aided(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = flown.errors
     weighed = [t.outcome for t in flown.judged if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']

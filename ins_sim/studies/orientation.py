@@ -9,7 +9,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import KINDS, Orientation
 from ins_sim.core.motion.motion import check_length
-from ins_sim.core.simulation.inertial import navigate, sense
+from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 from ins_sim.core.timeseries.histories import NavErrors, NavStates
 
 TIMED_STEPS = 5000
@@ -41,10 +41,11 @@ def compare_orientations(settings, motion, progress=None):
     """
     generator = settings.motion_generator
     check_length(generator, motion)
-    blocks = list(sense(settings, motion))
+    blocks = list(imu_blocks(settings, motion))
     results, reference = [], None
     for kind in sorted(KINDS, key=lambda k: k != 'quaternion'):
-        parts = list(navigate(replace(settings.strapdown, orientation=kind), motion, blocks))
+        parts = list(navigate_blocks(replace(settings.strapdown, orientation=kind), motion,
+                                     blocks))
         states = NavStates.concatenate(s for _, s, _ in parts)
         errors = NavErrors.concatenate(e for _, _, e in parts)
         reference = states.q_nb if reference is None else reference

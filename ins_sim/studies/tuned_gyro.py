@@ -14,7 +14,7 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from ins_sim.core.attitude.angles import roll
+from ins_sim.core.attitude.angles import roll_of_matrix
 from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
 from ins_sim.core.attitude.matrix import dcm_of
 from ins_sim.core.attitude.quaternion import exponential
@@ -71,8 +71,8 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
             rates = (pair.step(u_start, u_mid, u_end)[0],) * 4
         c, theta = step_poisson(c, rates, step_s), step_euler_vector(theta, rates, step_s)
         if k >= first:
-            found[0].append(roll(c))
-            found[1].append(roll(dcm_of(exponential(theta))))
+            found[0].append(roll_of_matrix(c))
+            found[1].append(roll_of_matrix(dcm_of(exponential(theta))))
     return tuple(math.degrees(half_peak_to_peak(y)) for y in found)
 
 

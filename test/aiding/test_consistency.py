@@ -10,7 +10,7 @@ from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
 from ins_sim.studies.filters import FilterCase, fly_filters, run_settings
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.aided import make_instruments
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -41,7 +41,7 @@ class StampedAtItsEnd(ErrorStateFilter):
         """Compare the fix with the present velocity, on which eta has no effect."""
         read, of_mean, columns = eskf_model.meter(ins.v_b[:2], *self.estimates)
         h = np.zeros((2, eskf_model.SIZE))
-        c = matrix.matrix(ins.q_nb)
+        c = matrix.attitude_matrix(ins.q_nb)
         h[:, eskf_model.V] = of_mean @ c.T[:2]
         h[:, eskf_model.PHI] = of_mean @ (c.T[:2] @ matrix.skew(ins.v))
         h[:, eskf_model.MU:] = columns
@@ -96,7 +96,7 @@ def consistency(assignments, run):
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     nav, (meter, gnss) = AidedNavigator(settings.aided_navigator), make_instruments(settings)
     nees, nis = [], []
-    for imu in sense(settings.simulation, motion):
+    for imu in imu_blocks(settings.simulation, motion):
         truth = motion.at(imu.t_ns)
         fixes = sorted(((fix.t_ns, source, fix) for source, instrument in (
             (METER, meter), (GNSS, gnss)) for fix in instrument.advance(truth)), key=by_time)

@@ -5,13 +5,13 @@ import math
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.simulation.aided import make_instruments
-from ins_sim.core.simulation.aided_run import aid, with_truth
+from ins_sim.core.simulation.aided_run import navigate_aided, with_truth
 from ins_sim.core.sensors.gnss import Gnss
-from ins_sim.core.aiding.mounting_calibration import (azimuth_error, calibrate, least_squares,
-                                                      mounting_sum)
+from ins_sim.core.aiding.mounting_calibration import (azimuth_error, calibrate_mounting,
+                                                      least_squares, mounting_sum)
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.timeseries.histories import Truth
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 import numpy as np
@@ -32,7 +32,7 @@ def flight():
          'meter_model.scale_z_sigma:=0.1'])
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    return settings, list(with_truth(motion, sense(settings.simulation, motion)))
+    return settings, list(with_truth(motion, imu_blocks(settings.simulation, motion)))
 
 
 def fixes_of(settings, blocks):
@@ -46,10 +46,11 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
     """A free INS of mid grade, two turns: 20 arcmin recovered to 2 by (27), and k_z as well."""
     settings, blocks = flight
     model = settings.aided_navigator
-    free = aid(replace(model, filter='free', gnss_model=replace(model.gnss_model, use=False)),
-               blocks)
+    free = navigate_aided(replace(model, filter='free',
+                                  gnss_model=replace(model.gnss_model, use=False)),
+                          blocks)
     gnss, meter = fixes_of(settings, blocks)
-    found = calibrate(free.states, gnss, meter)
+    found = calibrate_mounting(free.states, gnss, meter)
     true = -free.errors.attitude[len(free.states) // 2, 2]
     print(f'azimuth error {true / ARCMIN:.2f} arcmin, found {found.dpsi / ARCMIN:.2f} '
           f'+- {found.dpsi_sigma / ARCMIN:.2f}')
@@ -64,7 +65,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
     plain = settings.velocity_meter
     plain = replace(plain, surrogate=replace(plain.surrogate, k_z=0.0))
     _, meter = fixes_of(replace(settings, velocity_meter=plain), blocks)
-    found = calibrate(free.states, gnss, meter)
+    found = calibrate_mounting(free.states, gnss, meter)
     print(f'without k_z (27): {found.two_manoeuvres / ARCMIN:.2f}')
     assert found.two_manoeuvres / ARCMIN == pytest.approx(MOUNTING, abs=2.0)
 
@@ -72,7 +73,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
 def test_the_filter_recovers_20_arcmin_to_2(flight):
     """The eskf with GNSS: mu within 2 arcmin and three of its sigmas, k_z within three."""
     settings, blocks = flight
-    run = aid(settings.aided_navigator, blocks, *make_instruments(settings))
+    run = navigate_aided(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = run.errors
     mu, _, k_z = errors.estimates[-1]
     print(f'eskf: mu {mu / ARCMIN:.2f} arcmin, k_z {k_z:.4f}')
@@ -122,4 +123,4 @@ def test_what_cannot_show_an_azimuth_is_refused():
     states = Truth(*(np.zeros(2),) * 3, np.zeros(2), np.zeros((2, 3)), np.zeros((2, 4)),
                    np.zeros((2, 3)), np.zeros((2, 3)))
     with pytest.raises(ValueError, match='0 GNSS fixes; expected at least 10'):
-        calibrate(states, [], [])
+        calibrate_mounting(states, [], [])

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER, JudgedFix
+from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, JudgedFix, METER
 from ins_sim.core.aiding.live import AidedStream, FixSchedule
 from ins_sim.settings.catalogue import build
-from ins_sim.core.aiding.filters.base import FixOutcome, refused
+from ins_sim.core.aiding.filters.base import FixOutcome, refused_fix
 from ins_sim.settings.by_node import AIDING
 from ins_sim.ros.process.aiding_health import AidingHealth
 from support.aided_streams import VALUES, chosen_settings, mixed, push, run_stream, scene
@@ -94,7 +94,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     health = AidingHealth(stream)
     gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
     health.count([JudgedFix(GNSS, 7 * SECOND, gated),
-                  JudgedFix(GNSS, 8 * SECOND, refused('the fix is none: outage'))])
+                  JudgedFix(GNSS, 8 * SECOND, refused_fix('the fix is none: outage'))])
     wrong, values = health.describe()
     assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '
                      'gate')

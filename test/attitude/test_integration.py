@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.angles import roll
+from ins_sim.core.attitude.angles import roll_of_matrix
 from ins_sim.core.attitude.integration import bortz_factor, KINDS, Orientation
 from ins_sim.core.attitude.matrix import dcm_of, quaternion_of
 from ins_sim.core.attitude.quaternion import shorter
@@ -115,7 +115,7 @@ def test_quaternion_of_a_dcm():
         q /= np.linalg.norm(q)
         back = np.array(quaternion_of(dcm_of(tuple(q.tolist()))))
         assert min(abs(back - q).max(), abs(back + q).max()) < 1e-14
-    assert roll(dcm_of(quaternion.exponential((0.2, 0.0, 0.0)))) == pytest.approx(0.2)
+    assert roll_of_matrix(dcm_of(quaternion.exponential((0.2, 0.0, 0.0)))) == pytest.approx(0.2)
 
 
 def test_unknown_algorithm():

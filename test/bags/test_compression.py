@@ -23,9 +23,9 @@ def only(monkeypatch):
         for module in modules:
             pytest.importorskip(module)
         monkeypatch.setitem(compression.MODULES, name, modules)
-        compression.library.cache_clear()
+        compression.compression_library.cache_clear()
     yield leave
-    compression.library.cache_clear()
+    compression.compression_library.cache_clear()
 
 
 def installed(module):
@@ -42,7 +42,7 @@ def test_each_library_reads_what_any_wrote(name, module, only):
     """Data go through every pair of libraries and come back."""
     only(name, module)
     packed = compression.compress(memoryview(DATA), name)
-    assert compression.library(name).__name__ == module
+    assert compression.compression_library(name).__name__ == module
     assert len(packed) < len(DATA)
     for other in {other for of, other in LIBRARIES if of == name and installed(other)}:
         only(name, other)

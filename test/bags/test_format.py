@@ -10,7 +10,7 @@ import sys
 from ins_sim.bags import digest
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter, CHUNK_BYTES
-from ins_sim.bags.definitions import define
+from ins_sim.bags.definitions import message_definition
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import LAYOUTS, Writer
 import numpy as np
@@ -106,7 +106,7 @@ def test_the_hash_of_a_type_is_that_of_ros(type_name):
         pytest.skip('no ROS here that describes its types')
     hashes = {h['type_name']: h['hash_string'] for h in json.loads(path.read_text())[
         'type_hashes']}
-    assert hashes[type_name] == define(type_name)[1]
+    assert hashes[type_name] == message_definition(type_name)[1]
 
 
 def test_sqlite_has_the_tables_of_rosbag2(tmp_path):

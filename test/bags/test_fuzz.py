@@ -186,8 +186,9 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
     dtype = columns.column_dtype(type_name, [name for name, _ in columns.DOUBLES[type_name]])
     out = np.zeros(len(data), dtype=dtype)
     try:
-        columns.read(type_name, np.frombuffer(b''.join(data) + b'\x00' * 64, dtype=np.uint8),
-                     starts, sizes, out)
+        columns.read_columns(type_name,
+                             np.frombuffer(b''.join(data) + b'\x00' * 64, dtype=np.uint8),
+                             starts, sizes, out)
     except ValueError:
         assert refused
         return

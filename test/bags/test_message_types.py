@@ -4,8 +4,8 @@ import subprocess
 import sys
 
 from hypothesis import given, strategies as st
-from ins_sim.bags.definitions import define, TABLE
-from ins_sim.messages.transforms import rotations
+from ins_sim.bags.definitions import message_definition, TABLE
+from ins_sim.messages.transforms import read_rotations
 import pytest
 from support.places import ROOT
 
@@ -31,13 +31,13 @@ def test_every_type_has_the_definition_and_hash_of_rosbags():
     assert len(STORE.types) > 100
     for name in STORE.types:
         definition, _ = STORE.generate_msgdef(name, ros_version=2)
-        assert define(name) == (definition, STORE.hash_rihs01(name)), name
+        assert message_definition(name) == (definition, STORE.hash_rihs01(name)), name
 
 
 def test_an_unknown_type_is_one_sentence():
     """The recorder then asks ROS for the definition."""
     with pytest.raises(ValueError, match="the type 'my_msgs/msg/Thing' is not known"):
-        define('my_msgs/msg/Thing')
+        message_definition('my_msgs/msg/Thing')
 
 
 def test_definitions_need_no_library():
@@ -69,7 +69,7 @@ def packed(transforms):
 @given(TRANSFORMS)
 def test_transforms_are_those_that_rosbags_packed(transforms):
     """Frames of any length and alphabet, any number of transforms."""
-    assert rotations(packed(transforms)) == transforms
+    assert read_rotations(packed(transforms)) == transforms
 
 
 @given(TRANSFORMS, st.data())
@@ -78,14 +78,14 @@ def test_a_cut_message_is_refused(transforms, draw):
     whole = packed(transforms)
     stop = draw.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(ValueError):
-        rotations(whole[:stop])
+        read_rotations(whole[:stop])
 
 
 @given(st.binary(max_size=100))
 def test_other_bytes_are_read_or_refused(data):
     """No bytes raise anything but ValueError."""
     try:
-        rotations(b'\0\1\0\0' + data)
+        read_rotations(b'\0\1\0\0' + data)
     except ValueError:
         pass
 
@@ -93,8 +93,8 @@ def test_other_bytes_are_read_or_refused(data):
 def test_bytes_behind_the_last_transform_are_refused():
     """Up to three bytes are padding; more mean that the message is something else."""
     whole = packed([('a', 'b', (0.0, 0.0, 0.0, 1.0))])
-    assert rotations(whole + b'\0' * 3) == rotations(whole)
+    assert read_rotations(whole + b'\0' * 3) == read_rotations(whole)
     with pytest.raises(ValueError, match='4 bytes behind its last transform'):
-        rotations(whole + b'\0' * 4)
+        read_rotations(whole + b'\0' * 4)
     with pytest.raises(ValueError, match='expected the encapsulation of little-endian CDR'):
-        rotations(b'\0\0' + whole[2:])
+        read_rotations(b'\0\0' + whole[2:])

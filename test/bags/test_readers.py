@@ -2,7 +2,7 @@
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
-from ins_sim.bags.definitions import define
+from ins_sim.bags.definitions import message_definition
 from ins_sim.messages import columns, topics
 from ins_sim.messages.cdr import LAYOUTS
 import numpy as np
@@ -75,7 +75,8 @@ def test_the_mcap_library_agrees(compression, tmp_path):
             assert message.log_time >= last and message.log_time == message.publish_time
             last = message.log_time
             found.setdefault(channel.topic, []).append(message.data)
-            assert schema.encoding == 'ros2msg' and schema.data.decode() == define(schema.name)[0]
+            assert schema.encoding == 'ros2msg'
+            assert schema.data.decode() == message_definition(schema.name)[0]
         assert found == expected
         statistics = summary.statistics
         assert statistics.message_count == N * len(TYPES) + 7
@@ -133,7 +134,7 @@ def test_what_rosbags_writes_is_read(storage, compression, tmp_path):
             for type_name in TYPES:
                 array = read.arrays(topic_of(type_name))
                 assert np.array_equal(array['stamp_ns'], STAMPS[::5])
-            assert read.topics[topic_of(TYPES[0])].definition == define(TYPES[0])[0]
+            assert read.topics[topic_of(TYPES[0])].definition == message_definition(TYPES[0])[0]
 
 
 @pytest.mark.parametrize('type_name', TYPES)

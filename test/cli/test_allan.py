@@ -162,11 +162,11 @@ def test_a_perfect_axis_is_left_out():
     imu = ImuSamples.concatenate(resting_record(settings, 200.0))
     assert len(imu.t_ns) == 2001
     errors = settings.imu_sensor.gyro.errors
-    noise = noise_terms.analyse('gyro', imu.omega, 10.0, errors)
+    noise = noise_terms.analyse_noise('gyro', imu.omega, 10.0, errors)
     assert noise.axes == ('y',)
     n = noise.rows()[1]
     assert n['x'] is None and n['y'] == n['all'] == pytest.approx(0.1, rel=0.1)
-    assert noise_terms.analyse('accelerometer', imu.f, 10.0, AccelerometerErrors()) is None
+    assert noise_terms.analyse_noise('accelerometer', imu.f, 10.0, AccelerometerErrors()) is None
 
 
 def test_expected_coefficients_of_the_settings():
@@ -175,6 +175,6 @@ def test_expected_coefficients_of_the_settings():
                         gauss_markov_time_s=(float('inf'), float('inf'), 100.0),
                         rate_random_walk_deg_h_sqrt_h=(0.4,) * 3)
     units = [[term.si] for term in noise_terms.TRIADS['gyro']]
-    q, n, b, k = noise_terms.expected(errors, 0.01, 'gyro.errors') / units
+    q, n, b, k = noise_terms.expected_coefficients(errors, 0.01, 'gyro.errors') / units
     assert q == pytest.approx([1.0 / 12 ** 0.5] * 3) and not n.any() and not b.any()
     assert k == pytest.approx([0.5, 0.5, 0.4])

@@ -20,7 +20,7 @@ from ins_sim.settings.catalogue import flatten
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.messages import convert, topics
 from support.navigated import resting
 
@@ -111,7 +111,7 @@ def test_a_bag_of_our_own_nodes_aligns_itself_and_navigates(tmp_path, capsys):
     chosen, motion = motion_of('motion.kind:=static', 'motion.psi_deg:=-40.0',
                                'motion.theta_deg:=5.0', 'duration_s:=120.0', 'output:=integrated',
                                'input:=integrated')
-    blocks = list(sense(chosen, motion))
+    blocks = list(imu_blocks(chosen, motion))
     t_ns = np.concatenate([b.t_ns for b in blocks])
     truth = motion.at(t_ns)
     generator = chosen.motion_generator

@@ -62,7 +62,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
     def fail(*arguments):
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr(figure, 'save', fail)
+    monkeypatch.setattr(figure, 'save_figure', fail)
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run')]) == 2
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(ValueError, match='exists'):

@@ -6,7 +6,7 @@ from support.aided_runs import command, FLIGHT, flown, settings
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER
-from ins_sim.core.simulation.aided_run import aid, Reported, with_truth
+from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
 from ins_sim.report import aided, aided_figure
 from matplotlib.figure import Figure
 import numpy as np
@@ -127,7 +127,7 @@ def test_the_figure_shows_where_fixes_are_missing(monkeypatch, tmp_path):
     flight = flown(chosen)[-1]
     figures = []
     monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
-    aided_figure.save(tmp_path / 'x.png', 'title', flight, (METER, GNSS), 0.0)
+    aided_figure.save_figure(tmp_path / 'x.png', 'title', flight, (METER, GNSS), 0.0)
     figure, = figures
     start_s = flight.errors.t_ns[0] * 1e-9
     for axes in figure.axes:
@@ -198,8 +198,9 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
                 for t in solution.judged]
     assert arrivals == sorted(arrivals) and len(arrivals) == 17 + 20
     cut = (run.imu[k:k + length] for k in range(0, len(run.imu), length))
-    again = aid(chosen.aided_navigator, with_truth(motion, cut),
-                Reported(list(solution.velocity_fixes)), Reported(list(solution.gnss_fixes)))
+    again = navigate_aided(chosen.aided_navigator, with_truth(motion, cut),
+                           Reported(list(solution.velocity_fixes)),
+                           Reported(list(solution.gnss_fixes)))
     assert [(t.source, t.t_ns) for t in again.judged] == [
         (t.source, t.t_ns) for t in solution.judged]
     assert np.array_equal(again.errors.position, solution.errors.position)
@@ -268,7 +269,7 @@ def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys)
     if where == 'aiding':
         monkeypatch.setattr('ins_sim.core.aiding.navigator.AidedNavigator.step', interrupt)
     else:
-        monkeypatch.setattr(aided_figure, 'save', interrupt)
+        monkeypatch.setattr(aided_figure, 'save_figure', interrupt)
     assert command(tmp_path, '--force', flight=flight) == 130
     assert 'interrupted' in capsys.readouterr().err
     assert sorted((p.name, p.read_bytes()) for p in (tmp_path / 'run').iterdir()) == before

@@ -14,7 +14,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
-from ins_sim.core.simulation.inertial import sense, simulate
+from ins_sim.core.simulation.inertial import imu_blocks, simulate
 from ins_sim.messages import topics
 from support.truth_bags import record, recorded
 
@@ -50,7 +50,8 @@ def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
     original = settings(values, start_s=PAD_S, duration_s=length_s)
     run = run_offline(original, twin=False)
     bag = tmp_path / 'bag'
-    simulated.write(bag, settings(values, duration_s=length_s + 2.0 * PAD_S), run, topics.TRUTH)
+    simulated.write_bag(bag, settings(values, duration_s=length_s + 2.0 * PAD_S), run,
+                        topics.TRUTH)
     again = recorded(bag, values, duration_s=length_s)
     errors = simulate(again, twin=False, motion=read_motion(again.motion_generator)).errors
     off = np.abs(errors.position - run.errors.position).max()
@@ -118,7 +119,7 @@ def test_a_paced_imu_senses_the_bag(output, tmp_path):
     readings = [r for sample in zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
                                     truth.omega_ib_b.tolist(), truth.f_ib_b.tolist())
                 for r in imu.push(*sample)]
-    offline = next(iter(sense(chosen, motion)))
+    offline = next(iter(imu_blocks(chosen, motion)))
     assert len(readings) == len(offline) == 501
     assert np.array_equal([r[1] for r in readings], offline.omega)
     assert np.array_equal([r[2] for r in readings], offline.f)

@@ -36,8 +36,9 @@ def bag_path(request, run, tmp_path_factory):
     """Return the bag of the flight."""
     chosen, free, solution = run
     path = tmp_path_factory.mktemp('aided') / 'bag'
-    simulated.write(path, chosen.simulation, free, simulated.select(chosen.simulation, None, True),
-                    request.param, aided=(chosen, solution))
+    simulated.write_bag(path, chosen.simulation, free,
+                        simulated.select_topics(chosen.simulation, None, True),
+                        request.param, aided=(chosen, solution))
     return path
 
 
@@ -85,7 +86,7 @@ def test_the_fixes_come_back(run, bag_path):
     with open_bag(bag_path) as bag:
         stamps, records = messages(bag, topics.METER_RECORD)
         assert stamps == [fix.end_ns + EPOCH_NS for fix in solution.velocity_fixes]
-        assert tuple(velocity_record.read(data, EPOCH_NS) for data in records) == \
+        assert tuple(velocity_record.read_fix(data, EPOCH_NS) for data in records) == \
             solution.velocity_fixes
         stamps, shown = messages(bag, topics.METER_VELOCITY)
         assert stamps == [(fix.start_ns + fix.end_ns) // 2 + EPOCH_NS
@@ -134,7 +135,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
                 t_ns, *sample = truth.read(data)
                 outputs += stream.push_truth(t_ns - EPOCH_NS, *sample)
             elif name == '/velocity_meter/record':
-                push_fixes(METER, [velocity_record.read(bytes(data), EPOCH_NS)])
+                push_fixes(METER, [velocity_record.read_fix(bytes(data), EPOCH_NS)])
             elif name == '/gnss/fix':
                 push_fixes(GNSS, pairs.push_fix(bytes(data)))
             elif name == '/gnss/velocity':

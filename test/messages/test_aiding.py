@@ -55,10 +55,10 @@ STATUSES = [Status(0, 'a', '', 'x' * 5, (('k', 'v'), ('', 'ä'))), Status(1, 'bc
 @pytest.mark.parametrize('frame', ['', 'abc', 'velocity_meter_link'])
 def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     """What we pack ROS and rosbags read, and what they pack we read."""
-    data = diagnostic_array.pack(EPOCH + 5, frame, statuses)
+    data = diagnostic_array.pack_diagnostics(EPOCH + 5, frame, statuses)
     message = store().deserialize_cdr(data, topics.DIAGNOSTICS)
     assert bytes(store().serialize_cdr(message, topics.DIAGNOSTICS)) == data
-    assert diagnostic_array.read(data) == (EPOCH + 5, frame, statuses)
+    assert diagnostic_array.read_diagnostics(data) == (EPOCH + 5, frame, statuses)
     _, load, dump = ros(topics.DIAGNOSTICS)
     message = load(data)
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1_700_000_000, 5)
@@ -66,7 +66,7 @@ def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     assert [Status(s.level[0], s.name, s.message, s.hardware_id, tuple(
         (v.key, v.value) for v in s.values)) for s in message.status] == statuses
     # whose padding is whatever was there, and at the end too
-    assert diagnostic_array.read(dump(message)) == (EPOCH + 5, frame, statuses)
+    assert diagnostic_array.read_diagnostics(dump(message)) == (EPOCH + 5, frame, statuses)
 
 
 @settings(max_examples=100, deadline=None)
@@ -74,28 +74,28 @@ def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     Status, st.integers(0, 255), TEXT, TEXT, TEXT, st.lists(st.tuples(TEXT, TEXT), max_size=4).map(
         tuple)), max_size=3))
 def test_any_diagnostic_array_comes_back(frame, statuses):
-    data = diagnostic_array.pack(7, frame, statuses)
-    assert diagnostic_array.read(data) == (7, frame, statuses)
+    data = diagnostic_array.pack_diagnostics(7, frame, statuses)
+    assert diagnostic_array.read_diagnostics(data) == (7, frame, statuses)
 
 
 def test_a_diagnostic_array_cut_anywhere_is_refused():
     """So is one that announces more than it can hold, and big-endian."""
-    data = velocity_record.pack(WINDOW, EPOCH)
+    data = velocity_record.pack_fix(WINDOW, EPOCH)
     for size in range(len(data)):
         with pytest.raises(ValueError, match='expected'):
-            diagnostic_array.read(data[:size])
-    many = diagnostic_array.pack(0, '', [])[:-4] + struct.pack('<I', 2**32 - 1)
+            diagnostic_array.read_diagnostics(data[:size])
+    many = diagnostic_array.pack_diagnostics(0, '', [])[:-4] + struct.pack('<I', 2**32 - 1)
     for bad in (many, b'\x00\x00' + data[2:]):
         with pytest.raises(ValueError, match='expected'):
-            diagnostic_array.read(bad)
+            diagnostic_array.read_diagnostics(bad)
 
 
 @pytest.mark.parametrize('fix', [WINDOW, NO_WINDOW])
 def test_a_velocity_fix_comes_back_from_its_record(fix):
     """Bit for bit; the stamp is the end of the window, the level says whether it is valid."""
-    data = velocity_record.pack(fix, EPOCH)
-    assert repr(velocity_record.read(data, EPOCH)) == repr(fix)
-    stamp_ns, frame, (status,) = diagnostic_array.read(data)
+    data = velocity_record.pack_fix(fix, EPOCH)
+    assert repr(velocity_record.read_fix(data, EPOCH)) == repr(fix)
+    stamp_ns, frame, (status,) = diagnostic_array.read_diagnostics(data)
     assert (stamp_ns, frame) == (EPOCH + fix.end_ns, 'velocity_meter_link')
     assert (status.level, status.message) == (0 if fix.valid else 1, fix.status)
     keys = ['window_start_ns', 'window_end_ns', 'cycles', 'tan_alpha', 'velocity_x', 'velocity_y',
@@ -110,22 +110,22 @@ def test_a_velocity_fix_comes_back_from_its_record(fix):
 def test_any_velocity_fix_comes_back(velocity, sigma, tan, tau, g, start, cycles, latency):
     end = start + cycles * 10**7
     fix = VelocityFix(start, end, cycles, velocity, sigma, tan, tau, g, arrival_ns=end + latency)
-    assert velocity_record.read(velocity_record.pack(fix, EPOCH), EPOCH) == fix
+    assert velocity_record.read_fix(velocity_record.pack_fix(fix, EPOCH), EPOCH) == fix
 
 
 def test_records_that_are_none_are_refused():
     """Of another status, without a key, with a text for a number."""
     def packed(name, values):
-        return diagnostic_array.pack(0, '', [Status(0, name, '', '', tuple(values))])
-    values = diagnostic_array.read(velocity_record.pack(WINDOW, 0))[2][0].values
-    assert velocity_record.read(packed('velocity_meter', values), 0) == WINDOW
+        return diagnostic_array.pack_diagnostics(0, '', [Status(0, name, '', '', tuple(values))])
+    values = diagnostic_array.read_diagnostics(velocity_record.pack_fix(WINDOW, 0))[2][0].values
+    assert velocity_record.read_fix(packed('velocity_meter', values), 0) == WINDOW
     for name, wrong, sentence in (
             ('imu', values, r"holds the statuses \['imu'\]; expected one of velocity_meter"),
             ('velocity_meter', values[1:], 'window_start_ns is None; expected a whole number'),
             ('velocity_meter', [(k, 'fast' if k == 'g23' else v) for k, v in values],
              "g23 is 'fast'; expected a number")):
         with pytest.raises(ValueError, match=sentence):
-            velocity_record.read(packed(name, wrong), 0)
+            velocity_record.read_fix(packed(name, wrong), 0)
 
 
 def test_the_velocity_for_display():
@@ -252,7 +252,7 @@ def test_bags_keep_them(storage, tmp_path):
     """Records, fixes with their status and covariances, and the velocities as columns."""
     writer = GnssWriter(EPOCH)
     none = no_gnss_fix(8 * SECOND, OUTAGE, 8 * SECOND)
-    data = {topics.METER_RECORD: [velocity_record.pack(f, EPOCH) for f in (WINDOW, NO_WINDOW)],
+    data = {topics.METER_RECORD: [velocity_record.pack_fix(f, EPOCH) for f in (WINDOW, NO_WINDOW)],
             topics.GNSS_FIX: [writer.fix(FIX), writer.fix(none)],
             topics.GNSS_VELOCITY: [writer.velocity(FIX)]}
     with BagWriter(tmp_path / 'bag', storage) as bag:
@@ -262,7 +262,7 @@ def test_bags_keep_them(storage, tmp_path):
                 bag.write(topic.name, EPOCH, message)
     with open_bag(tmp_path / 'bag') as bag:
         kept = [bytes(m) for name, _, m in bag.messages() if name.endswith('record')]
-        assert [repr(velocity_record.read(m, EPOCH)) for m in kept] == [
+        assert [repr(velocity_record.read_fix(m, EPOCH)) for m in kept] == [
             repr(WINDOW), repr(NO_WINDOW)]
         fix, velocity = bag.arrays('gnss/fix'), bag.arrays('gnss/velocity')
     assert fix['status'].tolist() == [0, -1]

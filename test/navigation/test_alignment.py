@@ -21,7 +21,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.navigate import navigate
 from ins_sim.settings.navigate import AlignmentSettings, NavigateSettings
 from ins_sim.core.postprocessing.imu_record import RecordedImu
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 
 OMEGA = ellipsoid.ROTATION_RATE
 DEG_H = math.radians(1.0) / 3600.0
@@ -111,7 +111,7 @@ def test_level_takes_the_given_heading(roll, pitch, heading):
     """Of a perfect force and a heading the attitude comes back whole."""
     q_nb = from_compass(roll, pitch, heading)[0]
     force = np.array(quaternion.rotate_back(q_nb, (0.0, 0.0, 9.8)))
-    back = to_compass(np.array(alignment.level(force, heading)))
+    back = to_compass(np.array(alignment.level_attitude(force, heading)))
     turn = Rotation.from_quat(q_nb).inv() * Rotation.from_quat(from_compass(*back)[0])
     assert turn.magnitude() < 1e-12
 
@@ -119,7 +119,7 @@ def test_level_takes_the_given_heading(roll, pitch, heading):
 def test_a_vertical_forward_axis_has_no_heading():
     """It is said, not computed."""
     with pytest.raises(ValueError, match='forward axis is within 1 deg of the vertical'):
-        alignment.level(np.array([9.8, 0.01, 0.0]), 0.0)
+        alignment.level_attitude(np.array([9.8, 0.01, 0.0]), 0.0)
 
 
 def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
@@ -161,7 +161,7 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
         'source:=motion', 'input:=integrated'])
     generator = chosen.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    blocks = list(sense(chosen, motion))
+    blocks = list(imu_blocks(chosen, motion))
     t_ns, omega, f = (np.concatenate([getattr(b, n) for b in blocks])
                       for n in ('t_ns', 'omega', 'f'))
     truth = motion.at(t_ns)
@@ -169,7 +169,7 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
     still = alignment.find_standstill(imu, AlignmentSettings(longest_s=120.0))
     lat = float(truth.lat[0])
     compass = alignment.gyrocompass(still, lat)
-    assert alignment.trusted(compass, still, lat, math.radians(2.0))
+    assert alignment.is_trusted(compass, still, lat, math.radians(2.0))
     tilt, azimuth = errors(compass.q_nb, tuple(truth.q_nb[0].tolist()))
     used = slice(still.first, still.last)
     b_a = np.linalg.norm((f - truth.f_ib_b)[used].mean(axis=0))
@@ -198,7 +198,7 @@ def test_gyros_too_coarse_are_not_trusted(bias, trust):
                                                    np.zeros(3)))
     still = alignment.find_standstill(imu, AlignmentSettings())
     compass = alignment.gyrocompass(still, lat)
-    assert alignment.trusted(compass, still, lat, math.radians(2.0)) == trust
+    assert alignment.is_trusted(compass, still, lat, math.radians(2.0)) == trust
 
 
 def test_the_bias_is_the_mean_rate_less_that_of_the_earth():
@@ -260,10 +260,10 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
 @given(force=UNIT, yaw=ANGLE)
 def test_levelling_the_mounting_brings_the_force_up(force, yaw):
     """And by the shortest turn: its axis is level."""
-    q = mounting.levelled(np.array(force), yaw)
+    q = mounting.levelled_mounting(np.array(force), yaw)
     up = np.array(quaternion.rotate(q, tuple(force))) / np.linalg.norm(force)
     assert np.abs(up - [0.0, 0.0, 1.0]).max() < 1e-12
-    shortest = quaternion.logarithm(mounting.levelled(np.array(force), 0.0))
+    shortest = quaternion.logarithm(mounting.levelled_mounting(np.array(force), 0.0))
     assert abs(shortest[2]) < 1e-9
 
 
@@ -278,13 +278,13 @@ def test_the_chain_of_transforms():
     """Up and down the tree; wrong names are named."""
     a, b, c = (tuple(q) for q in Rotation.random(3, random_state=1).as_quat())
     tree = {('base_link', 'mast'): a, ('mast', 'imu'): b, ('base_link', 'gnss'): c}
-    assert mounting.chain({}, 'base_link', 'imu') is None
+    assert mounting.chained_mounting({}, 'base_link', 'imu') is None
     expected = Rotation.from_quat(a) * Rotation.from_quat(b)
-    found = Rotation.from_quat(mounting.chain(tree, 'base_link', 'imu'))
+    found = Rotation.from_quat(mounting.chained_mounting(tree, 'base_link', 'imu'))
     assert (found.inv() * expected).magnitude() < 1e-14
-    found = Rotation.from_quat(mounting.chain(tree, 'imu', 'gnss'))
+    found = Rotation.from_quat(mounting.chained_mounting(tree, 'imu', 'gnss'))
     assert (found.inv() * expected.inv() * Rotation.from_quat(c)).magnitude() < 1e-14
     with pytest.raises(ValueError, match="no frame 'imu2'; the nearest is 'imu'"):
-        mounting.chain(tree, 'base_link', 'imu2')
+        mounting.chained_mounting(tree, 'base_link', 'imu2')
     with pytest.raises(ValueError, match="does not connect 'base_link' with 'far'"):
-        mounting.chain({**tree, ('elsewhere', 'far'): a}, 'base_link', 'far')
+        mounting.chained_mounting({**tree, ('elsewhere', 'far'): a}, 'base_link', 'far')

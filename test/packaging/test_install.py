@@ -58,14 +58,15 @@ def test_graph_names_executables():
     for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER):
         module, function = SCRIPTS[process.executable].split(':')
         assert function == process.executable
-        assert graph.command(process)[2:4] == [module, process.executable]
+        assert graph.process_command(process)[2:4] == [module, process.executable]
         assert all(resources.config(name).is_file() for name in process.config)
     assert graph.MASTER in {process.name for process in graph.PROCESSES}
 
 
 def test_command_passes_names_files_and_values():
     """The runner of the demo speaks the same ROS arguments as launch."""
-    words = graph.command(graph.PROCESSES[0], ['a.yaml'], [('rate_hz', 10.0)], namespace='/left')
+    words = graph.process_command(graph.PROCESSES[0], ['a.yaml'], [('rate_hz', 10.0)],
+                                  namespace='/left')
     assert words[4:] == ['--ros-args', '-r', '__node:=strapdown', '-r', '__ns:=/left',
                          '--params-file', 'a.yaml', '-p', 'rate_hz:=10.0']
 

@@ -9,7 +9,7 @@ import pytest
 
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.postprocessing.imu_record import gaps, ordered, RecordedImu
+from ins_sim.core.postprocessing.imu_record import find_gaps, ordered_samples, RecordedImu
 from ins_sim.core.postprocessing.reference import Reference, SampledTrack
 from ins_sim import parameter_files
 from support.recorded_imu import end_errors, recorded, run, stamps
@@ -118,9 +118,9 @@ def test_as_few_stamps_as_possible_are_dropped(values):
                       np.full((len(t_ns), 4), np.nan))
     if max(longest) < 2:
         with pytest.raises(ValueError, match='expected at least two good ones'):
-            ordered(imu)
+            ordered_samples(imu)
         return
-    kept, losses = ordered(imu)
+    kept, losses = ordered_samples(imu)
     assert (np.diff(kept.t_ns) > 0).all()
     assert len(kept) == max(longest) == len(values) - losses.out_of_order
 
@@ -137,7 +137,7 @@ def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
     expected = run(imu[clean], reference)
     assert (got.figures['not_finite'], got.figures['out_of_order']) == (1, 1)
     assert np.array_equal(got.states[0].q_nb, expected.states[0].q_nb)
-    assert list(gaps(got.states[0].t_ns, 3.0)) == []
+    assert list(find_gaps(got.states[0].t_ns, 3.0)) == []
 
 
 def test_a_solution_that_runs_away_is_cut_and_said():

@@ -18,7 +18,7 @@ from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.reference import Reference, SampledTrack
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.settings.catalogue import build
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim import parameter_files
 from support.studies import run_offline
 from support.recorded_imu import end_errors, recorded, run, stamps
@@ -101,7 +101,7 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
         chosen = parameter_files.read([], [
             'motion.kind:=sinusoids', 'source:=motion', 'duration_s:=60.0', f'output:={mode}',
             f'input:={mode}', 'vertical.channel:=free'])
-        blocks = list(sense(chosen, MOTION))
+        blocks = list(imu_blocks(chosen, MOTION))
         t_ns, omega, f = (np.concatenate([getattr(x, n) for x in blocks])
                           for n in ('t_ns', 'omega', 'f'))
         _, reference = recorded(t_ns)

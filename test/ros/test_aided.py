@@ -143,7 +143,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         fixes = offline_fixes(stream, np.arange(0, 301) * DT, values)
         # wrong by 5 m/s, so that it shows
         late = replace(fixes[0], velocity=(fixes[0].velocity[0] - 5.0, fixes[0].velocity[1]))
-        stream.send_bytes(topics.METER_RECORD, velocity_record.pack(late, 0))
+        stream.send_bytes(topics.METER_RECORD, velocity_record.pack_fix(late, 0))
         send_both(stream, 151, 231)
         # it waits for the window of 2 s now
         stream.wait_ack(199 * DT)
@@ -154,7 +154,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
               f'{np.linalg.norm(after):.4f} m/s')
         assert np.linalg.norm(np.subtract(after, before)) > 1e-3
         # one of another window is refused in a sentence, and holds nothing up
-        stream.send_bytes(topics.METER_RECORD, velocity_record.pack(
+        stream.send_bytes(topics.METER_RECORD, velocity_record.pack_fix(
             replace(fixes[1], cycles=50), 0))
         stream.chain.wait_text(node, 'averages 50 cycles in 1 s; expected 100 cycles in 1 s')
         stream.wait_ack(230 * DT, 4.0)
@@ -208,7 +208,7 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
     meter.follow_ins(run.states.t_ns, body_velocity(run.states))
     with open_bag(tmp_path / 'bag') as bag:
         counts = {n.lstrip('/'): span.count for n, span in bag.spans().items()}
-        logged, records = zip(*[(log_ns, velocity_record.read(bytes(data), 0))
+        logged, records = zip(*[(log_ns, velocity_record.read_fix(bytes(data), 0))
                                 for n, log_ns, data in bag.messages()
                                 if n == '/velocity_meter/record'])
         fix, aided = bag.arrays('gnss/fix'), bag.arrays('aided/fix')

@@ -38,7 +38,7 @@ def test_live_is_offline_message_for_message(ros_domain, tmp_path, capsys):
         chain.end()
     largest = {}
     with open_bag(tmp_path / 'live') as live, open_bag(tmp_path / 'offline') as offline:
-        records = [[velocity_record.read(bytes(data), 0) for _, _, data in bag.messages(
+        records = [[velocity_record.read_fix(bytes(data), 0) for _, _, data in bag.messages(
             [topics.METER_RECORD.name])] for bag in (live, offline)]
         for topic in FRAMED:
             a, b = (bag.arrays(topic.name) for bag in (live, offline))

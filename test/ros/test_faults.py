@@ -25,8 +25,8 @@ class Source:
         self.chain = Chain(domain, folder)
         self.listener = Listener(domain, (topics.IMU_RAW, topics.INS_ODOMETRY))
         self.diagnostics = self.listener.diagnostics()
-        from ins_sim.ros.transport.qos import publisher
-        self._out = [(t, t.writer(), publisher(self.listener.node, t, 2000).publish)
+        from ins_sim.ros.transport.qos import make_publisher
+        self._out = [(t, t.writer(), make_publisher(self.listener.node, t, 2000).publish)
                      for t in (topics.TRUTH_ODOMETRY, topics.TRUTH_IMU)]
         settings = studies.settings(PARAMETERS).motion_generator
         self._motion = make_motion(settings.motion, settings.datum, settings.earth)

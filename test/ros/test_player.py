@@ -51,7 +51,7 @@ def mixed_bag(path, count=200):
     pack = topics.IMU_RAW.writer().pack
     with BagWriter(path) as bag:
         bag.add_topic('imu', topics.IMU)
-        bag.add_topic('words', topics.STRING, bag_qos.profile(reliability='best_effort'))
+        bag.add_topic('words', topics.STRING, bag_qos.profile_yaml(reliability='best_effort'))
         bag.add_topic('latched', topics.STRING, bag_qos.LATCHED)
         bag.add_topic('unknown', 'other_msgs/msg/Thing', definition='int32 x\n')
         bag.add_topic('no name', topics.STRING)
@@ -86,7 +86,7 @@ def test_played_and_recorded_again(chain, tmp_path):
     for name in ('words', 'latched'):
         assert [d for _, d in after['/robot/' + name]] == [d for _, d in before['/' + name]]
     with open_bag(tmp_path / 'again') as bag:
-        offers = {n: bag_qos.profiles(c.qos)[0] for n, c in bag.topics.items()}
+        offers = {n: bag_qos.read_profiles(c.qos)[0] for n, c in bag.topics.items()}
     assert offers['/robot/latched']['durability'] == 'transient_local'
     assert offers['/robot/words']['reliability'] == 'best_effort'
 
@@ -159,7 +159,7 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
         again = tmp_path / source
         recorder = chain.start_verb('record', *OUTPUTS, '-o', again, '--ros-args', '-r',
                                     '__ns:=/left')
-        started = [chain.run(p.name, graph.command(p, (), PARAMETERS.items(), 'left'))
+        started = [chain.run(p.name, graph.process_command(p, (), PARAMETERS.items(), 'left'))
                    for p in replay.processes]
         player = chain.run('player', graph.play_command(
             path, replay, ['--lock-step', 'strapdown', 'recorder'], 'left'))

@@ -5,7 +5,7 @@ import time
 
 from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.bags.definitions import define
+from ins_sim.bags.definitions import message_definition
 from support.live import Listener
 import pytest
 
@@ -121,8 +121,8 @@ def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
             assert said[name][1:] == (len(messages), '0 lost') and len(got) == len(messages)
             # without any stamp the time of reception is all there is
             assert name == '/latched' or all(begin_ns <= t <= end_ns for _, t, _ in got)
-        offers = {name: bag_qos.profiles(c.qos)[0] for name, c in bag.topics.items()}
-        assert bag.topics['/chatter'].definition == define('std_msgs/msg/String')[0]
+        offers = {name: bag_qos.read_profiles(c.qos)[0] for name, c in bag.topics.items()}
+        assert bag.topics['/chatter'].definition == message_definition('std_msgs/msg/String')[0]
         definition = bag.topics['/goals'].definition
         assert 'PoseStamped[] goals' in definition
         assert 'MSG: geometry_msgs/Quaternion' in definition

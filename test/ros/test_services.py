@@ -97,13 +97,13 @@ def test_a_missing_consumer_is_named_with_code_4(chain):
 def test_pause_step_reset_and_status(chain, ros_domain):
     from std_msgs.msg import String
     from std_srvs.srv import SetBool, Trigger
-    from ins_sim.ros.transport.qos import latched
+    from ins_sim.ros.transport.qos import latched_profile
     listener = Listener(ros_domain, (topics.TRUTH_IMU,))
     states = []
     try:
         chain.start('motion_generator', {'rate_hz': 100.0, 'duration_s': 0.0})
         listener.node.create_subscription(String, 'sim/status',
-                                          lambda m: states.append(m.data), latched())
+                                          lambda m: states.append(m.data), latched_profile())
         heard = listener.heard['truth/imu']
         listener.poll_until(lambda: len(heard) > 10)
         pause = SetBool.Request(data=True)

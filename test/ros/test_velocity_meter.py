@@ -31,7 +31,7 @@ HEARD = (Record, topics.METER_VELOCITY)
 
 def records(stream):
     """Return the VelocityFixes heard."""
-    return [velocity_record.read(data, 0) for data in stream.raw[Record.name].values()]
+    return [velocity_record.read_fix(data, 0) for data in stream.raw[Record.name].values()]
 
 
 @pytest.mark.parametrize('mode', ['surrogate', 'signal'])

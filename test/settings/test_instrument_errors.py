@@ -11,7 +11,7 @@ from scipy.stats import binom, chi2
 from ins_sim.settings.catalogue import build, flatten
 from ins_sim.settings.instrument_errors import (AccelerometerErrors, GyroErrors, Sampling,
                                                 Temperature)
-from ins_sim.settings.presets import ACCELEROMETER, GYRO, preset, PRESETS, triads
+from ins_sim.settings.presets import ACCELEROMETER, GYRO, preset, preset_triads, PRESETS
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.triad_errors import TriadErrors
 from ins_sim.core.numerics.units import DEG
@@ -110,7 +110,7 @@ def test_presets_are_complete_and_cannot_be_changed(name):
     one = PRESETS[name]
     assert one.name == name and one.datasheet and 'ARW' in one.figures and 'VRW' in one.figures
     values = preset(name)
-    for prefix, cls, made in zip((GYRO, ACCELEROMETER), KEYS, triads(name)):
+    for prefix, cls, made in zip((GYRO, ACCELEROMETER), KEYS, preset_triads(name)):
         part = {k.removeprefix(prefix): v for k, v in values.items() if k.startswith(prefix)}
         assert part and build(cls, part) == made
         TriadErrors(made, 1, 0, prefix, DT)

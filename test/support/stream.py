@@ -25,14 +25,14 @@ class Stream:
     """A node by itself, what it says on some topics, and the truth of a motion at 100 Hz."""
 
     def __init__(self, domain, folder, heard, motion=None, published=(topics.TRUTH_ODOMETRY,)):
-        from ins_sim.ros.transport.qos import publisher
+        from ins_sim.ros.transport.qos import make_publisher
         self.chain = Chain(domain, folder)
         # a node that knows the reader of its answers, made last, knows all readers
         self.listener = Listener(domain, (*heard, ACK))
         self.heard, self.raw = self.listener.heard, self.listener.raw
         self.seen = self.listener.diagnostics()
         self._out = {t: (t.writer() if t.type_name in LAYOUTS else None,
-                         publisher(self.listener.node, t, 10000).publish) for t in published}
+                         make_publisher(self.listener.node, t, 10000).publish) for t in published}
         self.settings = build(MotionGeneratorSettings, motion or {})
         self.frame = MapFrame(self.settings.datum, True)
         self._motion = make_motion(self.settings.motion, self.settings.datum, self.settings.earth)

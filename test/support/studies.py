@@ -12,7 +12,7 @@ from ins_sim.core.prediction.predict import predict
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.io.motion import read_motion
 from ins_sim.settings.by_node import NODES
-from ins_sim.core.simulation.inertial import sense, simulate
+from ins_sim.core.simulation.inertial import imu_blocks, simulate
 from ins_sim.settings.simulation import SimulationSettings
 
 DEG_PER_HOUR = 206264.806
@@ -40,7 +40,7 @@ def streamed(s):
     """Return the ImuSamples of a run through the stream, and its truth as push takes it."""
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    expected = ImuSamples.concatenate(sense(s, motion))
+    expected = ImuSamples.concatenate(imu_blocks(s, motion))
     frame, truth = MapFrame(generator.datum, True), motion.at(expected.t_ns)
     return expected, list(zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(),
                               truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()))

@@ -32,7 +32,7 @@ def normalised_square(z, s):
     return float(z @ np.linalg.solve(s, z))
 
 
-def tail(square, freedom):
+def chi_square_tail(square, freedom):
     """
     Return the probability that chi-square of an even number of degrees of freedom is larger.
 

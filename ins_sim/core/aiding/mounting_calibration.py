@@ -49,7 +49,7 @@ class MountingCalibration:
         return self.fitted - self.dpsi, math.hypot(self.fitted_sigma, self.dpsi_sigma)
 
 
-def calibrate(states, gnss, meter):
+def calibrate_mounting(states, gnss, meter):
     """
     Return the MountingCalibration of a flight with a turn.
 

@@ -19,7 +19,7 @@ from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.settings.aided_navigator import FILTERS
 from .corrected_strapdown import CorrectedStrapdown
-from .filters.base import INVALID_FIX, refused
+from .filters.base import INVALID_FIX, refused_fix
 from .fix_checks import check_ahead, check_gnss, check_velocity
 
 SNAPSHOT_NS = 1_000_000_000
@@ -193,16 +193,16 @@ class AidedNavigator:
         """Return the FixOutcome of a fix that must not reach the filter, or None."""
         fix = entry.fix
         if not fix.valid:
-            return refused(f'{INVALID_FIX}: {fix.status}')
+            return refused_fix(f'{INVALID_FIX}: {fix.status}')
         if entry.source not in self.sources:
-            return refused(f'{entry.source} is not used')
+            return refused_fix(f'{entry.source} is not used')
         if fix.t_ns < self._snapshots[0].t_ns:
             late = (self._ins.t_ns - fix.t_ns) * 1e-9
-            return refused(f'the fix is {late:.3f} s old; expected at most buffer_s, '
-                           f'{self._settings.buffer_s:g} s, and none before the start')
+            return refused_fix(f'the fix is {late:.3f} s old; expected at most buffer_s, '
+                               f'{self._settings.buffer_s:g} s, and none before the start')
         if any(_instant(other) == _instant(entry) for other in reversed(self._log)
                if other.fix.t_ns >= fix.t_ns):
-            return refused(f'the fix at {seconds(fix.t_ns)} has come before')
+            return refused_fix(f'the fix at {seconds(fix.t_ns)} has come before')
         return None
 
     def _insert(self, entry):
@@ -238,7 +238,7 @@ class AidedNavigator:
             return self.filter.update_gnss(ins, fix, ins.rate_to_earth,
                                            self._settings.gnss_model.lever_arm_m)
         if self._window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
-            return refused('the solution does not cover its window')
+            return refused_fix('the solution does not cover its window')
         forward, left = fix.velocity
         known = self._settings.meter_model.bias_x_m_s / fix.cycles
         return self.filter.update_velocity(ins, replace(fix, velocity=(forward - known, left)))

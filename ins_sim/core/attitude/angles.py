@@ -61,6 +61,6 @@ def from_rpy(roll, pitch, yaw):
                             quaternion.exponential((roll, 0.0, 0.0))))
 
 
-def roll(c):
+def roll_of_matrix(c):
     """Return gamma of C_nb = Rz Ry(-theta) Rx(gamma), nine floats, rad."""
     return math.atan2(c[7], c[8])

@@ -1,8 +1,8 @@
 """
 Interpolation of sampled motion: Hermite and Newton polynomials, and quaternions between samples.
 
-``hermite`` and ``newton`` reconstruct a continuous motion from streamed truth without looking
-ahead (docs/theory.md, "Streamed truth").
+``hermite_coefficients`` and ``newton_differences`` reconstruct a continuous motion from streamed
+truth without looking ahead (docs/theory.md, "Streamed truth").
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from . import quaternion
 
 
-def hermite(h, d, w_start, w_end):
+def hermite_coefficients(h, d, w_start, w_end):
     """
     Return the vectors c1, c2, c3 of r(s) = c1 s + c2 s^2 + c3 s^3, q(s) = q_start exp(r(s)).
 
@@ -30,7 +30,7 @@ def hermite(h, d, w_start, w_end):
     return a, c2, c3
 
 
-def newton(last, value, r1, r2, r3):
+def newton_differences(last, value, r1, r2, r3):
     """
     Return the divided differences d0..d3 at a new sample, newest first.
 
@@ -46,18 +46,18 @@ def newton(last, value, r1, r2, r3):
 
 
 def newton_value(differences, s0, s1, s2):
-    """Return the cubic of ``newton``; s0, s1, s2: time since the last three samples, s."""
+    """Return the cubic of ``newton_differences``; s0, s1, s2: s since the last three samples."""
     (a0, b0, c0), (a1, b1, c1), (a2, b2, c2), (a3, b3, c3) = differences
     return (a0 + s0 * (a1 + s1 * (a2 + s2 * a3)), b0 + s0 * (b1 + s1 * (b2 + s2 * b3)),
             c0 + s0 * (c1 + s1 * (c2 + s2 * c3)))
 
 
-def continuous(q):
+def continuous_quaternions(q):
     """Return (n, 4) quaternions with the signs that make neighbours differ least."""
     dot = (q[1:] * q[:-1]).sum(axis=1)
     return q * np.concatenate([[1.0], np.cumprod(np.where(dot < 0.0, -1.0, 1.0))])[:, None]
 
 
-def middle(q_start, q_end):
+def middle_attitude(q_start, q_end):
     """Return the attitude half-way between two that are near."""
     return quaternion.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, q_end)))

@@ -37,6 +37,6 @@ def skew(v):
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
-def matrix(q_nb):
+def attitude_matrix(q_nb):
     """Return C_nb (3, 3)."""
     return np.array(dcm_of(q_nb)).reshape(3, 3)

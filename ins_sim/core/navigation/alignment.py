@@ -173,7 +173,7 @@ def gyrocompass(still, lat):
                        float(still.rate @ up) - ellipsoid.ROTATION_RATE * math.sin(lat))
 
 
-def trusted(compass, still, lat, sigma):
+def is_trusted(compass, still, lat, sigma):
     """
     Return whether a Gyrocompass can be believed to within sigma, rad.
 
@@ -185,7 +185,7 @@ def trusted(compass, still, lat, sigma):
     return compass.sigma <= sigma and max(abs(compass.excess), abs(compass.excess_up)) <= allowed
 
 
-def level(force, heading):
+def level_attitude(force, heading):
     """
     Return q_nb of a mean specific force (3,) at rest and a heading, clockwise, rad.
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 
-def overlapping(samples, factors):
+def overlapping_deviation(samples, factors):
     """
     Return the overlapping Allan deviation of a record at several averaging times.
 

@@ -8,7 +8,7 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.navigation.recorded import RecordedNavigator
 
 
-def headings(imu, state, kind, spin):
+def navigated_headings(imu, state, kind, spin):
     """
     Yield stamp and heading, ns and rad, behind the first sample of a RecordedImu.
 
@@ -21,14 +21,14 @@ def headings(imu, state, kind, spin):
         yield sample[0], float(to_compass(np.array(nav.step(*sample)[4]))[2])
 
 
-def course(turning, displacements, start_ns, distance_m, search_s):
+def find_course(turning, displacements, start_ns, distance_m, search_s):
     """
     Return the heading at the start, rad, and how it was found; or None and why not.
 
-    turning: of ``headings`` from heading zero; displacements: of Reference.displacements.  Each
-    way from stamp to stamp is turned back by what the heading has changed since the start; the
-    sum then points along the heading at the start, if the vehicle goes forwards.  The noise of
-    positions cancels in the sum but for that of its ends.
+    turning: of ``navigated_headings`` from heading zero; displacements: of
+    Reference.displacements.  Each way from stamp to stamp is turned back by what the heading has
+    changed since the start; the sum then points along the heading at the start, if the vehicle
+    goes forwards.  The noise of positions cancels in the sum but for that of its ends.
     """
     if displacements is None:
         return None, 'has no way to show a course'

@@ -49,7 +49,7 @@ class Losses:
     out_of_order: int
 
 
-def ordered(imu):
+def ordered_samples(imu):
     """
     Return the samples that are finite and rise in stamp, and the Losses.
 
@@ -89,7 +89,7 @@ def _rising(stamps):
     return indices[::-1]
 
 
-def gaps(t_ns, factor):
+def find_gaps(t_ns, factor):
     """Return the indices k whose step to k + 1 is longer than factor times the median step."""
     return np.flatnonzero(np.diff(t_ns) > gap_limit_ns(t_ns, factor))
 

@@ -12,7 +12,7 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG_PER_HOUR
-from .course import course, headings
+from .course import find_course, navigated_headings
 from .reference import LONGEST_STEP_S
 
 # a vehicle that stands is not tilted by more, deg
@@ -117,8 +117,8 @@ class _Search:
             q_still = None
             if self._reference is not None:
                 q_still = self._reference.attitude_at(still.end_ns)
-            bias = self._bias(still, q_still or alignment.level(still.force, 0.0), where[0],
-                              notes, figures)
+            q_still = q_still or alignment.level_attitude(still.force, 0.0)
+            bias = self._bias(still, q_still, where[0], notes, figures)
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _standstill(self, first, last, expected, longest=False):
@@ -221,7 +221,7 @@ class _Search:
         """Return q_nb of a standstill and whether its heading is gyrocompassed."""
         wanted = self._s.initial.heading
         if wanted == 'given' and not again:
-            return alignment.level(
+            return alignment.level_attitude(
                 still.force, math.radians(self._s.initial.heading_deg)), False
         refused = 'the Earth does not turn (earth.rotation)'
         if wanted in ('auto', 'gyrocompass', 'given') and self._spin:
@@ -229,7 +229,7 @@ class _Search:
             worst = math.radians(self._s.alignment.heading_sigma_deg)
             seen = (f'standard error {math.degrees(compass.sigma):.3g} deg, mean rate '
                     f'{compass.excess * DEG_PER_HOUR:+.3g} deg/h from that of the Earth')
-            if alignment.trusted(compass, still, where[0], worst):
+            if alignment.is_trusted(compass, still, where[0], worst):
                 notes.append(f'heading by gyrocompassing: {seen}')
                 figures.update(heading_source='gyrocompass',
                                heading_sigma_deg=math.degrees(compass.sigma))
@@ -242,7 +242,7 @@ class _Search:
         notes.append(f'heading from {source}' + ('' if wanted == 'course' or wanted == 'reference'
                                                  else f', because {refused}'))
         figures.update(heading_source=source)
-        return alignment.level(still.force, heading), False
+        return alignment.level_attitude(still.force, heading), False
 
     def _reference_heading(self, still, k, where, wanted, refused):
         """Return a heading and the text of its source; ValueError where there is none."""
@@ -273,13 +273,14 @@ class _Search:
         """Return the heading at sample k, or None, and a text about it."""
         later = self._broken[self._broken >= k]
         last = int(later[0]) + 1 if len(later) else len(self._imu)
-        q_nb = alignment.level(still.force, 0.0)
+        q_nb = alignment.level_attitude(still.force, 0.0)
         bias = alignment.gyro_bias(still, q_nb, where[0], self._spin)
-        turning = headings(self._imu[k:last].less_bias(bias), (*where, (0.0, 0.0, 0.0), q_nb),
-                           self._s.input, self._spin)
+        turning = navigated_headings(self._imu[k:last].less_bias(bias),
+                                     (*where, (0.0, 0.0, 0.0), q_nb),
+                                     self._s.input, self._spin)
         limits = self._s.alignment
-        return course(turning, self._reference.displacements(), int(self._imu.t_ns[k]),
-                      limits.course_distance_m, limits.course_search_s)
+        return find_course(turning, self._reference.displacements(), int(self._imu.t_ns[k]),
+                           limits.course_distance_m, limits.course_search_s)
 
     def _bias(self, still, q_nb, lat, notes, figures):
         bias = alignment.gyro_bias(still, q_nb, lat, self._spin)

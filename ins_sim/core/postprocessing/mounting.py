@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.settings.suggest import nearest
+from ins_sim.settings.suggest import nearest_name
 
 
-def levelled(force, yaw):
+def levelled_mounting(force, yaw):
     """Return q_bs: the shortest turn that brings a force (3,) up, then one by yaw about up."""
     x, y, z = (force / np.linalg.norm(force)).tolist()
     # upside down any level axis will do
@@ -18,7 +18,7 @@ def levelled(force, yaw):
                                quaternion.exponential(tuple(scale * a for a in axis)))
 
 
-def chain(transforms, base, frame):
+def chained_mounting(transforms, base, frame):
     """
     Return q_bs from static transforms, or None where there are none at all.
 
@@ -35,7 +35,8 @@ def chain(transforms, base, frame):
     for name in (base, frame):
         if name not in links:
             raise ValueError(f'/tf_static has no frame {name!r}; the nearest is '
-                             f'{nearest(name, links)!r}; expected it, or mounting.source given')
+                             f'{nearest_name(name, links)!r}; expected it, or mounting.source '
+                             'given')
     known, queue = {base: quaternion.IDENTITY}, [base]
     for name in queue:
         for other, q in links[name]:

@@ -15,7 +15,7 @@ from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
 from . import mounting
 from .comparison import compare_with_reference
-from .imu_record import gap_limit_ns, gaps, ordered
+from .imu_record import find_gaps, gap_limit_ns, ordered_samples
 from .initial_state import choose_start
 
 # A solution of one step shows nothing.
@@ -44,9 +44,9 @@ def navigate(settings, sources, progress=None):
     progress: called with the fraction done.  Raises ValueError in one sentence where there is
     nothing to begin with.
     """
-    imu, losses = ordered(sources.imu)
+    imu, losses = ordered_samples(sources.imu)
     step_ns = imu.step_ns
-    broken = gaps(imu.t_ns, settings.gap_factor)
+    broken = find_gaps(imu.t_ns, settings.gap_factor)
     notes = [f'{len(imu)} samples of {sources.name} in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.3f} '
              f's, median step {step_ns * 1e-6:.6g} ms; dropped: {losses.not_finite} not finite, '
              f'{losses.out_of_order} out of order; {len(broken)} gaps', *sources.notes]
@@ -100,10 +100,12 @@ def _mounting(settings, sources, imu, first, notes):
     if wanted.source == 'level':
         still = alignment.find_standstill(imu[first:], settings.alignment)
         notes.append('mounting: levelled by the specific force of the standstill')
-        return mounting.levelled(still.force, yaw)
+        return mounting.levelled_mounting(still.force, yaw)
     if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):
         base, frame = wanted.base_frame, sources.frame
-        q_bs = mounting.chain(sources.transforms, base, frame) if frame != base else None
+        q_bs = None
+        if frame != base:
+            q_bs = mounting.chained_mounting(sources.transforms, base, frame)
         if q_bs is not None:
             notes.append(f'mounting: /tf_static from {base} to {frame}')
             return q_bs

@@ -18,7 +18,8 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
 
 
-def propagate(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, position, velocity):
+def propagate_errors(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, position,
+                     velocity):
     """
     Return attitude (n, 3), rad, and position (n, 3), m, errors at every per_step-th fine instant.
 

@@ -8,7 +8,7 @@ from ins_sim.core.earth.rates import rate_of_n
 from ins_sim.core.motion.motion import check_length
 from .drift import (_nanoseconds, _to_n, channel_drift, exact_pair, late_attitude_error,
                     mean_drift, pair_attitude_error, STEP_S, SUBSAMPLES, two_axis_resonances)
-from .error_model import propagate
+from .error_model import propagate_errors
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def predict(settings, motion) -> Prediction:
     beta += np.radians(nav.initial.attitude_error_deg)
     f_n = _to_n(truth, truth.f_ib_b)
     df_n = -_to_n(truth, np.gradient(truth.f_ib_b, fine_s, axis=0) * tau_f)
-    errors = propagate(truth, omega_in, f_n, beta, df_n, fine_s, SUBSAMPLES, rotation,
-                       nav.initial.position_error_m, nav.initial.velocity_error_m_s)
+    errors = propagate_errors(truth, omega_in, f_n, beta, df_n, fine_s, SUBSAMPLES, rotation,
+                              nav.initial.position_error_m, nav.initial.velocity_error_m_s)
     return Prediction(drift, STEP_S * np.arange(steps + 1), *errors,
                       two_axis_resonances(generator.motion, tau))

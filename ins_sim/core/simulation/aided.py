@@ -6,7 +6,7 @@ from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
-from .aided_run import aid, Reported, with_truth
+from .aided_run import navigate_aided, Reported, with_truth
 from .inertial import truth_blocks
 
 
@@ -52,8 +52,8 @@ def simulate_aided(settings, instruments, motion, run, progress=None):
             yield imu
             went(len(imu))
 
-    flown = aid(settings.aided_navigator, with_truth(motion, blocks()), Reported(velocity_fixes),
-                Reported(gnss_fixes))
+    flown = navigate_aided(settings.aided_navigator, with_truth(motion, blocks()),
+                           Reported(velocity_fixes), Reported(gnss_fixes))
     return replace(flown, velocity_fixes=tuple(velocity_fixes), gnss_fixes=tuple(gnss_fixes))
 
 

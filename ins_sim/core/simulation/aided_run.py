@@ -36,7 +36,7 @@ class AidedResult:
 
 
 class Reported:
-    """Fixes that are known already, in the order of their instants, an instrument of ``aid``."""
+    """Known fixes in the order of their instants, an instrument of ``navigate_aided``."""
 
     def __init__(self, fixes):
         self._fixes, self._next = fixes, 0
@@ -54,7 +54,7 @@ def with_truth(motion, blocks):
         yield imu, motion.at(imu.t_ns)
 
 
-def aid(settings, blocks, meter=None, gnss=None, run=0):
+def navigate_aided(settings, blocks, meter=None, gnss=None, run=0):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 

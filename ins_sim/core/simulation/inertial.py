@@ -6,9 +6,9 @@ from functools import partial
 import numpy as np
 
 from ins_sim.core.motion.motion import check_length
-from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.navigation.navigator import InertialNavigator
+from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.sampling import Sampler
@@ -36,7 +36,7 @@ class SimulationResult:
     faults: tuple = ()
 
 
-def sense(settings, motion):
+def imu_blocks(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
     sensor = settings.imu_sensor
     errors = with_errors(sensor)
@@ -73,7 +73,7 @@ def _ideal(settings, motion):
             yield ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
 
 
-def navigate(settings, motion, blocks, faults=None):
+def navigate_blocks(settings, motion, blocks, faults=None):
     """
     Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
 
@@ -135,8 +135,8 @@ def simulate(settings, motion, twin=True, progress=None):
             imu.append(block)
             yield block
 
-    parts = list(navigate(settings.strapdown, motion, keep(watch(sense(settings, motion), 0)),
-                          faults))
+    parts = list(navigate_blocks(
+        settings.strapdown, motion, keep(watch(imu_blocks(settings, motion), 0)), faults))
     if not parts:
         raise ValueError('the run has no navigation output; expected duration_s longer than '
                          'initial.after_s')
@@ -145,9 +145,9 @@ def simulate(settings, motion, twin=True, progress=None):
     twin_errors = None
     if twin:
         ideal = settings.without_delays()
-        blocks = watch(sense(ideal, motion), total / 2)
-        twin_errors = NavErrors.concatenate(e for _, _, e in navigate(settings.strapdown, motion,
-                                                                      blocks))
+        blocks = watch(imu_blocks(ideal, motion), total / 2)
+        twin_errors = NavErrors.concatenate(
+            e for _, _, e in navigate_blocks(settings.strapdown, motion, blocks))
     return SimulationResult(truth, ImuSamples.concatenate(imu), states, errors, twin_errors,
                             tuple(faults))
 

@@ -7,7 +7,8 @@ See docs/theory.md, "Streamed truth".
 from collections import deque
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import hermite, newton, newton_value
+from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_differences,
+                                                 newton_value)
 from ins_sim.core.numerics.instants import seconds
 from .faults import check_finite, check_interval, check_unit, StreamFault
 
@@ -75,12 +76,12 @@ class TruthBuffer:
                 restart=True)
         self._step_ns = step_ns
         back = [1e9 / (t_ns - other[0]) for other in self._last] + [0.0, 0.0]
-        self._cubics = {k: newton(cubic, sample[k], *back[:3])
+        self._cubics = {k: newton_differences(cubic, sample[k], *back[:3])
                         for k, cubic in self._cubics.items()}
         self._last.appendleft(sample)
         times = tuple(other[0] for other in self._last)
         turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(start[1]), q_mb))
-        curve = hermite(h, turned, start[2], omega_mb_b)
+        curve = hermite_coefficients(h, turned, start[2], omega_mb_b)
         self._pieces.append((start[0], t_ns, start[1], 1.0 / step_ns, curve, self._cubics,
                              times + (t_ns,) * (3 - len(times))))
         while self._pieces[0][1] < t_ns - self._reach_ns:

@@ -29,16 +29,16 @@ class AidedNavigatorNode(NavigatorNode):
     def make_outputs(self):
         """Make publishers and readers, and the queues of the fixes."""
         super().make_outputs()
-        self._fix = qos.publisher(self, topics.AIDED_FIX, self.depth)
+        self._fix = qos.make_publisher(self, topics.AIDED_FIX, self.depth)
         self._fix_pack = topics.AIDED_FIX.writer().pack
         self._fix_alone = topics.AIDED_FIX_ALONE.writer().pack
-        self._sigmas = [(qos.publisher(self, topic, self.depth), topic.writer().pack)
+        self._sigmas = [(qos.make_publisher(self, topic, self.depth), topic.writer().pack)
                         for topic in topics.AIDED_SIGMAS]
         self._pairs = GnssPairs(self.epoch_ns, round(1e6 * self.settings.gnss.latency_ms))
         sources, self._queues = self.stage.navigator.sources, []
         if METER in sources:
             self._queues.append((HandQueue(self, topics.METER_RECORD, self.depth), METER,
-                                 lambda data: [velocity_record.read(data, self.epoch_ns)]))
+                                 lambda data: [velocity_record.read_fix(data, self.epoch_ns)]))
         if GNSS in sources:
             # the velocity first, for the fix waits for it
             self._queues += [(HandQueue(self, topic, self.depth), GNSS, push) for topic, push in (

@@ -37,7 +37,7 @@ class NavigatorNode(StageNode):
         self._imu_reader = topics.IMU_RAW.reader()
         # the rate of the body is not needed: pose and velocity only
         self._truth_reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
-        self._outputs = [(qos.publisher(self, topic, self.depth), topic.writer().pack)
+        self._outputs = [(qos.make_publisher(self, topic, self.depth), topic.writer().pack)
                          for topic in self.PUBLISHED]
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.

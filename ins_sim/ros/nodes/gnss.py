@@ -30,7 +30,7 @@ class GnssNode(StageNode):
         """Make publishers, reader and writer, and the service that forces an outage."""
         self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46), (46, 49)))
         self._writer = GnssWriter(self.epoch_ns)
-        self._fix, self._velocity = (qos.publisher(self, topic, self.depth) for topic in (
+        self._fix, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.GNSS_FIX, topics.GNSS_VELOCITY))
         self._fixes = self._outages = 0
         self.monitor.add(self._describe)

@@ -35,7 +35,7 @@ class ImuSensorNode(StageNode):
         settings = self.settings
         self._dt_ns = period_ns(settings.rate_hz)
         self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
-        self._publisher = qos.publisher(self, topics.IMU_RAW, self.depth)
+        self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
         topic = topics.imu_raw(*reported_variances(settings))
         self._reader, self._writer = topics.TRUTH_IMU.reader(), topic.writer()
         self._parity = None
@@ -45,7 +45,7 @@ class ImuSensorNode(StageNode):
     def _watch_parity(self):
         from ins_sim.core.sensors.tuned_gyro.parity import ParityTest
         self._parity = ParityTest(self.settings, self.stage.pair)
-        self._parity_publisher = qos.publisher(self, topics.IMU_PARITY, self.depth)
+        self._parity_publisher = qos.make_publisher(self, topics.IMU_PARITY, self.depth)
         self._parity_writer = topics.IMU_PARITY.writer()
         self.monitor.add(self._describe_parity)
         if self.stage.pair.has_fault:

@@ -41,14 +41,14 @@ class MotionGeneratorNode(Node):
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
                 topics.HEADER)
-        self._publishers = [qos.publisher(self, topic, depth) for topic in topics.TRUTH]
+        self._publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
         self._publish = [p.publish for p in self._publishers]
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
-            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, depth)
+            self._clock_publisher = qos.make_publisher(self, topics.CLOCK_TOPIC, depth)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
-        self._status = self.create_publisher(String, topics.STATUS.name, qos.latched())
+        self._status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
         self.monitor = Monitor(self)
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)

@@ -64,7 +64,7 @@ class PlayerNode(Node):
                 topics.HEADER)
         self._clock_publisher = None
         if options.clock_hz is not None:
-            self._clock_publisher = qos.publisher(self, topics.CLOCK_TOPIC, DEPTH)
+            self._clock_publisher = qos.make_publisher(self, topics.CLOCK_TOPIC, DEPTH)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
             self._tick_ns = max(1, round(SECOND / options.clock_hz * (options.rate or 1.0)))
         # nanoseconds of the bag are what the pace counts
@@ -76,7 +76,7 @@ class PlayerNode(Node):
         if channel.encoding != 'cdr':
             raise ValueError(f'it is serialized as {channel.encoding!r}; expected cdr')
         name = channel.name if channel.name in ABSOLUTE else channel.name.lstrip('/')
-        profile = qos.recorded(bag_qos.profiles(channel.qos), DEPTH)
+        profile = qos.recorded_profile(bag_qos.read_profiles(channel.qos), DEPTH)
         if profile.durability == qos.LATCHING:
             profile.depth = min(max(1, self._playing.counts[channel.name]), LATCHED_DEPTH)
         return self.create_publisher(qos.message_class(topics.Topic(name, channel.type_name)),

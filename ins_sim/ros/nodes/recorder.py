@@ -10,7 +10,7 @@ from rclpy.validate_topic_name import validate_topic_name
 from ins_sim.bags import bag_writer
 from ins_sim.bags import qos as bag_qos
 from ins_sim.bags.bag_reader import open_bag
-from ins_sim.bags.definitions import define
+from ins_sim.bags.definitions import message_definition
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.recorder import RecorderSettings
@@ -130,13 +130,13 @@ class RecorderNode(Node):
         try:
             definition, type_hash = None, ''
             try:
-                define(type_name)
+                message_definition(type_name)
             except ValueError:
                 definition = installed_definition(type_name)
                 type_hash = str(infos[0].topic_type_hash)
-            self.recorder.add(topics.Topic(name, type_name), qos.keep_last(
-                self.settings.record.depth, *qos.offered(infos)), _as_yaml(infos), definition,
-                type_hash)
+            profile = qos.keep_last(self.settings.record.depth, *qos.offered_profile(infos))
+            self.recorder.add(topics.Topic(name, type_name), profile, _as_yaml(infos), definition,
+                              type_hash)
         except (ValueError, ImportError, AttributeError) as error:
             self._refused.add(name)
             self.get_logger().error(f'{name} is not recorded: {error}')
@@ -147,7 +147,7 @@ class RecorderNode(Node):
     def _watch(self, track, infos):
         """See whether publishers that came later go with the subscription."""
         others = {info.topic_type for info in infos} - {track.type_name}
-        reliability, durability = qos.offered(infos)
+        reliability, durability = qos.offered_profile(infos)
         mine = track.queue.subscription.qos_profile
         weaker = (reliability == ReliabilityPolicy.BEST_EFFORT
                   and mine.reliability == ReliabilityPolicy.RELIABLE) or (
@@ -215,4 +215,4 @@ def _as_yaml(infos):
     """Return the offered profiles as the bag keeps them."""
     kinds = dict.fromkeys((info.qos_profile.durability.name.lower(),
                            info.qos_profile.reliability.name.lower()) for info in infos)
-    return '\n'.join(bag_qos.profile(*kind) for kind in kinds)
+    return '\n'.join(bag_qos.profile_yaml(*kind) for kind in kinds)

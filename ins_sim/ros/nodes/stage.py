@@ -36,7 +36,8 @@ class StageNode(Node):
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self.create_subscription(String, topics.STATUS.name, self._on_status, qos.latched())
+        self.create_subscription(String, topics.STATUS.name, self._on_status,
+                                 qos.latched_profile())
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained,
                                    LINGER_S)
 

@@ -34,7 +34,7 @@ class VelocityMeterNode(StageNode):
     def make_outputs(self):
         """Make publishers, readers and the queue of the INS."""
         self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
-        self._record, self._velocity = (qos.publisher(self, topic, self.depth) for topic in (
+        self._record, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.METER_RECORD, topics.METER_VELOCITY))
         self._pack = topics.METER_VELOCITY.writer().pack
         self._windows = self._invalid = self._heard = 0
@@ -87,7 +87,7 @@ class VelocityMeterNode(StageNode):
 
     def _publish(self, fixes):
         for fix in fixes:
-            self._record.publish(velocity_record.pack(fix, self.epoch_ns))
+            self._record.publish(velocity_record.pack_fix(fix, self.epoch_ns))
             self._windows += 1
             if fix.valid:
                 t_ns, *runs = velocity_record.velocity_one(fix)

@@ -3,7 +3,7 @@
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 
 from ins_sim.settings.catalogue import build, flatten, values_of
-from ins_sim.settings.suggest import unknown
+from ins_sim.settings.suggest import unknown_key
 
 OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
 
@@ -24,7 +24,7 @@ def declare_settings(node, cls):
         from ins_sim.settings.by_node import ALL_NAMES
         for name in strange:
             if name not in ALL_NAMES:
-                raise ValueError(unknown(name, ALL_NAMES))
+                raise ValueError(unknown_key(name, ALL_NAMES))
     settings = build(cls, {name: _plain(value, fields[name]) for name, value in given.items()
                            if name in fields})
     node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,

@@ -14,7 +14,7 @@ import signal
 import sys
 import warnings
 
-from ..transport.repairs import drain, use_profile
+from ..transport.repairs import drain_publishers, use_profile
 
 EXIT_OK = 0
 EXIT_PARAMETERS = 2
@@ -109,7 +109,7 @@ def node_main(load, args=None, **more):
     exit_within(END_S, stop.code)
     if node is not None:
         # what has left this process only counts once the readers have it
-        drain(node.publishers)
+        drain_publishers(node.publishers)
         node.destroy_node()
     deafen()
     rclpy.try_shutdown()

@@ -10,7 +10,7 @@ from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.gaps import Gaps
 from ..transport.repairs import REPAIR_S
-from .run_clock import RunClock, stamped
+from .run_clock import is_stamped, RunClock
 
 BATCH = 200
 FLUSH_S = 1.0
@@ -84,7 +84,7 @@ class BagRecorder:
             raise
         seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
         # its array is stamped with the time of the run, as that of /diagnostics need not be
-        by_stamp = stamped(topic.type_name) or name == self._node.resolve_topic_name(
+        by_stamp = is_stamped(topic.type_name) or name == self._node.resolve_topic_name(
             topics.METER_RECORD.name)
         track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
         self.tracks[name] = track

@@ -6,7 +6,7 @@ from itertools import chain
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
-from .run_clock import stamped
+from .run_clock import is_stamped
 
 CLOCK = topics.CLOCK_TOPIC.name
 # what ROS names absolutely stays where it is, whatever the namespace of the player
@@ -84,7 +84,7 @@ class Playing:
 
     def _find_driver(self):
         present = [n for n, count in self.counts.items()
-                   if count and stamped(self.channels[n].type_name)]
+                   if count and is_stamped(self.channels[n].type_name)]
         for topic in DRIVERS:
             for name in present:
                 if name.endswith('/' + topic.name):
@@ -127,7 +127,7 @@ class PlaybackStart:
                 following = [message]
                 break
             taken.append(message)
-        stamps = [stamp_of(m[2]) if stamped(playing.channels[m[0]].type_name) else None
+        stamps = [stamp_of(m[2]) if is_stamped(playing.channels[m[0]].type_name) else None
                   for m in taken]
         first_ns = next((s for m, s in zip(taken, stamps) if m[0] == playing.driver), None)
         if first_ns is None:

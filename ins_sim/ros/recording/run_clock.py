@@ -5,7 +5,7 @@ from ins_sim.messages.cdr import LAYOUTS, STAMP_END_NS, stamp_of
 JUMP_NS = 1_000_000_000
 
 
-def stamped(type_name):
+def is_stamped(type_name):
     """Return whether messages of a type are logged at a stamp they carry."""
     return type_name in LAYOUTS
 

@@ -34,7 +34,8 @@ class HandQueue:
         self._group = NeverReady()
         self._class = qos.message_class(topic)
         self.subscription = node.create_subscription(
-            self._class, topic.name, lambda data: None, profile or qos.data(depth), raw=True,
+            self._class, topic.name, lambda data: None, profile or qos.data_profile(depth),
+            raw=True,
             callback_group=self._group)
         self._take = self.subscription.handle.take_message
 
@@ -62,7 +63,7 @@ class DrivingQueue:
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
         self._class = qos.message_class(topic)
         self.subscription = node.create_subscription(self._class, topic.name, self._wake,
-                                                     qos.data(depth), raw=True)
+                                                     qos.data_profile(depth), raw=True)
         self._take = self.subscription.handle.take_message
 
     def _wake(self, data):

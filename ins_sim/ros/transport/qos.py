@@ -8,14 +8,14 @@ ACK_DEPTH = 1000
 LATCHING = DurabilityPolicy.TRANSIENT_LOCAL
 
 
-def data(depth):
+def data_profile(depth):
     """Return reliable, volatile, keep-last: no loss as long as a queue holds what is under way."""
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth,
                       reliability=ReliabilityPolicy.RELIABLE,
                       durability=DurabilityPolicy.VOLATILE)
 
 
-def latched():
+def latched_profile():
     """Return reliable, transient local, depth 1: the last message reaches late joiners."""
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1,
                       reliability=ReliabilityPolicy.RELIABLE,
@@ -29,17 +29,17 @@ def message_class(topic):
     return getattr(import_module(package + '.msg'), name)
 
 
-def publisher(node, topic, depth):
+def make_publisher(node, topic, depth):
     """Return a publisher of a Topic for bytes."""
-    return node.create_publisher(message_class(topic), topic.name, data(depth))
+    return node.create_publisher(message_class(topic), topic.name, data_profile(depth))
 
 
 def ack_publisher(node):
     """Return a publisher of acknowledgements."""
-    return publisher(node, topics.ACK, ACK_DEPTH)
+    return make_publisher(node, topics.ACK, ACK_DEPTH)
 
 
-def offered(infos):
+def offered_profile(infos):
     """
     Return the reliability and durability that suit all publishers (TopicEndpointInfo) of a topic.
 
@@ -58,11 +58,11 @@ def keep_last(depth, reliability, durability):
                       durability=durability)
 
 
-def recorded(profiles, depth):
+def recorded_profile(profiles, depth):
     """
     Return the profile that offers what all recorded offers did, so that it suits their readers.
 
-    profiles: as ``bags.qos.profiles`` gives them; old bags have numbers for names.
+    profiles: as ``bags.qos.read_profiles`` gives them; old bags have numbers for names.
     """
     weak = profiles and all(p.get('reliability') in ('best_effort', 2) for p in profiles)
     latching = any(p.get('durability') in ('transient_local', 1) for p in profiles)

@@ -22,7 +22,7 @@ def use_profile():
     os.environ.setdefault(VARIABLE, str(resources.middleware_profile('fastdds')))
 
 
-def drain(publishers):
+def drain_publishers(publishers):
     """Wait until the readers of publishers have all that was sent, at most DRAIN_S together."""
     from rclpy.duration import Duration
     end = time.monotonic() + DRAIN_S

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ins_sim.core.numerics.allan_deviation import overlapping
+from ins_sim.core.numerics.allan_deviation import overlapping_deviation
 from ins_sim.core.numerics.noise import BLOCK
-from ins_sim.settings.presets import PRESETS, triads
+from ins_sim.settings.presets import preset_triads, PRESETS
 from ins_sim.core.sensors.imu.triad_errors import make_noise, TriadErrors
 from ins_sim.core.sensors.imu.triad_model import triad_model
 from ins_sim.report import allan
@@ -24,9 +24,10 @@ SHOWN = {('navigation_rlg', 'gyro'): slice(1)}
 
 def ratios(model, record, rate_hz=RATE):
     """Return fitted over simulated N, B, K of a record of three axes."""
-    found = allan.estimate(record, rate_hz)
-    c = allan.fit(found, allan.gauss_markov_variance(found.tau_s, model.gauss_markov_sigma[0],
-                                                     model.gauss_markov_time[0]))
+    found = allan.estimate_deviation(record, rate_hz)
+    known = allan.gauss_markov_variance(found.tau_s, model.gauss_markov_sigma[0],
+                                        model.gauss_markov_time[0])
+    c = allan.fit_coefficients(found, known)
     return (c.random_walk / model.white[0], c.instability / model.flicker[0],
             c.rate_random_walk / model.walk[0])
 
@@ -47,7 +48,7 @@ def test_round_trip(name, triad):
     scatters by up to 12 % and K by up to 20 % from record to record, which is printed: the root
     mean square of nine records is held to the bounds, at least four standard deviations of it.
     """
-    settings = triads(name)[triad == 'accelerometer']
+    settings = preset_triads(name)[triad == 'accelerometer']
     model = triad_model(settings, 1.0 / RATE)
     rest = np.tile(AT_REST[triad], (SAMPLES, 1))
     errors = TriadErrors(settings, 1, 0, f'{name}.{triad}', 1.0 / RATE)
@@ -71,7 +72,7 @@ def test_ring_laser_shows_floor_and_walk_in_weeks():
     In three hours the Allan deviation of the gyro has only fallen to 0.0023 deg/h at the longest
     tau, by white noise; the floor of 0.001 and the walk cross it at four hours and later.
     """
-    model = triad_model(triads('navigation_rlg')[0], 60.0)
+    model = triad_model(preset_triads('navigation_rlg')[0], 60.0)
     found = np.array([ratios(model, noise_record(model, run, 'weeks', 1.0 / 60.0, 86400),
                              1.0 / 60.0) for run in range(4)])
     scatter = found.std(axis=0, ddof=1)
@@ -86,7 +87,7 @@ def test_coefficients_of_a_curve():
         want = allan.Coefficients(*squares)
         tau = np.geomspace(0.1, 3000.0, 40)
         curve = allan.Allan(tau, want.deviation(tau)[:, None], 12000.0)
-        got = allan.fit(curve)
+        got = allan.fit_coefficients(curve)
         for a, b in zip((got.quantisation, got.random_walk, got.instability,
                          got.rate_random_walk), squares):
             assert abs(a - b) <= 1e-3 * b + 1e-3 * max(squares) * (b == 0.0)
@@ -103,9 +104,9 @@ def test_gauss_markov_variance_joins_its_limits():
 
 def test_white_noise_of_one_rad_s():
     """The deviation at one sample is that of the samples, within 4 sigma of 2000."""
-    found = allan.estimate(np.random.default_rng(1).normal(size=(2000, 3)), 100.0)
+    found = allan.estimate_deviation(np.random.default_rng(1).normal(size=(2000, 3)), 100.0)
     assert found.deviation[0] == pytest.approx(np.ones(3), abs=4 / math.sqrt(2000))
-    assert allan.fit(found).seen(found).tolist() == [False, True, False, False]
+    assert allan.fit_coefficients(found).seen(found).tolist() == [False, True, False, False]
 
 
 def test_coefficients_are_seen_where_they_matter():
@@ -166,7 +167,7 @@ def test_estimate_is_that_of_allantools(record, samples):
     values = {'white': white, 'walk': np.cumsum(white), 'offset': 9.8 + 1e-3 * white}[record]
     factors = np.unique(np.geomspace(1, samples // 4, 30).astype(int))
     tau, deviation, _, _ = allantools.oadev(values, data_type='freq', taus=1.0 * factors)
-    ours = overlapping(values, factors)
+    ours = overlapping_deviation(values, factors)
     apart = np.abs(ours / deviation - 1.0).max()
     print(f'{record}, {samples} samples: {apart:.1e} from allantools')
     assert (tau == factors).all()
@@ -175,7 +176,7 @@ def test_estimate_is_that_of_allantools(record, samples):
 
 def test_averaging_times_are_whole_intervals():
     """Each tau is a number of sampling intervals, from one to a quarter of the record."""
-    found = allan.estimate(np.random.default_rng(4).normal(size=(4000, 2)), 100.0)
+    found = allan.estimate_deviation(np.random.default_rng(4).normal(size=(4000, 2)), 100.0)
     assert found.deviation.shape == (len(found.tau_s), 2)
     assert found.tau_s[0] == 0.01 and found.tau_s[-1] == 10.0
     assert np.abs(found.tau_s * 100.0 - np.round(found.tau_s * 100.0)).max() < 1e-9
@@ -184,8 +185,8 @@ def test_averaging_times_are_whole_intervals():
 def test_bad_records_are_refused():
     """One sentence each."""
     with pytest.raises(ValueError, match='has 5 samples; expected at least 40'):
-        allan.estimate(np.zeros(5), 10.0)
+        allan.estimate_deviation(np.zeros(5), 10.0)
     with pytest.raises(ValueError, match='NaN or infinity'):
-        allan.estimate(np.full(100, np.nan), 10.0)
+        allan.estimate_deviation(np.full(100, np.nan), 10.0)
     with pytest.raises(ValueError, match='constant over an interval'):
-        allan.fit(allan.estimate(np.ones(100), 10.0))
+        allan.fit_coefficients(allan.estimate_deviation(np.ones(100), 10.0))

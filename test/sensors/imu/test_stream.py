@@ -11,7 +11,7 @@ from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import navigate, sense
+from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 
 LATE = {'gyro.delay_us.x': 1.0, 'gyro.delay_us.y': 0.5, 'gyro.delay_us.z': 0.0}
 MIXED = {**LATE, 'gyro.delay_us.z': -1.0}
@@ -32,7 +32,7 @@ def readings(values, **more):
     s = settings(values, **more)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    return ImuSamples.concatenate(sense(s, motion))
+    return ImuSamples.concatenate(imu_blocks(s, motion))
 
 
 @pytest.mark.parametrize('rate', [100.0, 1000.0])
@@ -121,7 +121,7 @@ def test_any_cutting_gives_the_same_bits(values):
             assert np.array_equal(getattr(parts, name), getattr(whole, name)), name
     outputs = []
     for blocks in ([whole], [whole[k:k + 1] for k in range(500)]):
-        outputs.append([np.concatenate([getattr(e, n) for _, _, e in navigate(
+        outputs.append([np.concatenate([getattr(e, n) for _, _, e in navigate_blocks(
             s.strapdown, motion, blocks)]) for n in ('attitude', 'position', 'drift')])
     for one, other in zip(*outputs):
         assert np.array_equal(one, other)
@@ -169,7 +169,7 @@ def streamed_drift(late, jitter, spoil):
     for sample in zip(t.tolist(), q.tolist(), truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):
         out += imu.push(*sample)
     block = ImuSamples(*(np.array([r[k] for r in out]) for k in range(3)))
-    (*_, errors), = navigate(s.strapdown, motion, [block])
+    (*_, errors), = navigate_blocks(s.strapdown, motion, [block])
     return errors.drift[-1]
 
 

@@ -10,8 +10,9 @@ from scipy.linalg import expm
 from scipy.stats import chi2
 
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors, Temperature
-from ins_sim.settings.presets import PRESETS, triads
-from ins_sim.core.sensors.imu.triad_errors import drawn, FLICKER_SIGMA, FLICKER_TIMES, TriadErrors
+from ins_sim.settings.presets import preset_triads, PRESETS
+from ins_sim.core.sensors.imu.triad_errors import (drawn_once, FLICKER_SIGMA, FLICKER_TIMES,
+                                                   TriadErrors)
 from ins_sim.core.sensors.imu.triad_model import temperature_off
 from ins_sim.core.numerics.units import DEG, DEG_H, STANDARD_GRAVITY, UG
 from ins_sim.core.sensors.imu.triad_model import FLICKER_FLOOR, noise_variance, triad_model
@@ -159,7 +160,8 @@ def test_pulses_carry_their_remainder():
 
 def test_turn_on_terms_are_drawn_once_a_run():
     """Mean and variance over 3000 runs within chi-square bounds; constant within a run."""
-    runs = np.array([drawn(4, run, 'gyro.turn_on_bias', (2.0, 3.0, 4.0)) for run in range(3000)])
+    runs = np.array([drawn_once(4, run, 'gyro.turn_on_bias', (2.0, 3.0, 4.0))
+                     for run in range(3000)])
     z = runs / (2.0, 3.0, 4.0)
     low, high = chi2.ppf([QUANTILE, 1.0 - QUANTILE], z.size)
     print(f'chi-square {np.sum(z * z):.0f} of {z.size} ({low:.0f} to {high:.0f})')
@@ -168,16 +170,16 @@ def test_turn_on_terms_are_drawn_once_a_run():
     assert np.abs(np.corrcoef(z.T)[np.triu_indices(3, 1)]).max() < 4.0 / math.sqrt(len(z))
     errors = gyro(turn_on_bias_sigma_deg_h=2.0)
     got = {errors.step(k, (0.0, 0.0, 0.0), F, 0.0) for k in (0, 1, 500, 10 ** 6)}
-    assert got == {drawn(1, 0, 'gyro.turn_on_bias', three(2.0 * DEG_H))}
+    assert got == {drawn_once(1, 0, 'gyro.turn_on_bias', three(2.0 * DEG_H))}
     scaled = gyro(scale_factor_sigma_ppm=50.0).step(0, three(1.0), F, 0.0)
-    assert scaled == tuple(1.0 + s for s in drawn(1, 0, 'gyro.scale_factor', three(50e-6)))
+    assert scaled == tuple(1.0 + s for s in drawn_once(1, 0, 'gyro.scale_factor', three(50e-6)))
 
 
 @pytest.mark.parametrize('name', PRESETS)
 def test_variance_is_that_of_noise_and_pulses(name):
     """Chi-square of white noise; with pulses within 3 % of N^2/dt + (q/dt)^2/6."""
     n, kinds = 30000, (GyroErrors, AccelerometerErrors)
-    for settings_of, cls in zip(triads(name), kinds):
+    for settings_of, cls in zip(preset_triads(name), kinds):
         model = triad_model(settings_of, DT)
         keys = [k for k in cls.__dataclass_fields__ if 'walk' in k and k.endswith('_sqrt_h')
                 and ('angle' in k or 'velocity' in k)]

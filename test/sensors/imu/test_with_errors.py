@@ -12,7 +12,7 @@ from ins_sim.core.sensors.imu.with_errors import reported_variances, with_errors
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.messages import topics
 
 NOISY = {**MOTION_2, 'source': 'stream', 'seed': 5,
@@ -27,7 +27,7 @@ def offline(values, **more):
     s = settings(values, duration_s=10.0, **more)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    return s, motion, ImuSamples.concatenate(sense(s, motion))
+    return s, motion, ImuSamples.concatenate(imu_blocks(s, motion))
 
 
 def test_zero_errors_are_the_ideal_instrument():

@@ -13,9 +13,9 @@ from ins_sim.core.sensors.tuned_gyro.pair import CHANNELS, COVARIANCE_FACTORS
 from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.sensors.tuned_gyro.instrument import make_pair, PairInstrument, parameters
+from ins_sim.core.sensors.tuned_gyro.instrument import make_pair, PairInstrument, rotor_parameters
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from support.pairs import instrument
 
@@ -37,7 +37,7 @@ def test_reported_covariance_is_that_of_the_readings(arrangement):
     s = settings(values, duration_s=200.0)
     motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
                          s.motion_generator.earth)
-    imu = ImuSamples.concatenate(sense(s, motion))[100:]
+    imu = ImuSamples.concatenate(imu_blocks(s, motion))[100:]
     one = PairInstrument(s.imu_sensor)
     want = np.array([*one.variances, one.parity_variance()])
     got = np.var(np.column_stack((imu.omega, imu.parity)), axis=0)
@@ -116,17 +116,17 @@ def test_rotors_that_run_away_are_a_fault():
         motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
                              s.motion_generator.earth)
         with pytest.raises(StreamFault, match='the rotors of the gyros have run away at') as fault:
-            list(sense(s, motion))
+            list(imu_blocks(s, motion))
     assert fault.value.restart
 
 
 def test_a_custom_gyro():
     """By default the tactical one; what no instrument can be is refused with the key's name."""
     custom = {'gyro.dtg.preset': 'custom'}
-    assert parameters(settings({**DTG, **custom}).imu_sensor.gyro.dtg) == TACTICAL
+    assert rotor_parameters(settings({**DTG, **custom}).imu_sensor.gyro.dtg) == TACTICAL
     slow = {**custom, 'gyro.dtg.custom.speed_hz': 200.0}
-    assert parameters(settings({**DTG, **slow}).imu_sensor.gyro.dtg) == replace(TACTICAL,
-                                                                                speed_hz=200.0)
+    found = rotor_parameters(settings({**DTG, **slow}).imu_sensor.gyro.dtg)
+    assert found == replace(TACTICAL, speed_hz=200.0)
 
 
 @pytest.mark.parametrize('key, value, says', [

@@ -7,8 +7,8 @@ import pytest
 from support.studies import DEG_PER_HOUR, MOTION_2, settings
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.sensors.tuned_gyro.pair import (ARRANGEMENTS, CHANNELS, COVARIANCE_FACTORS,
-                                                  geometry, GyroPair)
+from ins_sim.core.sensors.tuned_gyro.pair import (ARRANGEMENTS, channel_axes, CHANNELS,
+                                                  COVARIANCE_FACTORS, GyroPair)
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.attitude.integration import Orientation
 from ins_sim.core.prediction.drift import channel_drift
@@ -37,7 +37,7 @@ def tumbling(t):
 @pytest.mark.parametrize('arrangement', ARRANGEMENTS)
 def test_combination_is_least_squares(arrangement):
     """It equals lstsq; the covariance is diag(1/2, 1, 1); parity is the unit null vector."""
-    h, combine = geometry(arrangement), pair(arrangement).combine
+    h, combine = channel_axes(arrangement), pair(arrangement).combine
     np.testing.assert_allclose(np.linalg.inv(h.T @ h), np.diag(COVARIANCE_FACTORS), atol=1e-15)
     rows = [combine(row) for row in np.eye(4)]
     parity = np.array([row[1] for row in rows])
@@ -55,11 +55,11 @@ def test_channels_are_the_body_rates_along_their_axes(arrangement):
         y = gyros.channels(w, w, w)
     settled.settle(w)
     np.testing.assert_allclose(settled.channels(w, w, w), y, atol=1e-12)
-    np.testing.assert_allclose(y, geometry(arrangement) @ w, atol=1e-12)
+    np.testing.assert_allclose(y, channel_axes(arrangement) @ w, atol=1e-12)
     omega, parity = gyros.step(w, w, w)
     np.testing.assert_allclose(omega, w, atol=1e-12)
     assert abs(parity) < 1e-12
-    axes = geometry(arrangement)
+    axes = channel_axes(arrangement)
     np.testing.assert_allclose(np.cross(axes[0], axes[1]), (0, 0, 1), atol=1e-15)
     np.testing.assert_allclose(np.cross(axes[2], axes[3]), (0, 1, 0), atol=1e-15)
 

@@ -9,7 +9,7 @@ from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.core.sensors.tuned_gyro.parity import parity_windows, ParityTest
 from ins_sim.settings.presets import preset
 from ins_sim.core.timeseries.histories import ImuSamples
-from ins_sim.core.simulation.inertial import sense
+from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.core.numerics.units import DEG_H
 
 DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
@@ -22,7 +22,7 @@ def windows_of(values, duration_s=30.0):
     s = settings({**DTG, **values}, source='motion', duration_s=duration_s)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
-    imu = ImuSamples.concatenate(sense(s, motion))
+    imu = ImuSamples.concatenate(imu_blocks(s, motion))
     return parity_windows(s.imu_sensor, PairInstrument(s.imu_sensor), imu)
 
 

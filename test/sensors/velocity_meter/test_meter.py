@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
-from ins_sim.core.sensors.velocity_meter.surrogate import sigmas
+from ins_sim.core.sensors.velocity_meter.surrogate import velocity_sigmas
 from support.meter_streams import same
 
 V = 200.0
@@ -166,7 +166,7 @@ def test_the_surrogate_has_its_errors():
                        beam__sigma_theta_z_rad=0.11)
     v = body(V, beta)
     fixes = VelocityMeter(s).advance(*flight(4 * n, v))
-    sigma = sigmas(s.surrogate, 4, beta)
+    sigma = velocity_sigmas(s.surrogate, 4, beta)
     assert sigma == pytest.approx((4.0 * math.sqrt(1.36), math.hypot(8.7, 16.0) / 2.0))
     mean = 1.01 * v[0] - 4.0, 0.98 * 1.21 * v[1]
     for k in (0, 1):

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.sensors.velocity_meter.reading import PAIRS
 from ins_sim.core.sensors.velocity_meter.pulses import Correlator, Field
-from ins_sim.core.sensors.velocity_meter.surrogate import sigmas
+from ins_sim.core.sensors.velocity_meter.surrogate import velocity_sigmas
 
 V = 250.0
 # Lateral scale errors of the two normalisations, see docs/design/velocity_meter.md.
@@ -114,7 +114,7 @@ def test_the_surrogate_agrees(cycles, windows, beta, figures):
     """Sigmas and biases by its formulae, within the scatter of so many windows."""
     s, beta = meter_settings(mode='signal', window__cycles=cycles), math.radians(beta)
     found, valid = errors(s, windows, beta)
-    formula = sigmas(s.surrogate, cycles, beta)
+    formula = velocity_sigmas(s.surrogate, cycles, beta)
     sigma = show(f'N = {cycles}, beta = {math.degrees(beta):g} deg', found, valid)
     bias = s.surrogate.bias_x_m_s / cycles
     print(f'  surrogate: sigma {formula[0]:.3f}, {formula[1]:.3f}, bias {bias:+.3f} m/s')
@@ -173,7 +173,7 @@ def test_every_way_of_correlating_measures(detection, normalisation):
         LATERAL_SCALE[normalisation] * abs(v[1]))
     assert min(fix.tau) > 0.0 and max(fix.g) < 0.0
     # by the sideslip of the INS, which the error of the fix has no part in
-    assert fix.sigma == pytest.approx(sigmas(s.surrogate, 400, math.atan2(-v[1], v[0])))
+    assert fix.sigma == pytest.approx(velocity_sigmas(s.surrogate, 400, math.atan2(-v[1], v[0])))
 
 
 def test_the_mounting_error_appears_as_a_lateral_velocity():

@@ -11,7 +11,7 @@ from ins_sim.core.timeseries.fixes import VALID
 from ins_sim.core.sensors.velocity_meter.reading import (auto_peak, cross_peak, delay_velocity,
                                                          log_quadratic, read_correlations,
                                                          slowness)
-from ins_sim.core.sensors.velocity_meter.antennas import geometry
+from ins_sim.core.sensors.velocity_meter.antennas import antenna_geometry
 from ins_sim.core.sensors.velocity_meter.pulses import Field
 
 V = 250.0
@@ -23,7 +23,7 @@ def noise_free(speed, beta, alpha=0.0, taken=None, **terms):
     field = Field(s)
     functions = field.correlations(s.signal.lags, speed * math.cos(beta), speed * math.sin(beta),
                                    math.tan(alpha), s.signal.detection)
-    return read_correlations(functions, field.lag_s, geometry(s.antennas),
+    return read_correlations(functions, field.lag_s, antenna_geometry(s.antennas),
                              math.tan(alpha if taken is None else taken))
 
 
@@ -63,8 +63,8 @@ def test_angle_of_attack(alpha):
     """Equation (3) gives V cos(beta); the components are those of the body."""
     alpha, beta = math.radians(alpha), math.radians(4.0)
     one = noise_free(V, beta, alpha)
-    a, b = slowness(one.tau, geometry(meter_settings().antennas), math.tan(alpha))
-    trace, _ = delay_velocity(a, b, geometry(meter_settings().antennas))
+    a, b = slowness(one.tau, antenna_geometry(meter_settings().antennas), math.tan(alpha))
+    trace, _ = delay_velocity(a, b, antenna_geometry(meter_settings().antennas))
     print(f'alpha = {math.degrees(alpha):.0f} deg: (3) {trace:.6f}, V cos(beta) '
           f'{V * math.cos(beta):.6f}, V_x1 {one.v_x:.6f}, V_z1 {one.v_z:.6f} m/s')
     assert trace == pytest.approx(V * math.cos(beta), rel=1e-9)
@@ -168,8 +168,8 @@ def test_amplitudes_beyond_45_deg():
     field = Field(s)
     functions = field.correlations(64, V, 0.0, 0.0, 'power')
     functions[0] *= 0.05
-    assert read_correlations(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
+    assert read_correlations(functions, field.lag_s, antenna_geometry(s.antennas), 0.0).status == \
         'amplitudes of R12 and R23 give no sideslip'
     functions[1, 63] = 2.0
-    assert read_correlations(functions, field.lag_s, geometry(s.antennas), 0.0).status == \
+    assert read_correlations(functions, field.lag_s, antenna_geometry(s.antennas), 0.0).status == \
         'R23 peaks at the last lag'

@@ -31,7 +31,7 @@ class FixOutcome(namedtuple('FixOutcome', 'innovation nis freedom taken reason',
     __slots__ = ()
 
 
-def refused(reason):
+def refused_fix(reason):
     """Return the FixOutcome of a fix that is rejected before an innovation is computed."""
     return FixOutcome((), taken=False, reason=reason)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ins_sim.core.attitude import matrix, quaternion
-from ins_sim.core.attitude.interpolation import middle
+from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
 from . import eskf_model as model
@@ -75,10 +75,10 @@ class ErrorStateFilter(AidingFilter):
         """Return the transition matrix over the samples since the last propagation, (20, 20)."""
         q_start, v_start = self._start
         dt = self._time_s
-        q_mid = middle(q_start, ins.q_nb)
+        q_mid = middle_attitude(q_start, ins.q_nb)
         f_n = quaternion.rotate(q_mid, tuple(x / dt for x in self._force))
         v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
-        c = matrix.matrix(q_mid)
+        c = matrix.attitude_matrix(q_mid)
         return model.transition(model.dynamics(ins.lat, ins.height, v, c, f_n, self._spin), dt)
 
     def _propagate(self, ins):
@@ -134,7 +134,7 @@ class ErrorStateFilter(AidingFilter):
 
     def gnss_model(self, ins, fix, rate, lever):
         """Return the innovation of position and velocity of the antenna, and its matrix."""
-        c = matrix.matrix(ins.q_nb)
+        c = matrix.attitude_matrix(ins.q_nb)
         ago = (ins.t_ns - fix.t_ns) * 1e-9
         east, north, up = position_error(ins.lat, ins.lon, ins.height, fix.lat, fix.lon,
                                          fix.height)
@@ -148,7 +148,7 @@ class ErrorStateFilter(AidingFilter):
         s, gain = kalman.innovation(self.covariance, h, r)
         nis = kalman.normalised_square(z, s)
         innovation = tuple(z.tolist())
-        if kalman.tail(nis, len(z)) < self.settings.gate_probability:
+        if kalman.chi_square_tail(nis, len(z)) < self.settings.gate_probability:
             return FixOutcome(innovation, nis, len(z), False, GATE)
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
         self.correct(ins, (gain @ z).tolist())

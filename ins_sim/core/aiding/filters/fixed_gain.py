@@ -3,10 +3,10 @@
 import math
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import middle
+from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.earth import ellipsoid
 from ..velocity_window import DoubleIntegral, Integrals
-from .base import AidingFilter, FixOutcome, refused
+from .base import AidingFilter, FixOutcome, refused_fix
 
 # Ivanov (2015) takes the acceleration in body axes for the derivative of the velocity in body
 # axes. A window in which the neglected product rate x velocity is larger than this is refused,
@@ -47,7 +47,7 @@ class MatrixFilter(AidingFilter):
     def step(self, ins, before, delta_v, dt):
         """Add one sample to the matrices of the window."""
         super().step(ins, before, delta_v, dt)
-        self.integrals.add(middle(before[0], ins.q_nb), dt)
+        self.integrals.add(middle_attitude(before[0], ins.q_nb), dt)
 
     def begin_window(self, ins):
         """Clear the matrices."""
@@ -75,7 +75,7 @@ class _ChainedFilter(AidingFilter):
         self._fixed = False
 
 
-FIRST = refused('the first window has none before it')
+FIRST = refused_fix('the first window has none before it')
 
 
 class PaperFilter(_ChainedFilter):
@@ -101,7 +101,7 @@ class PaperFilter(_ChainedFilter):
         # the vehicle follows a great circle.
         _, r_e = ellipsoid.radii(math.sin(ins.lat))
         spin = v[0] * math.tan(ins.lat) / (r_e + ins.height) * dt
-        w = quaternion.rotate_back(middle(q_start, ins.q_nb), (
+        w = quaternion.rotate_back(middle_attitude(q_start, ins.q_nb), (
             ins.v[0] - v[0] - spin * v[1], ins.v[1] - v[1] + spin * v[0], ins.v[2] - v[2]))
         turn = w[0] - ins.v_b[0] + b_start[0], w[1] - ins.v_b[1] + b_start[1]
         self._all, self._turn = self._all.after(w, dt), self._turn.after(turn, dt)

@@ -72,7 +72,7 @@ class WindowFilter(MatrixFilter):
         r = np.diag(np.square(fix.sigma))
         s, gain = kalman.innovation(self.covariance, h, r)
         nis = kalman.normalised_square(z, s)
-        if kalman.tail(nis, 2) < self.settings.gate_probability:
+        if kalman.chi_square_tail(nis, 2) < self.settings.gate_probability:
             self._propagate(ins)
             return FixOutcome(tuple(z.tolist()), nis, 2, False,
                               'its innovation is beyond the gate')

@@ -34,7 +34,7 @@ class Fault:
     what: str
 
 
-def displacements(lat, lon, height):
+def step_displacements(lat, lon, height):
     """Return (n - 1, 3) east, north, up from row to row, m; lat, lon in rad."""
     mean = 0.5 * (lat[1:] + lat[:-1])
     east, north = ellipsoid.level_metres(np.diff(lat), np.diff(lon), np.sin(mean), np.cos(mean),
@@ -42,7 +42,7 @@ def displacements(lat, lon, height):
     return np.stack([east, north, np.diff(height)], axis=-1)
 
 
-def excess(steps, dt):
+def step_excess(steps, dt):
     """
     Return (n,) how far each step goes beyond the median rate of the five steps about it.
 
@@ -79,12 +79,12 @@ def find_faults(rows, turns):
         faults.append(Fault(k, 'stamps', f'{what} {seconds(rows.t_ns[k + 1])}'))
     for k in np.flatnonzero(dt > GAP_MEDIANS * median).tolist():
         faults.append(Fault(k, 'gaps', f'{seconds(rows.t_ns[k])} ({dt[k]:.3g} s long)'))
-    steps = displacements(np.radians(rows.lat_deg), np.radians(rows.lon_deg), rows.height_m)
+    steps = step_displacements(np.radians(rows.lat_deg), np.radians(rows.lon_deg), rows.height_m)
     angle = np.degrees(np.sqrt((turns ** 2).sum(axis=1)))
     for first, last in _between([fault.index for fault in faults], len(dt)):
         part = slice(first, last)
-        faults += _jumps(rows.t_ns, first, dt[part], excess(steps[part], dt[part]),
-                         np.degrees(excess(turns[part], dt[part])), angle[part])
+        faults += _jumps(rows.t_ns, first, dt[part], step_excess(steps[part], dt[part]),
+                         np.degrees(step_excess(turns[part], dt[part])), angle[part])
     return sorted(faults, key=lambda fault: fault.index)
 
 
@@ -108,7 +108,7 @@ def _jumps(t_ns, first, dt, far, turned, angle):
     return faults
 
 
-def describe(faults, median_s):
+def describe_faults(faults, median_s):
     """Return one clause that names all kinds of fault with their times, up to a handful each."""
     titles = {'stamps': 'stamps that do not advance (',
               'gaps': f'gaps over {GAP_MEDIANS:g} times the median interval of {median_s:.4g} s '
@@ -136,7 +136,7 @@ def unbroken_part(rows, turns, start_s, on_gap):
     if not faults:
         return slice(0, len(rows.t_ns)), []
     dt = np.diff(rows.t_ns) * 1e-9
-    found = describe(faults, median_interval(dt))
+    found = describe_faults(faults, median_interval(dt))
     if on_gap != 'cut':
         raise ValueError(f'{rows.path} has {found}; expected an unbroken recording '
                          "(motion.recording.on_gap = 'cut' keeps the part that holds start_s)")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import continuous
+from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.earth.rates import rate_of_n
 
 
@@ -44,4 +44,4 @@ def poses_of_truth(path, t_ns, lat_deg, lon_deg, height_m, q_nb, v_b, omega_eb_b
     turn_n = rate_of_n(np.radians(lat_deg), height_m, v_n, earth_rotation=False)
     turn_b = np.stack(quaternion.rotate_back(q, np.moveaxis(turn_n, -1, 0)), axis=-1)
     return RecordedPoses(path, t_ns, lat_deg, np.unwrap(lon_deg, period=360.0), height_m,
-                         continuous(q_nb), v_n=v_n, omega_nb_b=omega_eb_b - turn_b)
+                         continuous_quaternions(q_nb), v_n=v_n, omega_nb_b=omega_eb_b - turn_b)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.instants import seconds
-from .faults import displacements, excess
+from .faults import step_displacements, step_excess
 
 # Below 10 mg nobody sees the noise beside the motion of a vehicle.
 WORTH_SAYING_M_S2 = 0.1
@@ -65,7 +65,7 @@ def sample_noise(t, lat, lon, height):
     (a smooth motion leaves its fourth derivative), scaled by the gains for white noise.
     """
     dt = np.diff(t)
-    velocity = displacements(lat, lon, height) / dt[:, None]
+    velocity = step_displacements(lat, lon, height) / dt[:, None]
     second = np.diff(velocity, axis=0) / (0.5 * (dt[1:] + dt[:-1]))[:, None]
     beyond = second[1:-1] - 0.5 * (second[2:] + second[:-2])
     rms = np.sqrt(np.mean(beyond ** 2, axis=0))
@@ -91,7 +91,7 @@ def _cadence(t, steps):
     return f', one about every {np.median(apart):.3g} s' if len(apart) > 2 else ''
 
 
-def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s):
+def describe_quality(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s):
     """
     Return sentences on the noise and the steps of a recording as it will be splined.
 
@@ -101,7 +101,7 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
     dt = np.diff(t)
     interval_s = float(np.median(dt))
     sentences = []
-    far = excess(displacements(lat, lon, height), dt)
+    far = step_excess(step_displacements(lat, lon, height), dt)
     steps = _stand_out(far, STEP_M_S2 * interval_s ** 2)
     if len(steps):
         worst = steps[np.argmax(far[steps])]
@@ -109,7 +109,7 @@ def describe(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s
             f'{path}: {_count(steps, "position step")}{_cadence(t, steps)}, the largest '
             f'{far[worst]:.3g} m after t_s = {seconds(start_ns + round(t[worst] * 1e9))}; '
             f'the spline makes about {far[worst] / dt[worst] ** 2:.2g} m/s^2 of it')
-    turned = np.degrees(excess(turns, dt))
+    turned = np.degrees(step_excess(turns, dt))
     steps = _stand_out(turned, STEP_DEG_S * interval_s)
     if len(steps):
         worst = steps[np.argmax(turned[steps])]

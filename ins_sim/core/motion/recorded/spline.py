@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import hermite
+from ins_sim.core.attitude.interpolation import hermite_coefficients
 from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
 from . import quality
@@ -100,7 +100,7 @@ class RecordedMotion(Motion):
             self._rotation = _rotation_cubics(t, q, rate[part])
         self._terms = _terms(self._rotation, np.diff(t))
         lat, lon, height = position + self._origin[:, None]
-        self.warnings += quality.describe(
+        self.warnings += quality.describe_quality(
             rows.path, int(self._knots[0]) + self.zero_ns, t, lat, lon, height, _turns(q),
             rows.resolution, recording.smoothing_s)
 
@@ -273,7 +273,7 @@ def _rotation_spline(t, q):
 def _rotation_cubics(t, q, rate):
     """Return the same from the rates (n, 3), rad/s, at both ends of each interval."""
     h = np.diff(t)
-    c1, c2, c3 = (np.array(c) for c in hermite(h, _turns(q).T, rate[:-1].T, rate[1:].T))
+    c1, c2, c3 = map(np.array, hermite_coefficients(h, _turns(q).T, rate[:-1].T, rate[1:].T))
     return np.array([c3 / h ** 3, c2 / h ** 2, c1 / h, np.zeros_like(c1)])
 
 

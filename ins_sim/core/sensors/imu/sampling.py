@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from ins_sim.settings.catalogue import check
+from ins_sim.settings.catalogue import check_value
 from ins_sim.settings.instrument_errors import Sampling
 
 # Stamps move by less than half a period, five standard deviations, so that they keep their order.
@@ -22,7 +22,7 @@ class Sampler:
 
     def __init__(self, settings, seed, run, name, dt_ns):
         for f in fields(Sampling):
-            check(f'{name}.{f.name}', getattr(settings, f.name), f)
+            check_value(f'{name}.{f.name}', getattr(settings, f.name), f)
         most_us = dt_ns * 1e-3 / (2.0 * SIGMAS)
         if settings.jitter_us > most_us:
             raise ValueError(f'{name}.jitter_us is {settings.jitter_us:g} us; expected at most '

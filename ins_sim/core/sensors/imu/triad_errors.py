@@ -138,7 +138,7 @@ def _if_any(*terms):
     return terms if any(any(term) for term in terms) else None
 
 
-def drawn(seed, run, name, sigma):
+def drawn_once(seed, run, name, sigma):
     """Return the numbers of standard deviations sigma that are drawn once a run."""
     normals = indexed_noise(seed, run, name, 3, 1).normal(0)
     return tuple(s * n for s, n in zip(sigma, normals))
@@ -151,7 +151,7 @@ def _geometry(model, seed, run, name):
     Rows are the unit sensitive axes: those of non-orthogonality in the triad, times the rotation
     of the body into the triad.
     """
-    turn = tuple(m + d for m, d in zip(model.misalignment, drawn(
+    turn = tuple(m + d for m, d in zip(model.misalignment, drawn_once(
         seed, run, f'{name}.misalignment', model.misalignment_sigma)))
     yx, zx, zy = (math.sin(a) for a in model.non_orthogonality)
     if not any(turn) and not any((yx, zx, zy)):
@@ -165,8 +165,8 @@ def _geometry(model, seed, run, name):
 
 
 def _response(model, seed, run, name):
-    scale = tuple(s + d for s, d in zip(model.scale, drawn(seed, run, f'{name}.scale_factor',
-                                                           model.scale_sigma)))
+    scale = tuple(s + d for s, d in zip(model.scale, drawn_once(seed, run, f'{name}.scale_factor',
+                                                                model.scale_sigma)))
     return _if_any(scale, model.asymmetry, model.quadratic, model.cubic)
 
 
@@ -207,7 +207,7 @@ def _pulses(increment, quantum, per_dt):
 
 def make_noise(model, seed, run, name, dt_s):
     """Return the function block number -> (BLOCK, 3) of all additive errors, or None."""
-    fixed = np.array([b + d for b, d in zip(model.bias, drawn(
+    fixed = np.array([b + d for b, d in zip(model.bias, drawn_once(
         seed, run, f'{name}.turn_on_bias', model.turn_on_sigma))])
     white = np.array(model.white) / math.sqrt(dt_s)
     terms = []

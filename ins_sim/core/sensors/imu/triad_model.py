@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 import math
 
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, STANDARD_GRAVITY, UG
-from ins_sim.settings.catalogue import check
+from ins_sim.settings.catalogue import check_value
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 
 # The Allan deviation of flicker noise over its coefficient B, sqrt(2 ln 2 / pi) (IEEE Std 952).
@@ -112,7 +112,7 @@ def triad_model(settings, dt_s, name=''):
         if key == 'gauss_markov_time_s':
             _check_times(prefix + key, value, known[key])
         else:
-            value = check(prefix + key, value, known[key])
+            value = check_value(prefix + key, value, known[key])
         values[coefficient] = value if unit is None else tuple(unit * v for v in value)
     model = TriadModel(**values)
     _check_range(settings, model, dt_s, prefix)
@@ -123,7 +123,7 @@ def _check_times(name, value, f):
     """Check correlation times; infinite ones, which the catalogue refuses, are random walks."""
     if not hasattr(value, '__iter__') or isinstance(value, str) or len(value) != 3:
         raise ValueError(f'{name} is {value!r}; expected 3 correlation times in s')
-    check(name, [1.0 if v == math.inf else v for v in value], f)
+    check_value(name, [1.0 if v == math.inf else v for v in value], f)
 
 
 def _check_range(settings, model, dt_s, prefix):

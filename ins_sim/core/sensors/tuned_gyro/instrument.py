@@ -28,7 +28,7 @@ CASES = ((2, 0, 1), (1, 2, 0))
 NAMES = ('gyro.errors.gyro_1', 'gyro.errors.gyro_2')
 
 
-def parameters(dtg):
+def rotor_parameters(dtg):
     """
     Return the TunedGyroParameters that TunedGyroPairSettings name.
 
@@ -47,7 +47,7 @@ def parameters(dtg):
 def make_pair(gyro, dt_s):
     """Return the GyroPair of settings.Gyro, without other errors than the speeds of the rotors."""
     dtg = gyro.dtg
-    p = parameters(dtg)
+    p = rotor_parameters(dtg)
     pair = GyroPair(p, dt_s, dtg.arrangement, method=dtg.method, hold=dtg.hold,
                     on_unstable=dtg.on_unstable)
     for rotor, ppm in zip(pair.gyros, dtg.errors.speed_ppm):

@@ -24,7 +24,7 @@ COVARIANCE_FACTORS = (0.5, 1.0, 1.0)
 _R = math.sqrt(0.5)
 
 
-def geometry(arrangement):
+def channel_axes(arrangement):
     """Return the unit vectors (4, 3) of the channels in body axes."""
     case = np.zeros((4, 3))
     case[range(4), (0, 1, 2, 0)] = 1.0

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from .rotor import state_space
-from .stability import bisect, GRID, rk4_window
+from .stability import bisect_condition, GRID, rk4_window
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,12 @@ def tuned_gyro_report(parameters, speed_hz=None):
     gains = gain(grid)
     below = np.flatnonzero(gains < math.sqrt(0.5))
     end = int(below[0]) if len(below) else GRID - 1
-    bandwidth = bisect(lambda hz: gain(hz) >= math.sqrt(0.5), grid[max(end - 1, 0)], grid[end])
+    bandwidth = bisect_condition(lambda hz: gain(hz) >= math.sqrt(0.5), grid[max(end - 1, 0)],
+                                 grid[end])
     top = int(gains[:end + 1].argmax())
     if 0 < top < end:
         left, right = grid[top - 1], grid[top + 1]
-        peak_hz = bisect(lambda hz: gain(hz * (1.0 + 1e-5)) > gain(hz), left, right)
+        peak_hz = bisect_condition(lambda hz: gain(hz * (1.0 + 1e-5)) > gain(hz), left, right)
         peak_hz = float(np.clip(peak_hz, left, right))
         peak = float(gain(peak_hz))
     else:

@@ -6,7 +6,7 @@ import numpy as np
 GRID = 4000
 
 
-def bisect(holds, inside, outside):
+def bisect_condition(holds, inside, outside):
     """Return where a condition that holds inside stops to hold, between the two floats."""
     for _ in range(100):
         middle = 0.5 * (inside + outside)
@@ -45,10 +45,10 @@ def rk4_window(roots):
     first = int(inside.argmax())
     last = first + int(np.append(inside[first:], False).argmin())
     if first:
-        low = bisect(decays, steps[first], steps[first - 1])
+        low = bisect_condition(decays, steps[first], steps[first - 1])
     else:
-        low = 0.0 if (roots.real < 0.0).all() else bisect(decays, steps[0], 0.0)
-    return float(low), float(bisect(decays, steps[last - 1], steps[last]))
+        low = 0.0 if (roots.real < 0.0).all() else bisect_condition(decays, steps[0], 0.0)
+    return float(low), float(bisect_condition(decays, steps[last - 1], steps[last]))
 
 
 def pickoff_gain(rotor, dt_s):

@@ -12,7 +12,7 @@ class Geometry(NamedTuple):
     kappa: float
 
 
-def geometry(antennas):
+def antenna_geometry(antennas):
     """Return the Geometry of Antennas (settings)."""
     return Geometry(antennas.x0_m, antennas.y0_m, 1.0 if antennas.antenna_2 == 'right' else -1.0,
                     0.5 if antennas.offsets == 'physical' else 1.0)

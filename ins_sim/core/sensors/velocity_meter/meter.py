@@ -9,12 +9,12 @@ from collections import deque
 import math
 
 from ins_sim.core.numerics.instants import period_ns, seconds
-from ins_sim.core.streams.faults import (
-    check_finite, check_interval, INTERVAL_TOLERANCE, StreamFault)
+from ins_sim.core.streams.faults import (check_finite, check_interval, INTERVAL_TOLERANCE,
+                                         StreamFault)
 from ins_sim.core.streams.restarts import RestartDetector
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
 from .reading import Reading
-from .surrogate import sigmas, SurrogateWindows
+from .surrogate import SurrogateWindows, velocity_sigmas
 
 NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
@@ -240,7 +240,7 @@ class VelocityMeter:
         if reading.status == VALID:
             if slip is None:
                 slip = math.atan2(reading.v_z, reading.v_x)
-            sigma = sigmas(self._settings.surrogate, self._cycles, slip)
+            sigma = velocity_sigmas(self._settings.surrogate, self._cycles, slip)
         end_ns = index * self._dt_ns
         return VelocityFix(
             end_ns - self._span_ns, end_ns, self._cycles, (reading.v_x, -reading.v_z), sigma,

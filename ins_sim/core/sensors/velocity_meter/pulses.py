@@ -21,7 +21,7 @@ import numpy as np
 
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.timeseries.fixes import VALID
-from .antennas import geometry
+from .antennas import antenna_geometry
 from .reading import PAIRS, read_correlations, Reading, secant
 
 # the spectrum is cut, and the delays are parted, at this many standard deviations
@@ -56,7 +56,7 @@ class Field:
 
     def __init__(self, settings):
         beam, signal, limits = settings.beam, settings.signal, settings.limits
-        self._geometry = geometry(settings.antennas)
+        self._geometry = antenna_geometry(settings.antennas)
         self._lengths = tuple(beam.wavelength_m / (4.0 * math.pi * sigma) for sigma in
                               (beam.sigma_theta_x_rad, beam.sigma_theta_z_rad))
         self._decay = 1.0 / signal.decay_time_s if signal.decay_time_s else 0.0
@@ -192,7 +192,7 @@ class SignalWindows:
 
     def __init__(self, settings, run):
         self._cycles, self._limits = settings.window.cycles, settings.limits
-        self._geometry, self._lag_s = geometry(settings.antennas), settings.lag_s
+        self._geometry, self._lag_s = antenna_geometry(settings.antennas), settings.lag_s
         self._field, self._correlator = Field(settings), Correlator(settings)
         self._normals = indexed_noise(
             settings.seed, run, 'velocity_meter.signal', self._field.width, 1)

@@ -12,7 +12,7 @@ from ins_sim.core.timeseries.fixes import VALID
 from .reading import Reading, secant
 
 
-def sigmas(surrogate, cycles, beta):
+def velocity_sigmas(surrogate, cycles, beta):
     """
     Return the standard deviations of V_x1 and V_z1 over N cycles, m/s.
 
@@ -58,7 +58,7 @@ class SurrogateWindows:
         """
         v_x, v_y, v_z = (part / self._cycles for part in total)
         scale = (secant(v_y / v_x) / secant(tan_alpha)) ** 2
-        sigma_x, sigma_z = sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
+        sigma_x, sigma_z = velocity_sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
         # each cycle has its own noise, so that long windows average that of the short ones
         cycles = self._normals.normals(index - self._cycles + 1, self._cycles)
         n_x, n_z = (cycles.sum(axis=0) / math.sqrt(self._cycles)).tolist()
