@@ -97,7 +97,7 @@ def wrong_fix(path):
     (changed(nothing), [], '/truth/odometry is empty; expected messages'),
     (changed(None, length_s=5.0), [], 'holds 501 rows over 5 s; expected at least 8 rows over'),
     (changed(gap), [], 'has 1 gaps over 2.5 times the median interval'),
-    (backwards, [], 'has 1 stamps that do not advance (4.99 goes back to 3 s)'),
+    (backwards, [], 'has 1 stamps that do not advance (4.990000000 s goes back to 3.000000000 s)'),
     (changed(not_finite), [], '/truth/odometry at 2.000000000 s: angular is [-0.18'),
     (changed(no_rate), [], 'the angular velocity differs by'),
     (changed(no_quaternion), [], 'at 2.000000000 s: norm of the orientation is 0.0; expected 1'),
