@@ -43,7 +43,7 @@ def test_an_unknown_type_is_one_sentence():
 def test_definitions_need_no_library():
     """Nothing but the standard library is imported for them."""
     code = ('import sys; before = set(sys.modules); from ins_sim.bags import definitions; '
-            'definitions.define("sensor_msgs/msg/Imu"); '
+            'definitions.message_definition("sensor_msgs/msg/Imu"); '
             'print(*{n.partition(".")[0] for n in set(sys.modules) - before})')
     names = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
                            check=True).stdout
