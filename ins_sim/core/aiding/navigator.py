@@ -8,13 +8,13 @@ the fix, and advances again over the samples since then.
 from bisect import insort
 from collections import deque, namedtuple
 from dataclasses import replace
-from importlib import import_module
 import math
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation.mechanization import FREE, FROM_TRUTH
 from ins_sim.core.numerics.instants import period_ns, seconds
+from ins_sim.core.numerics.located import located
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.settings.aided_navigator import FILTERS
@@ -33,8 +33,7 @@ _Snapshot = namedtuple('_Snapshot', 't_ns ins filter window_start_ns')
 
 def filter_class(name):
     """Return the class of a filter of the table `settings.aided_navigator.FILTERS`."""
-    module, _, attribute = FILTERS[name].location.partition(':')
-    return getattr(import_module(module), attribute)
+    return located(FILTERS[name].location, f'filter {name}')
 
 
 class AidedNavigator:

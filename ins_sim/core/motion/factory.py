@@ -1,7 +1,6 @@
 """The motion that settings name, made by the maker in the table of motions."""
 
-from importlib import import_module
-
+from ins_sim.core.numerics.located import located
 from .motion import Motion
 
 
@@ -19,11 +18,16 @@ def make_motion(motion, datum, earth_settings) -> Motion:
     Raises
     ------
     ValueError
-        On settings that no motion can have, a route that cannot be flown, and on a recording,
-        whose poses must be read from a file (``ins_sim.io.motion.read_motion``).
+        On settings that no motion can have, a route that cannot be flown, a maker that cannot be
+        imported or returns no Motion, and on a recording, whose poses must be read from a file
+        (``ins_sim.io.motion.read_motion``).
     """
     if motion.maker is None:
         raise ValueError(f'motion.kind is {motion.kind}, whose poses are in a file; expected a '
                          'closed-form motion here')
-    module, _, name = motion.maker.partition(':')
-    return getattr(import_module(module), name)(motion, datum, earth_settings)
+    made = located(motion.maker, f'motion.kind {motion.kind}')(motion, datum, earth_settings)
+    if not isinstance(made, Motion):
+        raise ValueError(f'motion.kind {motion.kind} is at {motion.maker!r} in its table, which '
+                         f'returns {type(made).__name__}; expected an object of a subclass of '
+                         'ins_sim.Motion')
+    return made

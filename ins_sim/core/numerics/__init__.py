@@ -1,1 +1,1 @@
-"""Numerical tools without physics: Taylor series, noise by index, instants and units."""
+"""Tools without physics: Taylor series, noise by index, instants, units, names in tables."""
