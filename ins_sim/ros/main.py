@@ -48,8 +48,15 @@ aided_navigator = partial(run_node, 'aided_navigator')
 recorder = partial(run_node, 'recorder')
 
 
+def main(words):
+    """Run the node that the first word names; return its exit code, 2 where there is none."""
+    if not words or words[0] not in NODES:
+        given = f'unknown node {words[0]!r}; ' if words and words[0] != '--help' else ''
+        print(f'{given}usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '
+              f'{", ".join(NODES)}', file=sys.stderr)
+        return 2
+    return run_node(words[0], words)
+
+
 if __name__ == '__main__':
-    if len(sys.argv) < 2 or sys.argv[1] not in NODES:
-        sys.exit(f'usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '
-                 f'{", ".join(NODES)}')
-    sys.exit(run_node(sys.argv[1], sys.argv[1:]))
+    sys.exit(main(sys.argv[1:]))

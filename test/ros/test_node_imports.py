@@ -3,6 +3,7 @@
 import subprocess
 import sys
 
+from ins_sim.ros.main import main
 import pytest
 from support.places import ROOT
 
@@ -18,3 +19,13 @@ def test_a_node_imports_nothing_heavy(node):
     found = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
                            check=True, cwd=ROOT)
     assert found.stdout.strip() == '[]'
+
+
+@pytest.mark.parametrize('words, said', [
+    ([], 'usage: python -m ins_sim.ros.main NODE'),
+    (['nonsense'], "unknown node 'nonsense'; usage: python -m ins_sim.ros.main NODE")])
+def test_no_node_is_exit_code_2(words, said, capsys):
+    """The code is that of bad parameters; the sentence lists the nodes."""
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(said) and 'aided_navigator' in error and error.count('\n') == 1
