@@ -25,7 +25,9 @@ def parser():
     top.add_argument('--version', action='version', version=f'ins_sim {__version__}')
     verbs = top.add_subparsers(dest='verb', required=True, metavar='VERB')
     for name, verb in VERBS.items():
-        verb.add_arguments(verbs.add_parser(name, help=verb.HELP, description=verb.DESCRIPTION))
+        arguments = verbs.add_parser(name, help=verb.HELP, description=verb.DESCRIPTION)
+        verb.add_arguments(arguments)
+        arguments.set_defaults(parser=arguments)
     return top
 
 
@@ -38,7 +40,10 @@ def main(arguments=None):
     words = sys.argv[1:] if arguments is None else list(arguments)
     cut = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
     top = parser()
-    chosen = top.parse_args(words[:cut])
+    chosen, unknown = top.parse_known_args(words[:cut])
+    if unknown:
+        # argparse would print the usage of the command, not that of the verb.
+        chosen.parser.error(f'unrecognized arguments: {" ".join(unknown)}')
     chosen.ros_args = words[cut:]
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
         top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')

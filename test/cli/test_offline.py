@@ -97,6 +97,16 @@ def test_an_unknown_verb_is_exit_code_2(capsys):
     assert 'simulate' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize('verb', ['simulate', 'allan', 'demo'])
+def test_a_wrong_option_shows_the_usage_of_its_verb(verb, capsys):
+    """Not that of the command, which has none of the options."""
+    with pytest.raises(SystemExit) as stopped:
+        main([verb, '--colour'])
+    said = capsys.readouterr().err
+    assert stopped.value.code == 2
+    assert f'usage: ins_sim {verb} ' in said and 'unrecognized arguments: --colour' in said
+
+
 def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
     """The cells and the limits are held in test_tuned_gyro; here they reach the person."""
     assert main(['dtg-study', '-o', str(tmp_path / 'study')]) == 0
