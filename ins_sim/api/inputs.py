@@ -80,8 +80,18 @@ def read_settings(names: Names, values: Values | None = None,
 
 def files(names: Names) -> list[Path]:
     """Return the paths of parameter files given by name or by path, one or several."""
-    given = [names] if isinstance(names, (str, os.PathLike)) else list(names)
-    return [resources.parameter_file(name) for name in given]
+    given = [names] if isinstance(names, (str, os.PathLike)) else names
+    if isinstance(given, (bytes, Mapping)) or not isinstance(given, Iterable):
+        raise ValueError(f'names is {given!r}; expected the name or the path of a parameter '
+                         'file, or a list of these')
+    return [resources.parameter_file(checked_path('names', name)) for name in given]
+
+
+def checked_path(argument: str, path: Any) -> Name:
+    """Return a path; raise ValueError, naming the argument, where it is none."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise ValueError(f'{argument} is {path!r}; expected a path')
+    return path
 
 
 def plain(values: Values | None) -> dict[str, Any]:
@@ -137,6 +147,8 @@ def presets(name: str | None = None) -> dict[str, Any]:
         ...
     ValueError: unknown instrument preset 'tactical_fox'; the nearest known one is 'tactical_fog'
     """
+    if name is not None and not isinstance(name, str):
+        raise ValueError(f'name is {name!r}; expected one of {", ".join(PRESETS)}')
     if name is None:
         return {key: entry.datasheet for key, entry in PRESETS.items()}
     return {f'imu_sensor:{key}': value for key, value in preset(name).items()}

@@ -11,7 +11,7 @@ from ins_sim.core.motion.motion import Motion
 from ins_sim.io.motion import read_motion
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
-from .inputs import Name, plain, Values
+from .inputs import checked_path, Name, plain, Values
 
 
 def open_motion(source: Name | SimulationSettings | AidedSimulationSettings,
@@ -92,4 +92,4 @@ def open_bag(path: Name) -> BagReader:
     >>> imu['angular_velocity'].shape
     (201, 3)
     """
-    return bag_reader.open_bag(path)
+    return bag_reader.open_bag(checked_path('path', path))

@@ -16,7 +16,7 @@ from ins_sim.core.timeseries.histories import NavStates
 from ins_sim.io import imu
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
 from .dataframes import columns, dataframe, history_dataframe
-from .inputs import files, Name, Names, plain, Values
+from .inputs import checked_path, files, Name, Names, plain, Values
 from .offline import Progress
 from .results import Folder
 
@@ -173,7 +173,8 @@ class Navigation:
             Where the folder exists and is not to be replaced, or holds no navigation.
         """
         from ins_sim.report import navigation, storage
-        storage.check_free(folder, overwrite, navigation.MARK, 'overwrite=True')
+        storage.check_free(checked_path('folder', folder), overwrite, navigation.MARK,
+                           'overwrite=True')
         navigation.write_navigation(folder, self.settings, self.name, self.result, overwrite)
 
 

@@ -17,6 +17,7 @@ from ins_sim.core.timeseries.histories import (AidedErrors, ImuSamples, NavError
                                                Truth)
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from .dataframes import chosen, history_dataframe
+from .inputs import checked_path
 
 if TYPE_CHECKING:
     import pandas
@@ -121,7 +122,7 @@ class Run:
 
     def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
         from ins_sim.report import storage, summary
-        storage.check_free(folder, overwrite, option='overwrite=True')
+        storage.check_free(checked_path('folder', folder), overwrite, option='overwrite=True')
         try:
             prediction = predict(self.settings, self.motion)
         except NoPrediction:

@@ -44,6 +44,9 @@ def _text(path):
     try:
         with open(path, 'rb') as file:
             data = file.read()
+    except FileNotFoundError as error:
+        raise FileNotFoundError(f'{path} does not exist; expected a CSV file, plain or '
+                                'gzip') from error
     except (OSError, ValueError) as error:
         reason = getattr(error, 'strerror', None) or str(error)
         raise ValueError(f'cannot read the recording {path}: {reason}; expected a CSV file, '
@@ -68,8 +71,7 @@ def _text(path):
         raise ValueError(f'{path}, line {line}: found a zero byte, so this is a binary or UTF-16 '
                          'file; expected UTF-8 text')
     if not text.strip():
-        raise ValueError(f'{path} is empty; expected a header line and the rows of a recorded '
-                         'flight')
+        raise ValueError(f'{path} is empty; expected a header line and rows')
     return text
 
 

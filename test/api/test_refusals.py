@@ -41,6 +41,32 @@ def test_an_unknown_file_names_those_there_are():
         ins_sim.read_settings('motion_3')
 
 
+@pytest.mark.parametrize('names', [None, 3, b'motion_2', {'duration_s': 1.0}, [None]])
+def test_names_that_are_no_paths(names):
+    """The sentence says what is expected."""
+    with pytest.raises(ValueError, match='^names is .*expected'):
+        ins_sim.read_settings(names)
+
+
+def test_paths_and_presets_of_a_wrong_type(tmp_path, monkeypatch):
+    """No TypeError of the library below comes out."""
+    monkeypatch.chdir(tmp_path)
+    run = ins_sim.simulate(ins_sim.read_settings('motion_2', SHORT))
+    for function, argument in ((ins_sim.open_bag, 'path'), (run.save, 'folder'),
+                               (ins_sim.presets, 'name')):
+        for value in (3, ['tactical_fog']):
+            with pytest.raises(ValueError, match=f'^{argument} is '):
+                function(value)
+
+
+@pytest.mark.parametrize('function', [ins_sim.navigate, ins_sim.open_motion, ins_sim.open_bag])
+@pytest.mark.parametrize('name', ['nowhere.csv', 'nowhere', 'nowhere.csv.gz'])
+def test_what_does_not_exist_is_not_found(function, name):
+    """As the docstrings say."""
+    with pytest.raises(FileNotFoundError, match=f'^{name} does not exist; expected'):
+        function(name)
+
+
 def test_settings_of_the_wrong_function_are_refused():
     """Aided settings go to simulate_aided, and the others to simulate and predict."""
     aided = ins_sim.read_settings(['route_flight', 'grade_mid'], AIDED, aided=True)
