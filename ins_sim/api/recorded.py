@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImuRecord:
     """
     A recorded IMU in arrays, in the axes of the sensor.
@@ -48,6 +48,10 @@ class ImuRecord:
     t_ns: np.ndarray
     omega: np.ndarray
     f: np.ndarray
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return f'<ImuRecord: {len(self.t_ns)} samples>'
 
     def __post_init__(self) -> None:
         """Check the arrays."""
@@ -79,7 +83,7 @@ def _array(name: str, values: Any, expected: str) -> np.ndarray:
         raise ValueError(f'{name} has rows of different lengths; expected {expected}') from None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Navigation:
     """
     A navigation over a recorded IMU.
@@ -96,6 +100,11 @@ class Navigation:
     settings: NavigateSettings
     name: str
     result: replay.NavigationResult
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return (f'<Navigation: {self.name}, {len(self.segments)} segments, compared with '
+                f'{len(self.comparisons)} references>')
 
     @property
     def segments(self) -> list[NavStates]:

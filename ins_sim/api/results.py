@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Folder = Union[str, 'os.PathLike[str]']
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """
     One simulated run.
@@ -45,6 +45,10 @@ class Run:
     motion: Motion
     result: SimulationResult
     own_motion: bool = False
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return f'<Run: {_length(self.states)}>'
 
     @property
     def truth(self) -> Truth:
@@ -137,7 +141,7 @@ class Run:
                           report)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class AidedRun:
     """
     One simulated run with velocity meter, GNSS and the aided navigator.
@@ -154,6 +158,12 @@ class AidedRun:
     settings: AidedSimulationSettings
     run: Run
     result: AidedResult
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        name = self.settings.aided_navigator.filter
+        return (f'<AidedRun: filter {name}, {_length(self.states)}, {len(self.velocity_fixes)} '
+                f'velocity and {len(self.gnss_fixes)} GNSS fixes>')
 
     @property
     def truth(self) -> Truth:
@@ -208,3 +218,8 @@ class AidedRun:
         rows = aided.aided_rows(self.settings, self.result, self.run.states, self.run.errors)
         self.run._write(folder, overwrite,
                         aided.AidedReport(self.settings, self.result, rows))
+
+
+def _length(states: NavStates) -> str:
+    first, last = states.t_ns[0] * 1e-9, states.t_ns[-1] * 1e-9
+    return f'{len(states.t_ns)} instants from {first:.6g} to {last:.6g} s'

@@ -197,3 +197,15 @@ def test_a_motion_of_settings_and_of_a_bag(tmp_path):
         assert '/imu/data_raw' in bag.topics
     with pytest.raises(ValueError, match='values are given with settings'):
         ins_sim.open_motion(settings, {})
+
+
+def test_results_are_one_line_in_a_notebook(run, aided):
+    """The arrays are not printed."""
+    start = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
+             'initial.attitude': 'given', 'initial.velocity': 'given'}
+    record = record_at_rest(100)
+    assert repr(run) == '<Run: 201 instants from 0 to 2 s>'
+    assert repr(aided).startswith('<AidedRun: filter eskf, ') and len(repr(aided)) < 100
+    assert repr(record) == '<ImuRecord: 100 samples>'
+    assert repr(ins_sim.navigate(record, start)) == (
+        '<Navigation: ImuRecord, 1 segments, compared with 0 references>')
