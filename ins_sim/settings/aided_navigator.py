@@ -135,8 +135,8 @@ class AidedNavigatorSettings(SettingsGroup):
         """Refuse a filter, a gain and latencies that do not go together."""
         takes_gnss = [name for name, entry in FILTERS.items() if entry.takes_gnss]
         if self.gnss_model.use and self.filter not in takes_gnss:
-            raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected filter '
-                             f'{", ".join(takes_gnss)}, which alone takes GNSS')
+            raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected a '
+                             f'filter that takes GNSS: {", ".join(takes_gnss)}')
         if self.filter == 'paper' and self.gain > 1.0:
             raise ValueError(f'gain is {self.gain:g} with filter paper; expected at most 1, '
                              'beyond which it is unstable')

@@ -207,7 +207,7 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
 
 
 @pytest.mark.parametrize('assignments, sentence', [
-    (['gnss_model.use:=true', 'filter:=window_kf'], 'expected filter eskf, which alone takes'),
+    (['gnss_model.use:=true', 'filter:=window_kf'], 'expected a filter that takes GNSS: eskf'),
     (['outages.start_s:=[1.0]'], 'outages.start_s has 1 entries and outages.end_s 2'),
     (['motion.route.points.latitude_deg:=[55.0]'], 'motion_generator: motion.route.points: the '
      'route has 1 latitudes and 7 longitudes'),
