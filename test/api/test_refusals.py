@@ -116,6 +116,16 @@ def test_an_empty_record_is_refused():
         ins_sim.navigate(record_at_rest(0, omega=np.zeros((0, 3)), f=np.zeros((0, 3))))
 
 
+def test_a_standstill_that_fills_the_record_names_the_alignment():
+    """The alignment, not the recording, is what can be made shorter."""
+    place = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
+             'initial.heading': 'given'}
+    with pytest.raises(ValueError, match=r'expected .*alignment \(alignment.longest_s is 60 s\)'):
+        ins_sim.navigate(record_at_rest(3000), place)
+    shorter = {**place, 'alignment.longest_s': 10.0}
+    assert ins_sim.navigate(record_at_rest(3000), shorter).segments
+
+
 def test_an_own_motion_is_checked():
     """A motion that returns anything unfit is refused before the run."""
     settings = ins_sim.read_settings('motion_2', SHORT)

@@ -67,9 +67,12 @@ def navigate(settings, sources, progress=None):
     run = _Replay(settings, sources, imu, notes, progress)
     states = run.segments(begin, last, partial(choose_start, settings, sources, imu, broken))
     if not states:
+        earlier = ('an earlier start' if settings.initial.attitude == 'given' else
+                   f'a shorter alignment (alignment.longest_s is {settings.alignment.longest_s:g} '
+                   's)')
         raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
-                         f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or an '
-                         'earlier start')
+                         f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or '
+                         f'{earlier}')
     references = [] if sources.reference is None else [sources.reference]
     if sources.odometry is not None:
         lat, lon, height, _, q_nb = begin.state
