@@ -35,8 +35,13 @@ def cell(theta, detuning):
 
 
 def grouped(row):
-    """Return a row as a parameter whose tests share one run: one worker computes it once."""
-    return pytest.param(*row, marks=pytest.mark.xdist_group(f'{row[0]:g}'))
+    """
+    Return a row as a parameter whose tests share one run: one worker computes it once.
+
+    Theta -30 deg is of the everyday run, theta 0 of the slow one: each is an hour with its twin.
+    """
+    marks = [pytest.mark.xdist_group(f'{row[0]:g}')]
+    return pytest.param(*row, marks=marks if row[0] else [*marks, pytest.mark.slow])
 
 
 def largest(errors):
@@ -61,7 +66,7 @@ def check_cell(figures, theta, detuning, north, east, tol_n, tol_e):
 
 @pytest.mark.parametrize('theta, detuning, north, east, tol_n, tol_e', map(grouped, TABLE))
 def test_table_of_motion_2(theta, detuning, north, east, tol_n, tol_e, figures):
-    """Two of its eight cells."""
+    """Two of its eight cells, one of them in the slow run."""
     check_cell(figures, theta, detuning, north, east, tol_n, tol_e)
 
 
@@ -119,6 +124,7 @@ def check_flight(figures, values, north, east):
     assert floor <= 1e-3
 
 
+@pytest.mark.slow
 def test_the_aggressive_flight(figures):
     """The aggressive flight ends 5.997 m north and 10.741 m east of the truth, as published."""
     check_flight(figures, AGGRESSIVE, 5.997, 10.741)
@@ -151,6 +157,7 @@ def test_racetrack_errs_by_metres_at_most(figures):
     assert largest(twin).max() <= 1e-3
 
 
+@pytest.mark.slow
 def test_schuler_period(figures):
     """
     The period of 2 pi sqrt(R_N / g) fits 5065.2 s.
