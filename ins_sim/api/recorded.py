@@ -23,6 +23,9 @@ from .results import Folder
 if TYPE_CHECKING:
     import pandas
 
+# The period of the highest rate that a node can be set to, 20 kHz.
+SHORTEST_NS = 50_000
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ImuRecord:
@@ -42,7 +45,7 @@ class ImuRecord:
     ------
     ValueError
         In one sentence, on other shapes or types, on numbers that are not finite, and on stamps
-        that do not rise.
+        that do not rise or are closer than those of any IMU.
     """
 
     t_ns: np.ndarray
@@ -63,6 +66,10 @@ class ImuRecord:
             k = int(np.argmax(t_ns[1:] <= t_ns[:-1]))
             raise ValueError(f't_ns[{k + 1}] is {t_ns[k + 1]} after {t_ns[k]}; expected rising '
                              'stamps')
+        step_ns = float(np.median(np.diff(t_ns))) if len(t_ns) > 1 else SHORTEST_NS
+        if step_ns < SHORTEST_NS:
+            raise ValueError(f't_ns has a median step of {step_ns:g} ns; expected at least '
+                             f'{SHORTEST_NS:g} ns: are the stamps in another unit?')
         object.__setattr__(self, 't_ns', t_ns.astype(np.int64))
         for name, unit in (('omega', 'rad/s'), ('f', 'm/s^2')):
             values = _array(name, getattr(self, name), f'numbers in {unit}')
