@@ -12,19 +12,13 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter, CHUNK_BYTES
 from ins_sim.bags.definitions import message_definition
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import LAYOUTS, Writer
+from ins_sim.messages.cdr import Writer
 import numpy as np
 import pytest
 import yaml
-from support.bag_messages import by_topic, strings, write_everything
+from support.bag_messages import (by_topic, KINDS, STORE, strings, TYPES, write_everything)
 
 rosbag2 = pytest.importorskip('rosbags.rosbag2')
-typesys = pytest.importorskip('rosbags.typesys')
-STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
-KINDS = [('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none')]
-TYPES = sorted(LAYOUTS)
-N = 5000
-STAMPS = 1_700_000_000_000_000_000 + np.arange(N) * 10**7
 
 
 @pytest.mark.parametrize('storage, compression', KINDS)

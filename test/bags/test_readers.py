@@ -8,16 +8,10 @@ from ins_sim.messages.cdr import LAYOUTS
 import numpy as np
 import pytest
 import yaml
-from support.bag_messages import (by_topic, strings, topic_of, values_of, write_everything,
-                                  writer_of)
+from support.bag_messages import (by_topic, KINDS, N, STAMPS, STORE, strings, topic_of, TYPES,
+                                  values_of, write_everything, writer_of)
 
 rosbag2 = pytest.importorskip('rosbags.rosbag2')
-typesys = pytest.importorskip('rosbags.typesys')
-STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
-KINDS = [('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none')]
-TYPES = sorted(LAYOUTS)
-N = 5000
-STAMPS = 1_700_000_000_000_000_000 + np.arange(N) * 10**7
 
 
 @pytest.mark.parametrize('storage, compression', KINDS)

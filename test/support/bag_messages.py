@@ -9,6 +9,7 @@ import pytest
 
 typesys = pytest.importorskip('rosbags.typesys')
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
+KINDS = [('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none')]
 TYPES = sorted(LAYOUTS)
 N = 5000
 STAMPS = 1_700_000_000_000_000_000 + np.arange(N) * 10**7
