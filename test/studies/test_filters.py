@@ -106,7 +106,7 @@ def test_averaging_may_be_long(count, figures):
                                                                                     figure)
 
 
-@numbers(4)
+@pytest.mark.parametrize('count', [ALL])
 @pytest.mark.parametrize('grade, published', [('navigation', 118.0), ('mid', 204.0),
                                               ('tactical', 508.0)])
 def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
@@ -115,7 +115,8 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
 
     The filter's own sigma within 30 % of the reference figure (of the grades only the names
     navigation and tactical were given; their figures are ours), and the errors of the flights as
-    large.
+    large. Four flights are too few to tell: their errors lie mostly along one axis, so that they
+    have about half of the freedom that the bound assumes.
     """
     rows, flights = flown(
         count, ('default', 'gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],
