@@ -8,6 +8,8 @@ Integrated Navigation Systems", 2nd ed., section 2.4; constants: NIMA TR8350.2.
 
 import math
 
+from ins_sim.core.numerics.elementary import sqrt
+
 SEMI_MAJOR = 6378137.0
 ECCENTRICITY2 = 6.6943799901413e-3
 ROTATION_RATE = 7.292115e-5
@@ -25,7 +27,7 @@ def rotation_rate(rotates):
 def radii(sin_lat):
     """Return the meridian radius R_N and the transverse radius R_E, m (Groves 2.105, 2.106)."""
     w2 = 1.0 - ECCENTRICITY2 * (sin_lat * sin_lat)
-    w = w2 ** 0.5
+    w = sqrt(w2)
     transverse = SEMI_MAJOR / w
     return (1.0 - ECCENTRICITY2) * transverse / w2, transverse
 
@@ -37,7 +39,7 @@ def gravity(sin_lat, height):
     Somigliana's formula with the free-air term (1 - 2 h / a) (Groves 2.134, first order in h).
     """
     s2 = sin_lat * sin_lat
-    surface = GRAVITY_EQUATOR * (1.0 + GRAVITY_FORMULA * s2) / (1.0 - ECCENTRICITY2 * s2) ** 0.5
+    surface = GRAVITY_EQUATOR * (1.0 + GRAVITY_FORMULA * s2) / sqrt(1.0 - ECCENTRICITY2 * s2)
     return surface * (1.0 - height * (2.0 / SEMI_MAJOR))
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.great_circle import FLATTENING2
 from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics.elementary import sqrt
 
 # of the expansions about the knots: what is left out is below rounding (docs/design/route.md)
 ORDER = 10
@@ -33,7 +34,7 @@ def _metric(sin_lat, cos_lat, height):
     w2 = 1.0 - ellipsoid.ECCENTRICITY2 * (sin_lat * sin_lat)
     sc = sin_lat * cos_lat
     bend, slope = sc * (ellipsoid.ECCENTRICITY2 / w2), sc * (_K / d2)
-    return (1.0 / ((r_e + height) * d2 ** 0.5), FLATTENING2 / ((r_n + height) * d2),
+    return (1.0 / ((r_e + height) * sqrt(d2)), FLATTENING2 / ((r_n + height) * d2),
             slope - bend * r_e / (r_e + height), 2.0 * slope - 3.0 * bend * r_n / (r_n + height))
 
 
@@ -54,7 +55,7 @@ class Flow:
         lat_rate, lon_rate = ellipsoid.level_angles(v_e, v_n, sin_lat, cos_lat, self.height)
         m_e, m_n, by_e, by_n = _metric(sin_lat, cos_lat, self.height)
         p, q = v_e * m_e, v_n * m_n
-        sin_c = sin_lat * FLATTENING2 / (1.0 - _K * (sin_lat * sin_lat)) ** 0.5
+        sin_c = sin_lat * FLATTENING2 / sqrt(1.0 - _K * (sin_lat * sin_lat))
         straight = ((p * p + q * q) * sin_c * lon_rate - p * q * (by_e - by_n) * lat_rate) / (
             m_e * q * a_n + m_n * p * a_e)
         return lat_rate, lon_rate, straight + turn

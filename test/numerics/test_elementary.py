@@ -1,0 +1,105 @@
+"""Elementary functions: accuracy against mpmath, the same bits for floats, arrays and compiled."""
+
+import math
+
+from ins_sim.core.numerics import compilation, elementary
+import mpmath
+import numpy as np
+import pytest
+
+COUNT = 4000
+RNG = np.random.default_rng(12)
+SMALL = 10.0 ** RNG.uniform(-12.0, 0.0, COUNT)
+
+
+def both(low, high):
+    return RNG.uniform(low, high, COUNT)
+
+
+# function, arguments, units in the last place
+CASES = {
+    'sin': ('sin', both(-10.0, 10.0), 1.5),
+    'cos': ('cos', both(-10.0, 10.0), 1.5),
+    'sin of many turns': ('sin', both(-1.6e6, 1.6e6), 2.5),
+    'cos of many turns': ('cos', both(-1.6e6, 1.6e6), 2.5),
+    'sin of small': ('sin', SMALL, 1.5),
+    'exp': ('exp', both(-700.0, 700.0), 1.5),
+    'expm1': ('expm1', both(-30.0, 30.0), 2.0),
+    'expm1 of small': ('expm1', -SMALL, 2.0),
+    'tanh': ('tanh', both(-40.0, 40.0), 3.0),
+    'tanh of small': ('tanh', SMALL, 3.0),
+    'log': ('log', 10.0 ** both(-300.0, 300.0), 1.5),
+    'log near one': ('log', both(0.5, 2.0), 1.5),
+    'log1p': ('log1p', SMALL, 1.5)}
+
+
+def ulps(value, exact):
+    return float(abs(mpmath.mpf(value) - exact) / mpmath.mpf(math.ulp(float(exact))))
+
+
+@pytest.fixture(autouse=True)
+def _precision():
+    with mpmath.workprec(160):
+        yield
+
+
+@pytest.mark.parametrize('case', CASES)
+def test_accuracy(case):
+    name, arguments, bound = CASES[case]
+    function, exact = getattr(elementary, name), getattr(mpmath, name)
+    assert max(ulps(function(x), exact(mpmath.mpf(x))) for x in arguments.tolist()) <= bound
+
+
+def points():
+    y = RNG.normal(size=COUNT) * 10.0 ** RNG.uniform(-8.0, 8.0, COUNT)
+    return y, RNG.normal(size=COUNT)
+
+
+def test_accuracy_of_atan2():
+    pairs = list(zip(*(a.tolist() for a in points())))
+    assert max(ulps(elementary.atan2(y, x), mpmath.atan2(y, x)) for y, x in pairs) <= 1.5
+
+
+@pytest.mark.parametrize('y, x, angle', [
+    (0.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, -2.0, math.pi), (3.0, 0.0, 0.5 * math.pi),
+    (-3.0, 0.0, -0.5 * math.pi), (1.0, 1.0, 0.25 * math.pi), (-1.0, -1.0, -0.75 * math.pi)])
+def test_angles_on_the_axes(y, x, angle):
+    assert elementary.atan2(y, x) == angle
+
+
+@pytest.mark.parametrize('case', CASES)
+def test_an_array_has_the_bits_of_floats(case):
+    name, arguments, _ = CASES[case]
+    function = getattr(elementary, name)
+    assert function(arguments).tolist() == [function(x) for x in arguments.tolist()]
+
+
+def test_an_array_of_points_has_the_bits_of_floats():
+    y, x = points()
+    assert elementary.atan2(y, x).tolist() == [
+        elementary.atan2(*p) for p in zip(y.tolist(), x.tolist())]
+
+
+@pytest.mark.parametrize('name', ['sin', 'cos', 'atan2'])
+def test_compiled_functions_have_the_bits_of_plain_ones(name):
+    plain = getattr(elementary, name)
+    fast = compilation.compiled(plain)
+    if fast is None:
+        pytest.skip('Numba is not installed')
+    arguments = zip(*(a.tolist() for a in points())) if name == 'atan2' else (
+        (x,) for x in CASES['sin of many turns'][1].tolist())
+    for words in arguments:
+        assert fast(*words) == plain(*words)
+
+
+@pytest.mark.parametrize('name', ['sin', 'cos', 'tanh', 'exp'])
+def test_no_number_stays_no_number(name):
+    function = getattr(elementary, name)
+    assert math.isnan(function(math.nan))
+    assert np.isnan(function(np.array([math.nan, 1.0]))).tolist() == [True, False]
+
+
+def test_a_turn_is_taken_off():
+    assert elementary.shorter_turn(1.0) == 1.0
+    assert elementary.shorter_turn(4.0) == 4.0 - 2.0 * math.pi
+    assert elementary.shorter_turn(-4.0) == -4.0 + 2.0 * math.pi
