@@ -1,0 +1,184 @@
+"""
+Compiled copies of plain functions, by Numba where it is installed.
+
+The sources stay plain Python: ``compiled`` copies a function and every function of the package
+that it calls, found through the names it uses, and compiles the copies. Nothing is compiled with
+fast mathematics, so that a compiled function gives the bits of the plain one.
+
+Compiled code is kept in the user's cache folder. Numba alone would not notice that a function in
+another file has changed, so the folder is named by a digest of all that the copies are made of.
+"""
+
+from functools import lru_cache
+from hashlib import blake2b
+import logging
+import math
+import sys
+from types import CodeType, FunctionType, ModuleType
+
+import numpy as np
+
+from . import elementary
+from .compile_cache import cache_folder
+
+LOG = logging.getLogger('ins_sim')
+PACKAGE = __name__.partition('.')[0]
+# What a compiled copy calls in place of a function of floats, arrays and Series.
+REPLACED = {elementary.sqrt: math.sqrt}
+# A loop is run in plain Python until it has taken so many samples in this process: to load Numba
+# and compiled code takes as long as that.
+PLAIN_SAMPLES = 8192
+_taken, _broken = {}, set()
+
+
+def run(loop, count, inputs, out):
+    """
+    Run a loop over count samples, compiled if that pays; return what it returns.
+
+    loop : function (*inputs, out) of a module of this package.  It reads arrays among its inputs
+    and writes into out, a flat sequence, by index.  Plain Python gets lists in their place, the
+    compiled copy flat views of the arrays; the bits are the same.
+    """
+    _taken[loop] = _taken.get(loop, 0) + count
+    if _taken[loop] > PLAIN_SAMPLES:
+        fast = compiled(loop)
+        if fast is not None:
+            try:
+                return fast(*(a.ravel() if isinstance(a, np.ndarray) else a for a in inputs),
+                            out.reshape(-1))
+            except numba().core.errors.NumbaError as error:
+                _say_plain(error)
+                _broken.add(loop)
+    rows = [0.0] * out.size
+    carry = loop(*(a.ravel().tolist() if isinstance(a, np.ndarray) else a for a in inputs), rows)
+    out.reshape(-1)[:] = rows
+    return carry
+
+
+def compiled(function):
+    """
+    Return the compiled copy of a function of a module of this package, or None without Numba.
+
+    Functions that it calls must be functions of modules of this package too, of floats, tuples
+    and arrays. A copy is compiled at its first call with new types, and kept in a cache.
+    """
+    if numba() is None or function in _broken:
+        return None
+    return _compiled(function)
+
+
+@lru_cache(maxsize=None)
+def _compiled(function):
+    return _Graph(numba()).copy(function, entry=True)
+
+
+@lru_cache(maxsize=None)
+def numba():
+    """Return the module Numba, or None where it is missing or cannot be used, saying so once."""
+    try:
+        import numba as found
+        from numba.core import event
+    except ModuleNotFoundError as error:
+        if error.name == 'numba':
+            LOG.warning('Numba is not installed: loops run in plain Python, slower and with the '
+                        "same numbers (pip install 'ins_sim[fast]')")
+        else:
+            _say_plain(error)
+        return None
+    except Exception as error:  # noqa: B902 - an import of another version may raise anything
+        _say_plain(error)
+        return None
+    event.register('numba:compile', _announcer(event))
+    return found
+
+
+def _say_plain(error):
+    first = (str(error).strip().splitlines() or [''])[0]
+    LOG.warning('Numba cannot be used here (%s: %s): loops run in plain Python, slower and with '
+                'the same numbers', type(error).__name__, first)
+
+
+def _announcer(event):
+    """Return a listener that says when a function of this package is compiled."""
+    class Announcer(event.Listener):
+        depth = 0
+
+        def on_start(self, started):
+            function = started.data['dispatcher'].py_func
+            if self.depth == 0 and _ours(function.__module__):
+                LOG.warning('compiling %s: once for this version on this machine, some seconds',
+                            function.__name__)
+            self.depth += 1
+
+        def on_end(self, ended):
+            self.depth -= 1
+
+    return Announcer()
+
+
+class _Graph:
+    """The copies of a function and of all that it calls."""
+
+    def __init__(self, jit):
+        self._jit, self._copies = jit, {}
+        self._digest = blake2b(repr((jit.__version__, np.__version__,
+                                     sys.version_info[:3])).encode(), digest_size=8)
+
+    def copy(self, function, entry=False):
+        """Return the compiled copy of a function; entry: keep its code in the cache."""
+        if function in REPLACED:
+            return REPLACED[function]
+        if function not in self._copies:
+            code = function.__code__
+            names = {'__name__': function.__module__, '__builtins__': __builtins__}
+            for name in sorted(_names(code)):
+                if name in function.__globals__:
+                    names[name] = self._copied(function.__globals__[name], code)
+            plain = FunctionType(code, names, function.__name__, function.__defaults__)
+            plain.__module__, plain.__qualname__ = function.__module__, function.__qualname__
+            self._digest.update(repr((plain.__module__, plain.__qualname__, _written(code),
+                                      function.__defaults__)).encode())
+            self._copies[function] = self._jitted(plain, entry)
+        return self._copies[function]
+
+    def _copied(self, value, code):
+        """Return what stands for a global value in the copy of a function with this code."""
+        if isinstance(value, FunctionType) and _ours(value.__module__):
+            return self.copy(value)
+        if isinstance(value, ModuleType) and _ours(value.__name__):
+            shadow = ModuleType(value.__name__)
+            for name in sorted(_names(code)):
+                if hasattr(value, name):
+                    setattr(shadow, name, self._copied(getattr(value, name), code))
+            return shadow
+        if isinstance(value, (bool, int, float, tuple)):
+            self._digest.update(repr(value).encode())
+        return value
+
+    def _jitted(self, plain, entry):
+        options = {'error_model': 'numpy', 'nogil': True}
+        folder = cache_folder(self._digest.hexdigest()) if entry else None
+        if folder is None:
+            return self._jit.njit(plain, **options)
+        before = self._jit.config.CACHE_DIR
+        self._jit.config.CACHE_DIR = str(folder)
+        try:
+            return self._jit.njit(plain, cache=True, **options)
+        finally:
+            self._jit.config.CACHE_DIR = before
+
+
+def _ours(name):
+    return name.partition('.')[0] == PACKAGE
+
+
+def _names(code):
+    """Return the names of globals and attributes in code, those of inner functions included."""
+    return set(code.co_names).union(*(_names(c) for c in code.co_consts
+                                      if isinstance(c, CodeType)))
+
+
+def _written(code):
+    """Return all of code that decides what it does."""
+    return (code.co_code, code.co_names, code.co_varnames,
+            [_written(c) if isinstance(c, CodeType) else c for c in code.co_consts])
