@@ -12,6 +12,8 @@ with open(package_name + '/__init__.py', encoding='utf-8') as stream:
 # The chunks of MCAP.  From Python 3.14 zstd is in the standard library.
 COMPRESSION = ['lz4<5', 'backports.zstd<2; python_version < "3.14"']
 DATAFRAME = ['pandas<4']
+# Compiles the loops of offline runs; the numbers are the same without it.
+FAST = ['numba<1']
 
 # Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
@@ -32,11 +34,12 @@ setup(
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         'compression': COMPRESSION,
         'dataframe': DATAFRAME,
+        'fast': FAST,
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': [*COMPRESSION, *DATAFRAME, 'pytest<9', 'pytest-xdist<4', 'hypothesis<7',
+        'test': [*COMPRESSION, *DATAFRAME, *FAST, 'pytest<9', 'pytest-xdist<4', 'hypothesis<7',
                  'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
                  # what results are compared with
-                 'allantools', 'geographiclib<3', 'mcap<2', 'rosbags<0.12'],
+                 'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12'],
         'bench': ['python-ins<2', 'rosbags<0.12'],
     },
     zip_safe=False,
