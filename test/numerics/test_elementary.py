@@ -102,4 +102,4 @@ def test_no_number_stays_no_number(name):
 def test_a_turn_is_taken_off():
     assert elementary.shorter_turn(1.0) == 1.0
     assert elementary.shorter_turn(4.0) == 4.0 - 2.0 * math.pi
-    assert elementary.shorter_turn(-4.0) == -4.0 + 2.0 * math.pi
+    assert elementary.shorter_turn(-4.0 - 2.0 * math.pi) == -4.0 - 2.0 * math.pi + 4.0 * math.pi

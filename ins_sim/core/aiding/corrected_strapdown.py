@@ -3,8 +3,9 @@
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.rates import rate_on_earth
-from ins_sim.core.navigation import mechanization
+from ins_sim.core.navigation.increments import fixed_rate_increments, integrals
 from ins_sim.core.navigation.strapdown import Strapdown
+from ins_sim.core.navigation.vertical_channel import FREE
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -30,11 +31,11 @@ class CorrectedStrapdown(Strapdown):
 
     """
 
-    def __init__(self, t_ns, omega, f, dt, place, spin, integrated, channel=mechanization.FREE):
+    def __init__(self, t_ns, omega, f, dt, place, spin, integrated, channel=FREE):
         super().__init__(t_ns, place, spin, channel)
         self._integrated = integrated
         self.gyro_bias = self.accelerometer_bias = ZERO
-        self.rate, self._last = omega, mechanization.integrals(omega, f, dt)
+        self.rate, self._last = omega, integrals(omega, f, dt)
 
     def set_attitude(self, q_nb):
         """Replace the attitude by another one relative to n."""
@@ -62,11 +63,10 @@ class CorrectedStrapdown(Strapdown):
         """
         (bx, by, bz), (ax, ay, az) = self.gyro_bias, self.accelerometer_bias
         self.rate = rate = omega[0] - bx, omega[1] - by, omega[2] - bz
-        now = mechanization.integrals(rate, (f[0] - ax, f[1] - ay, f[2] - az),
-                                      (t_ns - self.t_ns) * 1e-9)
-        phi, u = mechanization.fixed_rate_increments(self._integrated, now, self._last)
+        now = integrals(rate, (f[0] - ax, f[1] - ay, f[2] - az), (t_ns - self.t_ns) * 1e-9)
+        phi, u = fixed_rate_increments(self._integrated, now, self._last)
         self._last = now
-        self.advance(t_ns, phi, u, reference)
+        self.advance(t_ns, phi, u, *reference)
         self._keep(super().attitude())
         return u
 
@@ -77,9 +77,10 @@ class CorrectedStrapdown(Strapdown):
         position m; velocity m/s; turned: rotation vector of the attitude, q_nb = exp(turned)
         q_nb_true, rad.
         """
-        self.lat, self.lon, self.height = ellipsoid.moved(
-            self.lat, self.lon, self.height, (-position[0], -position[1], -position[2]))
-        self.v = (self.v[0] - velocity[0], self.v[1] - velocity[1], self.v[2] - velocity[2])
+        v = self.v
+        self.move(*ellipsoid.moved(self.lat, self.lon, self.height,
+                                   (-position[0], -position[1], -position[2])),
+                  (v[0] - velocity[0], v[1] - velocity[1], v[2] - velocity[2]))
         back = quaternion.exponential((-turned[0], -turned[1], -turned[2]))
         self.set_attitude(quaternion.normalise(quaternion.multiply(back, self.q_nb)))
 

@@ -12,7 +12,7 @@ import math
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation.mechanization import FREE, FROM_TRUTH
+from ins_sim.core.navigation.vertical_channel import FREE, FROM_TRUTH
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.numerics.located import located
 from ins_sim.core.numerics.noise import indexed_noise

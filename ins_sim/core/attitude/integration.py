@@ -6,10 +6,9 @@ for a rotation about a fixed axis; the other two integrate their differential eq
 of RK4 (docs/theory.md, "Dynamically tuned gyro", Orientation).
 """
 
-from collections.abc import Callable
 import math
-from typing import NamedTuple
 
+from ins_sim.core.numerics import elementary
 from . import quaternion
 from .matrix import dcm_of, quaternion_of
 from .quaternion import shorter
@@ -31,8 +30,8 @@ def poisson_row(row, rates, dt):
 
 def step_poisson(c, rates, dt):
     """Return the nine floats of C after one RK4 step of Poisson's equation C' = C [w x]."""
-    return (poisson_row(c[0:3], rates, dt) + poisson_row(c[3:6], rates, dt)
-            + poisson_row(c[6:9], rates, dt))
+    return (*poisson_row(c[0:3], rates, dt), *poisson_row(c[3:6], rates, dt),
+            *poisson_row(c[6:9], rates, dt))
 
 
 def bortz_factor(d2):
@@ -40,7 +39,8 @@ def bortz_factor(d2):
     if d2 < 0.01:
         return 1.0 / 12.0 + d2 * (1.0 / 720.0 + d2 * (1.0 / 30240.0 + d2 / 1209600.0))
     half = 0.5 * math.sqrt(d2)
-    return (1.0 - half * math.cos(half) / math.sin(half)) / d2
+    sin, cos = elementary.sincos(half)
+    return (1.0 - half * cos / sin) / d2
 
 
 def bortz_rate(theta, w):
@@ -83,46 +83,42 @@ def step_quaternion(q, rates, dt):
     return turn(q, phi)
 
 
-def turn(q, phi, dt=None):
-    """Return the unit quaternion q after the rotation vector phi, rad: exact for any dt."""
+def turn(q, phi):
+    """Return the unit quaternion q after the rotation vector phi, rad."""
     return quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
-
-
-def _turn_dcm(c, phi, dt):
-    return step_poisson(c, _constant_rate(phi, dt), dt)
-
-
-def _turn_euler_vector(theta, phi, dt):
-    return step_euler_vector(theta, _constant_rate(phi, dt), dt)
-
-
-def _constant_rate(phi, dt):
-    return ((phi[0] / dt, phi[1] / dt, phi[2] / dt),) * 4
 
 
 def _same(q):
     return q
 
 
-class Algorithm(NamedTuple):
+# Of each algorithm: its step (as of Orientation.step), and its state of a quaternion.
+ALGORITHMS = {'poisson': (step_poisson, dcm_of),
+              'euler_vector': (step_euler_vector, quaternion.logarithm),
+              'quaternion': (step_quaternion, _same)}
+
+
+def turned(state, phi, dt):
     """
-    An algorithm as functions of its state: nine, three or four floats that are never changed.
+    Return the state of an algorithm after the rotation vector phi, rad, at a constant rate.
 
-    step(state, rates, dt): as of Orientation.step; turn(state, phi, dt): as of
-    Orientation.advance; state_of(q) and quaternion_of(state).
+    state: nine floats (poisson), three (euler_vector) or four (quaternion, exact for any dt).
     """
+    if len(state) == 4:
+        return turn(state, phi)
+    rate = phi[0] / dt, phi[1] / dt, phi[2] / dt
+    if len(state) == 9:
+        return step_poisson(state, (rate, rate, rate, rate), dt)
+    return step_euler_vector(state, (rate, rate, rate, rate), dt)
 
-    step: Callable
-    turn: Callable
-    state_of: Callable
-    quaternion_of: Callable
 
-
-ALGORITHMS = {
-    'poisson': Algorithm(step_poisson, _turn_dcm, dcm_of, quaternion_of),
-    'euler_vector': Algorithm(step_euler_vector, _turn_euler_vector, quaternion.logarithm,
-                              quaternion.exponential),
-    'quaternion': Algorithm(step_quaternion, turn, _same, _same)}
+def quaternion_of_state(state):
+    """Return the unit quaternion of the state of an algorithm."""
+    if len(state) == 4:
+        return state
+    if len(state) == 9:
+        return quaternion_of(state)
+    return quaternion.exponential(state)
 
 
 class Orientation:
@@ -136,21 +132,21 @@ class Orientation:
     def __init__(self, kind, q=quaternion.IDENTITY):
         if kind not in ALGORITHMS:
             raise ValueError(f'orientation is {kind!r}; expected {", ".join(KINDS)}')
-        self._algorithm = ALGORITHMS[kind]
-        self.state = self._algorithm.state_of(tuple(q))
+        self._step, state_of = ALGORITHMS[kind]
+        self.state = state_of(tuple(q))
 
     def step(self, rates, dt):
         """Advance by dt, s; rates: four vectors at start, middle, middle, end, rad/s."""
-        self.state = self._algorithm.step(self.state, rates, dt)
+        self.state = self._step(self.state, rates, dt)
 
     def advance(self, phi, dt):
         """Advance by the rotation vector phi, rad, of an interval dt, s, at its constant rate."""
-        self.state = self._algorithm.turn(self.state, phi, dt)
+        self.state = turned(self.state, phi, dt)
 
     @property
     def q(self):
         """The attitude as unit quaternion q_nb."""
-        return self._algorithm.quaternion_of(self.state)
+        return quaternion_of_state(self.state)
 
     @property
     def dcm(self):

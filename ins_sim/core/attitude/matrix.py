@@ -16,17 +16,16 @@ def dcm_of(q):
 def quaternion_of(c):
     """Return the unit quaternion of nine floats C_nb, row by row (Shepperd 1978)."""
     trace = c[0] + c[4] + c[8]
-    squares = (1.0 + 2.0 * c[0] - trace, 1.0 + 2.0 * c[4] - trace, 1.0 + 2.0 * c[8] - trace,
-               1.0 + trace)
-    k = squares.index(max(squares))
-    if k == 0:
-        q = (squares[0], c[1] + c[3], c[2] + c[6], c[7] - c[5])
-    elif k == 1:
-        q = (c[1] + c[3], squares[1], c[5] + c[7], c[2] - c[6])
-    elif k == 2:
-        q = (c[2] + c[6], c[5] + c[7], squares[2], c[3] - c[1])
+    x2, y2, z2 = 1.0 + 2.0 * c[0] - trace, 1.0 + 2.0 * c[4] - trace, 1.0 + 2.0 * c[8] - trace
+    w2 = 1.0 + trace
+    if x2 >= y2 and x2 >= z2 and x2 >= w2:
+        q = (x2, c[1] + c[3], c[2] + c[6], c[7] - c[5])
+    elif y2 >= z2 and y2 >= w2:
+        q = (c[1] + c[3], y2, c[5] + c[7], c[2] - c[6])
+    elif z2 >= w2:
+        q = (c[2] + c[6], c[5] + c[7], z2, c[3] - c[1])
     else:
-        q = (c[7] - c[5], c[2] - c[6], c[3] - c[1], squares[3])
+        q = (c[7] - c[5], c[2] - c[6], c[3] - c[1], w2)
     norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
 

@@ -8,10 +8,12 @@ Integrated Navigation Systems", 2nd ed., section 2.4; constants: NIMA TR8350.2.
 
 import math
 
-from ins_sim.core.numerics.elementary import sqrt
+from ins_sim.core.numerics.elementary import atan2, shorter_turn, sincos, sqrt
 
 SEMI_MAJOR = 6378137.0
 ECCENTRICITY2 = 6.6943799901413e-3
+# semi-minor over semi-major axis, 1 - f
+FLATTENING = math.sqrt(1.0 - ECCENTRICITY2)
 ROTATION_RATE = 7.292115e-5
 # of the sphere that legs of great circles lie on
 MEAN_RADIUS = 6371000.0
@@ -24,23 +26,32 @@ def rotation_rate(rotates):
     return ROTATION_RATE if rotates else 0.0
 
 
+def radii_and_gravity(sin_lat, height):
+    """
+    Return the meridian radius R_N, the transverse radius R_E, m, and normal gravity, m/s^2.
+
+    Groves 2.105, 2.106; gravity downward along the ellipsoid normal by Somigliana's formula with
+    the free-air term (1 - 2 h / a) (Groves 2.134, first order in h).  1 / sqrt(1 - e^2 sin^2) is
+    the binomial series in x = e^2 sin^2 <= 0.0067; what is left out is below 1e-18.
+    """
+    sin2 = sin_lat * sin_lat
+    x = sin2 * ECCENTRICITY2
+    x2 = x * x
+    per_w = (x * 0.5 + 1.0) + x2 * ((x * 0.3125 + 0.375) + x2 * (
+        (x * 0.24609375 + 0.2734375) + x2 * (x * 0.20947265625 + 0.2255859375)))
+    surface = (sin2 * (GRAVITY_EQUATOR * GRAVITY_FORMULA) + GRAVITY_EQUATOR) * per_w
+    return (per_w * per_w * per_w * ((1.0 - ECCENTRICITY2) * SEMI_MAJOR), per_w * SEMI_MAJOR,
+            surface * (1.0 - height * (2.0 / SEMI_MAJOR)))
+
+
 def radii(sin_lat):
-    """Return the meridian radius R_N and the transverse radius R_E, m (Groves 2.105, 2.106)."""
-    w2 = 1.0 - ECCENTRICITY2 * (sin_lat * sin_lat)
-    w = sqrt(w2)
-    transverse = SEMI_MAJOR / w
-    return (1.0 - ECCENTRICITY2) * transverse / w2, transverse
+    """Return the meridian radius R_N and the transverse radius R_E, m."""
+    return radii_and_gravity(sin_lat, 0.0)[:2]
 
 
 def gravity(sin_lat, height):
-    """
-    Return normal gravity, m/s^2, downward along the ellipsoid normal.
-
-    Somigliana's formula with the free-air term (1 - 2 h / a) (Groves 2.134, first order in h).
-    """
-    s2 = sin_lat * sin_lat
-    surface = GRAVITY_EQUATOR * (1.0 + GRAVITY_FORMULA * s2) / sqrt(1.0 - ECCENTRICITY2 * s2)
-    return surface * (1.0 - height * (2.0 / SEMI_MAJOR))
+    """Return normal gravity, m/s^2, downward along the ellipsoid normal."""
+    return radii_and_gravity(sin_lat, height)[2]
 
 
 def ecef(sin_lat, cos_lat, sin_lon, cos_lon, height):
@@ -50,25 +61,36 @@ def ecef(sin_lat, cos_lat, sin_lon, cos_lon, height):
     return p * cos_lon, p * sin_lon, (transverse * (1.0 - ECCENTRICITY2) + height) * sin_lat
 
 
-def geodetic(x, y, z):
+def geodetic_directions(x, y, z):
     """
-    Return latitude, longitude (rad) and height (m) of a point in e, floats, not at the pole.
+    Return sine and cosine of latitude and of longitude, and height (m), of a point in e, floats.
 
     Bowring's start and Newton-like fixed point in the reduced latitude; three rounds reach the
-    rounding floor (1e-9 m) from -10 km to 1000 km.
+    rounding floor (1e-9 m) from -10 km to 1000 km.  On the axis the longitude is zero.
     """
-    p = math.hypot(x, y)
-    flat = math.sqrt(1.0 - ECCENTRICITY2)
-    ep2 = ECCENTRICITY2 / (1.0 - ECCENTRICITY2)
-    beta = math.atan2(z, p * flat)
+    p = sqrt(x * x + y * y)
+    sin_lon, cos_lon = (y / p, x / p) if p > 0.0 else (0.0, 1.0)
+    sin, cos = _direction(z, p * FLATTENING)
     for _ in range(3):
-        sb, cb = math.sin(beta), math.cos(beta)
-        lat = math.atan2(z + ep2 * flat * SEMI_MAJOR * sb ** 3,
-                         p - ECCENTRICITY2 * SEMI_MAJOR * cb ** 3)
-        beta = math.atan2(flat * math.sin(lat), math.cos(lat))
-    sl, cl = math.sin(lat), math.cos(lat)
-    height = p * cl + z * sl - SEMI_MAJOR * math.sqrt(1.0 - ECCENTRICITY2 * sl * sl)
-    return lat, math.atan2(y, x), height
+        sin_lat, cos_lat = _direction(
+            z + ECCENTRICITY2 / (1.0 - ECCENTRICITY2) * FLATTENING * SEMI_MAJOR * sin * sin * sin,
+            p - ECCENTRICITY2 * SEMI_MAJOR * cos * cos * cos)
+        sin, cos = _direction(FLATTENING * sin_lat, cos_lat)
+    height = p * cos_lat + z * sin_lat - SEMI_MAJOR * sqrt(
+        1.0 - ECCENTRICITY2 * (sin_lat * sin_lat))
+    return sin_lat, cos_lat, sin_lon, cos_lon, height
+
+
+def _direction(y, x):
+    """Return sine and cosine of the angle of (x, y), floats that are not both zero."""
+    r = sqrt(x * x + y * y)
+    return y / r, x / r
+
+
+def geodetic(x, y, z):
+    """Return latitude, longitude (rad) and height (m) of a point in e, floats."""
+    sin_lat, cos_lat, _, _, height = geodetic_directions(x, y, z)
+    return atan2(sin_lat, cos_lat), atan2(y, x), height
 
 
 def level_angles(east, north, sin_lat, cos_lat, height):
@@ -95,16 +117,17 @@ def moved(lat, lon, height, enu):
     offset d by d^2 / 2R: 1e-5 m in 10 m and 0.1 m in 1 km. The offset may be arrays or Series.
     """
     east, north, up = enu
-    d_lat, d_lon = level_angles(east, north, math.sin(lat), math.cos(lat), height)
+    d_lat, d_lon = level_angles(east, north, *sincos(lat), height)
     return lat + d_lat, lon + d_lon, height + up
 
 
 def offset(lat, lon, height, other):
     """
-    Return East, North, Up, m, from a point to another, floats; the inverse of ``moved``.
+    Return East, North, Up, m, from a point to another; the inverse of ``moved``.
 
     other: (lat, lon, height). Longitudes may differ by whole turns.
     """
-    east, north = level_metres(other[0] - lat, math.remainder(other[1] - lon, 2.0 * math.pi),
-                               math.sin(lat), math.cos(lat), height)
+    sin_lat, cos_lat = sincos(lat)
+    east, north = level_metres(other[0] - lat, shorter_turn(other[1] - lon), sin_lat, cos_lat,
+                               height)
     return east, north, other[2] - height

@@ -1,10 +1,9 @@
 """Angular rates of the local level frame and of the body on the Earth; velocity in the body."""
 
-import math
-
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.elementary import sincos
 from . import ellipsoid
 
 
@@ -14,7 +13,7 @@ def rate_of_n(lat, height, v_n, earth_rotation):
 
     Groves 5.44, in ENU; without rotation of the Earth it is omega_en_n.
     """
-    s, c = np.sin(lat), np.cos(lat)
+    s, c = sincos(lat)
     lat_rate, lon_rate = ellipsoid.level_angles(v_n[:, 0], v_n[:, 1], s, c, height)
     spin = ellipsoid.rotation_rate(earth_rotation)
     return np.stack((-lat_rate, (spin + lon_rate) * c, (spin + lon_rate) * s), axis=-1)
@@ -22,7 +21,8 @@ def rate_of_n(lat, height, v_n, earth_rotation):
 
 def rate_on_earth(lat, q_nb, omega_ib_b, spin):
     """Return the rate of b relative to an Earth of that spin, resolved in b, floats, rad/s."""
-    turn = quaternion.rotate_back(q_nb, (0.0, spin * math.cos(lat), spin * math.sin(lat)))
+    sin, cos = sincos(lat)
+    turn = quaternion.rotate_back(q_nb, (0.0, spin * cos, spin * sin))
     return omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2]
 
 

@@ -1,6 +1,8 @@
 """The loop over samples: gap rule, start anew after a fault, and decimation of the outputs."""
 
-from ins_sim.core.streams.faults import check_interval, StreamFault
+import numpy as np
+
+from ins_sim.core.streams.faults import check_interval, is_regular, StreamFault
 
 
 class Decimation:
@@ -22,7 +24,7 @@ class Decimation:
         return False
 
     def due(self, t_ns):
-        """Return whether the output of t_ns, of a run that has begun, is published."""
+        """Return whether the outputs of t_ns, of a run that has begun, are published."""
         return (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns % self._every == 0
 
 
@@ -69,6 +71,41 @@ class NavigationLoop:
             if output is not None:
                 self._decimation.begins(t_ns)
                 yield k, output, self._decimation.due(t_ns)
+
+    def run_block(self, t_ns, *columns):
+        """
+        Yield (first, output, due) of each stretch without a fault; the bits are those of ``run``.
+
+        t_ns (n,); columns: the further arguments of the navigator's ``advance``, which takes a
+        stretch at once and returns its outputs, histories of the last samples of it.  first:
+        index of the first output; due: indices of the outputs that are published, from first.
+        """
+        regular = np.ones(len(t_ns), dtype=bool)
+        regular[1:] = is_regular(np.diff(t_ns), self._dt_ns)
+        if self._last_ns is not None and len(t_ns):
+            regular[0] = is_regular(t_ns[0] - self._last_ns, self._dt_ns)
+        start = 0
+        for stop in (*np.flatnonzero(~regular).tolist(), len(t_ns)):
+            if stop > start:
+                part = slice(start, stop)
+                output = self.navigator.advance(t_ns[part], *(c[part] for c in columns))
+                self._last_ns = int(t_ns[stop - 1])
+                if len(output[0]):
+                    stamps = output[0].t_ns
+                    self._decimation.begins(int(stamps[0]))
+                    yield stop - len(stamps), output, np.flatnonzero(self._decimation.due(stamps))
+            start = stop
+            if stop < len(t_ns) and not self._passes(int(t_ns[stop])):
+                start = stop + 1
+
+    def _passes(self, t_ns):
+        """Handle the fault of a sample; return whether it is taken, by a new navigator."""
+        try:
+            self.check(t_ns, self._last_ns)
+        except StreamFault as fault:
+            self.recover(fault)
+            return fault.restart
+        return True
 
     def _take(self, sample):
         """Step, again after each fault; a sample at which a new navigator fails too is refused."""

@@ -2,10 +2,10 @@
 
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import StreamFault
-from . import mechanization
+from .increments import uneven_increments
 from .loop import NavigationLoop
-from .mechanization import DAMPED, FREE
 from .strapdown import Strapdown
+from .vertical_channel import DAMPED, damping, FREE, NO_DAMPING
 
 
 class RecordedNavigator:
@@ -18,9 +18,9 @@ class RecordedNavigator:
 
     def __init__(self, kind, spin, initial, time_constant_s=None):
         self._kind, self._spin, self._initial = kind, spin, initial
-        self._channel, self._damping = FREE, ()
+        self._channel, self._damping = FREE, NO_DAMPING
         if time_constant_s is not None:
-            self._channel, self._damping = DAMPED, mechanization.damping(time_constant_s)
+            self._channel, self._damping = DAMPED, damping(time_constant_s)
         self._strapdown = self._bridge_ns = None
 
     def bridge_next(self, step_ns):
@@ -31,7 +31,7 @@ class RecordedNavigator:
         """
         self._bridge_ns = step_ns
 
-    def step(self, t_ns, omega, f, height=None):
+    def step(self, t_ns, omega, f, height=0.0):
         """
         Take the sample of stamp t_ns; return lat, lon, height, v_n, q_nb then.
 
@@ -59,8 +59,8 @@ class RecordedNavigator:
 
     def _advance(self, kind, t_ns, now, height):
         dt = (t_ns - self._strapdown.t_ns) * 1e-9
-        phi, u = mechanization.uneven_increments(kind, self._last, now, dt, self._dt_last or dt)
-        self._strapdown.advance(t_ns, phi, u, (height,))
+        phi, u = uneven_increments(kind, self._last, now, dt, self._dt_last or dt)
+        self._strapdown.advance(t_ns, phi, u, height)
         self._last, self._dt_last = now, dt
 
 

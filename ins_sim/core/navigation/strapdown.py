@@ -3,10 +3,10 @@
 import copy
 import math
 
-from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.integration import ALGORITHMS
+from ins_sim.core.attitude import integration, quaternion
 from ins_sim.core.earth import frames
 from . import mechanization
+from .vertical_channel import FREE, NO_DAMPING
 
 
 class Strapdown:
@@ -27,66 +27,101 @@ class Strapdown:
     Attributes
     ----------
     t_ns : instant of the solution
-    lat, lon, height, v : position (rad, rad, m) and v_n (m/s) then; to set them leaves the
-        attitude relative to the inertial frame as it is
+    place : position and velocity then, ``mechanization.PLACE``
+    orientation : state of the attitude algorithm then
     q_ib : attitude relative to the inertial frame then
 
     """
 
-    def __init__(self, t_ns, place, spin, channel=mechanization.FREE, damping=(),
+    def __init__(self, t_ns, place, spin, channel=FREE, damping=NO_DAMPING,
                  orientation='quaternion'):
-        self.t_ns = self._start_ns = t_ns
-        self.spin, self._channel, self._damping = spin, channel, damping
-        _, self._turn, self._state_of, self._quaternion_of = ALGORITHMS[orientation]
-        self._vertical_bias = 0.0
-        self.lat, self.lon, self.height, self.v, q_nb = place
+        self.t_ns = self.start_ns = t_ns
+        self.spin, self.channel, self.damping = spin, channel, damping
+        _, self._state_of = integration.ALGORITHMS[orientation]
+        lat, lon, height, v, q_nb = place
+        self.place = mechanization.begin(lat, lon, height, v, 0.0)
         self.set_attitude(q_nb)
 
     def copy(self):
         """Return a snapshot."""
         return copy.copy(self)
 
+    @property
+    def lat(self):
+        """Return the latitude, rad."""
+        return self.place[0]
+
+    @property
+    def lon(self):
+        """Return the longitude, rad."""
+        return self.place[1]
+
+    @property
+    def height(self):
+        """Return the height, m."""
+        return self.place[2]
+
+    @property
+    def v(self):
+        """Return v_n, m/s."""
+        return self.place[3:6]
+
+    def move(self, lat, lon, height, v):
+        """Replace position (rad, rad, m) and v_n (m/s); q_ib stays."""
+        self.place = mechanization.renewed((lat, lon, height, *v, *self.place[6:]),
+                                           self.spin * self.elapsed_s)
+
     def set_attitude(self, q_nb):
         """Replace the attitude by another one relative to n."""
         q_ib = frames.inertial_attitude(self.lat, self.lon + self.spin * self.elapsed_s, q_nb)
-        self._orientation = self._state_of(q_ib)
-        self.q_ib = self._quaternion_of(self._orientation)
+        self.orientation = self._state_of(q_ib)
+        self.q_ib = integration.quaternion_of_state(self.orientation)
 
-    def advance(self, t_ns, phi, delta_v, reference=()):
+    def advance(self, t_ns, phi, delta_v, height=0.0, v_u=0.0):
         """
         Advance to t_ns.
 
         phi: rotation vector of the interval, rad; delta_v: its velocity increment in b at its
-        start, m/s; reference: height, m, and vertical velocity, m/s, at its end for the channel
-        FROM_TRUTH, height for DAMPED.
+        start, m/s; height, m, v_u, m/s: reference at its end for the channel FROM_TRUTH, of which
+        DAMPED takes the height.
         """
-        last_ns, start_ns = self.t_ns, self._start_ns
-        dt = (t_ns - last_ns) * 1e-9
-        middle_s = 0.5 * (last_ns - start_ns + t_ns - start_ns) * 1e-9
-        if self._damping:
-            reference = (*reference, *self._damping, self._vertical_bias)
-        (self.lat, self.lon, self.height), self.v, self._vertical_bias = mechanization.advance(
-            self.q_ib, (self.lat, self.lon, self.height), self.v, delta_v, dt, self.spin,
-            self.spin * middle_s, self._channel, reference)
-        self._orientation = self._turn(self._orientation, phi, dt)
-        self.q_ib = self._quaternion_of(self._orientation)
+        dt = (t_ns - self.t_ns) * 1e-9
+        self.place = mechanization.advance(
+            self.place, self.q_ib, delta_v, dt, self.spin, self.spin * self.elapsed_s,
+            self.channel, (height, v_u, *self.damping))
+        self.orientation = integration.turned(self.orientation, phi, dt)
+        self.q_ib = integration.quaternion_of_state(self.orientation)
         self.t_ns = t_ns
+
+    def resume(self, t_ns, orientation, place):
+        """Take the state that a loop over samples has come to."""
+        self.t_ns, self.orientation, self.place = t_ns, orientation, place
+        self.q_ib = integration.quaternion_of_state(orientation)
 
     @property
     def elapsed_s(self):
         """Return the time since the start, s."""
-        return (self.t_ns - self._start_ns) * 1e-9
+        return (self.t_ns - self.start_ns) * 1e-9
 
     def attitude(self):
         """Return q_nb."""
-        elapsed_s = (self.t_ns - self._start_ns) * 1e-9
-        q_in = frames.level_frame(self.lat, self.lon + self.spin * elapsed_s)
-        return quaternion.multiply(quaternion.conjugate(q_in), self.q_ib)
+        return level_attitude(self.lat, self.lon, self.q_ib, self.spin * self.elapsed_s)
 
     @property
     def solution(self):
         """Return lat, lon, height, v_n, q_nb."""
-        return self.lat, self.lon, self.height, self.v, self.attitude()
+        lat, lon, height, *v = self.place[:6]
+        return lat, lon, height, tuple(v), self.attitude()
+
+
+def level_attitude(lat, lon, q_ib, earth_angle):
+    """
+    Return q_nb of an inertial attitude at a position, floats or arrays.
+
+    earth_angle: rotation of e in i since they coincided, rad.
+    """
+    return quaternion.multiply(quaternion.conjugate(frames.level_frame(lat, lon + earth_angle)),
+                               q_ib)
 
 
 def runs_away(solution):

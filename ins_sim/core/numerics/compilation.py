@@ -9,6 +9,7 @@ Compiled code is kept in the user's cache folder. Numba alone would not notice t
 another file has changed, so the folder is named by a digest of all that the copies are made of.
 """
 
+import dis
 from functools import lru_cache
 from hashlib import blake2b
 import logging
@@ -31,13 +32,21 @@ PLAIN_SAMPLES = 8192
 _taken, _broken = {}, set()
 
 
-def run(loop, count, inputs, out):
+def run(loop, count, inputs, out, plain=None):
     """
     Run a loop over count samples, compiled if that pays; return what it returns.
 
-    loop : function (*inputs, out) of a module of this package.  It reads arrays among its inputs
-    and writes into out, a flat sequence, by index.  Plain Python gets lists in their place, the
-    compiled copy flat views of the arrays; the bits are the same.
+    Parameters
+    ----------
+    loop : function (*inputs, out) of a module of this package
+        It reads arrays among its inputs and writes into out, flat sequences, by index. Plain
+        Python gets lists in their place, the compiled copy flat views; the bits are the same.
+    count : number of samples
+    inputs : tuple of arrays, tuples, numbers and None
+    out : C-contiguous array of float
+    plain : function (*inputs, out) of whole arrays, with the same bits, to be run instead of the
+        loop in plain Python
+
     """
     _taken[loop] = _taken.get(loop, 0) + count
     if _taken[loop] > PLAIN_SAMPLES:
@@ -49,6 +58,8 @@ def run(loop, count, inputs, out):
             except numba().core.errors.NumbaError as error:
                 _say_plain(error)
                 _broken.add(loop)
+    if plain is not None:
+        return plain(*inputs, out)
     rows = [0.0] * out.size
     carry = loop(*(a.ravel().tolist() if isinstance(a, np.ndarray) else a for a in inputs), rows)
     out.reshape(-1)[:] = rows
@@ -131,9 +142,9 @@ class _Graph:
         if function not in self._copies:
             code = function.__code__
             names = {'__name__': function.__module__, '__builtins__': __builtins__}
-            for name in sorted(_names(code)):
+            for name, attributes in _references(code).items():
                 if name in function.__globals__:
-                    names[name] = self._copied(function.__globals__[name], code)
+                    names[name] = self._copied(function.__globals__[name], attributes)
             plain = FunctionType(code, names, function.__name__, function.__defaults__)
             plain.__module__, plain.__qualname__ = function.__module__, function.__qualname__
             self._digest.update(repr((plain.__module__, plain.__qualname__, _written(code),
@@ -141,15 +152,14 @@ class _Graph:
             self._copies[function] = self._jitted(plain, entry)
         return self._copies[function]
 
-    def _copied(self, value, code):
-        """Return what stands for a global value in the copy of a function with this code."""
+    def _copied(self, value, attributes):
+        """Return what stands in a copy for a global value of which these attributes are used."""
         if isinstance(value, FunctionType) and _ours(value.__module__):
             return self.copy(value)
         if isinstance(value, ModuleType) and _ours(value.__name__):
             shadow = ModuleType(value.__name__)
-            for name in sorted(_names(code)):
-                if hasattr(value, name):
-                    setattr(shadow, name, self._copied(getattr(value, name), code))
+            for name in sorted(attributes):
+                setattr(shadow, name, self._copied(getattr(value, name), ()))
             return shadow
         if isinstance(value, (bool, int, float, tuple)):
             self._digest.update(repr(value).encode())
@@ -157,7 +167,9 @@ class _Graph:
 
     def _jitted(self, plain, entry):
         options = {'error_model': 'numpy', 'nogil': True}
-        folder = cache_folder(self._digest.hexdigest()) if entry else None
+        if not entry:
+            return self._jit.njit(plain, forceinline=True, **options)
+        folder = cache_folder(self._digest.hexdigest())
         if folder is None:
             return self._jit.njit(plain, **options)
         before = self._jit.config.CACHE_DIR
@@ -172,10 +184,19 @@ def _ours(name):
     return name.partition('.')[0] == PACKAGE
 
 
-def _names(code):
-    """Return the names of globals and attributes in code, those of inner functions included."""
-    return set(code.co_names).union(*(_names(c) for c in code.co_consts
-                                      if isinstance(c, CodeType)))
+def _references(code):
+    """Return {global name: the attributes that are read of it} of code."""
+    found, last = {}, None
+    for instruction in dis.get_instructions(code):
+        if instruction.opname == 'LOAD_GLOBAL':
+            last = instruction.argval
+            found.setdefault(last, set())
+            continue
+        if last is not None and instruction.opname in ('LOAD_ATTR', 'LOAD_METHOD'):
+            found[last].add(instruction.argval)
+        if instruction.opname != 'CACHE':
+            last = None
+    return dict(sorted(found.items()))
 
 
 def _written(code):

@@ -174,5 +174,5 @@ def log1p(x):
 
 
 def shorter_turn(x):
-    """Return an angle between -3 pi and 3 pi less a whole turn, so that it is within pi."""
-    return x + 2.0 * math.pi * ((x < -math.pi) * 1.0 - (x > math.pi) * 1.0)
+    """Return an angle less whole turns, so that it is within pi (of some turns: to rounding)."""
+    return x - ((x * (0.5 / math.pi) + ROUND) - ROUND) * (2.0 * math.pi)

@@ -88,15 +88,8 @@ def navigate_blocks(settings, motion, blocks, faults=None):
     for imu in blocks:
         t_ns = clock.instant(imu.t_ns)
         truth = motion.at(t_ns)
-        kept, solutions, errors = [], [], []
-        for k, error, due in loop.run(samples_with_truth(imu, t_ns, truth)):
-            if due:
-                kept.append(k)
-                solutions.append(loop.navigator.solution)
-                errors.append(error)
-        if kept:
-            yield (truth[kept], NavStates(t_ns[kept], *map(np.array, zip(*solutions))),
-                   NavErrors(t_ns[kept], *map(np.array, zip(*errors))))
+        for first, (states, errors), due in loop.run_block(t_ns, imu.omega, imu.f, truth):
+            yield truth[first + due], states[due], errors[due]
 
 
 def samples_with_truth(imu, t_ns, truth):

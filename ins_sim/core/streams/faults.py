@@ -43,6 +43,11 @@ def check_unit(name, t_ns, q):
                           restart=False)
 
 
+def is_regular(step_ns, expected_ns):
+    """Return whether steps (integers or an array of them) are within INTERVAL_TOLERANCE."""
+    return abs(step_ns - expected_ns) <= INTERVAL_TOLERANCE * expected_ns
+
+
 def check_interval(name, t_ns, last_ns, expected_ns):
     """
     Raise StreamFault unless t_ns follows last_ns by expected_ns within INTERVAL_TOLERANCE.
@@ -50,7 +55,7 @@ def check_interval(name, t_ns, last_ns, expected_ns):
     A repeated stamp is dropped; a backwards stamp, a gap and another rate call for a restart.
     """
     step = t_ns - last_ns
-    if abs(step - expected_ns) <= INTERVAL_TOLERANCE * expected_ns:
+    if is_regular(step, expected_ns):
         return
     if step == 0:
         raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '

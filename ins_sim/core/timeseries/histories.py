@@ -44,6 +44,11 @@ class Truth(History):
     omega_ib_b: np.ndarray
     f_ib_b: np.ndarray
 
+    def one(self, k):
+        """Return lat, lon, height, v_n, q_nb of one instant as floats and tuples of floats."""
+        return (float(self.lat[k]), float(self.lon[k]), float(self.height[k]),
+                tuple(self.v_n[k].tolist()), tuple(self.q_nb[k].tolist()))
+
 
 @dataclass(frozen=True, eq=False)
 class ImuSamples(History):
