@@ -6,9 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
 from .truth import truth_from_pose
+
+# latitude, longitude and the components of q_nb or of the specific force in n
+Attitude = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
+Force = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
 
 
 class Motion:
@@ -16,7 +21,8 @@ class Motion:
     A motion: the place and the attitude of the vehicle as functions of time.
 
     The constructor serves motions in closed form, which are valid at any time. A subclass that
-    overrides ``at`` may work in another way, as recorded flights do.
+    overrides ``at`` may work in another way, as recorded flights do; its ``attitude_at`` and
+    ``force_at`` then take their answers from ``at``, unless it overrides them as well.
 
     Parameters
     ----------
@@ -42,7 +48,16 @@ class Motion:
         self._pose = pose
         self._order = order
         self._rotation = earth_rotation
+        self._attitude_order: int | None = None
         self.period_s = period_s
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        """Let a class that overrides ``at`` alone answer everything by it."""
+        super().__init_subclass__(**keywords)
+        if 'at' in vars(cls):
+            for name, by_truth in (('attitude_at', _attitude_of), ('force_at', _force_of)):
+                if name not in vars(cls):
+                    setattr(cls, name, by_truth)
 
     def at(self, t_ns: np.ndarray) -> Truth:
         """
@@ -55,6 +70,61 @@ class Motion:
         """
         t = taylor.Series.time(np.asarray(t_ns) * 1e-9, self._order)
         return truth_from_pose(t_ns, *self._pose(t), self._rotation)
+
+    def attitude_at(self, t_ns: np.ndarray) -> Attitude:
+        """
+        Return what ``at`` returns of the attitude, in less time.
+
+        Parameters
+        ----------
+        t_ns : (n,) int64 array
+            Motion times, ns.
+
+        Returns
+        -------
+        lat, lon : (n,) arrays
+            Latitude and longitude, rad.
+        q_nb : tuple of four (n,) arrays
+            Attitude in the local level frame there.
+        """
+        seconds = np.asarray(t_ns) * 1e-9
+        if self._attitude_order is None:
+            # The order that is lost by the derivatives that the attitude itself is made of.
+            q_nb = self._pose(taylor.Series.time(seconds[:1], self._order))[3]
+            self._attitude_order = self._order - min(len(x.c) - 1 for x in q_nb)
+        lat, lon, _, q_nb = self._pose(taylor.Series.time(seconds, self._attitude_order))
+        return lat.value, lon.value, tuple(x.value for x in q_nb)
+
+    def force_at(self, t_ns: np.ndarray) -> Force:
+        """
+        Return the specific force in the local level frame, without the attitude of the body.
+
+        Parameters
+        ----------
+        t_ns : (n,) int64 array
+            Motion times, ns.
+
+        Returns
+        -------
+        lat, lon : (n,) arrays
+            Latitude and longitude, rad.
+        f_n : tuple of three (n,) arrays
+            Specific force East, North, Up, m/s^2.
+        """
+        return _force_of(self, t_ns)
+
+
+def _attitude_of(motion, t_ns):
+    """Return ``attitude_at`` of a motion by its truth."""
+    truth = motion.at(t_ns)
+    return truth.lat, truth.lon, tuple(np.moveaxis(truth.q_nb, -1, 0))
+
+
+def _force_of(motion, t_ns):
+    """Return ``force_at`` of a motion by its truth."""
+    truth = motion.at(t_ns)
+    f_n = quaternion.rotate(np.moveaxis(truth.q_nb, -1, 0), np.moveaxis(truth.f_ib_b, -1, 0))
+    return truth.lat, truth.lon, f_n
 
 
 def check_length(generator, motion):

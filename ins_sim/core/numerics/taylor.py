@@ -58,7 +58,7 @@ class Series:
     def integral(self, value):
         """Return the series whose derivative this is and whose value is given, (n,)."""
         k = np.arange(1, len(self.c) + 1)[:, None]
-        return Series(np.concatenate([np.broadcast_to(value, self.c[:1].shape), self.c / k]))
+        return Series(np.concatenate([np.broadcast_to(value, (1,) + self.c.shape[1:]), self.c / k]))
 
     def __neg__(self):
         return Series(-self.c)
@@ -83,7 +83,10 @@ class Series:
         if not isinstance(other, Series):
             return Series(self.c * other)
         n = min(len(self.c), len(other.c))
-        return Series(np.array([_cauchy(self.c, other.c, k, 0) for k in range(n)]))
+        product = np.empty((n,) + self.c.shape[1:])
+        for k in range(n):
+            product[k] = _cauchy(self.c, other.c, k, 0)
+        return Series(product)
 
     __rmul__ = __mul__
 

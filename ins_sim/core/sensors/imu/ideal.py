@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.rotation_vectors import logarithms
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import ImuSamples
@@ -18,21 +19,21 @@ NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
 WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
-def rotation_increment(q_start, q_end, dq_earth):
+def inertial_turn(q_start, q_end, dq_earth):
     """
-    Return the rotation vector from the inertial attitude at the start to that at the end, rad.
+    Return the rotation from the inertial attitude at the start to that at the end, a quaternion.
 
     q_start, q_end: q_mb; dq_earth: rotation of m in i over the interval.
     """
-    return quaternion.logarithm(quaternion.multiply(quaternion.conjugate(q_start),
-                                                    quaternion.multiply(dq_earth, q_end)))
+    return quaternion.multiply(quaternion.conjugate(q_start),
+                               quaternion.multiply(dq_earth, q_end))
 
 
 def velocity_increment(q_start, forces_m, node_rotations):
     """
     Return Q_ib(start)^-1 times the mean of Q_ib f_b over the interval, m/s^2.
 
-    forces_m: specific force in m at the three Gauss nodes; node_rotations: rotations of m in i
+    Components may be floats or arrays.  forces_m: specific force in m at the three Gauss nodes; node_rotations: rotations of m in i
     from the start to the nodes.
     """
     (w1, w2, w3), (f1, f2, f3), (r1, r2, r3) = WEIGHTS, forces_m, node_rotations
@@ -78,19 +79,33 @@ class Triads:
         """Let the rotors of tuned gyros, if any, be settled at the start of the next step."""
         self._settled = False
 
-    def rotated(self, q_start, q_end, forces_m):
+    def rotated(self, q_start, q_end, forces_m, logarithm=quaternion.logarithm):
         """
-        Return omega, f, None of one step of the output ``rotation_vector``.
+        Return omega, f, None of one step of the output ``rotation_vector``, or of many.
 
         q_start, q_end: q_mb at each attitude delay; forces_m: for each accelerometer delay, the
-        specific force in m at the three Gauss nodes.
+        specific force in m at the three Gauss nodes.  Components are floats, or arrays with the
+        logarithm of ``rotation_vectors``.
         """
-        phi = [rotation_increment(q_start[k], q_end[k], self._dq_earth) for k in self._gyro_at]
+        phi = [logarithm(inertial_turn(q_start[k], q_end[k], self._dq_earth))
+               for k in self._gyro_at]
         u = [velocity_increment(q_start[k], f, self._node_rotations)
              for k, f in zip(self._accel_at, forces_m)]
         (g0, g1, g2), (a0, a1, a2), n = self._gyro, self._accel, self._per_dt
         return ((phi[g0][0] * n, phi[g1][1] * n, phi[g2][2] * n),
                 (u[a0][0], u[a1][1], u[a2][2]), None)
+
+    def rotated_block(self, t_ns, q_before, q_end, forces_m):
+        """
+        Return the ImuSamples of consecutive steps of the output ``rotation_vector``.
+
+        q_before: q_mb at each attitude delay, floats, at the end of the step before; q_end, forces_m:
+        as of ``rotated``, arrays of the steps.
+        """
+        starts = [np.concatenate([np.array(q)[:, None], ends[:, :-1]], axis=1)
+                  for q, ends in zip(q_before, q_end)]
+        omega, f, _ = self.rotated(starts, q_end, forces_m, logarithms)
+        return ImuSamples(t_ns, np.stack(omega, axis=-1), np.stack(f, axis=-1))
 
     def instant(self, t_ns, omega, f):
         """Return omega, f, parity or None of rate and specific force at an instant."""
@@ -118,6 +133,25 @@ class Triads:
         omega, parity = self.pair.step(t_ns, late, force)
         return omega, force, parity
 
+    def integrals_block(self, t_ns, rates, forces_b, first_ns=None):
+        """
+        Return the ImuSamples of consecutive steps of the output ``integrated``.
+
+        rates, forces_b: as of ``integrals``, arrays (3, n) of the steps.  The rotors settle anew
+        behind the step that ends at first_ns.
+        """
+        if self.pair is None:
+            omega, f, _ = self.integrals(t_ns, rates, forces_b)
+            return ImuSamples(t_ns, np.stack(omega, axis=-1), np.stack(f, axis=-1))
+        steps = [zip(*(zip(*(node.T.tolist() for node in nodes)) for nodes in vectors))
+                 for vectors in (rates, forces_b)]
+        readings = []
+        for t, w, f in zip(t_ns.tolist(), *steps):
+            readings.append(self.integrals(t, w, f))
+            if t == first_ns:
+                self.begin()
+        return ImuSamples.of_readings(t_ns, readings)
+
     @staticmethod
     def _pick_means(nodes, picks):
         w1, w2, w3 = WEIGHTS
@@ -129,7 +163,7 @@ class MotionImu:
     """
     The IMU fed by a motion that can be evaluated anywhere (closed form or recording).
 
-    settings: ImuSensorSettings; motion: has at(t_ns) -> Truth; first_ns: motion time of sample 0;
+    settings: ImuSensorSettings; motion: a Motion; first_ns: motion time of sample 0;
     triads: of the same settings, to be used instead of new ones.
     """
 
@@ -149,45 +183,47 @@ class MotionImu:
         t_ns = self.next_ns + triads.dt_ns * np.arange(count, dtype=np.int64)
         self.next_ns += triads.dt_ns * count
         if triads.integrated:
-            rates = self._at_nodes(t_ns, triads.gyro_delays, self._rates, triads.rate_nodes)
-            forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_b)
-            readings = []
-            for t, w, f in zip(t_ns.tolist(), rates, forces):
-                readings.append(triads.integrals(t, w, f))
-                if t == self._first_ns:
-                    # the run begins here, as on a stream, which knows nothing of before
-                    triads.begin()
-        else:
-            if self._q_start is None:
-                before = t_ns[:1] - triads.dt_ns
-                self._q_start = [self._attitudes(before - d)[0] for d in triads.attitude_delays]
-            ends = zip(*(self._attitudes(t_ns - d) for d in triads.attitude_delays))
-            forces = self._at_nodes(t_ns, triads.accel_delays, self._forces_m)
-            readings = []
-            for q_end, f in zip(ends, forces):
-                readings.append(triads.rotated(self._q_start, q_end, f))
-                self._q_start = q_end
-        return ImuSamples.of_readings(t_ns, readings)
+            return self._integrated(t_ns)
+        if self._q_start is None:
+            before = t_ns[:1] - triads.dt_ns
+            self._q_start = [self._attitudes(before - d)[:, 0].tolist()
+                             for d in triads.attitude_delays]
+        ends = [self._attitudes(t_ns - d) for d in triads.attitude_delays]
+        forces = [[self._forces_m(t_ns + (o - d)) for o in self._offsets(NODES)]
+                  for d in triads.accel_delays]
+        samples = triads.rotated_block(t_ns, self._q_start, ends, forces)
+        self._q_start = [q[:, -1].tolist() for q in ends]
+        return samples
 
-    def _truth(self, t_ns):
-        return self._motion.at(np.maximum(t_ns, self._first_ns) if self._frozen else t_ns)
+    def _integrated(self, t_ns):
+        triads, known = self._triads, {}
+
+        def truth(offset_ns):
+            if offset_ns not in known:
+                known[offset_ns] = self._motion.at(self._instants(t_ns + offset_ns))
+            return known[offset_ns]
+
+        rates = [[truth(o - d).omega_ib_b.T for o in self._offsets(triads.rate_nodes)]
+                 for d in triads.gyro_delays]
+        forces = [[truth(o - d).f_ib_b.T for o in self._offsets(NODES)]
+                  for d in triads.accel_delays]
+        # The run begins at first_ns, as on a stream, which knows nothing of before.
+        return triads.integrals_block(t_ns, rates, forces, self._first_ns)
+
+    def _instants(self, t_ns):
+        return np.maximum(t_ns, self._first_ns) if self._frozen else t_ns
 
     def _attitudes(self, t_ns):
-        return self._triads.frame.attitude(self._truth(t_ns)).tolist()
+        lat, lon, q_nb = self._motion.attitude_at(self._instants(t_ns))
+        return np.array(self._triads.frame.attitude_in_map(lat, lon, q_nb))
 
     def _forces_m(self, t_ns):
-        truth = self._truth(t_ns)
-        q_mb = np.moveaxis(self._triads.frame.attitude(truth), -1, 0)
-        return np.stack(quaternion.rotate(q_mb, np.moveaxis(truth.f_ib_b, -1, 0)), -1).tolist()
+        truth = self._motion.at(self._instants(t_ns))
+        q_nb, f_b = np.ascontiguousarray(truth.q_nb.T), np.ascontiguousarray(truth.f_ib_b.T)
+        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, q_nb)
+        return quaternion.rotate(q_mb, f_b)
 
-    def _rates(self, t_ns):
-        return self._truth(t_ns).omega_ib_b.tolist()
-
-    def _forces_b(self, t_ns):
-        return self._truth(t_ns).f_ib_b.tolist()
-
-    def _at_nodes(self, t_ns, delays, values, nodes=NODES):
-        """Yield for each step, for each delay, the values at the nodes of [0, 1]."""
+    def _offsets(self, nodes):
+        """Return the times of nodes of [0, 1] relative to the end of a step, ns."""
         dt_ns = self._triads.dt_ns
-        offsets = [round(dt_ns * (s - 1.0)) for s in nodes]
-        return zip(*(zip(*(values(t_ns + (o - d)) for o in offsets)) for d in delays))
+        return [round(dt_ns * (s - 1.0)) for s in nodes]
