@@ -68,9 +68,9 @@ def _ideal(settings, motion):
         return
     imu = StreamImu(sensor)
     for truth in truth_blocks(generator, motion):
-        readings = imu.advance(truth)
-        if readings:
-            yield ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
+        block = imu.advance(truth)
+        if len(block):
+            yield block
 
 
 def navigate_blocks(settings, motion, blocks, faults=None):

@@ -7,6 +7,8 @@ from ins_sim.core.numerics.instants import seconds
 # How far an interval may be off the sampling period, as a fraction of it: jitter of the stamps,
 # but no lost sample.
 INTERVAL_TOLERANCE = 0.2
+# Bounds of the square of the norm of a quaternion.
+UNIT_LOW, UNIT_HIGH = 0.998, 1.002
 
 
 class StreamFault(ValueError):
@@ -14,8 +16,12 @@ class StreamFault(ValueError):
     A sample that a stage refuses.
 
     restart: False when the sample was dropped and the stage is intact; True when the stage must
-    be reset before the sample may be given to it again.
+    be reset before the sample may be given to it again.  Where a block of samples was given,
+    index is the number of the refused one in it, and readings are those that the samples before
+    it have completed.
     """
+
+    index = readings = None
 
     def __init__(self, sentence, restart):
         super().__init__(sentence)
@@ -37,7 +43,7 @@ def check_finite(name, t_ns, *vectors):
 def check_unit(name, t_ns, q):
     """Raise StreamFault (sample dropped) unless the quaternion has unit norm within 1e-3."""
     n2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
-    if not 0.998 < n2 < 1.002:
+    if not UNIT_LOW < n2 < UNIT_HIGH:
         raise StreamFault(f'{name} at {seconds(t_ns)} has an orientation of norm '
                           f'{math.sqrt(n2):.6g}; expected 1; the sample was dropped',
                           restart=False)

@@ -6,15 +6,21 @@ See docs/theory.md, "Streamed truth".
 
 from collections import deque
 
+import numpy as np
+
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_differences,
                                                  newton_value)
 from ins_sim.core.numerics.instants import seconds
-from .faults import check_finite, check_interval, check_unit, StreamFault
+from .faults import (check_finite, check_interval, check_unit, INTERVAL_TOLERANCE, StreamFault,
+                     UNIT_HIGH, UNIT_LOW)
+from .truth_pieces import pieces_of_samples, TruthBlock, TruthPieces
 
 # fields of a sample
 FORCE_M, RATE, FORCE_B = 3, 4, 5
 TURN_LIMIT = 2.0
+# Below it, sums of components are finite without a doubt.
+FINITE = 1e100
 ZERO = (0.0, 0.0, 0.0)
 
 
@@ -56,10 +62,8 @@ class TruthBuffer:
         """
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         check_unit('truth', t_ns, q_mb)
-        turn = quaternion.rotate_back(q_mb, self._frame.omega_ie_m)
-        omega_mb_b = (omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2])
-        f_m = quaternion.rotate(q_mb, f_ib_b)
-        sample = (t_ns, q_mb, omega_mb_b, f_m, omega_ib_b, f_ib_b)
+        sample = self._sample(t_ns, q_mb, omega_ib_b, f_ib_b)
+        omega_mb_b = sample[2]
         if not self._last:
             self._first = sample
             self._last.appendleft(sample)
@@ -86,6 +90,65 @@ class TruthBuffer:
                              times + (t_ns,) * (3 - len(times))))
         while self._pieces[0][1] < t_ns - self._reach_ns:
             self._pieces.popleft()
+
+    def _sample(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """Return what is kept of a sample, or of many whose components are arrays."""
+        turn = quaternion.rotate_back(q_mb, self._frame.omega_ie_m)
+        omega_mb_b = (omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2])
+        return t_ns, q_mb, omega_mb_b, quaternion.rotate(q_mb, f_ib_b), omega_ib_b, f_ib_b
+
+    def push_block(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """
+        Take the first of many samples, up to one of which ``push`` may have something to say.
+
+        t_ns (n,) int64; the others tuples of arrays (n,).  Return how many were taken, and their
+        TruthBlock; none where fewer than three samples came before.
+        """
+        if len(self._last) < 3:
+            return 0, None
+        new = self._sample(t_ns, q_mb, omega_ib_b, f_ib_b)
+        count = self._sound(*new[:3], omega_ib_b, f_ib_b)
+        if not count:
+            return 0, None
+        # The three last samples lead the new ones.
+        known = tuple(self._last)[::-1]
+        stamps = np.concatenate([[sample[0] for sample in known], t_ns[:count]])
+        q, w = (tuple(np.concatenate([before, x[:count]])
+                      for before, x in zip(zip(*(sample[k] for sample in known)), new[k]))
+                for k in (1, 2))
+        fields = {k: tuple(x[:count] for x in new[k]) for k in self._wanted}
+        made = pieces_of_samples(stamps, q, w, fields, self._cubics)
+        kept = TruthPieces.of_tuples(self._pieces)
+        block = TruthBlock(made.behind(kept), len(self._pieces), self._first, self._frozen,
+                           self._reach_ns)
+        self._keep(block.pieces, new, count)
+        return count, block
+
+    def _keep(self, pieces, new, count):
+        """Keep of new samples and their pieces what single pushes would have kept."""
+        newest_ns = int(pieces.end_ns[-1])
+        first = int(np.searchsorted(pieces.end_ns, newest_ns - self._reach_ns))
+        self._pieces = deque(pieces.tuples(first))
+        self._cubics = self._pieces[-1][5]
+        self._step_ns = newest_ns - self._pieces[-1][0]
+        for k in range(max(0, count - 3), count):
+            self._last.appendleft((int(new[0][k]), *(tuple(float(x[k]) for x in column)
+                                                     for column in new[1:])))
+
+    def _sound(self, t_ns, q_mb, omega_mb_b, omega_ib_b, f_ib_b):
+        """Return how many samples come before the first of which ``push`` may complain."""
+        sound = np.ones(len(t_ns), dtype=bool)
+        for x in (*q_mb, *omega_ib_b, *f_ib_b):
+            sound &= abs(x) < FINITE
+        n2 = q_mb[0] * q_mb[0] + q_mb[1] * q_mb[1] + q_mb[2] * q_mb[2] + q_mb[3] * q_mb[3]
+        sound &= (n2 > UNIT_LOW) & (n2 < UNIT_HIGH)
+        steps = np.diff(t_ns, prepend=self._last[0][0])
+        expected = np.concatenate([[self._step_ns], steps[:-1]])
+        sound &= abs(steps - expected) <= INTERVAL_TOLERANCE * expected
+        turned = steps * 1e-9 * np.maximum(np.maximum(abs(omega_mb_b[0]), abs(omega_mb_b[1])),
+                                           abs(omega_mb_b[2]))
+        sound &= turned <= TURN_LIMIT
+        return len(sound) if sound.all() else int(np.argmin(sound))
 
     def _piece(self, t_ns):
         for piece in reversed(self._pieces):

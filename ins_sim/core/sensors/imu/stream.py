@@ -2,9 +2,12 @@
 
 import math
 
+import numpy as np
+
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
+from ins_sim.core.timeseries.histories import ImuSamples
 from ..sensor import Sensor
 from .ideal import MotionImu, NODES, Triads
 from .with_errors import ImuWithErrors, with_errors
@@ -27,6 +30,24 @@ def stream_samples(truth, frame):
     """Return t_ns, q_mb, omega_ib_b, f_ib_b of each instant of a Truth record; frame: MapFrame."""
     return zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(), truth.omega_ib_b.tolist(),
                truth.f_ib_b.tolist())
+
+
+def components(vectors):
+    """Return the columns of (n, m) as m contiguous arrays."""
+    return tuple(np.ascontiguousarray(vectors.T))
+
+
+def samples_of(readings):
+    """Return the ImuSamples of what pushes of an IMU return."""
+    if readings:
+        return ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
+    return ImuSamples(np.empty(0, dtype=np.int64), np.empty((0, 3)), np.empty((0, 3)))
+
+
+def joined(parts):
+    """Return parts of ImuSamples, any of which may be empty, as one."""
+    parts = [part for part in parts if len(part)]
+    return ImuSamples.concatenate(parts) if parts else samples_of([])
 
 
 class StreamImu(Sensor):
@@ -81,6 +102,57 @@ class StreamImu(Sensor):
     def samples(self, truth):
         """Return the arguments of push for each instant of a Truth record."""
         return stream_samples(truth, self._triads.frame)
+
+    def advance(self, truth):
+        """
+        Return the ImuSamples of a Truth record or of a part of one, those of single pushes.
+
+        Raise StreamFault as push does, with ``readings`` and ``index``.
+        """
+        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, components(truth.q_nb))
+        sample = (truth.t_ns, q_mb, components(truth.omega_ib_b), components(truth.f_ib_b))
+        done, parts = 0, []
+        while done < len(truth.t_ns):
+            rest = (sample[0][done:], *(tuple(x[done:] for x in v) for v in sample[1:]))
+            count, block = self._buffer.push_block(*rest)
+            if count:
+                parts.append(self._read_block(block, sample[0][done:done + count]))
+                done += count
+                continue
+            try:
+                parts.append(samples_of(self.push(int(rest[0][0]), *(
+                    tuple(float(x[0]) for x in v) for v in rest[1:]))))
+            except StreamFault as fault:
+                fault.readings, fault.index = joined(parts), done
+                raise
+            done += 1
+        return joined(parts)
+
+    def _read_block(self, block, stamps):
+        """Return the samples that the new ones of a TruthBlock, of these stamps, complete."""
+        triads, dt_ns = self._triads, self._triads.dt_ns
+        count = max(0, (int(stamps[-1]) - self._lead_ns - self._next_ns) // dt_ns + 1)
+        if not count:
+            return samples_of([])
+        t_ns = self._next_ns + dt_ns * np.arange(count, dtype=np.int64)
+        self._next_ns += dt_ns * count
+        newest = np.searchsorted(stamps, t_ns + self._lead_ns)
+
+        def nodes(delays, field, offsets):
+            return [[block.cubic(t_ns + (o - d), newest, field) for o in offsets] for d in delays]
+
+        if triads.integrated:
+            return triads.integrals_block(
+                t_ns, nodes(triads.gyro_delays, RATE, self._rate_node_ns),
+                nodes(triads.accel_delays, FORCE_B, self._node_ns))
+        if self._q_start is None:
+            self._q_start = [block.attitude(t_ns[:1] - dt_ns - d, newest[:1])[:, 0].tolist()
+                             for d in triads.attitude_delays]
+        ends = [block.attitude(t_ns - d, newest) for d in triads.attitude_delays]
+        forces = nodes(triads.accel_delays, FORCE_M, self._node_ns)
+        samples = triads.rotated_block(t_ns, self._q_start, ends, forces)
+        self._q_start = [tuple(q[:, -1].tolist()) for q in ends]
+        return samples
 
     def _read(self, t_ns):
         triads, buffer = self._triads, self._buffer
