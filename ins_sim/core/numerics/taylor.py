@@ -58,7 +58,8 @@ class Series:
     def integral(self, value):
         """Return the series whose derivative this is and whose value is given, (n,)."""
         k = np.arange(1, len(self.c) + 1)[:, None]
-        return Series(np.concatenate([np.broadcast_to(value, (1,) + self.c.shape[1:]), self.c / k]))
+        first = np.broadcast_to(value, (1,) + self.c.shape[1:])
+        return Series(np.concatenate([first, self.c / k]))
 
     def __neg__(self):
         return Series(-self.c)

@@ -49,6 +49,17 @@ class Sensor:
         """Return the arguments of ``push`` for each instant of a Truth record."""
         raise NotImplementedError
 
-    def advance(self, truth: Truth) -> list[Any]:
-        """Return the readings of a Truth record or of a part of one, those of single pushes."""
+    def advance(self, truth: Truth) -> Any:
+        """
+        Return the readings of a Truth record or of a part of one, those of single pushes.
+
+        Parameters
+        ----------
+        truth : Truth
+
+        Returns
+        -------
+        list
+            Or a record of arrays, where a sensor has one: ImuSamples of an IMU.
+        """
         return [reading for sample in self.samples(truth) for reading in self.push(*sample)]

@@ -16,12 +16,11 @@ class StreamFault(ValueError):
     A sample that a stage refuses.
 
     restart: False when the sample was dropped and the stage is intact; True when the stage must
-    be reset before the sample may be given to it again.  Where a block of samples was given,
-    index is the number of the refused one in it, and readings are those that the samples before
-    it have completed.
+    be reset before the sample may be given to it again.  index: the number of the sample in the
+    block that was given; readings: those that the samples before it have completed, or None.
     """
 
-    index = readings = None
+    index, readings = 0, None
 
     def __init__(self, sentence, restart):
         super().__init__(sentence)

@@ -24,6 +24,11 @@ FINITE = 1e100
 ZERO = (0.0, 0.0, 0.0)
 
 
+def leading(true):
+    """Return how many of an array of booleans are true before the first that is not."""
+    return len(true) if np.all(true) else int(np.argmin(true))
+
+
 class TruthBuffer:
     """
     Ring buffer of streamed truth that answers for any instant it covers.
@@ -106,8 +111,9 @@ class TruthBuffer:
         """
         if len(self._last) < 3:
             return 0, None
-        new = self._sample(t_ns, q_mb, omega_ib_b, f_ib_b)
-        count = self._sound(*new[:3], omega_ib_b, f_ib_b)
+        new = self._sample(*self._sound(t_ns, q_mb, omega_ib_b, f_ib_b))
+        steps = np.diff(new[0], prepend=self._last[0][0])
+        count = leading(steps * 1e-9 * abs(np.array(new[2])).max(axis=0) <= TURN_LIMIT)
         if not count:
             return 0, None
         # The three last samples lead the new ones.
@@ -135,20 +141,17 @@ class TruthBuffer:
             self._last.appendleft((int(new[0][k]), *(tuple(float(x[k]) for x in column)
                                                      for column in new[1:])))
 
-    def _sound(self, t_ns, q_mb, omega_mb_b, omega_ib_b, f_ib_b):
-        """Return how many samples come before the first of which ``push`` may complain."""
-        sound = np.ones(len(t_ns), dtype=bool)
-        for x in (*q_mb, *omega_ib_b, *f_ib_b):
-            sound &= abs(x) < FINITE
-        n2 = q_mb[0] * q_mb[0] + q_mb[1] * q_mb[1] + q_mb[2] * q_mb[2] + q_mb[3] * q_mb[3]
-        sound &= (n2 > UNIT_LOW) & (n2 < UNIT_HIGH)
-        steps = np.diff(t_ns, prepend=self._last[0][0])
+    def _sound(self, t_ns, q_mb, omega_ib_b, f_ib_b):
+        """Return the samples before the first that cannot be used, but for a turn too far."""
+        finite = leading(abs(np.array((*q_mb, *omega_ib_b, *f_ib_b))).max(axis=0) < FINITE)
+        x, y, z, w = (part[:finite] for part in q_mb)
+        n2 = x * x + y * y + z * z + w * w
+        steps = np.diff(t_ns[:finite], prepend=self._last[0][0])
         expected = np.concatenate([[self._step_ns], steps[:-1]])
-        sound &= abs(steps - expected) <= INTERVAL_TOLERANCE * expected
-        turned = steps * 1e-9 * np.maximum(np.maximum(abs(omega_mb_b[0]), abs(omega_mb_b[1])),
-                                           abs(omega_mb_b[2]))
-        sound &= turned <= TURN_LIMIT
-        return len(sound) if sound.all() else int(np.argmin(sound))
+        count = leading((n2 > UNIT_LOW) & (n2 < UNIT_HIGH)
+                        & (abs(steps - expected) <= INTERVAL_TOLERANCE * expected))
+        return t_ns[:count], *(tuple(x[:count] for x in vector)
+                               for vector in (q_mb, omega_ib_b, f_ib_b))
 
     def _piece(self, t_ns):
         for piece in reversed(self._pieces):

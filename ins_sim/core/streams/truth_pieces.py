@@ -79,7 +79,7 @@ class TruthBlock:
         self._new, self._first, self._frozen, self._reach_ns = new, first, frozen, reach_ns
 
     def attitude(self, t_ns, newest):
-        """Return q_mb, (4, n), at instants (n,) asked when new sample number newest was the last."""
+        """Return q_mb, (4, n), at instants (n,) asked when new sample newest was the last."""
         q = np.array(self.pieces.attitude(t_ns, self._piece(t_ns, newest)))
         first_ns, q_first, w = self._first[:3]
         before = np.flatnonzero(t_ns <= first_ns)
@@ -93,7 +93,7 @@ class TruthBlock:
         return q
 
     def cubic(self, t_ns, newest, field):
-        """Return a field, (3, n), at instants (n,) asked when sample number newest was the last."""
+        """Return a field, (3, n), at instants asked when new sample newest was the last."""
         values = np.array(self.pieces.cubic(t_ns, self._piece(t_ns, newest), field))
         before = t_ns <= self._first[0]
         if before.any():

@@ -12,7 +12,9 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.rotation_vectors import logarithms
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples
+from .readings import components, samples_of
 
 # Gauss-Legendre, three points on [0, 1]
 NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
@@ -33,8 +35,8 @@ def velocity_increment(q_start, forces_m, node_rotations):
     """
     Return Q_ib(start)^-1 times the mean of Q_ib f_b over the interval, m/s^2.
 
-    Components may be floats or arrays.  forces_m: specific force in m at the three Gauss nodes; node_rotations: rotations of m in i
-    from the start to the nodes.
+    Components may be floats or arrays.  forces_m: specific force in m at the three Gauss nodes;
+    node_rotations: rotations of m in i from the start to the nodes.
     """
     (w1, w2, w3), (f1, f2, f3), (r1, r2, r3) = WEIGHTS, forces_m, node_rotations
     a, b, c = quaternion.rotate(r1, f1), quaternion.rotate(r2, f2), quaternion.rotate(r3, f3)
@@ -99,8 +101,8 @@ class Triads:
         """
         Return the ImuSamples of consecutive steps of the output ``rotation_vector``.
 
-        q_before: q_mb at each attitude delay, floats, at the end of the step before; q_end, forces_m:
-        as of ``rotated``, arrays of the steps.
+        q_before: q_mb at each attitude delay, floats, at the end of the step before; q_end,
+        forces_m: as of ``rotated``, arrays of the steps.
         """
         starts = [np.concatenate([np.array(q)[:, None], ends[:, :-1]], axis=1)
                   for q, ends in zip(q_before, q_end)]
@@ -138,7 +140,7 @@ class Triads:
         Return the ImuSamples of consecutive steps of the output ``integrated``.
 
         rates, forces_b: as of ``integrals``, arrays (3, n) of the steps.  The rotors settle anew
-        behind the step that ends at first_ns.
+        behind the step that ends at first_ns.  A StreamFault has ``readings``, those before it.
         """
         if self.pair is None:
             omega, f, _ = self.integrals(t_ns, rates, forces_b)
@@ -147,7 +149,11 @@ class Triads:
                  for vectors in (rates, forces_b)]
         readings = []
         for t, w, f in zip(t_ns.tolist(), *steps):
-            readings.append(self.integrals(t, w, f))
+            try:
+                readings.append(self.integrals(t, w, f))
+            except StreamFault as fault:
+                fault.readings = samples_of([(t, *r) for t, r in zip(t_ns.tolist(), readings)])
+                raise
             if t == first_ns:
                 self.begin()
         return ImuSamples.of_readings(t_ns, readings)
@@ -219,9 +225,8 @@ class MotionImu:
 
     def _forces_m(self, t_ns):
         truth = self._motion.at(self._instants(t_ns))
-        q_nb, f_b = np.ascontiguousarray(truth.q_nb.T), np.ascontiguousarray(truth.f_ib_b.T)
-        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, q_nb)
-        return quaternion.rotate(q_mb, f_b)
+        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, components(truth.q_nb))
+        return quaternion.rotate(q_mb, components(truth.f_ib_b))
 
     def _offsets(self, nodes):
         """Return the times of nodes of [0, 1] relative to the end of a step, ns."""

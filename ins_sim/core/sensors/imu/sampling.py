@@ -52,8 +52,20 @@ class Sampler:
 
     def take(self, imu):
         """Return the ImuSamples that get through, with their stamps."""
-        if self.perfect:
+        if self.perfect or not len(imu):
             return imu
-        stamps = [self.stamp(t_ns // self._dt_ns, t_ns) for t_ns in imu.t_ns.tolist()]
-        kept = [k for k, stamp_ns in enumerate(stamps) if stamp_ns is not None]
-        return replace(imu[kept], t_ns=np.array([stamps[k] for k in kept], dtype=np.int64))
+        kept, stamps = np.ones(len(imu), dtype=bool), imu.t_ns.copy()
+        for part in consecutive(imu.t_ns // self._dt_ns):
+            first, count = int(imu.t_ns[part.start]) // self._dt_ns, part.stop - part.start
+            if self._lost:
+                kept[part] = self._drop_outs.uniforms(first, count) >= self._lost
+            if self._jitter_ns:
+                shift = np.rint(self._jitter_ns * self._jitters.normals(first, count))
+                stamps[part] += np.clip(shift.astype(np.int64), -self._most_ns, self._most_ns)
+        return replace(imu[kept], t_ns=(stamps + self._latency_ns)[kept])
+
+
+def consecutive(index):
+    """Return the slices of an array of whole numbers in which each is one more than the last."""
+    ends = [*(np.flatnonzero(np.diff(index) != 1) + 1).tolist(), len(index)]
+    return [slice(start, end) for start, end in zip([0, *ends], ends) if end > start]

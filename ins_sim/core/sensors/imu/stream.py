@@ -7,9 +7,9 @@ import numpy as np
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
-from ins_sim.core.timeseries.histories import ImuSamples
 from ..sensor import Sensor
 from .ideal import MotionImu, NODES, Triads
+from .readings import components, joined, samples_of
 from .with_errors import ImuWithErrors, with_errors
 
 BLOCK = 256
@@ -30,24 +30,6 @@ def stream_samples(truth, frame):
     """Return t_ns, q_mb, omega_ib_b, f_ib_b of each instant of a Truth record; frame: MapFrame."""
     return zip(truth.t_ns.tolist(), frame.attitude(truth).tolist(), truth.omega_ib_b.tolist(),
                truth.f_ib_b.tolist())
-
-
-def components(vectors):
-    """Return the columns of (n, m) as m contiguous arrays."""
-    return tuple(np.ascontiguousarray(vectors.T))
-
-
-def samples_of(readings):
-    """Return the ImuSamples of what pushes of an IMU return."""
-    if readings:
-        return ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
-    return ImuSamples(np.empty(0, dtype=np.int64), np.empty((0, 3)), np.empty((0, 3)))
-
-
-def joined(parts):
-    """Return parts of ImuSamples, any of which may be empty, as one."""
-    parts = [part for part in parts if len(part)]
-    return ImuSamples.concatenate(parts) if parts else samples_of([])
 
 
 class StreamImu(Sensor):
@@ -115,17 +97,17 @@ class StreamImu(Sensor):
         while done < len(truth.t_ns):
             rest = (sample[0][done:], *(tuple(x[done:] for x in v) for v in sample[1:]))
             count, block = self._buffer.push_block(*rest)
-            if count:
-                parts.append(self._read_block(block, sample[0][done:done + count]))
-                done += count
-                continue
             try:
-                parts.append(samples_of(self.push(int(rest[0][0]), *(
-                    tuple(float(x[0]) for x in v) for v in rest[1:]))))
+                if count:
+                    parts.append(self._read_block(block, rest[0][:count]))
+                else:
+                    one = ([float(x[0]) for x in vector] for vector in rest[1:])
+                    parts.append(samples_of(self.push(int(rest[0][0]), *one)))
             except StreamFault as fault:
-                fault.readings, fault.index = joined(parts), done
+                fault.readings = joined([*parts, fault.readings])
+                fault.index += done
                 raise
-            done += 1
+            done += count or 1
         return joined(parts)
 
     def _read_block(self, block, stamps):
@@ -142,9 +124,13 @@ class StreamImu(Sensor):
             return [[block.cubic(t_ns + (o - d), newest, field) for o in offsets] for d in delays]
 
         if triads.integrated:
-            return triads.integrals_block(
-                t_ns, nodes(triads.gyro_delays, RATE, self._rate_node_ns),
-                nodes(triads.accel_delays, FORCE_B, self._node_ns))
+            try:
+                return triads.integrals_block(
+                    t_ns, nodes(triads.gyro_delays, RATE, self._rate_node_ns),
+                    nodes(triads.accel_delays, FORCE_B, self._node_ns))
+            except StreamFault as fault:
+                fault.index = int(newest[len(fault.readings)])
+                raise
         if self._q_start is None:
             self._q_start = [block.attitude(t_ns[:1] - dt_ns - d, newest[:1])[:, 0].tolist()
                              for d in triads.attitude_delays]
@@ -212,6 +198,21 @@ class PacedImu(Sensor):
     def samples(self, truth):
         """Return the arguments of push for each instant of a Truth record."""
         return stream_samples(truth, self._triads.frame)
+
+    def advance(self, truth):
+        """
+        Return the ImuSamples of a Truth record or of a part of one, those of single pushes.
+
+        Raise StreamFault as push does, with ``readings`` and ``index``.
+        """
+        readings = []
+        for index, sample in enumerate(self.samples(truth)):
+            try:
+                readings += self.push(*sample)
+            except StreamFault as fault:
+                fault.readings, fault.index = samples_of(readings), index
+                raise
+        return samples_of(readings)
 
     def _compute(self):
         """Compute a block ahead, never past the end of the motion; return whether there is one."""

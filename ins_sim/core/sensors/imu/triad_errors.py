@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
 from .triad_model import temperature_off, triad_model
+from .triad_reading import AT_REST, read, remember_rows, respond, ZERO
 
-ZERO = (0.0, 0.0, 0.0)
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
 # variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
 FLICKER_TIMES = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
@@ -38,19 +39,19 @@ class TriadErrors:
         self._temperature = temperature
         if temperature is None or _never_off(temperature):
             self._by_temperature = None
-        self._lags = tuple(_lag(f, model.order, dt_s) for f in model.bandwidth_hz)
+        self._lags = tuple(discrete_lag(f, model.order, dt_s) for f in model.bandwidth_hz)
         if not any(model.bandwidth_hz):
             self._lags = None
         self._noise = make_noise(model, seed, run, name, dt_s)
         self._noise_of = None
         self._rows = ()
-        self._range = tuple(s or math.inf for s in model.saturation)
+        self._most = tuple(s or math.inf for s in model.saturation)
         if not any(model.saturation):
-            self._range = None
-        self._quantum = _if_any(model.quantum)
+            self._most = None
+        self._quantum = model.quantum if any(model.quantum) else None
         self.perfect = not any((self._geometry, self._response, self._by_force, self._lags,
-                                self._by_temperature, self._noise, self._range, self._quantum))
-        self.state = (None, None, ZERO)
+                                self._by_temperature, self._noise, self._most, self._quantum))
+        self.state = (None, AT_REST, ZERO)
 
     def step(self, index, value, force, t_s):
         """
@@ -62,60 +63,20 @@ class TriadErrors:
         if self.perfect:
             return value
         last, lagged, carried = self.state
-        following = last is not None and index == last + 1
-        x, y, z = value
-        if self._geometry is not None:
-            a, b, c, d, e, f, g, h, i = self._geometry
-            x, y, z = a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
-        x0, y0, z0 = x, y, z
-        if self._response is not None:
-            (sx, sy, sz), (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._response
-            x += x0 * (sx + x0 * (bx + x0 * cx)) + abs(x0) * ax
-            y += y0 * (sy + y0 * (by + y0 * cy)) + abs(y0) * ay
-            z += z0 * (sz + z0 * (bz + z0 * cz)) + abs(z0) * az
-        if self._by_force is not None:
-            (lx, ly, lz), (qx, qy, qz) = self._by_force
-            fx, fy, fz = force
-            x += fx * (lx + fx * qx)
-            y += fy * (ly + fy * qy)
-            z += fz * (lz + fz * qz)
+        warm = noise = None
         if self._by_temperature is not None:
-            (bx, by, bz), (sx, sy, sz) = self._by_temperature
             warm = temperature_off(self._temperature, t_s)
-            x += warm * (bx + x0 * sx)
-            y += warm * (by + y0 * sy)
-            z += warm * (bz + z0 * sz)
-        if self._lags is not None:
-            lx, ly, lz = lagged if following else ((x, 0.0), (y, 0.0), (z, 0.0))
-            mx, my, mz = self._lags
-            x, lx = _pass(mx, lx, x)
-            y, ly = _pass(my, ly, y)
-            z, lz = _pass(mz, lz, z)
-            lagged = lx, ly, lz
         if self._noise is not None:
             if index // BLOCK != self._noise_of:
                 self._noise_of = index // BLOCK
                 self._rows = self._noise(self._noise_of).tolist()
-            nx, ny, nz = self._rows[index % BLOCK]
-            x, y, z = x + nx, y + ny, z + nz
-        if self._range is not None:
-            rx, ry, rz = self._range
-            x = rx if x > rx else -rx if x < -rx else x
-            y = ry if y > ry else -ry if y < -ry else y
-            z = rz if z > rz else -rz if z < -rz else z
-        if self._quantum is not None:
-            (qx, qy, qz), = self._quantum
-            rx, ry, rz = carried if following else ZERO
-            dt, per_dt = self._dt, self._per_dt
-            if qx:
-                x, rx = _pulses(x * dt + rx, qx, per_dt)
-            if qy:
-                y, ry = _pulses(y * dt + ry, qy, per_dt)
-            if qz:
-                z, rz = _pulses(z * dt + rz, qz, per_dt)
-            carried = rx, ry, rz
+            noise = self._rows[index % BLOCK]
+        reading, lagged, carried = read(
+            self._geometry, self._response, self._by_force, self._by_temperature, self._lags,
+            noise, self._most, self._quantum, self._dt, self._per_dt,
+            last is not None and index == last + 1, lagged, carried, value, force, warm)
         self.state = index, lagged, carried
-        return x, y, z
+        return reading
 
     def advance(self, first, values, forces, t_s):
         """
@@ -123,10 +84,36 @@ class TriadErrors:
 
         values, forces (n, 3); t_s (n,).  Any cutting gives the same bits.
         """
-        if self.perfect:
+        if self.perfect or not len(values):
             return values
-        samples = zip(values.tolist(), forces.tolist(), t_s.tolist())
-        return np.array([self.step(k, *sample) for k, sample in enumerate(samples, first)])
+        warm = noise = None
+        if self._by_temperature is not None:
+            warm = np.array([temperature_off(self._temperature, t) for t in t_s.tolist()])
+        if self._noise is not None:
+            noise = self._noise_rows(first, len(values))
+        driven = respond(self._geometry, self._response, self._by_force, self._by_temperature,
+                         values.T, forces.T, warm)
+        last, lagged, carried = self.state
+        readings = np.stack(driven, axis=-1)
+        if self._lags is None and self._quantum is None:
+            if noise is not None:
+                readings += noise
+            if self._most is not None:
+                readings = np.minimum(np.maximum(readings, np.negative(self._most)), self._most)
+        else:
+            following = last is not None and first == last + 1
+            inputs = (self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
+                      following, lagged, carried, readings)
+            readings = np.empty_like(readings)
+            lagged, carried = run(remember_rows, len(readings), inputs, readings)
+        self.state = first + len(readings) - 1, lagged, carried
+        return readings
+
+    def _noise_rows(self, first, count):
+        """Return the additive errors (count, 3) of the samples from first."""
+        blocks = range(first // BLOCK, (first + count - 1) // BLOCK + 1)
+        rows = np.concatenate([self._noise(block) for block in blocks])
+        return rows[first - blocks[0] * BLOCK:][:count]
 
 
 def _never_off(temperature):
@@ -170,7 +157,7 @@ def _response(model, seed, run, name):
     return _if_any(scale, model.asymmetry, model.quadratic, model.cubic)
 
 
-def _lag(frequency_hz, order, dt_s):
+def discrete_lag(frequency_hz, order, dt_s):
     """
     Return the exact discretisation of a lag over one interval of constant input.
 
@@ -189,20 +176,6 @@ def _lag(frequency_hz, order, dt_s):
     e, d = -2.0 * h * decay * s, decay * (c - s)
     mean = -1.0 / (w * w * dt_s)
     return (a, b, e, d, mean * (e + 2.0 * h * (a - 1.0)), mean * (d - 1.0 + 2.0 * h * b))
-
-
-def _pass(lag, start, u):
-    """Return the mean output over an interval of input u, and (output, its rate) at the end."""
-    a, b, c, d, m, n = lag
-    x, v = start
-    e = x - u
-    return u + (m * e + n * v), (u + (a * e + b * v), c * e + d * v)
-
-
-def _pulses(increment, quantum, per_dt):
-    """Return the reading of the whole pulses in an increment, and what remains."""
-    read = math.floor(increment / quantum + 0.5) * quantum
-    return read * per_dt, increment - read
 
 
 def make_noise(model, seed, run, name, dt_s):

@@ -5,12 +5,12 @@ Errors act on the mean rate and the mean specific force of a sampling interval. 
 function of seed and instant: the index of a sample is its motion time over the period.
 """
 
-import numpy as np
-
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from ..sensor import Sensor
+from .sampling import consecutive
 
 
 def with_errors(settings):
@@ -65,9 +65,13 @@ class InstrumentErrors:
 
     def advance(self, imu):
         """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
-        samples = zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist())
-        omega, f = zip(*(self.step(*sample) for sample in samples))
-        return ImuSamples(imu.t_ns, np.array(omega), np.array(f), imu.parity)
+        t_s, omega, f = imu.t_ns * 1e-9, imu.omega.copy(), imu.f.copy()
+        for part in consecutive(imu.t_ns // self._dt_ns):
+            first = int(imu.t_ns[part.start]) // self._dt_ns
+            force, when = imu.f[part], t_s[part]
+            omega[part] = self._gyro.advance(first, imu.omega[part], force, when)
+            f[part] = self._accel.advance(first, force, force, when)
+        return ImuSamples(imu.t_ns, omega, f, imu.parity)
 
 
 class ImuWithErrors(Sensor):
@@ -81,3 +85,12 @@ class ImuWithErrors(Sensor):
         """Return the readings that a truth sample completes, as the ideal IMU does."""
         return [(t_ns, *self._errors.step(t_ns, omega, f), parity)
                 for t_ns, omega, f, parity in self._imu.push(*sample)]
+
+    def advance(self, truth):
+        """Return the ImuSamples of a Truth record or of a part of one, those of single pushes."""
+        try:
+            ideal = self._imu.advance(truth)
+        except StreamFault as fault:
+            fault.readings = self._errors.advance(fault.readings)
+            raise
+        return self._errors.advance(ideal)
