@@ -1,0 +1,83 @@
+"""Attitude and specific force alone are those of the whole truth, whatever the motion."""
+
+import ins_sim
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import from_angles
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.numerics import taylor
+from ins_sim.core.timeseries.histories import Truth
+from ins_sim.settings.motion import MotionSettings, MOTIONS
+from ins_sim.settings.place import Datum, Earth
+import numpy as np
+import pytest
+
+T_NS = 10_000_000 * np.arange(1000, 1300)
+
+
+def check(motion, ulps=4.0):
+    """Check what a motion says of attitude and of force against its truth."""
+    truth = motion.at(T_NS)
+    q_nb = tuple(truth.q_nb.T)
+    lat, lon, q = motion.attitude_at(T_NS)
+    assert np.array_equal(lat, truth.lat) and np.array_equal(lon, truth.lon)
+    assert np.array_equal(q, q_nb)
+    lat, lon, f_n = motion.force_at(T_NS)
+    assert np.array_equal(lat, truth.lat) and np.array_equal(lon, truth.lon)
+    # The truth was turned into b, and here back again.
+    expected = np.array(quaternion.rotate(q_nb, tuple(truth.f_ib_b.T)))
+    assert np.abs(np.array(f_n) - expected).max() < ulps * 2.2e-16 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize('kind', [kind for kind in MOTIONS if kind != 'recording'])
+def test_every_motion_of_the_table(kind):
+    """At some instants, asked alone or with others."""
+    if kind == 'route':
+        motion = ins_sim.open_motion(ins_sim.read_settings('route_flight'))
+    else:
+        motion = make_motion(MotionSettings(kind=kind), Datum(), Earth())
+    check(motion)
+    one = motion.attitude_at(T_NS[7:8])[2]
+    assert np.array_equal(np.array(motion.attitude_at(T_NS)[2])[:, 7:8], one)
+
+
+def test_a_recorded_flight(flown):
+    """It overrides what the motions in closed form do."""
+    check(flown[0])
+
+
+class AtAlone(ins_sim.Motion):
+    """A motion of somebody's own, which only has ``at``."""
+
+    def __init__(self, inner):
+        self._inner = inner
+
+    def at(self, t_ns):
+        """Return the truth of another motion a second later."""
+        later = self._inner.at(np.asarray(t_ns) + 10 ** 9)
+        return Truth(**{**later.arrays(), 't_ns': t_ns})
+
+
+class Turned(type(make_motion(MotionSettings(), Datum(), Earth()))):
+    """A motion in closed form whose ``at`` is another one's."""
+
+    at = AtAlone.at
+    _inner = make_motion(MotionSettings(kind='aggressive'), Datum(), Earth())
+
+
+def test_a_motion_of_ones_own_with_at_alone():
+    """Everything is answered by it, even where the class above could do without."""
+    check(AtAlone(make_motion(MotionSettings(kind='cruise'), Datum(), Earth())))
+    closed = make_motion(MotionSettings(kind='two_axis'), Datum(), Earth())
+    check(Turned(closed._pose, 2, True))
+
+
+def test_an_attitude_made_of_derivatives():
+    """The order that its derivatives cost is found out."""
+    def pose(t):
+        level = t.constant(0.0)
+        angle = taylor.sin(t * 0.3)
+        heading = taylor.atan2(angle.derivative(), angle)
+        lean = heading.derivative() * 0.1
+        return angle * 1e-6 + 0.9, t * 1e-6, level, from_angles(heading, level, lean)
+
+    check(ins_sim.Motion(pose, 3, True))
