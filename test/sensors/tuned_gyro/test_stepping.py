@@ -118,18 +118,19 @@ def test_any_cutting_gives_the_same_bits(name):
     assert np.array_equal(np.concatenate([first, gyro.advance(u[50:])]), whole)
 
 
-def test_modes_are_used_where_they_are_apart(monkeypatch):
-    """A double root has none; elsewhere modal and full steps agree."""
-    assert not TunedGyro(TACTICAL, 1e-3).modal
+def test_steps_are_those_of_the_modes():
+    """Where the roots are apart, the state moves mode by mode: eigenvectors of the physics."""
     u = np.exp(1j * np.arange(600).reshape(200, 3))
     for p in (DAMPED, STABLE['tactical, zeta 0.7']):
-        modal = TunedGyro(p, 1e-3)
-        found = modal.advance(u)
-        with monkeypatch.context() as patch:
-            patch.setattr('ins_sim.core.sensors.tuned_gyro.stepping.modes', lambda space: None)
-            full = TunedGyro(p, 1e-3)
-        assert modal.modal and not full.modal
-        np.testing.assert_allclose(found, full.advance(u), rtol=0, atol=1e-12)
+        gyro = TunedGyro(p, 1e-3)
+        roots, vectors = np.linalg.eig(gyro.space.f)
+        n, (table, _) = len(roots), gyro.matrices
+        gains, out = np.linalg.solve(vectors, table[:n, n:]), table[n, :n] @ vectors
+        x, expected = np.zeros(n, dtype=complex), []
+        for rates in u:
+            expected.append(out @ x + table[n, n:] @ rates)
+            x = np.exp(1e-3 * roots) * x + gains @ rates
+        np.testing.assert_allclose(gyro.advance(u), expected, rtol=0, atol=1e-12)
 
 
 def test_change_of_speed():

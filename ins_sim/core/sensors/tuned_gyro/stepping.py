@@ -19,8 +19,6 @@ from .stability import rk4_window
 
 METHODS = ('exact', 'rk4')
 HOLDS = ('quadratic', 'linear')
-# Modes are used when they are no nearer to each other than this; the round-off is 1e-16 times it.
-CONDITION = 1e4
 
 
 def exact_matrices(space, dt_s, hold):
@@ -89,30 +87,12 @@ def disturbance_matrix(table, space, dt_s, step_map):
     return np.column_stack((moment, tilt, jump))
 
 
-def modes(space):
-    """Return the matrix whose columns are the modes, or None where they are near to parallel."""
-    from scipy.linalg import matrix_balance
-    balanced, (scale, _) = matrix_balance(space.f, permute=False, separate=True)
-    vectors = np.linalg.eig(balanced)[1]
-    if not np.linalg.cond(vectors) < CONDITION:
-        return None
-    return scale[:, None] * vectors
-
-
 def step_two(x, u0, um, u1, gains):
     """Return the next state and the mean reading; two states, full matrix."""
     x0, x1 = x
     (a0, a1, a2, a3, a4), (b0, b1, b2, b3, b4), (m0, m1, m2, m3, m4) = gains
     return ((a0 * x0 + a1 * x1 + a2 * u0 + a3 * um + a4 * u1,
              b0 * x0 + b1 * x1 + b2 * u0 + b3 * um + b4 * u1),
-            m0 * x0 + m1 * x1 + m2 * u0 + m3 * um + m4 * u1)
-
-
-def step_two_modes(x, u0, um, u1, gains):
-    """Return the next state and the mean reading; two modes."""
-    x0, x1 = x
-    (a0, _, a2, a3, a4), (_, b1, b2, b3, b4), (m0, m1, m2, m3, m4) = gains
-    return ((a0 * x0 + a2 * u0 + a3 * um + a4 * u1, b1 * x1 + b2 * u0 + b3 * um + b4 * u1),
             m0 * x0 + m1 * x1 + m2 * u0 + m3 * um + m4 * u1)
 
 
@@ -127,18 +107,7 @@ def step_three(x, u0, um, u1, gains):
             m0 * x0 + m1 * x1 + m2 * x2 + m3 * u0 + m4 * um + m5 * u1)
 
 
-def step_three_modes(x, u0, um, u1, gains):
-    """Return the next state and the mean reading; three modes."""
-    x0, x1, x2 = x
-    ((a0, _, _, a3, a4, a5), (_, b1, _, b3, b4, b5), (_, _, c2, c3, c4, c5),
-     (m0, m1, m2, m3, m4, m5)) = gains
-    return ((a0 * x0 + a3 * u0 + a4 * um + a5 * u1, b1 * x1 + b3 * u0 + b4 * um + b5 * u1,
-             c2 * x2 + c3 * u0 + c4 * um + c5 * u1),
-            m0 * x0 + m1 * x1 + m2 * x2 + m3 * u0 + m4 * um + m5 * u1)
-
-
-_KERNELS = {(2, False): step_two, (2, True): step_two_modes,
-            (3, False): step_three, (3, True): step_three_modes}
+_KERNELS = {2: step_two, 3: step_three}
 
 
 def _check_stability(roots, dt_s, method):
@@ -198,26 +167,13 @@ class TunedGyro:
             table, stages = rk4_matrices(space, self.dt_s)
             added = disturbance_matrix(table, space, self.dt_s,
                                        lambda s: rk4_matrices(s, self.dt_s)[0])
-        basis = modes(space)
-        modal = basis is not None
-        if modal:
-            table[:n] = np.linalg.solve(basis, table[:n])
-            table[:, :n] = table[:, :n] @ basis
-            added[:n] = np.linalg.solve(basis, added[:n])
-            if stages is not None:
-                stages[:, :n] = stages[:, :n] @ basis
         self.speed_hz = self.parameters.speed_hz if speed_hz is None else speed_hz
-        self._space, self._basis = space, np.eye(n) if basis is None else basis
-        self._kernel, self._gains = _KERNELS[n, modal], tuple(map(tuple, table.tolist()))
+        self._space = space
+        self._kernel, self._gains = _KERNELS[n], tuple(map(tuple, table.tolist()))
         self.matrices = table, added
         self._added = tuple(map(tuple, added.tolist()))
         self._stages = None if stages is None else tuple(map(tuple, stages.tolist()))
-        self._reading = (*(space.c @ self._basis).tolist(), space.d)
-
-    @property
-    def modal(self):
-        """The steps are taken mode by mode."""
-        return self._kernel in (step_two_modes, step_three_modes)
+        self._reading = (*space.c.tolist(), space.d)
 
     @property
     def space(self):
@@ -227,11 +183,11 @@ class TunedGyro:
     @property
     def physical_state(self):
         """The state as (theta, v[, integral of theta]), rad, rad/s, rad s."""
-        return tuple((self._basis @ np.array(self.state)).tolist())
+        return self.state
 
     @physical_state.setter
     def physical_state(self, x):
-        self.state = tuple(np.linalg.solve(self._basis, np.array(x, dtype=complex)).tolist())
+        self.state = tuple(np.asarray(x, dtype=complex).tolist())
 
     def set_speed(self, speed_hz):
         """Go on with another speed of the rotor; the tilt is kept, the matrices are rebuilt."""
