@@ -18,9 +18,11 @@ from ins_sim.core.attitude.angles import roll_of_matrix
 from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
 from ins_sim.core.attitude.matrix import dcm_of
 from ins_sim.core.attitude.quaternion import exponential
-from ins_sim.core.sensors.tuned_gyro.pair import GyroPair
+from ins_sim.core.numerics import compilation
+from ins_sim.core.sensors.tuned_gyro.matrices import rk4_matrices
+from ins_sim.core.sensors.tuned_gyro.pair import both_inputs, combine, GyroPair
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
-from ins_sim.core.sensors.tuned_gyro.stepping import rk4_matrices
+from ins_sim.core.sensors.tuned_gyro.rotor_step import rotor_stages, rotor_step
 
 
 @dataclass(frozen=True)
@@ -58,22 +60,51 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
     steps = math.ceil(max(20.0, 3.0 * period) / step_s)
     first = steps - math.ceil(period / step_s)
     top = math.radians(amplitude_deg) * rate_rad_s
-    c, theta = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0)
-    found, staged = ([], []), method == 'rk4'
-    u_end = (top, 0.0, 0.0)
+    one, two = pair.gyros
+    stages = (one.stages, two.stages) if method == 'rk4' else None
+    rolls = np.empty((steps - first, 2))
+    compilation.run(rock, steps, (steps, first, top, rate_rad_s, step_s,
+                                  pair.arrangement == 'turned', one.gains, two.gains, stages,
+                                  one.state, two.state), rolls)
+    return tuple(math.degrees(half_peak_to_peak(y)) for y in rolls.T.tolist())
+
+
+def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages, x_1, x_2, out):
+    """
+    Take steps of a rocking base; out: roll by Poisson and by the Euler vector from step ``first``.
+
+    top: amplitude of the rate, rad/s, of angular frequency rate_rad_s; turned: arrangement;
+    gains_1 to x_2: constants and states of both rotors (``rotor_step``).
+    """
+    c, theta, u_end = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0), (top, 0.0, 0.0)
     for k in range(steps):
         u_start = u_end
         u_mid = (top * math.cos(rate_rad_s * (k + 0.5) * step_s), 0.0, 0.0)
         u_end = (top * math.cos(rate_rad_s * (k + 1) * step_s), 0.0, 0.0)
-        if staged:
-            rates = pair.step_stages(u_start, u_mid, u_end)
-        else:
-            rates = (pair.step(u_start, u_mid, u_end)[0],) * 4
+        inputs_1, inputs_2 = both_inputs(turned, u_start, u_mid, u_end)
+        rates = _rates(turned, gains_1, gains_2, stages, x_1, x_2, inputs_1, inputs_2)
+        x_1, _ = rotor_step(gains_1, x_1, inputs_1)
+        x_2, _ = rotor_step(gains_2, x_2, inputs_2)
         c, theta = step_poisson(c, rates, step_s), step_euler_vector(theta, rates, step_s)
         if k >= first:
-            found[0].append(roll_of_matrix(c))
-            found[1].append(roll_of_matrix(dcm_of(exponential(theta))))
-    return tuple(math.degrees(half_peak_to_peak(y)) for y in found)
+            i = 2 * (k - first)
+            out[i] = roll_of_matrix(c)
+            out[i + 1] = roll_of_matrix(dcm_of(exponential(theta)))
+
+
+def _rates(turned, gains_1, gains_2, stages, x_1, x_2, inputs_1, inputs_2):
+    """Return the body rates at the stages of a step; without stages the mean, four times."""
+    if stages is None:
+        _, (a, b) = rotor_step(gains_1, x_1, inputs_1)
+        _, (c, d) = rotor_step(gains_2, x_2, inputs_2)
+        mean, _ = combine(turned, (a, b, c, d))
+        return mean, mean, mean, mean
+    a, b, c, d = rotor_stages(stages[0], x_1, inputs_1)
+    e, f, g, h = rotor_stages(stages[1], x_2, inputs_2)
+    return (combine(turned, (a[0], a[1], e[0], e[1]))[0],
+            combine(turned, (b[0], b[1], f[0], f[1]))[0],
+            combine(turned, (c[0], c[1], g[0], g[1]))[0],
+            combine(turned, (d[0], d[1], h[0], h[1]))[0])
 
 
 def gyro_at(settings, speed_hz=None):

@@ -7,8 +7,10 @@ import pytest
 
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
-from ins_sim.studies.tuned_gyro import (gyro_at, half_peak_to_peak, stability_limits, study_curve,
-                                        study_table)
+from ins_sim.core.numerics import compilation
+from ins_sim.core.sensors.tuned_gyro.pair import GyroPair
+from ins_sim.studies.tuned_gyro import (gyro_at, half_peak_to_peak, rocking_amplitudes,
+                                        stability_limits, study_curve, study_table)
 from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
@@ -103,6 +105,19 @@ def test_stability_limits(figures):
     figures.record('tuned_gyro.study.limits', (low, high), 'Hz', (129.4, 337.4), 'specification')
     assert abs(low - 129.4) <= 0.1 and abs(high - 337.4) <= 0.1
     assert stability_limits(gyro_at(settings), step_s, 200.0, 300.0) == (None, None)
+
+
+@pytest.mark.parametrize('preset, method', [('sapegin_2016', 'rk4'), ('tactical', 'rk4'),
+                                            ('sapegin_2016_damped', 'exact')])
+def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
+    """Bit for bit."""
+    pytest.importorskip('numba')
+    found = []
+    for samples in (10**9, 0):
+        monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', samples)
+        pair = GyroPair(PRESETS[preset], 1e-3, method=method)
+        found.append(rocking_amplitudes(pair, 10.0, 9.0, 1e-3, method))
+    assert found[0] == found[1]
 
 
 def test_unstable_speeds_are_refused():

@@ -20,7 +20,7 @@ from ins_sim.core.streams.faults import StreamFault
 from ins_sim.settings.instrument_errors import GyroErrors
 from ins_sim.settings.tuned_gyro import TunedGyroErrors
 from ..imu.triad_model import noise_variance, reported_variance, triad_model
-from .pair import GyroPair
+from .pair import GyroPair, spins, with_faults
 from .rotor import PRESETS, TunedGyroParameters
 
 # body axes of (spin, y, z) of each case; cyclic, so that a rotation vector keeps its meaning
@@ -66,6 +66,26 @@ def case_errors(errors, axes):
             value = tuple(value[k] for k in axes)
         values[f.name] = value
     return GyroErrors(**values)
+
+
+def total_of(parts):
+    """Return the sum of floats or arrays, added in their order."""
+    total = parts[0]
+    for part in parts[1:]:
+        total = total + part
+    return total
+
+
+def mean_rate(rates):
+    """Return the mean of the body rates at the nodes of a period, by Simpson's rule."""
+    firsts = range(0, len(rates) - 1, 2)
+    return tuple([total_of([rates[k][i] + 4.0 * rates[k + 1][i] + rates[k + 2][i]
+                            for k in firsts]) / (6.0 * len(firsts)) for i in range(3)])
+
+
+def _run_away(t_ns):
+    return StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; expected a '
+                       'gyro whose roots decay', restart=True)
 
 
 class PairInstrument:
@@ -149,50 +169,72 @@ class PairInstrument:
         when unstable rotors that were asked for overflow.
         """
         self._keep_schedule(t_ns)
-        steps, channels = self._steps, self.pair.channels
-        disturbances = self._disturbances
-        if disturbances is None:
-            total = channels(*rates[:3])
-            for k in range(2, 2 * steps, 2):
-                more = channels(*rates[k:k + 3])
-                total = tuple([a + b for a, b in zip(total, more)])
-        else:
+        channels, disturbances, added = self.pair.channels, self._disturbances, None
+        if disturbances is not None:
             disturbances.begin(t_ns, force)
-            total = (0.0,) * 4
-            for k in range(0, 2 * steps, 2):
-                three = rates[k:k + 3]
-                more = channels(*three, disturbances.step(*three))
-                total = tuple([a + b for a, b in zip(total, more)])
-        if not math.isfinite(sum(total)):
-            raise StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; '
-                              'expected a gyro whose roots decay', restart=True)
-        if steps > 1:
-            total = tuple([a / steps for a in total])
-        return self._finish(t_ns, total, self._mean(rates), force)
+        parts = []
+        for k in range(0, 2 * self._steps, 2):
+            three = rates[k:k + 3]
+            if disturbances is not None:
+                added = disturbances.step(*three)
+            parts.append(channels(*three, added))
+        y = parts[0]
+        if self._steps > 1:
+            y = tuple([total_of(p) / self._steps for p in zip(*parts)])
+        if not all(map(math.isfinite, y)):
+            raise _run_away(t_ns)
+        return self._finish(t_ns, y, None if self._read_out is None else mean_rate(rates), force)
 
-    def _mean(self, rates):
-        """Return the mean of the body rates by Simpson's rule; only misalignment needs it."""
-        if self._read_out is None:
-            return None
-        steps = self._steps
-        return tuple([sum(rates[k][i] + 4.0 * rates[k + 1][i] + rates[k + 2][i]
-                          for k in range(0, 2 * steps, 2)) / (6.0 * steps) for i in range(3)])
+    def advance(self, t_ns, rates, force):
+        """
+        Return the rates (n, 3) and the parity (n,) of the intervals that end at t_ns (n,).
+
+        rates (n, nodes, 3) and force (n, 3) are those of ``step``, whose bits any cutting gives.
+        """
+        steps, columns, disturbances = self._steps, tuple(force.T), (None, None)
+        start, middle, end = (rates[:, k:k + 2 * steps - 1:2].reshape(-1, 3).T for k in range(3))
+        if self._disturbances is not None:
+            disturbances = self._disturbances.block(t_ns, columns, start, middle, end)
+        y = [c.reshape(-1, steps) for c in self.pair.run(start, middle, end, disturbances)]
+        finite = np.isfinite(y).all(axis=(0, 2))
+        if not finite.all():
+            raise _run_away(int(t_ns[finite.argmin()]))
+        y = [total_of(c.T) / steps for c in self._faulty(t_ns, y)]
+        if self._read_out is not None:
+            first, t_s = int(t_ns[0]) // self._dt_ns, t_ns * 1e-9
+            inputs = self._read_out_inputs(y, mean_rate(np.moveaxis(rates, 0, -1)), columns)
+            (_, *one), (_, *two) = (
+                errors.advance(first, np.column_stack(w), np.column_stack(f), t_s).T
+                for errors, (w, f) in zip(self._read_out, inputs))
+            y = *one, *two
+        omega, parity = self.pair.combine(y)
+        return np.column_stack(omega), parity
+
+    def _faulty(self, t_ns, y):
+        """Return the channels (n, steps) of a block with the fault, if any, of each time."""
+        if self._fault is None or not self._scheduled:
+            return with_faults(self.pair.faults, y)
+        start, end = self._fault_ns
+        on = (start <= t_ns) & (t_ns < end)
+        self._set_fault(True)
+        faulty = with_faults(self.pair.faults, y)
+        self._set_fault(bool(on[-1]))
+        return [np.where(on[:, None], a, b) for a, b in zip(faulty, y)]
 
     def _finish(self, t_ns, y, w, force):
         """Return body rates and parity of the four channels y through their read-outs."""
         if self._read_out is not None:
             index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
-            first, second = self._read_out
-            (spin_1, spin_2), (f_1, f_2) = self.pair.spins(w), self._forces(force)
-            _, a, b = first.step(index, (spin_1, y[0], y[1]), f_1, t_s)
-            _, c, d = second.step(index, (spin_2, y[2], y[3]), f_2, t_s)
+            (_, a, b), (_, c, d) = [
+                errors.step(index, *inputs, t_s)
+                for errors, inputs in zip(self._read_out, self._read_out_inputs(y, w, force))]
             y = a, b, c, d
         return self.pair.combine(y)
 
-    def _forces(self, force):
-        """Return the specific force along (spin, y, z) of both cases."""
-        (a, b), (s, t) = self.pair.into_cases(force), self.pair.spins(force)
-        return (s, a.real, a.imag), (t, b.real, b.imag)
+    def _read_out_inputs(self, y, w, force):
+        """Return rate and specific force along (spin, y, z) of both cases, floats or arrays."""
+        (s, t), (u, v), (f, g, h, i) = spins(w), spins(force), self.pair.into_cases(force)
+        return ((s, y[0], y[1]), (u, f, g)), ((t, y[2], y[3]), (v, h, i))
 
     def channel_variances(self, count=1):
         """

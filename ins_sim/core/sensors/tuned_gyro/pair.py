@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from .rotor import TunedGyroParameters
+from .rotor_step import disturbed_step, rotor_step
 from .stepping import TunedGyro
 
 ARRANGEMENTS = ('paper', 'turned')
@@ -34,17 +35,43 @@ def channel_axes(arrangement):
                           case[2] + case[3], case[3] - case[2]))
 
 
-def combine_paper(y):
-    """Return the body rates and the parity of the channels x1, y1, z2, x2."""
+def into_cases(turned, w):
+    """Return the components y, z of a body vector in the first case and in the second."""
+    x, y, z = w
+    if turned:
+        return _R * (x + y), _R * (y - x), _R * (z + x), _R * (x - z)
+    return x, y, z, x
+
+
+def spins(w):
+    """Return the components of a body vector along both spin axes."""
+    return w[2], w[1]
+
+
+def both_inputs(turned, w_start, w_mid, w_end):
+    """Return the inputs u of both rotors (``rotor_step``) by body rates at three instants."""
+    a, b, c, d = into_cases(turned, w_start)
+    e, f, g, h = into_cases(turned, w_mid)
+    i, j, k, m = into_cases(turned, w_end)
+    return (a, b, e, f, i, j), (c, d, g, h, k, m)
+
+
+def with_faults(faults, y):
+    """Return the four channels y with their faults, (bias, scale) of each, or None."""
+    if faults is None:
+        return y
+    (b1, s1), (b2, s2), (b3, s3), (b4, s4) = faults
+    y1, y2, y3, y4 = y
+    return b1 + s1 * y1, b2 + s2 * y2, b3 + s3 * y3, b4 + s4 * y4
+
+
+def combine(turned, y):
+    """Return the body rates and the parity of the four channels, rad/s."""
     a, b, c, d = y
+    if turned:
+        x1, x2 = a - b, c + d
+        return (0.5 * _R * (x1 + x2), _R * (a + b), _R * (c - d)), 0.5 * (x1 - x2)
     return (0.5 * (a + d), b, c), _R * (a - d)
-
-
-def combine_turned(y):
-    """Return the body rates and the parity of the four turned channels."""
-    a, b, c, d = y
-    x1, x2 = a - b, c + d
-    return (0.5 * _R * (x1 + x2), _R * (a + b), _R * (c - d)), 0.5 * (x1 - x2)
 
 
 class GyroPair:
@@ -53,7 +80,7 @@ class GyroPair:
 
     parameters: TunedGyroParameters of both, or a pair of them; dt_s: step; arrangement: paper or
     turned; options: method, hold, on_unstable of TunedGyro.  state: of both gyros, can be kept
-    and set back; a fault is no part of it.
+    and set back; a fault is no part of it.  faults: (bias, scale) of each channel, or None.
     """
 
     def __init__(self, parameters, dt_s, arrangement='paper', **options):
@@ -66,8 +93,7 @@ class GyroPair:
         self.gyros = tuple(TunedGyro(p, dt_s, **options) for p in parameters)
         self.arrangement = arrangement
         self._turned = arrangement == 'turned'
-        self.combine = combine_turned if self._turned else combine_paper
-        self._faults = None
+        self.faults = None
 
     @property
     def state(self):
@@ -88,73 +114,71 @@ class GyroPair:
         if not (math.isfinite(bias_rad_s) and math.isfinite(scale)):
             raise ValueError(f'bias_rad_s is {bias_rad_s:g} and scale is {scale:g}; expected '
                              'finite numbers')
-        faults = list(self._faults or ((0.0, 1.0),) * 4)
+        faults = list(self.faults or ((0.0, 1.0),) * 4)
         faults[channel] = (bias_rad_s, scale)
-        self._faults = tuple(faults)
+        self.faults = tuple(faults)
 
     def clear_faults(self):
         """Let every channel read what it should."""
-        self._faults = None
-
-    @staticmethod
-    def spins(w):
-        """Return the components of a body vector along both spin axes."""
-        return w[2], w[1]
+        self.faults = None
 
     def into_cases(self, w):
-        """Return the components y + j z of a body vector in both cases, in two complex numbers."""
-        x, y, z = w
-        if self._turned:
-            return complex(_R * (x + y), _R * (y - x)), complex(_R * (z + x), _R * (x - z))
-        return complex(x, y), complex(z, x)
+        """Return what the function ``into_cases`` does in this arrangement."""
+        return into_cases(self._turned, w)
+
+    def combine(self, y):
+        """Return the body rates and the parity of the four channels, rad/s."""
+        return combine(self._turned, y)
 
     def settle(self, w):
         """Take the state of gyros that have long turned at the constant body rate w, rad/s."""
-        for gyro, u in zip(self.gyros, self.into_cases(w)):
-            gyro.settle(u)
-
-    def _out(self, a, b):
-        """Return the four channels of two complex readings."""
-        y = a.real, a.imag, b.real, b.imag
-        if self._faults is None:
-            return y
-        return tuple([bias + scale * v for v, (bias, scale) in zip(y, self._faults)])
+        y1, z1, y2, z2 = self.into_cases(w)
+        self.gyros[0].settle(complex(y1, z1))
+        self.gyros[1].settle(complex(y2, z2))
 
     def instant(self, w):
         """Return the four channels of perfect gyros that turn at the body rate w, rad/s."""
-        return self._out(*self.into_cases(w))
+        return with_faults(self.faults, self.into_cases(w))
 
     def channels(self, w_start, w_mid, w_end, disturbances=None):
         """
         Advance by dt; body rates omega_ib_b, rad/s; return the mean of the four channels.
 
-        disturbances: (moment, tilt, jump) of either gyro, as TunedGyro.step_disturbed takes them.
+        disturbances: moment, tilt, jump of either gyro, six floats each, as of ``rotor_step``.
         """
-        (a0, b0), (am, bm) = self.into_cases(w_start), self.into_cases(w_mid)
-        a1, b1 = self.into_cases(w_end)
         first, second = self.gyros
+        one, two = both_inputs(self._turned, w_start, w_mid, w_end)
         if disturbances is None:
-            return self._out(first.step(a0, am, a1), second.step(b0, bm, b1))
-        one, two = disturbances
-        return self._out(first.step_disturbed(a0, am, a1, *one),
-                         second.step_disturbed(b0, bm, b1, *two))
+            first.state, (a, b) = rotor_step(first.gains, first.state, one)
+            second.state, (c, d) = rotor_step(second.gains, second.state, two)
+        else:
+            first.state, (a, b) = disturbed_step(first.gains, first.added, first.state, one,
+                                                 disturbances[0])
+            second.state, (c, d) = disturbed_step(second.gains, second.added, second.state, two,
+                                                  disturbances[1])
+        return with_faults(self.faults, (a, b, c, d))
 
     def step(self, w_start, w_mid, w_end):
         """Advance by dt; return the mean body rates (x, y, z), rad/s, and the parity, rad/s."""
         return self.combine(self.channels(w_start, w_mid, w_end))
 
-    def step_stages(self, w_start, w_mid, w_end):
-        """Advance by dt with RK4; return the body rates at its four stages, rad/s."""
-        (a0, b0), (am, bm) = self.into_cases(w_start), self.into_cases(w_mid)
-        a1, b1 = self.into_cases(w_end)
-        first, second = self.gyros
-        return [self.combine(self._out(a, b))[0] for a, b in
-                zip(first.step_stages(a0, am, a1), second.step_stages(b0, bm, b1))]
+    def run(self, w_start, w_mid, w_end, disturbances=(None, None)):
+        """
+        Return the mean of the four channels, without faults, (n,) each, of n steps.
+
+        w_start, w_mid, w_end: body rates, three columns (n,) each; disturbances: of either gyro
+        None or (n, 6), as ``channels`` takes them.
+        """
+        inputs = both_inputs(self._turned, w_start, w_mid, w_end)
+        first, second = (gyro.run(np.column_stack(u), d)
+                         for gyro, u, d in zip(self.gyros, inputs, disturbances))
+        return first[:, 0], first[:, 1], second[:, 0], second[:, 1]
 
     def advance(self, w):
         """Return rates (n, 3) and parity (n,) of n steps; w (n, 3 instants, 3 axes), rad/s."""
-        omega, parity = zip(*(self.step(*row) for row in np.asarray(w, dtype=float).tolist()))
-        return np.array(omega), np.array(parity)
+        nodes = np.moveaxis(np.asarray(w, dtype=float), 0, -1)
+        omega, parity = self.combine(with_faults(self.faults, self.run(*nodes)))
+        return np.column_stack(omega), parity
 
     def response(self, omega):
         """

@@ -22,8 +22,61 @@ import numpy as np
 
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY
+from .pair import spins
 
 URAD = 1e-6
+NONE = (0.0, 0.0, 0.0, 0.0)
+
+
+def moments_by_force(rows, moments, along, spin):
+    """
+    Return moments with what specific force adds: y and z of the first gyro and of the second.
+
+    rows: m, q, s, c of each channel; along: specific force along y, z of both cases; spin: along
+    both spin axes.  Floats or arrays, as in the functions below.
+    """
+    r1, r2, r3, r4 = rows
+    y1, z1, y2, z2 = along
+    a, b, c, d = moments
+    return (a + _by_force(r1, y1, z1, spin[0]), b + _by_force(r2, z1, y1, spin[0]),
+            c + _by_force(r3, y2, z2, spin[1]), d + _by_force(r4, z2, y2, spin[1]))
+
+
+def _by_force(row, own, other, spin):
+    m, q, s, c = row
+    return m * own + q * other + spin * (s + c * own)
+
+
+def moments_by_hunting(detuning, moments, speeds, cases, tilts):
+    """
+    Return moments with what the hunting of the speed adds.
+
+    speeds: parts by which both rotors are too fast; cases: rates along y, z of both cases at
+    mid-step; tilts: errors of the pick-offs.
+    """
+    p, q = detuning
+    a, b, c, d = moments
+    u1, v1, u2, v2 = cases
+    n1, o1, n2, o2 = tilts
+    e, f = speeds
+    return (a + e * (u1 + (p * n1 - q * o1)), b + e * (v1 + (p * o1 + q * n1)),
+            c + f * (u2 + (p * n2 - q * o2)), d + f * (v2 + (p * o2 + q * n2)))
+
+
+def moments_by_product(third, moments, cases, spin):
+    """
+    Return moments with the means of the products of rates, by Simpson's rule.
+
+    third: a sixth of the factor; cases, spin: rates along y, z and along the spin axes of both
+    cases at start, middle and end of the step.
+    """
+    start, middle, end = cases
+    (s, t), (m, n), (e, f) = spin
+    a, b, c, d = moments
+    return (a + third * (start[0] * s + 4.0 * (middle[0] * m) + end[0] * e),
+            b + third * (start[1] * s + 4.0 * (middle[1] * m) + end[1] * e),
+            c + third * (start[2] * t + 4.0 * (middle[2] * n) + end[2] * f),
+            d + third * (start[3] * t + 4.0 * (middle[3] * n) + end[3] * f))
 
 
 class RotorErrors:
@@ -43,16 +96,15 @@ class RotorErrors:
                 errors.mass_unbalance_deg_h_g, errors.quadrature_unbalance_deg_h_g,
                 errors.spin_axis_deg_h_g, errors.anisoelastic_deg_h_g2))
         self._forced = any(map(any, self._by_force))
-        self._offsets = _complex(errors.pickoff_offset_urad, URAD)
+        self._offsets = tuple(URAD * v for v in errors.pickoff_offset_urad)
         self._densities = tuple(URAD * n for n in errors.pickoff_noise_urad_sqrt_s)
         self._normals = None
         if any(self._densities):
             self._normals = indexed_noise(seed, 0, 'gyro.dtg.pickoff', 4)
-        self._constant = tuple(
-            math.radians(u) * rotor.parameters.vibration_2n_factor
-            * cmath.exp(-1j * math.radians(phase)) if u else 0.0j
-            for rotor, u, phase in zip(pair.gyros, errors.vibration_2n_deg_s,
-                                       errors.vibration_2n_phase_deg))
+        scale = 1.0 / math.sqrt(dt_s)
+        self._spreads = tuple(scale * d for d in self._densities)
+        self._constant = sum((_vibration(*each) for each in zip(
+            pair.gyros, errors.vibration_2n_deg_s, errors.vibration_2n_phase_deg)), ())
         p = pair.gyros[0].parameters
         per_moment = 1.0 / (p.input_inertia * p.omega)
         self.product_s = errors.spin_rate_product * (
@@ -62,55 +114,90 @@ class RotorErrors:
                               for a in errors.hunting_ppm)
         self._hunting_rad_s = hunting if any(self._hunting) else 0.0
         # the stiffness of the hinges is what k2 is at a rotor that stands still
-        self._detuning = 2j * p.stiffness(0.0) * per_moment
+        self._detuning = 0.0, 2.0 * p.stiffness(0.0) * per_moment
         self._tilts = self._offsets
-        self._sample = (self._constant, self._offsets, (0.0, 0.0), (0.0, 0.0))
+        self._sample = self._constant, self._offsets, NONE, (0.0, 0.0)
 
     def settle(self, w):
         """Let the rotors be settled at the body rate w and at the present offsets, no force."""
         self._tilts = self._offsets
-        for rotor, u, moment, tilt in zip(self._pair.gyros, self._pair.into_cases(w),
-                                          self._constant, self._offsets):
-            rotor.settle(u, moment, tilt)
+        values = zip(*(zip(four[::2], four[1::2]) for four in (
+            self._pair.into_cases(w), self._constant, self._offsets)))
+        for rotor, three in zip(self._pair.gyros, values):
+            rotor.settle(*(complex(*value) for value in three))
 
     def begin(self, t_ns, force):
         """Take the sampling period that ends at motion time t_ns; force: its mean, in b, m/s^2."""
-        dt_s = self._dt_s
-        moments = self._constant
-        if self._forced:
-            along, spins = self._pair.into_cases(force), self._pair.spins(force)
-            rows = self._by_force
-            moments = (moments[0] + _by_force(rows[0], rows[1], spins[0], along[0]),
-                       moments[1] + _by_force(rows[2], rows[3], spins[1], along[1]))
-        tilts = self._offsets
+        tilts, speeds = self._offsets, (0.0, 0.0)
         if self._normals is not None:
-            index, scale = t_ns // round(dt_s * 1e9), 1.0 / math.sqrt(dt_s)
-            n = [scale * d * v for d, v in zip(self._densities, self._normals.normal(index))]
-            tilts = tilts[0] + complex(n[0], n[1]), tilts[1] + complex(n[2], n[3])
-        jumps = tilts[0] - self._tilts[0], tilts[1] - self._tilts[1]
-        speeds = (0.0, 0.0)
+            normals = self._normals.normal(t_ns // round(self._dt_s * 1e9))
+            tilts = tuple([o + s * n for o, s, n in zip(tilts, self._spreads, normals)])
         if self._hunting_rad_s:
-            wave = math.sin(self._hunting_rad_s * (t_ns * 1e-9 - 0.5 * dt_s))
-            speeds = self._hunting[0] * wave, self._hunting[1] * wave
+            speeds = self._speeds(math.sin(self._phase(t_ns)))
+        jumps = tuple([new - old for new, old in zip(tilts, self._tilts)])
         self._tilts = tilts
-        self._sample = moments, tilts, jumps, speeds
+        self._sample = self._forced_moments(force), tilts, jumps, speeds
 
     def step(self, w_start, w_mid, w_end):
-        """Return (moment, tilt, jump) of both gyros for one step of the rotors."""
+        """Return the disturbances d (``rotor_step``) of both gyros for one step of the rotors."""
         moments, tilts, jumps, speeds = self._sample
-        self._sample = moments, tilts, (0.0, 0.0), speeds
-        if self.product_s or self._hunting_rad_s:
-            cases = self._pair.into_cases(w_mid)
-            moments = [d + e * (u + self._detuning * n)
-                       for d, e, u, n in zip(moments, speeds, cases, tilts)]
-            if self.product_s:
-                nodes = [(self._pair.into_cases(w), self._pair.spins(w))
-                         for w in (w_start, w_mid, w_end)]
-                third = self.product_s / 6.0
-                for k in range(2):
-                    a, b, c = [u[k] * spins[k] for u, spins in nodes]
-                    moments[k] += third * (a + 4.0 * b + c)
-        return tuple(zip(moments, tilts, jumps))
+        self._sample = moments, tilts, NONE, speeds
+        a, b, c, d = self._moments(moments, tilts, speeds, w_start, w_mid, w_end)
+        n1, o1, n2, o2 = tilts
+        j1, k1, j2, k2 = jumps
+        return (a, b, n1, o1, j1, k1), (c, d, n2, o2, j2, k2)
+
+    def block(self, t_ns, force, w_start, w_mid, w_end):
+        """
+        Return the disturbances of both gyros, (m, 6) each, for the m steps of sampling periods.
+
+        t_ns (n,): ends of the periods; force: three columns (n,); w_start, w_mid, w_end: rates at
+        the steps, three columns (m,), m a multiple of n.
+        """
+        count, steps = len(t_ns), len(w_start[0]) // len(t_ns)
+        tilts, speeds = [np.full(count, v) for v in self._offsets], (0.0, 0.0)
+        if self._normals is not None:
+            first = int(t_ns[0]) // round(self._dt_s * 1e9)
+            normals = self._normals.normals(first, count).T
+            tilts = [o + s * n for o, s, n in zip(tilts, self._spreads, normals)]
+        if self._hunting_rad_s:
+            wave = np.array([math.sin(a) for a in self._phase(t_ns).tolist()])
+            speeds = [np.repeat(v, steps) for v in self._speeds(wave)]
+        found = np.zeros((2, count * steps, 6))
+        for k, (new, old) in enumerate(zip(tilts, self._tilts)):
+            found[k // 2, ::steps, 4 + k % 2] = np.diff(new, prepend=old)
+        self._tilts = tuple(float(v[-1]) for v in tilts)
+        tilts = [np.repeat(v, steps) for v in tilts]
+        moments = [np.repeat(np.broadcast_to(v, count), steps)
+                   for v in self._forced_moments(force)]
+        moments = self._moments(moments, tilts, speeds, w_start, w_mid, w_end)
+        for k, (moment, tilt) in enumerate(zip(moments, tilts)):
+            found[k // 2, :, k % 2], found[k // 2, :, 2 + k % 2] = moment, tilt
+        return found
+
+    def _forced_moments(self, force):
+        if not self._forced:
+            return self._constant
+        return moments_by_force(self._by_force, self._constant, self._pair.into_cases(force),
+                                spins(force))
+
+    def _phase(self, t_ns):
+        return self._hunting_rad_s * (t_ns * 1e-9 - 0.5 * self._dt_s)
+
+    def _speeds(self, wave):
+        return self._hunting[0] * wave, self._hunting[1] * wave
+
+    def _moments(self, moments, tilts, speeds, w_start, w_mid, w_end):
+        """Return the moments of one step by those of its period and by rates, or of many."""
+        into_cases = self._pair.into_cases
+        if self._hunting_rad_s:
+            moments = moments_by_hunting(self._detuning, moments, speeds, into_cases(w_mid), tilts)
+        if self.product_s:
+            rates = w_start, w_mid, w_end
+            moments = moments_by_product(self.product_s / 6.0, moments,
+                                         [into_cases(w) for w in rates],
+                                         [spins(w) for w in rates])
+        return moments
 
     def noise_variances(self):
         """Return the variances of the means of the four channels by the noise of the pick-offs."""
@@ -122,10 +209,10 @@ class RotorErrors:
                      for d, gain in zip(self._densities, np.repeat(gains, 2).tolist()))
 
 
-def _complex(four, unit):
-    return complex(four[0], four[1]) * unit, complex(four[2], four[3]) * unit
-
-
-def _by_force(row_y, row_z, spin, a):
-    (m, q, s, c), (n, p, t, e), y, z = row_y, row_z, a.real, a.imag
-    return complex(m * y + q * z + spin * (s + c * y), n * z + p * y + spin * (t + e * z))
+def _vibration(rotor, amplitude_deg_s, phase_deg):
+    """Return the moment by a vibration at twice the speed, y and z."""
+    if not amplitude_deg_s:
+        return 0.0, 0.0
+    moment = (math.radians(amplitude_deg_s) * rotor.parameters.vibration_2n_factor
+              * cmath.exp(-1j * math.radians(phase_deg)))
+    return moment.real, moment.imag
