@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ins_sim.core.attitude.angles import roll_of_matrix
 from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
@@ -23,6 +22,7 @@ from ins_sim.core.sensors.tuned_gyro.matrices import rk4_matrices
 from ins_sim.core.sensors.tuned_gyro.pair import both_inputs, combine, GyroPair
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
 from ins_sim.core.sensors.tuned_gyro.rotor_step import rotor_stages, rotor_step
+from ins_sim.core.sensors.tuned_gyro.stability import bisect_condition
 
 
 @dataclass(frozen=True)
@@ -154,27 +154,25 @@ def rk4_radius(parameters, speed_hz, step_s):
     return float(np.abs(np.linalg.eigvals(rk4_matrices(space, step_s)[0][:n, :n])).max())
 
 
-def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution_hz=1.0,
-                     tolerance_hz=1e-6):
+def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution_hz=1.0):
     """
     Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
 
     Walks from the nominal speed by resolution_hz until RK4 grows, and finds the limit in that
-    step by Brent's method; None on a side where no limit lies between low_hz and high_hz.  Raises
+    step by bisection; None on a side where no limit lies between low_hz and high_hz.  Raises
     ValueError where the nominal speed itself is unstable.
     """
-    def growth(hz):
-        return rk4_radius(parameters, hz, step_s) - 1.0
+    def decays(hz):
+        return rk4_radius(parameters, hz, step_s) < 1.0
 
     start = parameters.speed_hz
-    if growth(start) >= 0.0:
+    if not decays(start):
         raise ValueError(f'speed_hz is {start:g}, at which RK4 with {1e3 * step_s:g} ms grows; '
                          'expected a speed between the limits')
     limits = []
     for stride, end in ((-resolution_hz, low_hz), (resolution_hz, high_hz)):
         inside, outside = start, start + stride
-        while growth(outside) < 0.0 and min(start, end) <= outside <= max(start, end):
+        while decays(outside) and min(start, end) <= outside <= max(start, end):
             inside, outside = outside, outside + stride
-        found = growth(outside) >= 0.0
-        limits.append(brentq(growth, inside, outside, xtol=tolerance_hz) if found else None)
+        limits.append(None if decays(outside) else bisect_condition(decays, inside, outside))
     return tuple(limits)

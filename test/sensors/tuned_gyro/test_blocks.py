@@ -85,25 +85,22 @@ def test_a_forced_fault_holds_through_a_block(loops):
         assert np.array_equal(block[0], omega) and np.array_equal(block[1], parity)
 
 
-def test_a_block_names_the_sample_at_which_rotors_run_away(loops):
-    """The same sentence as that of the step."""
-    unstable = {'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
+def test_a_block_ends_where_the_rotors_run_away(loops):
+    """What is before is returned, with the fault of the step; so also at the first sample."""
+    unstable = {**READ_OUT, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
     with pytest.warns(UserWarning, match='unstable'):
         one, other = instrument(unstable), instrument(unstable)
     t_ns, rates, force = inputs(3)
     # the nutation grows by exp(0.0745) a sample
     one.pair.state = other.pair.state = ((1e303, 0.0, 1e303, 0.0),) * 2
-    with pytest.raises(StreamFault) as expected:
-        stepped(one, t_ns, rates, force)
-    with pytest.raises(StreamFault) as found:
-        other.advance(t_ns, rates, force)
-    assert str(found.value) == str(expected.value) and found.value.restart
-    assert str(found.value) != str(_first(other, t_ns))
-
-
-def _first(one, t_ns):
-    """Return the fault of rotors that are infinite from the first sample of a block."""
-    one.pair.state = ((np.inf,) * 4,) * 2
-    with pytest.raises(StreamFault) as found:
-        one.advance(t_ns, np.zeros((COUNT, 3, 3)), np.zeros((COUNT, 3)))
-    return found.value
+    omega, parity, fault = other.advance(t_ns, rates, force)
+    count = len(omega)
+    assert 0 < count < COUNT and len(parity) == count and fault.restart
+    expected = stepped(one, t_ns[:count], rates[:count], force[:count])
+    assert np.array_equal(omega, expected[0]) and np.array_equal(parity, expected[1])
+    for _ in range(2):
+        with pytest.raises(StreamFault) as raised:
+            stepped(one, t_ns[count:], rates[count:], force[count:])
+        assert str(raised.value) == str(fault)
+        omega, parity, fault = other.advance(t_ns[count:], rates[count:], force[count:])
+        assert omega.shape == (0, 3) and parity.shape == (0,)

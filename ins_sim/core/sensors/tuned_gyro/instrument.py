@@ -187,28 +187,34 @@ class PairInstrument:
 
     def advance(self, t_ns, rates, force):
         """
-        Return the rates (n, 3) and the parity (n,) of the intervals that end at t_ns (n,).
+        Return the rates (n, 3) and the parity (n,) of intervals that end at t_ns, and None.
 
-        rates (n, nodes, 3) and force (n, 3) are those of ``step``, whose bits any cutting gives.
+        rates (n, nodes, 3), force (n, 3) and the results are those of ``step``, whose bits any
+        cutting gives.  Where ``step`` raises a StreamFault, that is returned in place of None, and
+        n is the number of intervals before.
         """
-        steps, columns, disturbances = self._steps, tuple(force.T), (None, None)
+        steps, disturbances, fault = self._steps, (None, None), None
         start, middle, end = (rates[:, k:k + 2 * steps - 1:2].reshape(-1, 3).T for k in range(3))
         if self._disturbances is not None:
-            disturbances = self._disturbances.block(t_ns, columns, start, middle, end)
-        y = [c.reshape(-1, steps) for c in self.pair.run(start, middle, end, disturbances)]
+            disturbances = self._disturbances.block(t_ns, force.T, start, middle, end)
+        y = np.reshape(self.pair.run(start, middle, end, disturbances), (4, -1, steps))
         finite = np.isfinite(y).all(axis=(0, 2))
         if not finite.all():
-            raise _run_away(int(t_ns[finite.argmin()]))
+            count = int(finite.argmin())
+            fault = _run_away(int(t_ns[count]))
+            t_ns, rates, force, y = t_ns[:count], rates[:count], force[:count], y[:, :count]
+        if not len(t_ns):
+            return np.empty((0, 3)), np.empty(0), fault
         y = [total_of(c.T) / steps for c in self._faulty(t_ns, y)]
         if self._read_out is not None:
             first, t_s = int(t_ns[0]) // self._dt_ns, t_ns * 1e-9
-            inputs = self._read_out_inputs(y, mean_rate(np.moveaxis(rates, 0, -1)), columns)
+            inputs = self._read_out_inputs(y, mean_rate(np.moveaxis(rates, 0, -1)), force.T)
             (_, *one), (_, *two) = (
                 errors.advance(first, np.column_stack(w), np.column_stack(f), t_s).T
                 for errors, (w, f) in zip(self._read_out, inputs))
             y = *one, *two
         omega, parity = self.pair.combine(y)
-        return np.column_stack(omega), parity
+        return np.column_stack(omega), parity, fault
 
     def _faulty(self, t_ns, y):
         """Return the channels (n, steps) of a block with the fault, if any, of each time."""
