@@ -1,0 +1,121 @@
+"""
+Small matrices in a fixed order of operations.
+
+BLAS and LAPACK choose their loops by the processor, and sums then round differently. Here sums
+are taken in the order of the indices, and complex numbers are multiplied in real arithmetic, so
+that the bits are the same on every machine.
+"""
+
+import math
+
+import numpy as np
+
+from . import elementary
+
+# Terms of the Taylor series of a matrix whose row sums are at most 1/2: what is left is 2e-17.
+TERMS = 15
+
+
+def product(a, b):
+    """Return the product of two matrices, real or complex."""
+    if not (np.iscomplexobj(a) or np.iscomplexobj(b)):
+        return _real_product(a, b)
+    found = np.empty((a.shape[0], b.shape[1]), dtype=complex)
+    found.real = _real_product(a.real, b.real) - _real_product(a.imag, b.imag)
+    found.imag = _real_product(a.real, b.imag) + _real_product(a.imag, b.real)
+    return found
+
+
+def _real_product(a, b):
+    total = a[:, :1] * b[:1]
+    for k in range(1, len(b)):
+        total = total + a[:, k:k + 1] * b[k:k + 1]
+    return total
+
+
+def magnitude(z):
+    """Return the size of a complex number or of each in an array."""
+    return elementary.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+def real_form(a):
+    """Return the real matrix that does to (real, imaginary, ...) what a complex one does."""
+    found = np.empty((2 * a.shape[0], 2 * a.shape[1]))
+    found[::2, ::2] = found[1::2, 1::2] = a.real
+    found[1::2, ::2], found[::2, 1::2] = a.imag, -a.imag
+    return found
+
+
+def complex_form(a):
+    """Return the complex matrix of which a is the ``real_form``."""
+    return a[::2, ::2] + 1j * a[1::2, ::2]
+
+
+def solve(a, b):
+    """Return x with a x = b, vectors or matrices b, real or complex: elimination with pivots."""
+    if np.iscomplexobj(a) or np.iscomplexobj(b):
+        b = np.asarray(b, dtype=complex)
+        return complex_form(solve(real_form(a), real_form(b.reshape(len(a), -1)))).reshape(b.shape)
+    count = len(a)
+    rows = np.column_stack((a, b)).astype(float)
+    for k in range(count):
+        pivot = k + int(np.abs(rows[k:, k]).argmax())
+        rows[[k, pivot]] = rows[[pivot, k]]
+        rows[k] = rows[k] / rows[k, k]
+        for i in range(count):
+            if i != k:
+                rows[i] = rows[i] - rows[i, k] * rows[k]
+    return rows[:, count:].reshape(np.shape(b))
+
+
+def balance(a):
+    """
+    Return the powers of two s for which a[i, j] s[j] / s[i] has rows like its columns.
+
+    Osborne's iteration (Parlett and Reinsch 1969): the errors of what is computed of a matrix
+    grow with its largest elements.
+    """
+    sizes = np.abs(a.real) + np.abs(a.imag)
+    np.fill_diagonal(sizes, 0.0)
+    scale, moved = np.ones(len(a)), True
+    while moved:
+        moved = False
+        for i in range(len(a)):
+            row = _total(sizes[i] * scale) / scale[i]
+            column = _total(sizes[:, i] / scale) * scale[i]
+            if row == 0.0 or column == 0.0:
+                continue
+            factor = math.ldexp(1.0, math.frexp(row / column)[1] // 2)
+            if row / factor + column * factor < 0.95 * (row + column):
+                scale[i], moved = scale[i] * factor, True
+    return scale
+
+
+def exponential(a):
+    """
+    Return e^a of a matrix, real or complex: scaling and squaring of its Taylor series.
+
+    Errors are relative to 1 or, where it is larger, the largest element.
+    """
+    if np.iscomplexobj(a):
+        return complex_form(exponential(real_form(a)))
+    scale = balance(a)
+    a = a * scale / scale[:, None]
+    largest = _total(np.abs(a.T)).max()
+    halvings = max(0, math.frexp(largest)[1] + 1)
+    a = a * math.ldexp(1.0, -halvings)
+    # e^a - 1 keeps the digits of what is small beside 1
+    less_one = a / TERMS
+    for k in range(TERMS - 1, 0, -1):
+        less_one = (a + product(a, less_one)) / k
+    for _ in range(halvings):
+        less_one = 2.0 * less_one + product(less_one, less_one)
+    return (np.eye(len(a)) + less_one) / scale * scale[:, None]
+
+
+def _total(rows):
+    """Return the sum over the first axis, in its order."""
+    total = rows[0]
+    for row in rows[1:]:
+        total = total + row
+    return total
