@@ -6,7 +6,7 @@ from support.studies import settings
 
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-from ins_sim.core.sensors.tuned_gyro.parity import parity_windows, ParityTest
+from ins_sim.core.sensors.tuned_gyro.parity import parity_rows, parity_windows, ParityTest
 from ins_sim.settings.presets import preset
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.core.simulation.inertial import imu_blocks
@@ -91,3 +91,21 @@ def test_before_the_first_window():
             assert not test.push(k, (0.0, 0.0, 0.0), (0.0, 0.0, 9.8), 1.0)
         assert test.push(99, (0.0, 0.0, 0.0), (0.0, 0.0, 9.8), 1.0) and test.exceeded
         test.reset()
+
+
+@pytest.mark.parametrize('count', [0, 1, 99, 100, 101, 1234])
+def test_windows_of_a_run_are_those_of_its_readings(count):
+    """Rows and windows of arrays equal those of pushes, bit for bit."""
+    rng = np.random.default_rng(6)
+    imu = ImuSamples((1 + np.arange(count)) * 10_000_000, rng.normal(size=(count, 3)),
+                     rng.normal(size=(count, 3)), 1e-4 * rng.normal(size=count))
+    s = settings({**DTG, **TABLE, **preset('tactical_dtg')}).imu_sensor
+    instrument = PairInstrument(s)
+    test, rows, windows = ParityTest(s, instrument), [], []
+    for t_ns, *sample in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),
+                             imu.parity.tolist()):
+        if test.push(t_ns, *sample):
+            windows.append((t_ns * 1e-9, test.mean, test.threshold, test.exceeded))
+        rows.append(test.row(sample[2]))
+    assert np.array_equal(parity_rows(s, instrument, imu), np.reshape(rows, (-1, 3)))
+    assert np.array_equal(parity_windows(s, instrument, imu), np.reshape(windows, (-1, 4)))

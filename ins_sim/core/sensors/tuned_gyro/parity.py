@@ -13,6 +13,8 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import magnitude
 from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY
 from ..imu.triad_model import temperature_off, triad_model
 
@@ -20,19 +22,52 @@ SIGMAS = 5.0
 # what rounding may leave of rates of some rad/s, rad/s
 ROUNDING = 1e-12
 # where the cross-coupling is looked for, rad/s
-BAND = np.geomspace(1e-2, 1e2, 41)
+BAND = elementary.exp(elementary.log(10.0) * np.linspace(-2.0, 2.0, 41))
+
+
+def _size(*terms):
+    """Return the root of the sum of squares."""
+    total = 0.0
+    for term in terms:
+        total += term * term
+    return math.sqrt(total)
 
 
 def _most(*rows):
     """Return the largest over the axes of the root of the sum of squares of terms by axis."""
-    return max(math.hypot(*column) for column in zip(*rows))
+    return max(_size(*column) for column in zip(*rows))
+
+
+def _length(v):
+    """Return the length of a vector of floats or arrays."""
+    x, y, z = v
+    return elementary.sqrt(x * x + y * y + z * z)
+
+
+def terms(last, omega, f, parity):
+    """
+    Return what a window adds up: parity, rate, its square, specific force, change of the rate.
+
+    last, omega: rates of the reading before and of this one; floats or arrays.
+    """
+    w = _length(omega)
+    change = omega[0] - last[0], omega[1] - last[1], omega[2] - last[2]
+    return parity, w, w * w, _length(f), _length(change)
+
+
+def add(sums, more):
+    """Return the sums of five terms each."""
+    a, b, c, d, e = sums
+    f, g, h, i, j = more
+    return a + f, b + g, c + h, d + i, e + j
 
 
 class ParityTest:
     """
     Window by window, the mean parity and what it may be.
 
-    settings: ImuSensorSettings with tuned gyros; instrument: their PairInstrument.  After each
+    settings: ImuSensorSettings with tuned gyros; instrument: their PairInstrument.  ``count`` is
+    the number of readings in a window.  After each
     window ``mean`` and ``threshold``, rad/s, are those of the last one, and ``exceeded`` says
     whether the one is beyond the other; before the first they are 0, infinite and False.
     """
@@ -41,34 +76,32 @@ class ParityTest:
         gyro, errors = settings.gyro, settings.gyro.dtg.errors
         model = triad_model(gyro.errors, instrument.dt_s, 'gyro.errors')
         self._fixed = gyro.dtg.parity.threshold_deg_h * DEG_H
-        self._count = max(1, round(gyro.dtg.parity.window_s / instrument.dt_s))
+        self.count = max(1, round(gyro.dtg.parity.window_s / instrument.dt_s))
         self._dt_s, self._temperature = instrument.dt_s, settings.temperature
         p = instrument.pair.gyros[0].parameters
-        offset = max(map(abs, errors.pickoff_offset_urad)) * 1e-6 * abs(complex(
-            p.stiffness(p.speed_hz), p.rotating_damping_n_m_s * p.omega)) / (
+        offset = max(map(abs, errors.pickoff_offset_urad)) * 1e-6 * _size(
+            p.stiffness(p.speed_hz), p.rotating_damping_n_m_s * p.omega) / (
                 p.input_inertia * p.omega)
         shaken = max(map(abs, errors.vibration_2n_deg_s))
         shaken = math.radians(shaken) * abs(p.vibration_2n_factor) if shaken else 0.0
-        self._bias = math.hypot(
+        self._bias = _size(
             _most(model.bias, model.turn_on_sigma, model.gauss_markov_sigma, model.flicker,
                   [60.0 * k for k in model.walk]), offset, shaken)
-        axes = math.hypot(*model.misalignment, *model.misalignment_sigma,
-                          *model.non_orthogonality)
+        axes = _size(*model.misalignment, *model.misalignment_sigma, *model.non_orthogonality)
         speeds = 1e-6 * max(map(abs, (*errors.speed_ppm, *errors.hunting_ppm)))
-        self._scale = math.hypot(_most(model.scale, model.scale_sigma, model.asymmetry), axes,
-                                 speeds)
+        self._scale = _size(_most(model.scale, model.scale_sigma, model.asymmetry), axes, speeds)
         self._cubic = max(map(abs, model.cubic))
         self._warm = max(map(abs, model.temperature_bias)), max(map(abs, model.temperature_scale))
         per_g = DEG_H / STANDARD_GRAVITY
-        self._by_force = math.hypot(
+        self._by_force = _size(
             _most(model.g_linear), per_g * _most(
                 errors.mass_unbalance_deg_h_g, errors.quadrature_unbalance_deg_h_g,
                 errors.spin_axis_deg_h_g))
-        self._by_force_2 = math.hypot(_most(model.g_quadratic), per_g / STANDARD_GRAVITY * _most(
+        self._by_force_2 = _size(_most(model.g_quadratic), per_g / STANDARD_GRAVITY * _most(
             errors.anisoelastic_deg_h_g2))
-        self._white = instrument.parity_variance(self._count)
-        self._coupling_s = max(float((np.abs(rotor.space.axis_responses(BAND)[1]) / BAND).max())
-                               for rotor in instrument.pair.gyros)
+        self._white = instrument.parity_variance(self.count)
+        crosses = [rotor.space.axis_responses(BAND)[1] for rotor in instrument.pair.gyros]
+        self._coupling_s = max(float((magnitude(cross) / BAND).max()) for cross in crosses)
         self._product_s = abs(errors.spin_rate_product) * abs(
             p.input_inertia - p.transverse_inertia) / (p.input_inertia * p.omega)
         self.reset()
@@ -85,33 +118,48 @@ class ParityTest:
 
         Return whether it completes a window.
         """
-        last = self._last or omega
+        (n, *sums), last = self._sums, self._last or omega
         self._last = omega
-        turn = math.hypot(omega[0] - last[0], omega[1] - last[1], omega[2] - last[2])
-        w, force = math.hypot(*omega), math.hypot(*f)
-        n, total, w_1, w_2, force_1, change = self._sums
-        n += 1
-        self._sums = n, total + parity, w_1 + w, w_2 + w * w, force_1 + force, change + turn
-        if n < self._count:
+        n, sums = n + 1, add(sums, terms(last, omega, f, parity))
+        self._sums = n, *sums
+        if n < self.count:
             return False
-        self._judge(t_ns * 1e-9)
+        self.mean, self.threshold = sums[0] / n, self._limit(t_ns * 1e-9, *sums[1:])
+        self.exceeded = abs(self.mean) > self.threshold
         self._sums = (0,) + (0.0,) * 5
         return True
 
-    def _judge(self, t_s):
-        n, total, w, w_2, force, change = self._sums
+    def windows(self, imu):
+        """
+        Return the windows of a run, (n, 3): mean, threshold, and 1 where it is exceeded.
+
+        imu: ImuSamples with parity, whose first reading is that of the first window.
+        """
+        last = np.concatenate([imu.omega[:1], imu.omega[:-1]])
+        columns = terms(last.T, imu.omega.T, imu.f.T, imu.parity)
+        whole, sums = len(imu) // self.count, (0.0,) * 5
+        rows = [v[:whole * self.count].reshape(whole, self.count).T for v in columns]
+        for sample in zip(*rows):
+            sums = add(sums, sample)
+        ends = imu.t_ns[self.count - 1::self.count].tolist()
+        limits = np.array([self._limit(t_ns * 1e-9, *row) for t_ns, row in zip(
+            ends, np.column_stack(sums[1:]).tolist())])
+        mean = sums[0] / self.count
+        return np.column_stack((mean, limits, np.abs(mean) > limits))
+
+    def _limit(self, t_s, w, w_2, force, change):
+        """Return the threshold of a window that ends at t_s, by the sums of ``terms``."""
+        if self._fixed:
+            return self._fixed
+        n = self.count
         w, w_2, force = w / n, w_2 / n, force / n
-        self.mean = total / n
-        self.threshold = self._fixed
-        if not self._fixed:
-            warm = abs(temperature_off(self._temperature, t_s))
-            spread = math.hypot(
-                math.sqrt(self._white), self._bias, self._warm[0] * warm,
-                (self._scale + self._warm[1] * warm + self._cubic * w_2) * w,
-                (self._by_force + self._by_force_2 * force) * force)
-            moved = self._coupling_s * change / (n * self._dt_s) + self._product_s * w_2
-            self.threshold = ROUNDING + SIGMAS * spread + moved
-        self.exceeded = abs(self.mean) > self.threshold
+        warm = abs(temperature_off(self._temperature, t_s))
+        spread = _size(
+            math.sqrt(self._white), self._bias, self._warm[0] * warm,
+            (self._scale + self._warm[1] * warm + self._cubic * w_2) * w,
+            (self._by_force + self._by_force_2 * force) * force)
+        moved = self._coupling_s * change / (n * self._dt_s) + self._product_s * w_2
+        return ROUNDING + SIGMAS * spread + moved
 
     def row(self, parity):
         """Return what a reading is published with: parity, mean, threshold (0 = none yet)."""
@@ -120,11 +168,13 @@ class ParityTest:
 
 def parity_rows(settings, instrument, imu):
     """Return ``ParityTest.row`` of each reading of a run, (n, 3); imu: ImuSamples with parity."""
-    test, found = ParityTest(settings, instrument), []
-    for sample in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(), imu.parity.tolist()):
-        test.push(*sample)
-        found.append(test.row(sample[3]))
-    return np.array(found)
+    test = ParityTest(settings, instrument)
+    found = np.zeros((len(imu), 3))
+    found[:, 0] = imu.parity
+    # A reading that completes a window has its figures, as those after it have.
+    windows = np.repeat(test.windows(imu)[:, :2], test.count, axis=0)
+    found[test.count - 1:, 1:] = windows[:len(found) - test.count + 1]
+    return found
 
 
 def parity_windows(settings, instrument, imu):
@@ -133,9 +183,5 @@ def parity_windows(settings, instrument, imu):
 
     imu: ImuSamples with parity.
     """
-    test, rows = ParityTest(settings, instrument), []
-    for t_ns, *sample in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),
-                             imu.parity.tolist()):
-        if test.push(t_ns, *sample):
-            rows.append((t_ns * 1e-9, test.mean, test.threshold, test.exceeded))
-    return np.array(rows, dtype=float).reshape(-1, 4)
+    test = ParityTest(settings, instrument)
+    return np.column_stack((imu.t_ns[test.count - 1::test.count] * 1e-9, test.windows(imu)))
