@@ -9,6 +9,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import KINDS, Orientation
 from ins_sim.core.motion.motion import check_length
+from ins_sim.core.numerics import elementary
 from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 from ins_sim.core.timeseries.histories import NavErrors, NavStates
 
@@ -61,7 +62,7 @@ def _apart(p, q):
     """Return the largest angle between attitudes (n, 4), rad."""
     p, q = np.moveaxis(p, -1, 0), np.moveaxis(q, -1, 0)
     x, y, z, w = quaternion.multiply(quaternion.conjugate(p), q)
-    return float((2.0 * np.arctan2(np.sqrt(x * x + y * y + z * z), np.abs(w))).max())
+    return float((2.0 * elementary.atan2(np.sqrt(x * x + y * y + z * z), np.abs(w))).max())
 
 
 def _step_s(kind):

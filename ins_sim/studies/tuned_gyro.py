@@ -17,12 +17,13 @@ from ins_sim.core.attitude.angles import roll_of_matrix
 from ins_sim.core.attitude.integration import step_euler_vector, step_poisson
 from ins_sim.core.attitude.matrix import dcm_of
 from ins_sim.core.attitude.quaternion import exponential
-from ins_sim.core.numerics import compilation
-from ins_sim.core.sensors.tuned_gyro.matrices import rk4_matrices
+from ins_sim.core.numerics import compilation, elementary
+from ins_sim.core.numerics.fixed_order import magnitude
 from ins_sim.core.sensors.tuned_gyro.pair import both_inputs, combine, GyroPair
-from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.rotor_step import rotor_stages, rotor_step
-from ins_sim.core.sensors.tuned_gyro.stability import bisect_condition
+from ins_sim.core.sensors.tuned_gyro.stability import bisect_condition, rk4_amplification
+from ins_sim.core.sensors.tuned_gyro.state_space import state_space
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,8 @@ def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages
     c, theta, u_end = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0), (top, 0.0, 0.0)
     for k in range(steps):
         u_start = u_end
-        u_mid = (top * math.cos(rate_rad_s * (k + 0.5) * step_s), 0.0, 0.0)
-        u_end = (top * math.cos(rate_rad_s * (k + 1) * step_s), 0.0, 0.0)
+        u_mid = (top * elementary.cos(rate_rad_s * (k + 0.5) * step_s), 0.0, 0.0)
+        u_end = (top * elementary.cos(rate_rad_s * (k + 1) * step_s), 0.0, 0.0)
         inputs_1, inputs_2 = both_inputs(turned, u_start, u_mid, u_end)
         rates = _rates(turned, gains_1, gains_2, stages, x_1, x_2, inputs_1, inputs_2)
         x_1, _ = rotor_step(gains_1, x_1, inputs_1)
@@ -149,9 +150,8 @@ def _cells(settings, values, paper, progress):
 
 def rk4_radius(parameters, speed_hz, step_s):
     """Return the spectral radius of the matrix of one RK4 step at a speed, tuned there."""
-    space = state_space(at_speed(parameters, speed_hz))
-    n = len(space.g)
-    return float(np.abs(np.linalg.eigvals(rk4_matrices(space, step_s)[0][:n, :n])).max())
+    roots = state_space(at_speed(parameters, speed_hz)).roots
+    return max(magnitude(rk4_amplification(root * step_s)) for root in roots)
 
 
 def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution_hz=1.0):

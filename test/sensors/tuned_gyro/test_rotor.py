@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from ins_sim.core.sensors.tuned_gyro.rotor import (loop_gains, PRESETS, state_space,
-                                                   TunedGyroParameters)
+from ins_sim.core.sensors.tuned_gyro.rotor import loop_gains, PRESETS, TunedGyroParameters
+from ins_sim.core.sensors.tuned_gyro.state_space import state_space
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 
 SAPEGIN, DAMPED, TACTICAL = (
@@ -42,6 +42,21 @@ def test_transfer_function_is_that_of_the_real_equations(w):
         expected = real_form(p, w)
         np.testing.assert_allclose([direct, cross], expected, rtol=1e-10,
                                    atol=1e-10 * abs(expected).max())
+
+
+def test_response_and_roots_are_those_of_the_matrices():
+    """Against LAPACK: (s - F)^-1 g, and the eigenvalues of F; a double root to half its digits."""
+    omega = np.array([-3000.0, -1.0, 0.0, 0.3, 200.0, 2600.0])
+    for p in [SAPEGIN, DAMPED, TACTICAL, replace(TACTICAL, damping_ratio=0.6), *draws(20)]:
+        space = state_space(p)
+        left = 1j * omega[:, None, None] * np.eye(len(space.g)) - space.f
+        expected = np.linalg.solve(left, np.broadcast_to(space.g[:, None], (6, len(space.g), 1)))
+        expected = (expected[..., 0] * space.c).sum(axis=-1) + space.d
+        np.testing.assert_allclose(space.response(omega), expected, rtol=0,
+                                   atol=1e-11 * abs(expected).max())
+        for root in np.linalg.eigvals(space.f):
+            bound = 1e-7 if p is TACTICAL else 1e-11
+            assert min(abs(np.array(space.roots) - root)) < bound * abs(root)
 
 
 def test_closed_loop_places_the_roots():

@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 
 from ins_sim.core.sensors.tuned_gyro.pair import GyroPair
 from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY as G
-from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
+from ins_sim.core.sensors.tuned_gyro.state_space import state_space
 from support.pairs import instrument
 
 DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}

@@ -8,8 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
-from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS, state_space
+from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.stability import rk4_amplification
+from ins_sim.core.sensors.tuned_gyro.state_space import state_space
 from ins_sim.core.sensors.tuned_gyro.stepping import TunedGyro
 
 SAPEGIN, DAMPED, TACTICAL = (

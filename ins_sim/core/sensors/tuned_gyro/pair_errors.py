@@ -15,11 +15,11 @@ an angle of J/B times the jump.  The acceleration of the case, (A/(B Omega)) u' 
 is in the rotor's own equation.
 """
 
-import cmath
 import math
 
 import numpy as np
 
+from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY
 from .pair import spins
@@ -110,8 +110,10 @@ class RotorErrors:
         self.product_s = errors.spin_rate_product * (
             p.input_inertia - p.transverse_inertia) * per_moment
         hunting = 2.0 * math.pi * errors.hunting_hz
-        self._hunting = tuple(1e-6 * a * np.sinc(errors.hunting_hz * dt_s).item()
-                              for a in errors.hunting_ppm)
+        half = 0.5 * hunting * dt_s
+        # the mean of the wave over an interval
+        mean = elementary.sin(half) / half if half else 1.0
+        self._hunting = tuple(1e-6 * a * mean for a in errors.hunting_ppm)
         self._hunting_rad_s = hunting if any(self._hunting) else 0.0
         # the stiffness of the hinges is what k2 is at a rotor that stands still
         self._detuning = 0.0, 2.0 * p.stiffness(0.0) * per_moment
@@ -133,7 +135,7 @@ class RotorErrors:
             normals = self._normals.normal(t_ns // round(self._dt_s * 1e9))
             tilts = tuple([o + s * n for o, s, n in zip(tilts, self._spreads, normals)])
         if self._hunting_rad_s:
-            speeds = self._speeds(math.sin(self._phase(t_ns)))
+            speeds = self._speeds(t_ns)
         jumps = tuple([new - old for new, old in zip(tilts, self._tilts)])
         self._tilts = tilts
         self._sample = self._forced_moments(force), tilts, jumps, speeds
@@ -161,8 +163,7 @@ class RotorErrors:
             normals = self._normals.normals(first, count).T
             tilts = [o + s * n for o, s, n in zip(tilts, self._spreads, normals)]
         if self._hunting_rad_s:
-            wave = np.array([math.sin(a) for a in self._phase(t_ns).tolist()])
-            speeds = [np.repeat(v, steps) for v in self._speeds(wave)]
+            speeds = [np.repeat(v, steps) for v in self._speeds(t_ns)]
         found = np.zeros((2, count * steps, 6))
         for k, (new, old) in enumerate(zip(tilts, self._tilts)):
             found[k // 2, ::steps, 4 + k % 2] = np.diff(new, prepend=old)
@@ -181,10 +182,9 @@ class RotorErrors:
         return moments_by_force(self._by_force, self._constant, self._pair.into_cases(force),
                                 spins(force))
 
-    def _phase(self, t_ns):
-        return self._hunting_rad_s * (t_ns * 1e-9 - 0.5 * self._dt_s)
-
-    def _speeds(self, wave):
+    def _speeds(self, t_ns):
+        """Return the parts by which both rotors are too fast."""
+        wave = elementary.sin(self._hunting_rad_s * (t_ns * 1e-9 - 0.5 * self._dt_s))
         return self._hunting[0] * wave, self._hunting[1] * wave
 
     def _moments(self, moments, tilts, speeds, w_start, w_mid, w_end):
@@ -213,6 +213,6 @@ def _vibration(rotor, amplitude_deg_s, phase_deg):
     """Return the moment by a vibration at twice the speed, y and z."""
     if not amplitude_deg_s:
         return 0.0, 0.0
-    moment = (math.radians(amplitude_deg_s) * rotor.parameters.vibration_2n_factor
-              * cmath.exp(-1j * math.radians(phase_deg)))
-    return moment.real, moment.imag
+    size = math.radians(amplitude_deg_s) * rotor.parameters.vibration_2n_factor
+    s, c = elementary.sincos(math.radians(phase_deg))
+    return size * c, -size * s

@@ -5,8 +5,10 @@ import math
 
 import numpy as np
 
-from .rotor import state_space
+from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import magnitude
 from .stability import bisect_condition, GRID, rk4_window
+from .state_space import state_space
 
 
 @dataclass(frozen=True)
@@ -54,11 +56,12 @@ def tuned_gyro_report(parameters, speed_hz=None):
     p, space = parameters, state_space(parameters, speed_hz)
 
     def gain(hz):
-        return np.abs(space.axis_responses(2.0 * math.pi * hz)[0])
+        return magnitude(space.axis_responses(2.0 * math.pi * hz)[0])
 
     # one decade below the slowest root to twice the fastest
-    sizes = np.abs(space.roots) / (2.0 * math.pi)
-    grid = np.geomspace(0.1 * sizes.min(), 2.0 * sizes.max(), GRID)
+    sizes = magnitude(np.array(space.roots)) / (2.0 * math.pi)
+    low, high = elementary.log(0.1 * sizes.min()), elementary.log(2.0 * sizes.max())
+    grid = elementary.exp(np.linspace(low, high, GRID))
     gains = gain(grid)
     below = np.flatnonzero(gains < math.sqrt(0.5))
     end = int(below[0]) if len(below) else GRID - 1

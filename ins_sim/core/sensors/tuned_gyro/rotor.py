@@ -1,5 +1,5 @@
 """
-The dynamically tuned gyro: parameters, equations of motion, transfer function and report.
+The dynamically tuned gyro: its parameters and equations of motion.
 
 Case axes, right-handed: x_c is the spin axis, y_c and z_c are sensitive.  Vectors of the
 sensitive plane are complex, u = u_y + j u_z.  With theta the tilt of the rotor in the case, u
@@ -19,8 +19,6 @@ pick-off reads theta + n, n being its offset and noise, in loop and read-out ali
 from dataclasses import dataclass, fields
 import math
 from types import MappingProxyType
-
-import numpy as np
 
 LOOPS = ('open', 'closed')
 # The nominal speed may be off the one the hinges tune the rotor to by this part.
@@ -184,77 +182,3 @@ def loop_gains(p):
             complex(a * (twice * wn + w0 * w0) - p.stiffness(),
                     p.rotating_damping_n_m_s * p.omega - twice * h),
             complex(a * wn * w0 * w0, -h * w0 * w0))
-
-
-@dataclass(frozen=True)
-class StateSpace:
-    """
-    The gyro as x' = F x + g u, reading = c x + d u, complex.
-
-    f (n, n), g (n,), c (n,), d: x is (theta, v) or, in closed loop, (theta, v, integral of
-    theta + n); rad, rad/s, rad s.  moment, tilt (n,): x' by a disturbing moment d, rad/s, and by a
-    pick-off error n, rad; tilt_reading: its reading.  jump (n,), jump_reading, rad: change of x
-    and integral of the reading by a jump of n, to which the derivative gain answers by an
-    impulse.
-    """
-
-    f: np.ndarray
-    g: np.ndarray
-    c: np.ndarray
-    d: complex
-    moment: np.ndarray
-    tilt: np.ndarray
-    tilt_reading: complex
-    jump: np.ndarray
-    jump_reading: complex
-
-    @property
-    def roots(self):
-        """Characteristic roots, 1/s, the least stable first."""
-        return tuple(sorted(np.linalg.eigvals(self.f).tolist(), key=lambda s: -s.real))
-
-    def response(self, omega):
-        """Return the complex transfer function at j omega (any shape, rad/s, either sign)."""
-        s = 1j * np.asarray(omega, dtype=float)
-        left = s[..., None, None] * np.eye(len(self.g)) - self.f
-        right = np.broadcast_to(self.g[:, None], (*s.shape, len(self.g), 1))
-        return (np.linalg.solve(left, right)[..., 0] * self.c).sum(axis=-1) + self.d
-
-    def axis_responses(self, omega):
-        """
-        Return the responses of an axis to its own rate and to that of the other axis.
-
-        As real signals, reading_y = direct u_y - cross u_z, reading_z = cross u_y + direct u_z:
-        direct = (G(j w) + conj G(-j w)) / 2, cross = (G(j w) - conj G(-j w)) / 2j.
-        """
-        omega = np.asarray(omega, dtype=float)
-        plus, minus = self.response(omega), np.conj(self.response(-omega))
-        return 0.5 * (plus + minus), -0.5j * (plus - minus)
-
-
-def state_space(p, speed_hz=None):
-    """Return the StateSpace of a rotor at a speed, by default the nominal one."""
-    omega = p.omega if speed_hz is None else 2.0 * math.pi * speed_hz
-    a, h, f = p.transverse_inertia, p.axial_inertia * omega, p.damping
-    stiffness = complex(p.stiffness(speed_hz),
-                        -p.rotating_damping_n_m_s * omega - p.cross_feedback_n_m_rad)
-    into = complex(f, p.input_inertia * omega - h)
-    scale = 1.0 / (p.input_inertia * p.omega)
-    mistaken = 1j * p.input_inertia * omega / a
-    if p.loop == 'open':
-        rows = [[0.0, 1.0], [-stiffness / a, complex(-f, h) / a]]
-        return StateSpace(
-            np.array(rows, dtype=complex), np.array([-1.0, into / a]),
-            np.array([-p.coupling * scale, 0.0j]), 0.0j, np.array([0.0, mistaken]),
-            np.array([0.0, 1j * p.cross_feedback_n_m_rad / a]), complex(-p.coupling * scale),
-            np.zeros(2, dtype=complex), 0.0j)
-    derivative, proportional, integral = loop_gains(p)
-    rows = [[0.0, 1.0, 0.0],
-            [-(stiffness + proportional) / a, (complex(-f, h) - derivative) / a, -integral / a],
-            [1.0, 0.0, 0.0]]
-    return StateSpace(
-        np.array(rows, dtype=complex), np.array([-1.0, (into + derivative) / a, 0.0]),
-        -1j * scale * np.array([proportional, derivative, integral]), 1j * scale * derivative,
-        np.array([0.0, mistaken, 0.0]), np.array([0.0, -proportional / a, 1.0]),
-        -1j * scale * proportional, np.array([0.0j, -derivative / a, 0.0]),
-        -1j * scale * derivative)

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ins_sim.core.numerics.fixed_order import magnitude, product
+
 # The grid of the searches, refined by bisection to the precision of the floats.
 GRID = 4000
 
@@ -32,10 +34,10 @@ def rk4_window(roots):
     is long enough, as 1 - (w h)^6 / 144.
     """
     roots = np.array(roots)
-    fastest = np.abs(roots).max()
+    fastest = magnitude(roots).max()
 
     def decays(h):
-        return (np.abs(rk4_amplification(np.multiply.outer(h, roots))) < 1.0).all(axis=-1)
+        return (magnitude(rk4_amplification(np.multiply.outer(h, roots))) < 1.0).all(axis=-1)
 
     # RK4 is stable nowhere in the left half plane beyond |z| = 3
     steps = np.linspace(0.0, 3.0, GRID + 1)[1:] / fastest
@@ -69,15 +71,17 @@ def pickoff_gain(rotor, dt_s):
         push[:, n] = added[:, 1]
         if k == 0:
             push[:, n + 1] = added[:, 2]
-        push += table[:, :n] @ x
+        push += product(table[:, :n], x)
         x = push[:n]
         read += push[n] / steps
     carry = np.zeros((n + 1, n + 1), dtype=complex)
     carry[:n, :n], carry[:n, n] = x[:, :n], -x[:, n + 1]
-    drive = np.append(x[:, n] + x[:, n + 1], 1.0)
-    out = np.append(read[:n], -read[n + 1])
-    spread, power = np.outer(drive, drive.conj()), carry
+    drive = np.append(x[:, n] + x[:, n + 1], 1.0)[:, None]
+    out = np.append(read[:n], -read[n + 1])[None]
+    spread, power = product(drive, drive.conj().T), carry
     while power.any():
-        spread = spread + power @ spread @ power.conj().T
-        power = power @ power
-    return float((out @ spread @ out.conj()).real + abs(read[n] + read[n + 1]) ** 2)
+        spread = spread + product(product(power, spread), power.conj().T)
+        power = product(power, power)
+    last = read[n] + read[n + 1]
+    return float(product(product(out, spread), out.conj().T)[0, 0].real
+                 + last.real * last.real + last.imag * last.imag)

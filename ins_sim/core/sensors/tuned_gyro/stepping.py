@@ -6,10 +6,11 @@ import warnings
 import numpy as np
 
 from ins_sim.core.numerics import compilation
-from .matrices import disturbance_matrix, exact_matrices, HOLDS, METHODS, rk4_matrices
-from .rotor import state_space
+from ins_sim.core.numerics.fixed_order import product, solve
 from .rotor_step import disturbed_step, rotor_stages, rotor_step, run_rotor
 from .stability import rk4_window
+from .state_space import state_space
+from .step_matrices import disturbance_matrix, exact_matrices, HOLDS, METHODS, rk4_matrices
 
 
 def _check_stability(roots, dt_s, method):
@@ -101,8 +102,9 @@ class TunedGyro:
     def settle(self, u, moment=0.0, tilt=0.0):
         """Take the state of a gyro that has long turned at the constant rate u, rad/s."""
         space = self._space
-        self.state = floats_of(np.linalg.solve(
-            space.f, -(space.g * u + space.moment * moment + space.tilt * tilt)))
+        driven = product(np.column_stack((space.g, space.moment, space.tilt)),
+                         np.array(((u,), (moment,), (tilt,)), dtype=complex))
+        self.state = floats_of(solve(space.f, -driven[:, 0]))
 
     def step(self, u_start, u_mid, u_end):
         """Advance by dt; rates u_y + j u_z of the case, rad/s; return the mean reading."""

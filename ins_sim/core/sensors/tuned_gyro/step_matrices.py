@@ -12,6 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ins_sim.core.numerics.fixed_order import exponential, product
+
 METHODS = ('exact', 'rk4')
 HOLDS = ('quadratic', 'linear')
 
@@ -23,16 +25,13 @@ def exact_matrices(space, dt_s, hold):
     Columns: state at the start, rates at start, middle, end.  Matrix exponential of the system
     augmented by the integral of the reading and by the rate's derivatives (Van Loan 1978).
     """
-    from scipy.linalg import expm, matrix_balance
     n = len(space.g)
     big = np.zeros((n + 4, n + 4), dtype=complex)
     big[:n, :n] = space.f * dt_s
     big[:n, n + 1] = space.g * dt_s
     big[n, :n], big[n, n + 1] = space.c, space.d
     big[n + 1, n + 2] = big[n + 2, n + 3] = 1.0
-    # balanced by powers of two, which is exact: theta and v differ by the nutation's frequency
-    big, (scale, _) = matrix_balance(big, permute=False, separate=True)
-    power = (scale[:, None] * expm(big) / scale)[:n + 1]
+    power = exponential(big)[:n + 1]
     by_value, by_slope, by_bend = power[:, n + 1], power[:, n + 2], power[:, n + 3]
     if hold == 'linear':
         start, middle, end = by_value - by_slope, 0.0 * by_slope, by_slope
@@ -54,14 +53,14 @@ def rk4_matrices(space, dt_s):
     state = np.eye(n, n + 3).astype(complex)
 
     def rates(at, u):
-        return space.f @ at + np.outer(space.g, u)
+        return product(space.f, at) + product(space.g[:, None], u[None])
 
     k1 = rates(state, start)
     k2 = rates(at2 := state + 0.5 * dt_s * k1, middle)
     k3 = rates(at3 := state + 0.5 * dt_s * k2, middle)
     k4 = rates(at4 := state + dt_s * k3, end)
-    stages = np.array([space.c @ at + space.d * u for at, u in
-                       ((state, start), (at2, middle), (at3, middle), (at4, end))])
+    stages = np.concatenate([product(space.c[None], at) + space.d * u for at, u in
+                             ((state, start), (at2, middle), (at3, middle), (at4, end))])
     mean = (stages[0] + 2.0 * stages[1] + 2.0 * stages[2] + stages[3]) / 6.0
     return np.vstack((state + dt_s / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), mean)), stages
 
@@ -75,8 +74,10 @@ def disturbance_matrix(table, space, dt_s, step_map):
     whose three rate columns add up to the answer to a constant input.
     """
     n = len(space.g)
-    moment = step_map(replace(space, g=space.moment, d=0.0j))[:, n:].sum(axis=1)
-    tilt = step_map(replace(space, g=space.tilt, d=space.tilt_reading))[:, n:].sum(axis=1)
-    jump = table[:, :n] @ space.jump
+    columns = []
+    for g, d in ((space.moment, 0.0j), (space.tilt, space.tilt_reading)):
+        start, middle, end = step_map(replace(space, g=g, d=d))[:, n:].T
+        columns.append(start + middle + end)
+    jump = product(table[:, :n], space.jump[:, None])[:, 0]
     jump[n] += space.jump_reading / dt_s
-    return np.column_stack((moment, tilt, jump))
+    return np.column_stack((*columns, jump))

@@ -1,0 +1,147 @@
+"""
+The dynamically tuned gyro as a linear system: state space, transfer function and roots.
+
+Tables are computed in a fixed order (`core.numerics.fixed_order`), as they decide the bits of the
+readings.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics.fixed_order import product
+from .rotor import loop_gains
+
+ITERATIONS = 300
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """
+    The gyro as x' = F x + g u, reading = c x + d u, complex.
+
+    f (n, n), g (n,), c (n,), d: x is (theta, v) or, in closed loop, (theta, v, integral of
+    theta + n); rad, rad/s, rad s.  moment, tilt (n,): x' by a disturbing moment d, rad/s, and by a
+    pick-off error n, rad; tilt_reading: its reading.  jump (n,), jump_reading, rad: change of x
+    and integral of the reading by a jump of n, to which the derivative gain answers by an
+    impulse.
+    """
+
+    f: np.ndarray
+    g: np.ndarray
+    c: np.ndarray
+    d: complex
+    moment: np.ndarray
+    tilt: np.ndarray
+    tilt_reading: complex
+    jump: np.ndarray
+    jump_reading: complex
+
+    @cached_property
+    def transfer(self):
+        """
+        Coefficients of the transfer function less d, highest powers of s first.
+
+        Numerator and denominator, tuples of complex numbers (Faddeev and LeVerrier).
+        """
+        count, unit = len(self.g), np.eye(len(self.g), dtype=complex)
+        adjugate, numerator, denominator = unit, [], [1.0 + 0.0j]
+        for k in range(1, count + 1):
+            numerator.append(complex(
+                product(product(self.c[None], adjugate), self.g[:, None])[0, 0]))
+            adjugate = product(self.f, adjugate)
+            trace = 0.0j
+            for value in adjugate.diagonal().tolist():
+                trace += value
+            denominator.append(complex(-trace.real / k, -trace.imag / k))
+            adjugate = adjugate + denominator[-1] * unit
+        return tuple(numerator), tuple(denominator)
+
+    @property
+    def roots(self):
+        """Characteristic roots, 1/s, the least stable first."""
+        return tuple(sorted(polynomial_roots(self.transfer[1]), key=lambda s: -s.real))
+
+    def response(self, omega):
+        """Return the complex transfer function at j omega (any shape, rad/s, either sign)."""
+        omega = np.asarray(omega, dtype=float)
+        (a, b), (c, d) = (_along_the_axis(each, omega) for each in self.transfer)
+        size = c * c + d * d
+        return (a * c + b * d) / size + self.d.real + 1j * ((b * c - a * d) / size + self.d.imag)
+
+    def axis_responses(self, omega):
+        """
+        Return the responses of an axis to its own rate and to that of the other axis.
+
+        As real signals, reading_y = direct u_y - cross u_z, reading_z = cross u_y + direct u_z:
+        direct = (G(j w) + conj G(-j w)) / 2, cross = (G(j w) - conj G(-j w)) / 2j.
+        """
+        omega = np.asarray(omega, dtype=float)
+        plus, minus = self.response(omega), np.conj(self.response(-omega))
+        return 0.5 * (plus + minus), -0.5j * (plus - minus)
+
+
+def _along_the_axis(coefficients, omega):
+    """Return real and imaginary part of a polynomial at j omega."""
+    first, *rest = coefficients
+    x, y = first.real, first.imag
+    for c in rest:
+        x, y = c.real - omega * y, c.imag + omega * x
+    return x, y
+
+
+def polynomial_roots(coefficients):
+    """
+    Return the roots of a polynomial by the iteration of Weierstrass, all of them at once.
+
+    coefficients: complex, highest power first, which has 1.
+    """
+    size = 1.0 + max(abs(c.real) + abs(c.imag) for c in coefficients[1:])
+    roots = [complex(size)]
+    for _ in coefficients[2:]:
+        # any points that are not symmetric to the axes
+        roots.append(roots[-1] * (0.4 + 0.9j))
+    for _ in range(ITERATIONS):
+        before = list(roots)
+        for k, z in enumerate(roots):
+            value = apart = 1.0 + 0.0j
+            for c in coefficients[1:]:
+                value = value * z + c
+            for j, other in enumerate(roots):
+                if j != k:
+                    apart *= z - other
+            if apart:
+                roots[k] = z - value / apart
+        if roots == before:
+            break
+    return roots
+
+
+def state_space(p, speed_hz=None):
+    """Return the StateSpace of a rotor at a speed, by default the nominal one."""
+    omega = p.omega if speed_hz is None else 2.0 * math.pi * speed_hz
+    a, h, f = p.transverse_inertia, p.axial_inertia * omega, p.damping
+    stiffness = complex(p.stiffness(speed_hz),
+                        -p.rotating_damping_n_m_s * omega - p.cross_feedback_n_m_rad)
+    into = complex(f, p.input_inertia * omega - h)
+    scale = 1.0 / (p.input_inertia * p.omega)
+    mistaken = 1j * p.input_inertia * omega / a
+    if p.loop == 'open':
+        rows = [[0.0, 1.0], [-stiffness / a, complex(-f, h) / a]]
+        return StateSpace(
+            np.array(rows, dtype=complex), np.array([-1.0, into / a]),
+            np.array([-p.coupling * scale, 0.0j]), 0.0j, np.array([0.0, mistaken]),
+            np.array([0.0, 1j * p.cross_feedback_n_m_rad / a]), complex(-p.coupling * scale),
+            np.zeros(2, dtype=complex), 0.0j)
+    derivative, proportional, integral = loop_gains(p)
+    rows = [[0.0, 1.0, 0.0],
+            [-(stiffness + proportional) / a, (complex(-f, h) - derivative) / a, -integral / a],
+            [1.0, 0.0, 0.0]]
+    return StateSpace(
+        np.array(rows, dtype=complex), np.array([-1.0, (into + derivative) / a, 0.0]),
+        -1j * scale * np.array([proportional, derivative, integral]), 1j * scale * derivative,
+        np.array([0.0, mistaken, 0.0]), np.array([0.0, -proportional / a, 1.0]),
+        -1j * scale * proportional, np.array([0.0j, -derivative / a, 0.0]),
+        -1j * scale * derivative)
