@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics.fixed_order import product
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.streams.faults import StreamFault
@@ -253,14 +254,15 @@ class PairInstrument:
         for model in self._models:
             found.extend(noise_variance(model, count * self.dt_s)[1:])
         if self._disturbances is not None:
-            found = [a + b / count ** 2
+            found = [a + b / (count * count)
                      for a, b in zip(found, self._disturbances.noise_variances())]
         return tuple(found)
 
     def _through(self, out, count=1):
         """Return the variances of out(combination) by those of the channels."""
         gains = [out(self.pair.combine(row)) for row in np.eye(4).tolist()]
-        return (np.square(gains).T @ self.channel_variances(count)).tolist()
+        variances = np.array(self.channel_variances(count))[:, None]
+        return product(np.square(gains).T, variances)[:, 0].tolist()
 
     @property
     def variances(self):

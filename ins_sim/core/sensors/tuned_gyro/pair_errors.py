@@ -90,7 +90,7 @@ class RotorErrors:
 
     def __init__(self, errors, pair, seed, dt_s):
         self._pair, self._dt_s = pair, dt_s
-        per_g, per_g2 = DEG_H / STANDARD_GRAVITY, DEG_H / STANDARD_GRAVITY ** 2
+        per_g, per_g2 = DEG_H / STANDARD_GRAVITY, DEG_H / (STANDARD_GRAVITY * STANDARD_GRAVITY)
         self._by_force = tuple(
             (m * per_g, q * per_g, s * per_g, c * per_g2) for m, q, s, c in zip(
                 errors.mass_unbalance_deg_h_g, errors.quadrature_unbalance_deg_h_g,
