@@ -6,11 +6,13 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.stability import rk4_amplification
 from ins_sim.core.sensors.tuned_gyro.state_space import state_space
+from ins_sim.core.sensors.tuned_gyro.step_matrices import exact_matrices, HOLDS
 from ins_sim.core.sensors.tuned_gyro.stepping import TunedGyro
 
 SAPEGIN, DAMPED, TACTICAL = (
@@ -62,6 +64,23 @@ def test_exact_steps_against_an_ode_solver(name):
         print(f'\n{name}, {hold}: mean reading off by {error:.2e}, after 50 ms by {later:.2e}, '
               f'reading of the last instant by {at_end / size:.2e} (bound {bound:.1e})')
         assert error <= bound and at_end / size <= 2.0 * bound
+
+
+@pytest.mark.parametrize('name', STABLE)
+@pytest.mark.parametrize('dt', [0.75e-3, 0.01])
+def test_exact_matrices_are_those_of_scipy(name, dt):
+    """The exponential of state and reading for a constant rate, to 1e-13 of each row."""
+    space = state_space(STABLE[name])
+    n = len(space.g)
+    big = np.zeros((n + 2, n + 2), dtype=complex)
+    big[:n, :n], big[:n, n] = dt * space.f, dt * space.g
+    big[n + 1, :n], big[n + 1, n] = space.c, space.d
+    expected = expm(big)[[*range(n), n + 1], :n + 1]
+    for hold in HOLDS:
+        table = exact_matrices(space, dt, hold)
+        found = np.column_stack((table[:, :n], table[:, n:].sum(axis=1)))
+        off = np.abs(found - expected).max(axis=1) / np.abs(expected).max(axis=1)
+        assert (off <= 1e-13).all()
 
 
 @pytest.mark.parametrize('hz', [1, 5, 10, 20, 50, 100])

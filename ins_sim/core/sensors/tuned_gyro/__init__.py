@@ -1,7 +1,7 @@
 """
 Dynamically tuned gyros: rotor dynamics, their integration and stability, and pairs of gyros.
 
-Start with ``rotor`` (equations and parameters), then ``stepping``; ``pair`` combines two gyros
-into
-the three axes of an IMU.
+``rotor`` has the parameters and the equations, ``state_space`` the linear system,
+``step_matrices`` its steps and ``rotor_step`` their arithmetic; ``stepping`` is one gyro. ``pair``
+combines two gyros into the three axes of an IMU, and ``instrument`` adds their errors.
 """

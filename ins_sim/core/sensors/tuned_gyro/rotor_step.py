@@ -6,8 +6,7 @@ plain Python and the compiled loop then give the same bits. ``x`` is the state (
 closed loop, (theta, v, integral): four or six floats. ``u`` holds the rates u_y + j u_z of the
 case at start, middle and end of the step, rad/s, and ``d`` moment, tilt and jump of a disturbance
 (`TunedGyro.step_disturbed`): six floats each. ``gains`` are the rows of the step's matrix, that
-of the mean reading last, and ``added`` those of the disturbances (`core.sensors.tuned_gyro.
-matrices`).
+of the mean reading last, and ``added`` those of the disturbances (``step_matrices``).
 """
 
 
