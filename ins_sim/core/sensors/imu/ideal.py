@@ -12,9 +12,8 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.rotation_vectors import logarithms
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples
-from .readings import components, samples_of
+from .readings import components, joined
 
 # Gauss-Legendre, three points on [0, 1]
 NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
@@ -126,12 +125,8 @@ class Triads:
         force = self._pick_means(forces_b, self._accel)
         if self.pair is None:
             return self._pick_means(rates, self._gyro), force, None
-        # an axis is late at the input of the rotors, which are linear
-        x, y, z = self._gyro
-        late = [(a[0], b[1], c[2]) for a, b, c in zip(rates[x], rates[y], rates[z])]
-        if not self._settled:
-            self.pair.settle(late[0])
-            self._settled = True
+        late = self._late(rates)
+        self._settle(late[0])
         omega, parity = self.pair.step(t_ns, late, force)
         return omega, force, parity
 
@@ -145,18 +140,33 @@ class Triads:
         if self.pair is None:
             omega, f, _ = self.integrals(t_ns, rates, forces_b)
             return ImuSamples(t_ns, np.stack(omega, axis=-1), np.stack(f, axis=-1))
-        steps = [zip(*(zip(*(node.T.tolist() for node in nodes)) for nodes in vectors))
-                 for vectors in (rates, forces_b)]
-        readings = []
-        for t, w, f in zip(t_ns.tolist(), *steps):
-            try:
-                readings.append(self.integrals(t, w, f))
-            except StreamFault as fault:
-                fault.readings = samples_of([(t, *r) for t, r in zip(t_ns.tolist(), readings)])
-                raise
-            if t == first_ns:
-                self.begin()
-        return ImuSamples.of_readings(t_ns, readings)
+        force = np.stack(self._pick_means(forces_b, self._accel), axis=-1)
+        late = np.array(self._late(rates)).transpose(2, 0, 1)
+        first = np.flatnonzero(t_ns == first_ns) + 1
+        parts = []
+        for piece in np.split(np.arange(len(t_ns)), first):
+            if len(piece):
+                at = slice(piece[0], piece[-1] + 1)
+                self._settle(late[piece[0], 0].tolist())
+                omega, parity, fault = self.pair.advance(t_ns[at], late[at], force[at])
+                end = piece[0] + len(omega)
+                parts.append(ImuSamples(t_ns[piece[0]:end], omega, force[piece[0]:end], parity))
+                if fault is not None:
+                    fault.readings = joined(parts)
+                    raise fault
+                if len(first) and piece[-1] + 1 == first[0]:
+                    self.begin()
+        return joined(parts)
+
+    def _late(self, rates):
+        """Return the rates at the nodes, each axis of which is late at the input of the rotors."""
+        x, y, z = self._gyro
+        return [(a[0], b[1], c[2]) for a, b, c in zip(rates[x], rates[y], rates[z])]
+
+    def _settle(self, w):
+        if not self._settled:
+            self.pair.settle(w)
+            self._settled = True
 
     @staticmethod
     def _pick_means(nodes, picks):
