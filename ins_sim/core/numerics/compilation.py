@@ -19,13 +19,13 @@ from types import CodeType, FunctionType, ModuleType
 
 import numpy as np
 
-from . import elementary
+from . import elementary, taylor
 from .compile_cache import cache_folder
 
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
-REPLACED = {elementary.sqrt: math.sqrt}
+REPLACED = {elementary.sqrt: math.sqrt, taylor.sincos: elementary.sincos}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
@@ -137,8 +137,9 @@ class _Graph:
 
     def copy(self, function, entry=False):
         """Return the compiled copy of a function; entry: keep its code in the cache."""
-        if function in REPLACED:
-            return REPLACED[function]
+        function = REPLACED.get(function, function)
+        if not isinstance(function, FunctionType):
+            return function
         if function not in self._copies:
             code = function.__code__
             names = {'__name__': function.__module__, '__builtins__': __builtins__}

@@ -7,6 +7,10 @@ series.  Recurrences: Griewank and Walther, "Evaluating Derivatives", 2nd ed., t
 
 import numpy as np
 
+from . import elementary
+
+LN_2 = elementary.log(2.0)
+
 
 class Series:
     """
@@ -118,9 +122,11 @@ def _cauchy(a, b, k, first):
 
 
 def sincos(u):
-    """Return the series of sin u and cos u."""
+    """Return sin u and cos u of a series, or of a float or an array."""
+    if not isinstance(u, Series):
+        return elementary.sincos(u)
     s, c = np.empty_like(u.c), np.empty_like(u.c)
-    s[0], c[0] = np.sin(u.c[0]), np.cos(u.c[0])
+    s[0], c[0] = elementary.sincos(u.c[0])
     w = u.derivative().c
     for k in range(1, len(u.c)):
         s[k] = _cauchy(w, c, k - 1, 0) / k
@@ -136,7 +142,7 @@ def sin(u):
 def tanh(u):
     """Return the series of tanh u, from T' = (1 - T^2) u'."""
     t, v = np.empty_like(u.c), np.empty_like(u.c)
-    t[0] = np.tanh(u.c[0])
+    t[0] = elementary.tanh(u.c[0])
     v[0] = 1.0 - t[0] * t[0]
     w = u.derivative().c
     for k in range(1, len(u.c)):
@@ -158,10 +164,12 @@ def sqrt(u):
 def atan2(y, x):
     """Return the series of the angle of (x, y), from a' = (x y' - y x') / (x^2 + y^2)."""
     rate = (x * y.derivative() - y * x.derivative()) / (x * x + y * y)
-    return rate.integral(np.arctan2(y.c[0], x.c[0]))
+    return rate.integral(elementary.atan2(y.c[0], x.c[0]))
 
 
 def log_cosh(u):
     """Return the series of ln cosh u without overflow, from its derivative tanh(u) u'."""
     a = np.abs(u.c[0])
-    return (tanh(u) * u.derivative()).integral(a + np.log1p(np.exp(-2.0 * a)) - np.log(2.0))
+    # Beyond 40 the second term is below the rounding of the first.
+    tail = elementary.log1p(elementary.exp(-2.0 * np.minimum(a, 40.0)))
+    return (tanh(u) * u.derivative()).integral(a + tail - LN_2)
