@@ -14,18 +14,19 @@ import pytest
 T_NS = 10_000_000 * np.arange(1000, 1300)
 
 
-def check(motion, ulps=4.0):
+def check(motion):
     """Check what a motion says of attitude and of force against its truth."""
     truth = motion.at(T_NS)
     q_nb = tuple(truth.q_nb.T)
     lat, lon, q = motion.attitude_at(T_NS)
-    assert np.array_equal(lat, truth.lat) and np.array_equal(lon, truth.lon)
-    assert np.array_equal(q, q_nb)
+    assert (lat == truth.lat).all() and (lon == truth.lon).all()
+    assert np.array_equal(q, truth.q_nb)
     lat, lon, f_n = motion.force_at(T_NS)
-    assert np.array_equal(lat, truth.lat) and np.array_equal(lon, truth.lon)
-    # The truth was turned into b, and here back again.
-    expected = np.array(quaternion.rotate(q_nb, tuple(truth.f_ib_b.T)))
-    assert np.abs(np.array(f_n) - expected).max() < ulps * 2.2e-16 * np.abs(expected).max()
+    assert (lat == truth.lat).all() and (lon == truth.lon).all()
+    # The truth was turned into b, and here back again: two products of some ten roundings each.
+    expected = quaternion.rotate(q_nb, tuple(truth.f_ib_b.T))
+    off = [np.abs(a - b).max() for a, b in zip(f_n, expected)]
+    assert max(off) < 20.0 * np.finfo(float).eps * np.abs(expected).max()
 
 
 @pytest.mark.parametrize('kind', [kind for kind in MOTIONS if kind != 'recording'])
@@ -36,8 +37,7 @@ def test_every_motion_of_the_table(kind):
     else:
         motion = make_motion(MotionSettings(kind=kind), Datum(), Earth())
     check(motion)
-    one = motion.attitude_at(T_NS[7:8])[2]
-    assert np.array_equal(np.array(motion.attitude_at(T_NS)[2])[:, 7:8], one)
+    assert np.array_equal(motion.attitude_at(T_NS)[2][7:8], motion.attitude_at(T_NS[7:8])[2])
 
 
 def test_a_recorded_flight(flown):
@@ -68,7 +68,8 @@ def test_a_motion_of_ones_own_with_at_alone():
     """Everything is answered by it, even where the class above could do without."""
     check(AtAlone(make_motion(MotionSettings(kind='cruise'), Datum(), Earth())))
     closed = make_motion(MotionSettings(kind='two_axis'), Datum(), Earth())
-    check(Turned(closed._pose, 2, True))
+    closed.__class__ = Turned
+    check(closed)
 
 
 def test_an_attitude_made_of_derivatives():

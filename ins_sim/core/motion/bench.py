@@ -4,66 +4,96 @@ import math
 
 import numpy as np
 
-from ins_sim.core.attitude import angles as attitude_angles
-from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import from_angles
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics import elementary, taylor
+from ins_sim.core.numerics.compilation import run
+from . import bench_attitudes as attitudes
 from .motion import Motion
 
 TWO_PI = 2.0 * math.pi
-LEVEL_AXES = {'east': 0, 'north': 1, 'up': 2}
+UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+LEVEL_AXES = {'east': UNIT[0], 'north': UNIT[1], 'up': UNIT[2]}
 BODY_AXES = {'x': 0, 'y': 1, 'z': 2}
 
 
-class _Place:
-    """The datum, and small excursions about it."""
+class BenchMotion(Motion):
+    """
+    A motion on one spot.
 
-    def __init__(self, datum):
-        self.lat, self.lon = math.radians(datum.latitude_deg), math.radians(datum.longitude_deg)
-        self.height = datum.height_m
+    attitude, constants: a function of ``bench_attitudes`` and its constants; datum: Datum of the
+    spot; excursion: path about it, E, N, U in m of the series of time, or None; earth_rotation,
+    period_s: as of Motion.
+    """
 
-    def coordinates(self, t, excursion):
-        """Return lat, lon, height of E, N, U (Series or None)."""
+    def __init__(self, attitude, constants, datum, excursion, earth_rotation, period_s):
+        self._attitude, self._constants = attitude, constants
+        self._spot = (math.radians(datum.latitude_deg), math.radians(datum.longitude_deg),
+                      datum.height_m)
+        self._excursion = excursion
+
+        def pose(t):
+            return *self._path(t), attitude(constants, t)
+
+        super().__init__(pose, 2, earth_rotation, period_s, self._path)
+        self._force = None
         if excursion is None:
-            return t.constant(self.lat), t.constant(self.lon), t.constant(self.height)
-        return ellipsoid.moved(self.lat, self.lon, self.height, excursion)
+            # Where nothing moves one instant tells the specific force of all.
+            force = super().force_at(np.zeros(1, dtype=np.int64))[2]
+            self._force = tuple(float(component[0]) for component in force)
+
+    def _path(self, t):
+        if self._excursion is None:
+            return tuple(t.constant(x) for x in self._spot)
+        return ellipsoid.moved(*self._spot, self._excursion(t))
+
+    def attitude_at(self, t_ns):
+        """Return latitude, longitude, floats if nothing moves, and q_nb (n, 4)."""
+        t = np.asarray(t_ns) * 1e-9
+        q_nb = np.empty((len(t), 4))
+        run(attitudes.ROWS[self._attitude], len(t), (self._constants, t), q_nb, self._rows)
+        if self._excursion is None:
+            return *self._spot[:2], q_nb
+        lat, lon, _ = self._path(taylor.Series.time(t, 0))
+        return lat.value, lon.value, q_nb
+
+    def _rows(self, constants, t, out):
+        for k, component in enumerate(self._attitude(constants, t)):
+            out[:, k] = component
+
+    def force_at(self, t_ns):
+        """Return latitude, longitude and specific force in n, floats if nothing moves."""
+        return super().force_at(t_ns) if self._force is None else (*self._spot[:2], self._force)
 
 
-def _base(motion, t):
-    return attitude_angles.from_angles(*(t.constant(math.radians(a)) for a in (
-        motion.psi_deg, motion.theta_deg, motion.gamma_deg)))
+def _base(motion):
+    return from_angles(*(math.radians(a) for a in (motion.psi_deg, motion.theta_deg,
+                                                   motion.gamma_deg)))
 
 
 def _static(motion):
-    return (lambda t: _base(motion, t)), None
+    return attitudes.static, _base(motion), None
 
 
 def _rocking(motion):
     """Motion 1: kappa0 sin(w t) about a level axis (from the left) or a body axis."""
     s = motion.rocking
     w, amplitude = TWO_PI * s.frequency_hz, math.radians(s.amplitude_deg)
-
-    def orientation(t):
-        angle = taylor.sin(t * w) * amplitude
-        base = _base(motion, t)
-        if s.axis in LEVEL_AXES:
-            return quaternion.multiply(attitude_angles.about_axis(LEVEL_AXES[s.axis], angle), base)
-        return quaternion.multiply(base, attitude_angles.about_axis(BODY_AXES[s.axis], angle))
-
-    return orientation, 1.0 / s.frequency_hz if s.frequency_hz else None
+    period_s = 1.0 / s.frequency_hz if s.frequency_hz else None
+    if s.axis in LEVEL_AXES:
+        return (attitudes.rocking_left, (_base(motion), LEVEL_AXES[s.axis], amplitude, w),
+                period_s)
+    return (attitudes.rocking_right, (_base(motion), UNIT[BODY_AXES[s.axis]], amplitude, w),
+            period_s)
 
 
 def _two_axis(motion):
     """Motion 2: psi and gamma run uniformly, theta stands."""
     s = motion.two_axis
     psi_rate = s.psi_rate_rad_s + s.detuning_rad_s
-
-    def orientation(t):
-        return attitude_angles.from_angles(t * psi_rate + math.radians(motion.psi_deg),
-                                           t.constant(math.radians(motion.theta_deg)),
-                                           t * s.gamma_rate_rad_s + math.radians(motion.gamma_deg))
-
-    return orientation, _common_period(psi_rate, s.gamma_rate_rad_s)
+    constants = (psi_rate, math.radians(motion.psi_deg), math.radians(motion.theta_deg),
+                 s.gamma_rate_rad_s, math.radians(motion.gamma_deg))
+    return attitudes.two_axis, constants, _common_period(psi_rate, s.gamma_rate_rad_s)
 
 
 def _common_period(*rates):
@@ -83,91 +113,69 @@ def _coning(motion):
     """The axis k of the body describes a cone: rotation vector A (cos w t, sin w t) across k."""
     s = motion.coning
     k = BODY_AXES[s.axis]
-    half, w = 0.5 * math.radians(s.half_angle_deg), TWO_PI * s.frequency_hz
-
-    def orientation(t):
-        sw, cw = taylor.sincos(t * w)
-        q = [None, None, None, t.constant(math.cos(half))]
-        q[k] = t.constant(0.0)
-        q[(k + 1) % 3], q[(k + 2) % 3] = cw * math.sin(half), sw * math.sin(half)
-        return quaternion.multiply(_base(motion, t), q)
-
-    return orientation, 1.0 / s.frequency_hz if s.frequency_hz else None
+    sine, cosine = elementary.sincos(0.5 * math.radians(s.half_angle_deg))
+    constants = (_base(motion), UNIT[(k + 1) % 3], UNIT[(k + 2) % 3], sine, cosine,
+                 TWO_PI * s.frequency_hz)
+    return attitudes.coning, constants, 1.0 / s.frequency_hz if s.frequency_hz else None
 
 
 def _sculling(motion):
     """Rocking about the vertical; ``_vibration`` is the other half."""
     s = motion.sculling
-
-    def orientation(t):
-        angle = taylor.sin(t * (TWO_PI * s.frequency_hz)) * math.radians(s.amplitude_deg)
-        return quaternion.multiply(attitude_angles.about_axis(2, angle), _base(motion, t))
-
-    return orientation, 1.0 / s.frequency_hz
+    constants = (_base(motion), LEVEL_AXES['up'], math.radians(s.amplitude_deg),
+                 TWO_PI * s.frequency_hz)
+    return attitudes.rocking_left, constants, 1.0 / s.frequency_hz
 
 
 def _vibration(motion):
     s = motion.sculling
     w = TWO_PI * s.frequency_hz
     reach = -s.acceleration_m_s2 / (w * w)
-    psi, phase = math.radians(motion.psi_deg), math.radians(s.phase_deg)
+    phase = math.radians(s.phase_deg)
+    sin_psi, cos_psi = elementary.sincos(math.radians(motion.psi_deg))
 
     def path(t):
-        forward = taylor.sin(t * w + phase) * reach
-        return forward * -math.sin(psi), forward * math.cos(psi), forward * 0.0
+        forward = attitudes.wave(reach, w, phase, t)
+        return forward * -sin_psi, forward * cos_psi, forward * 0.0
 
     return path
 
 
 def _no_path(motion):
-    return lambda t: None
-
-
-def _sines(t, amplitudes, rates, phases):
-    return [taylor.sin(t * w + p) * a for a, w, p in zip(amplitudes, rates, phases)]
+    return None
 
 
 def _sinusoids(motion):
     s = motion.sinusoids
-    mean = np.radians((motion.psi_deg, motion.theta_deg, motion.gamma_deg)).tolist()
-    amplitudes, phases = np.radians(s.angle_deg).tolist(), np.radians(s.angle_phase_deg).tolist()
+    means = (motion.psi_deg, motion.theta_deg, motion.gamma_deg)
     rates = [TWO_PI * f for f in s.angle_hz]
-
-    def orientation(t):
-        swings = _sines(t, amplitudes, rates, phases)
-        return attitude_angles.from_angles(*(x + m for x, m in zip(swings, mean)))
-
-    return orientation, _common_period(*(w for w, a in zip(rates, amplitudes) if a))
+    constants = tuple((math.radians(mean), math.radians(a), w, math.radians(phase))
+                      for mean, a, w, phase in zip(means, s.angle_deg, rates, s.angle_phase_deg))
+    period_s = _common_period(*(w for w, a in zip(rates, s.angle_deg) if a))
+    return attitudes.sinusoids, constants, period_s
 
 
 def _sway(motion):
     s = motion.sinusoids
-    rates = [TWO_PI * f for f in s.position_hz]
-    phases = np.radians(s.position_phase_deg).tolist()
-    return lambda t: _sines(t, s.position_m, rates, phases)
+    waves = [(a, TWO_PI * f, math.radians(phase))
+             for a, f, phase in zip(s.position_m, s.position_hz, s.position_phase_deg)]
+    return lambda t: [attitudes.wave(*wave, t) for wave in waves]
 
 
 def _harmonics(motion):
     s = motion.harmonics
-    w = TWO_PI / s.period_s
     angles = []
     for name in ('psi', 'theta', 'gamma'):
-        amplitudes = np.radians(getattr(s, f'{name}_deg')).tolist()
-        phases = np.radians(getattr(s, f'{name}_phase_deg')).tolist()
+        amplitudes, phases = getattr(s, f'{name}_deg'), getattr(s, f'{name}_phase_deg')
         if len(amplitudes) != len(phases):
             raise ValueError(f'motion.harmonics.{name}_phase_deg has {len(phases)} entries; '
                              f'expected {len(amplitudes)}, one for each of '
                              f'motion.harmonics.{name}_deg')
-        angles.append((math.radians(getattr(motion, f'{name}_deg')), amplitudes, phases))
-
-    def orientation(t):
-        sums = []
-        for mean, amplitudes, phases in angles:
-            rates = [w * (k + 1) for k in range(len(amplitudes))]
-            sums.append(sum(_sines(t, amplitudes, rates, phases), t.constant(mean)))
-        return attitude_angles.from_angles(*sums)
-
-    return orientation, s.period_s
+        # At least one, so that compiled code knows what an entry is.
+        angles.append((math.radians(getattr(motion, f'{name}_deg')),
+                       tuple(map(math.radians, amplitudes)) or (0.0,),
+                       tuple(map(math.radians, phases)) or (0.0,)))
+    return attitudes.harmonics, (TWO_PI / s.period_s, *angles), s.period_s
 
 
 _ATTITUDES = {'rocking': _rocking, 'two_axis': _two_axis, 'coning': _coning,
@@ -181,11 +189,6 @@ def bench_motion(motion, datum, earth):
 
     Raises ValueError on settings that no motion can have.
     """
-    orientation, period_s = _ATTITUDES.get(motion.kind, _static)(motion)
-    path = _PATHS.get(motion.kind, _no_path)(motion)
-    place = _Place(datum)
-
-    def pose(t):
-        return *place.coordinates(t, path(t)), orientation(t)
-
-    return Motion(pose, 2, earth.rotation, period_s)
+    attitude, constants, period_s = _ATTITUDES.get(motion.kind, _static)(motion)
+    excursion = _PATHS.get(motion.kind, _no_path)(motion)
+    return BenchMotion(attitude, constants, datum, excursion, earth.rotation, period_s)

@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
+
 from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics import elementary, taylor
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from .motion import Motion
 
@@ -20,14 +22,19 @@ CROSS_TRACK = ((6000.0, 500.0, 60.0), (-15000.0, 1300.0, 90.0), (12000.0, 2200.0
                (-4000.0, 3000.0, 60.0))
 
 
+def _log_cosh(x):
+    """Return ln cosh x of a float."""
+    return float(taylor.log_cosh(taylor.Series.time(np.array([x]), 1)).value[0])
+
+
 def _cruise(t):
     """Return E, N, h: along-track speed and height by tanh steps, four side steps."""
     climb, slow = (t - 300.0) / 80.0, (t - 3200.0) / 80.0
     s = t * 100.0 + (taylor.log_cosh(climb) - taylor.log_cosh(slow)) * (65.0 * 80.0)
-    s = s - 65.0 * 80.0 * (math.log(math.cosh(300.0 / 80.0)) - math.log(math.cosh(3200.0 / 80.0)))
+    s = s - 65.0 * 80.0 * (_log_cosh(300.0 / 80.0) - _log_cosh(3200.0 / 80.0))
     c = sum((taylor.tanh((t - tk) / width) * (0.5 * step) + 0.5 * step
              for step, tk, width in CROSS_TRACK), t.constant(0.0))
-    sin, cos = math.sin(math.radians(300.0)), math.cos(math.radians(300.0))
+    sin, cos = elementary.sincos(math.radians(300.0))
     h = (taylor.tanh((t - 600.0) / 250.0) - taylor.tanh((t - 3000.0) / 250.0)) * 4900.0 + 200.0
     return s * sin + c * cos, s * cos - c * sin, h
 
@@ -46,9 +53,13 @@ def _aggressive(t):
 
 
 def _flight(path, trim_deg, wobble):
-    """Return the maker of a pose: coordinated base angles plus trim and wobble."""
+    """Return the maker of a pose and of its path: coordinated angles plus trim and wobble."""
     def at_datum(datum):
         lat0, lon0 = math.radians(datum.latitude_deg), math.radians(datum.longitude_deg)
+        per_lon = ellipsoid.MEAN_RADIUS * elementary.cos(lat0)
+
+        def located(east, north, height):
+            return north / ellipsoid.MEAN_RADIUS + lat0, east / per_lon + lon0, height
 
         def pose(t):
             east, north, height = path(t)
@@ -57,16 +68,17 @@ def _flight(path, trim_deg, wobble):
             psi = taylor.atan2(v_east, v_north)
             theta = taylor.atan2(height.derivative(), speed)
             gamma = taylor.atan2(speed * psi.derivative(), t.constant(STANDARD_GRAVITY))
-            added = {name: sum((taylor.sin(t * (TWO_PI * f) + phase) * math.radians(a)
-                                for a, f, phase in terms), t.constant(0.0))
+            # The angles are known to an order that is two lower.
+            low = taylor.Series(t.c[:len(gamma.c)])
+            added = {name: sum((taylor.sin(low * (TWO_PI * f) + phase) * math.radians(a)
+                                for a, f, phase in terms), low.constant(0.0))
                      for name, terms in wobble.items()}
             q_nb = angles.from_angles(-(psi + added['psi']),
                                       theta + added['theta'] + math.radians(trim_deg),
                                       gamma + added['gamma'])
-            return (north / ellipsoid.MEAN_RADIUS + lat0,
-                    east / (ellipsoid.MEAN_RADIUS * math.cos(lat0)) + lon0, height, q_nb)
+            return *located(east, north, height), q_nb
 
-        return pose
+        return pose, lambda t: located(*path(t))
 
     return at_datum
 
@@ -78,4 +90,5 @@ FLIGHTS = {'cruise': _flight(_cruise, 3.0, CRUISE_WOBBLE),
 
 def flight_motion(motion, datum, earth):
     """Return the flight that MotionSettings name, from a Datum; earth: Earth."""
-    return Motion(FLIGHTS[motion.kind](datum), 3, earth.rotation)
+    pose, path = FLIGHTS[motion.kind](datum)
+    return Motion(pose, 3, earth.rotation, path=path)

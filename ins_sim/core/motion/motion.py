@@ -9,11 +9,10 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
-from .truth import truth_from_pose
+from .truth import translation, truth_from_pose
 
-# latitude, longitude and the components of q_nb or of the specific force in n
-Attitude = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
-Force = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]
+# Latitude, longitude, and the attitude or the specific force there.
+Answer = tuple[Any, Any, Any]
 
 
 class Motion:
@@ -36,6 +35,9 @@ class Motion:
         Whether the Earth turns.
     period_s : float, optional
         Period of the attitude. The prediction averages the drift over it.
+    path : callable, optional
+        Maps the Taylor series of time, of order 2, to latitude, longitude and height alone,
+        where that is less work than the pose.
     """
 
     # The last motion time at which the motion may be used, s, and what happens then.
@@ -44,8 +46,10 @@ class Motion:
     period_s: float | None = None
 
     def __init__(self, pose: Callable[[Any], tuple[Any, ...]], order: int, earth_rotation: bool,
-                 period_s: float | None = None) -> None:
+                 period_s: float | None = None,
+                 path: Callable[[Any], tuple[Any, ...]] | None = None) -> None:
         self._pose = pose
+        self._path_alone = path
         self._order = order
         self._rotation = earth_rotation
         self._attitude_order: int | None = None
@@ -71,7 +75,7 @@ class Motion:
         t = taylor.Series.time(np.asarray(t_ns) * 1e-9, self._order)
         return truth_from_pose(t_ns, *self._pose(t), self._rotation)
 
-    def attitude_at(self, t_ns: np.ndarray) -> Attitude:
+    def attitude_at(self, t_ns: np.ndarray) -> Answer:
         """
         Return what ``at`` returns of the attitude, in less time.
 
@@ -83,8 +87,8 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad.
-        q_nb : tuple of four (n,) arrays
+            Latitude and longitude, rad; floats where the vehicle stays at its place.
+        q_nb : (n, 4) array
             Attitude in the local level frame there.
         """
         seconds = np.asarray(t_ns) * 1e-9
@@ -93,9 +97,9 @@ class Motion:
             q_nb = self._pose(taylor.Series.time(seconds[:1], self._order))[3]
             self._attitude_order = self._order - min(len(x.c) - 1 for x in q_nb)
         lat, lon, _, q_nb = self._pose(taylor.Series.time(seconds, self._attitude_order))
-        return lat.value, lon.value, tuple(x.value for x in q_nb)
+        return lat.value, lon.value, np.stack([x.value for x in q_nb], axis=-1)
 
-    def force_at(self, t_ns: np.ndarray) -> Force:
+    def force_at(self, t_ns: np.ndarray) -> Answer:
         """
         Return the specific force in the local level frame, without the attitude of the body.
 
@@ -107,17 +111,22 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad.
+            Latitude and longitude, rad; floats where the vehicle stays at its place.
         f_n : tuple of three (n,) arrays
-            Specific force East, North, Up, m/s^2.
+            Specific force East, North, Up, m/s^2; floats where it is always the same.
         """
-        return _force_of(self, t_ns)
+        seconds = np.asarray(t_ns) * 1e-9
+        if self._path_alone is None:
+            lat, lon, height = self._pose(taylor.Series.time(seconds, self._order))[:3]
+        else:
+            lat, lon, height = self._path_alone(taylor.Series.time(seconds, 2))
+        return lat.value, lon.value, translation(lat, lon, height, self._rotation)[2]
 
 
 def _attitude_of(motion, t_ns):
     """Return ``attitude_at`` of a motion by its truth."""
     truth = motion.at(t_ns)
-    return truth.lat, truth.lon, tuple(np.moveaxis(truth.q_nb, -1, 0))
+    return truth.lat, truth.lon, truth.q_nb
 
 
 def _force_of(motion, t_ns):

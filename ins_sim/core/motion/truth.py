@@ -13,28 +13,9 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
     Return the Truth of a pose given as Taylor series.
 
     t_ns (n,) int64; lat, lon, height: Series of order >= 2 (rad, rad, m); q_nb: tuple of four
-    Series of order >= 1.  Velocity V_E = (R_E + h) cos(lat) lon', V_N = (R_N + h) lat', V_U = h';
-    specific force f = V' + (2 Omega + rho) x V - g (Bogdanov and Fomichev 2018, equation 25;
-    Groves 5.53; docs/theory.md, "Truth from one pose"); rate
-    omega_ib_b = C_bn omega_in_n + 2 q* q'.
+    Series of order >= 1.  Rate omega_ib_b = C_bn omega_in_n + 2 q* q'.
     """
-    s, c = taylor.sincos(lat)
-    meridian, transverse = ellipsoid.radii(s)
-    lat_rate, lon_rate = lat.derivative(), lon.derivative()
-    v = ((transverse + height) * c * lon_rate, (meridian + height) * lat_rate,
-         height.derivative())
-    v_value = tuple(x.value for x in v)
-    v_rate = tuple(x.derivative().value for x in v)
-
-    spin = ellipsoid.rotation_rate(earth_rotation)
-    sin_lat, cos_lat = s.value, c.value
-    spin_rate = spin + lon_rate.value
-    omega_in_n = (-lat_rate.value, spin_rate * cos_lat, spin_rate * sin_lat)
-    coriolis = quaternion.cross((omega_in_n[0], omega_in_n[1] + spin * cos_lat,
-                                 omega_in_n[2] + spin * sin_lat), v_value)
-    f_n = (v_rate[0] + coriolis[0], v_rate[1] + coriolis[1],
-           v_rate[2] + coriolis[2] + ellipsoid.gravity(sin_lat, height.value))
-
+    v_n, omega_in_n, f_n = translation(lat, lon, height, earth_rotation)
     q = tuple(x.value for x in q_nb)
     q_rate = tuple(x.derivative().value for x in q_nb)
     half_rate = quaternion.multiply(quaternion.conjugate(q), q_rate)
@@ -46,5 +27,34 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
         return np.stack(components, axis=-1)
 
     return Truth(t_ns=t_ns, lat=lat.value, lon=lon.value, height=height.value,
-                 v_n=stack(v_value), q_nb=stack(q), omega_ib_b=stack(omega_ib_b),
+                 v_n=stack(v_n), q_nb=stack(q), omega_ib_b=stack(omega_ib_b),
                  f_ib_b=stack(quaternion.rotate_back(q, f_n)))
+
+
+def translation(lat, lon, height, earth_rotation):
+    """
+    Return velocity, rate omega_in_n and specific force in n of a path, three arrays each.
+
+    lat, lon, height: Series of order >= 2 (rad, rad, m).  Velocity V_E = (R_E + h) cos(lat) lon',
+    V_N = (R_N + h) lat', V_U = h'; specific force f = V' + (2 Omega + rho) x V - g (Bogdanov and
+    Fomichev 2018, equation 25; Groves 5.53; docs/theory.md, "Truth from one pose").
+    """
+    lat_rate, lon_rate = lat.derivative(), lon.derivative()
+    # The second derivatives are in the rates.
+    lat, near_height = taylor.Series(lat.c[:2]), taylor.Series(height.c[:2])
+    s, c = taylor.sincos(lat)
+    meridian, transverse = ellipsoid.radii(s)
+    v = ((transverse + near_height) * c * lon_rate, (meridian + near_height) * lat_rate,
+         height.derivative())
+    v_value = tuple(x.value for x in v)
+    v_rate = tuple(x.derivative().value for x in v)
+
+    spin = ellipsoid.rotation_rate(earth_rotation)
+    sin_lat, cos_lat = s.value, c.value
+    spin_rate = spin + lon_rate.value
+    omega_in_n = (-lat_rate.value, spin_rate * cos_lat, spin_rate * sin_lat)
+    coriolis = quaternion.cross((omega_in_n[0], omega_in_n[1] + spin * cos_lat,
+                                 omega_in_n[2] + spin * sin_lat), v_value)
+    return v_value, omega_in_n, (
+        v_rate[0] + coriolis[0], v_rate[1] + coriolis[1],
+        v_rate[2] + coriolis[2] + ellipsoid.gravity(sin_lat, height.value))
