@@ -52,12 +52,9 @@ class MapFrame:
 
     def attitude(self, truth):
         """Return q_mb (n, 4) of a Truth record."""
-        q = self.attitude_in_map(truth.lat, truth.lon, np.moveaxis(truth.q_nb, -1, 0))
+        q = quaternion.multiply(self.q_mn(truth.lat, truth.lon),
+                                np.moveaxis(truth.q_nb, -1, 0))
         return np.stack(q, axis=-1)
-
-    def attitude_in_map(self, lat, lon, q_nb):
-        """Return q_mb, four arrays (n,), of lat, lon (n,) and q_nb, four arrays (n,)."""
-        return quaternion.multiply(self.q_mn(lat, lon), q_nb)
 
     def geodetic_one(self, r_m, q_mb, v_b):
         """Return lat, lon, height, v_n, q_nb of one sample; the inverse of pose_one."""

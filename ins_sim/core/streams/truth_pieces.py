@@ -12,7 +12,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_differences,
                                                  newton_value)
-from ins_sim.core.attitude.rotation_vectors import exponentials, logarithms
+from ins_sim.core.attitude.rotation_vectors import exponentials
 
 
 @dataclass(frozen=True)
@@ -79,17 +79,17 @@ class TruthBlock:
         self._new, self._first, self._frozen, self._reach_ns = new, first, frozen, reach_ns
 
     def attitude(self, t_ns, newest):
-        """Return q_mb, (4, n), at instants (n,) asked when new sample newest was the last."""
-        q = np.array(self.pieces.attitude(t_ns, self._piece(t_ns, newest)))
+        """Return q_mb (n, 4) at instants (n,) asked when new sample newest was the last."""
+        q = np.stack(self.pieces.attitude(t_ns, self._piece(t_ns, newest)), axis=-1)
         first_ns, q_first, w = self._first[:3]
         before = np.flatnonzero(t_ns <= first_ns)
         if len(before):
-            q[:, before] = np.array(q_first)[:, None]
+            q[before] = q_first
             before = before[t_ns[before] < first_ns]
             if len(before) and not self._frozen:
                 s = (t_ns[before] - first_ns) * 1e-9
                 turn = exponentials((w[0] * s, w[1] * s, w[2] * s))
-                q[:, before] = quaternion.multiply(q_first, turn)
+                q[before] = np.stack(quaternion.multiply(q_first, turn), axis=-1)
         return q
 
     def cubic(self, t_ns, newest, field):
@@ -119,7 +119,7 @@ def pieces_of_samples(t_ns, q_mb, omega_mb_b, fields, differences):
     steps = t_ns[3:] - t_ns[2:-1]
     back = [1e9 / (t_ns[3:] - t_ns[k:-3 + k]) for k in (2, 1, 0)]
     start, end = tuple(x[2:-1] for x in q_mb), tuple(x[3:] for x in q_mb)
-    turned = logarithms(quaternion.multiply(quaternion.conjugate(start), end))
+    turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(start), end))
     curve = hermite_coefficients(steps * 1e-9, turned, tuple(x[2:-1] for x in omega_mb_b),
                                  tuple(x[3:] for x in omega_mb_b))
     cubics = {field: _differences(differences[field], values, back)

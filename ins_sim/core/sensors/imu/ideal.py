@@ -4,44 +4,17 @@ The ideal inertial measurement unit whose channels are late.
 See docs/theory.md, "The late gyro".
 """
 
-import math
-
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.rotation_vectors import logarithms
 from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import ImuSamples
-from .readings import components, joined
-
-# Gauss-Legendre, three points on [0, 1]
-NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
-WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
-
-
-def inertial_turn(q_start, q_end, dq_earth):
-    """
-    Return the rotation from the inertial attitude at the start to that at the end, a quaternion.
-
-    q_start, q_end: q_mb; dq_earth: rotation of m in i over the interval.
-    """
-    return quaternion.multiply(quaternion.conjugate(q_start),
-                               quaternion.multiply(dq_earth, q_end))
-
-
-def velocity_increment(q_start, forces_m, node_rotations):
-    """
-    Return Q_ib(start)^-1 times the mean of Q_ib f_b over the interval, m/s^2.
-
-    Components may be floats or arrays.  forces_m: specific force in m at the three Gauss nodes;
-    node_rotations: rotations of m in i from the start to the nodes.
-    """
-    (w1, w2, w3), (f1, f2, f3), (r1, r2, r3) = WEIGHTS, forces_m, node_rotations
-    a, b, c = quaternion.rotate(r1, f1), quaternion.rotate(r2, f2), quaternion.rotate(r3, f3)
-    mean = (w1 * a[0] + w2 * b[0] + w3 * c[0], w1 * a[1] + w2 * b[1] + w3 * c[1],
-            w1 * a[2] + w2 * b[2] + w3 * c[2])
-    return quaternion.rotate_back(q_start, mean)
+from .increments import (force_arrays, force_rows, mean_force, NODES, rotation_arrays,
+                         rotation_increment, rotation_rows, turned_arrays, turned_rows,
+                         velocity_increment, WEIGHTS)
+from .readings import joined
 
 
 class Triads:
@@ -80,33 +53,43 @@ class Triads:
         """Let the rotors of tuned gyros, if any, be settled at the start of the next step."""
         self._settled = False
 
-    def rotated(self, q_start, q_end, forces_m, logarithm=quaternion.logarithm):
+    def rotated(self, q_start, q_end, forces_m):
         """
-        Return omega, f, None of one step of the output ``rotation_vector``, or of many.
+        Return omega, f, None of one step of the output ``rotation_vector``.
 
         q_start, q_end: q_mb at each attitude delay; forces_m: for each accelerometer delay, the
-        specific force in m at the three Gauss nodes.  Components are floats, or arrays with the
-        logarithm of ``rotation_vectors``.
+        specific force in m at the three Gauss nodes.
         """
-        phi = [logarithm(inertial_turn(q_start[k], q_end[k], self._dq_earth))
-               for k in self._gyro_at]
+        phi = [rotation_increment(q_start[k], q_end[k], self._dq_earth) for k in self._gyro_at]
         u = [velocity_increment(q_start[k], f, self._node_rotations)
              for k, f in zip(self._accel_at, forces_m)]
         (g0, g1, g2), (a0, a1, a2), n = self._gyro, self._accel, self._per_dt
         return ((phi[g0][0] * n, phi[g1][1] * n, phi[g2][2] * n),
                 (u[a0][0], u[a1][1], u[a2][2]), None)
 
-    def rotated_block(self, t_ns, q_before, q_end, forces_m):
+    def rotated_block(self, t_ns, q_before, q_mb, forces_m):
         """
         Return the ImuSamples of consecutive steps of the output ``rotation_vector``.
 
-        q_before: q_mb at each attitude delay, floats, at the end of the step before; q_end,
-        forces_m: as of ``rotated``, arrays of the steps.
+        For each attitude delay, q_before: q_mb at the end of the step before, floats, and q_mb
+        (n, 4) at the ends of the steps; forces_m: for each accelerometer delay and Gauss node
+        the specific force in m, arrays, or floats where it is always the same.
         """
-        starts = [np.concatenate([np.array(q)[:, None], ends[:, :-1]], axis=1)
-                  for q, ends in zip(q_before, q_end)]
-        omega, f, _ = self.rotated(starts, q_end, forces_m, logarithms)
-        return ImuSamples(t_ns, np.stack(omega, axis=-1), np.stack(f, axis=-1))
+        count = len(t_ns)
+        phi, u = [], []
+        for k in self._gyro_at:
+            phi.append(np.empty((count, 3)))
+            run(rotation_rows, count, (tuple(q_before[k]), q_mb[k], self._dq_earth), phi[-1],
+                rotation_arrays)
+        for k, nodes in zip(self._accel_at, forces_m):
+            mean = np.empty((count, 3))
+            for axis, component in enumerate(mean_force(nodes, self._node_rotations)):
+                mean[:, axis] = component
+            u.append(np.empty((count, 3)))
+            run(force_rows, count, (tuple(q_before[k]), q_mb[k], mean), u[-1], force_arrays)
+        omega, f = (np.stack([rows[k][:, axis] for axis, k in enumerate(picks)], axis=-1)
+                    for rows, picks in ((phi, self._gyro), (u, self._accel)))
+        return ImuSamples(t_ns, omega * self._per_dt, f)
 
     def instant(self, t_ns, omega, f):
         """Return omega, f, parity or None of rate and specific force at an instant."""
@@ -202,13 +185,13 @@ class MotionImu:
             return self._integrated(t_ns)
         if self._q_start is None:
             before = t_ns[:1] - triads.dt_ns
-            self._q_start = [self._attitudes(before - d)[:, 0].tolist()
+            self._q_start = [self._attitudes(before - d)[0].tolist()
                              for d in triads.attitude_delays]
         ends = [self._attitudes(t_ns - d) for d in triads.attitude_delays]
         forces = [[self._forces_m(t_ns + (o - d)) for o in self._offsets(NODES)]
                   for d in triads.accel_delays]
         samples = triads.rotated_block(t_ns, self._q_start, ends, forces)
-        self._q_start = [q[:, -1].tolist() for q in ends]
+        self._q_start = [q[-1].tolist() for q in ends]
         return samples
 
     def _integrated(self, t_ns):
@@ -231,12 +214,16 @@ class MotionImu:
 
     def _attitudes(self, t_ns):
         lat, lon, q_nb = self._motion.attitude_at(self._instants(t_ns))
-        return np.array(self._triads.frame.attitude_in_map(lat, lon, q_nb))
+        q_mn, q_mb = self._triads.frame.q_mn(lat, lon), np.empty((len(t_ns), 4))
+        if isinstance(lat, float):
+            run(turned_rows, len(t_ns), (q_mn, q_nb), q_mb, turned_arrays)
+        else:
+            turned_arrays(q_mn, q_nb, q_mb)
+        return q_mb
 
     def _forces_m(self, t_ns):
-        truth = self._motion.at(self._instants(t_ns))
-        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, components(truth.q_nb))
-        return quaternion.rotate(q_mb, components(truth.f_ib_b))
+        lat, lon, f_n = self._motion.force_at(self._instants(t_ns))
+        return quaternion.rotate(self._triads.frame.q_mn(lat, lon), f_n)
 
     def _offsets(self, nodes):
         """Return the times of nodes of [0, 1] relative to the end of a step, ns."""

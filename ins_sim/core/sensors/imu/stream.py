@@ -8,7 +8,8 @@ from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 from ..sensor import Sensor
-from .ideal import MotionImu, NODES, Triads
+from .ideal import MotionImu, Triads
+from .increments import NODES
 from .readings import components, joined, samples_of
 from .with_errors import ImuWithErrors, with_errors
 
@@ -91,7 +92,7 @@ class StreamImu(Sensor):
 
         Raise StreamFault as push does, with ``readings`` and ``index``.
         """
-        q_mb = self._triads.frame.attitude_in_map(truth.lat, truth.lon, components(truth.q_nb))
+        q_mb = components(self._triads.frame.attitude(truth))
         sample = (truth.t_ns, q_mb, components(truth.omega_ib_b), components(truth.f_ib_b))
         done, parts = 0, []
         while done < len(truth.t_ns):
@@ -132,12 +133,12 @@ class StreamImu(Sensor):
                 fault.index = int(newest[len(fault.readings)])
                 raise
         if self._q_start is None:
-            self._q_start = [block.attitude(t_ns[:1] - dt_ns - d, newest[:1])[:, 0].tolist()
+            self._q_start = [block.attitude(t_ns[:1] - dt_ns - d, newest[:1])[0].tolist()
                              for d in triads.attitude_delays]
         ends = [block.attitude(t_ns - d, newest) for d in triads.attitude_delays]
         forces = nodes(triads.accel_delays, FORCE_M, self._node_ns)
         samples = triads.rotated_block(t_ns, self._q_start, ends, forces)
-        self._q_start = [tuple(q[:, -1].tolist()) for q in ends]
+        self._q_start = [tuple(q[-1].tolist()) for q in ends]
         return samples
 
     def _read(self, t_ns):
