@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
 from .triad_model import temperature_off, triad_model
@@ -13,7 +14,9 @@ from .triad_reading import AT_REST, read, remember_rows, respond, ZERO
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
 # variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
 FLICKER_TIMES = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
-FLICKER_SIGMA = math.sqrt(math.log(10.0) / math.pi)
+FLICKER_SIGMA = math.sqrt(elementary.log(10.0) / math.pi)
+# After so many time constants nothing is left of a lag; the range of exp ends there too.
+GONE = 700.0
 
 
 class TriadErrors:
@@ -88,7 +91,7 @@ class TriadErrors:
             return values
         warm = noise = None
         if self._by_temperature is not None:
-            warm = np.array([temperature_off(self._temperature, t) for t in t_s.tolist()])
+            warm = temperature_off(self._temperature, t_s)
         if self._noise is not None:
             noise = self._noise_rows(first, len(values))
         driven = respond(self._geometry, self._response, self._by_force, self._by_temperature,
@@ -140,7 +143,7 @@ def _geometry(model, seed, run, name):
     """
     turn = tuple(m + d for m, d in zip(model.misalignment, drawn_once(
         seed, run, f'{name}.misalignment', model.misalignment_sigma)))
-    yx, zx, zy = (math.sin(a) for a in model.non_orthogonality)
+    yx, zx, zy = map(elementary.sin, model.non_orthogonality)
     if not any(turn) and not any((yx, zx, zy)):
         return None
     back = quaternion.exponential(tuple(-a for a in turn))
@@ -169,9 +172,10 @@ def discrete_lag(frequency_hz, order, dt_s):
     if w == 0.0:
         return (0.0,) * 6
     if order == 1:
-        return (math.exp(-w * dt_s), 0.0, 0.0, 0.0, -math.expm1(-w * dt_s) / (w * dt_s), 0.0)
+        x = min(w * dt_s, GONE)
+        return (elementary.exp(-x), 0.0, 0.0, 0.0, -elementary.expm1(-x) / (w * dt_s), 0.0)
     h = w * math.sqrt(0.5)
-    decay, c, s = math.exp(-h * dt_s), math.cos(h * dt_s), math.sin(h * dt_s)
+    decay, (s, c) = elementary.exp(-min(h * dt_s, GONE)), elementary.sincos(h * dt_s)
     a, b = decay * (c + s), decay * s / h
     e, d = -2.0 * h * decay * s, decay * (c - s)
     mean = -1.0 / (w * w * dt_s)

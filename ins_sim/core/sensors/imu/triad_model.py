@@ -3,12 +3,13 @@
 from dataclasses import dataclass, fields
 import math
 
+from ins_sim.core.numerics.elementary import log, sin
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, STANDARD_GRAVITY, UG
 from ins_sim.settings.catalogue import check_value
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 
 # The Allan deviation of flicker noise over its coefficient B, sqrt(2 ln 2 / pi) (IEEE Std 952).
-FLICKER_FLOOR = math.sqrt(2.0 * math.log(2.0) / math.pi)
+FLICKER_FLOOR = math.sqrt(2.0 * log(2.0) / math.pi)
 # Noise must stay inside the range by this factor.
 SIGMAS = 5.0
 
@@ -169,6 +170,6 @@ def reported_variance(variances, sigmas):
 
 
 def temperature_off(temperature, t_s):
-    """Return by how much the instruments are warmer than at calibration, K, at motion time t_s."""
+    """Return by how much the instruments are warmer than at calibration, K, at times t_s."""
     return (temperature.constant_c - temperature.reference_c + temperature.ramp_c_h * t_s / 3600.0
-            + temperature.amplitude_c * math.sin(2.0 * math.pi * t_s / temperature.period_s))
+            + temperature.amplitude_c * sin(2.0 * math.pi * t_s / temperature.period_s))
