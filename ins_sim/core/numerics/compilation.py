@@ -9,6 +9,8 @@ Compiled code is kept in the user's cache folder. Numba alone would not notice t
 another file has changed, so the folder is named by a digest of all that the copies are made of.
 """
 
+from contextlib import contextmanager
+from contextvars import ContextVar
 import dis
 from functools import lru_cache
 from hashlib import blake2b
@@ -30,6 +32,7 @@ REPLACED = {elementary.sqrt: math.sqrt, taylor.sincos: elementary.sincos}
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
 _taken, _broken = {}, set()
+_plain_only = ContextVar('plain_only', default=False)
 
 
 def run(loop, count, inputs, out, plain=None):
@@ -49,7 +52,7 @@ def run(loop, count, inputs, out, plain=None):
 
     """
     _taken[loop] = _taken.get(loop, 0) + count
-    if _taken[loop] > PLAIN_SAMPLES:
+    if _taken[loop] > PLAIN_SAMPLES and not _plain_only.get():
         fast = compiled(loop)
         if fast is not None:
             try:
@@ -64,6 +67,16 @@ def run(loop, count, inputs, out, plain=None):
     carry = loop(*(a.ravel().tolist() if isinstance(a, np.ndarray) else a for a in inputs), rows)
     out.reshape(-1)[:] = rows
     return carry
+
+
+@contextmanager
+def plain_only():
+    """Let ``run`` stay with plain Python meanwhile: a live node must not stop to compile."""
+    token = _plain_only.set(True)
+    try:
+        yield
+    finally:
+        _plain_only.reset(token)
 
 
 def compiled(function):

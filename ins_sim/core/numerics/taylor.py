@@ -9,8 +9,6 @@ import numpy as np
 
 from . import elementary
 
-LN_2 = elementary.log(2.0)
-
 
 class Series:
     """
@@ -168,8 +166,11 @@ def atan2(y, x):
 
 
 def log_cosh(u):
-    """Return the series of ln cosh u without overflow, from its derivative tanh(u) u'."""
-    a = np.abs(u.c[0])
-    # Beyond 40 the second term is below the rounding of the first.
-    tail = elementary.log1p(elementary.exp(-2.0 * np.minimum(a, 40.0)))
-    return (tanh(u) * u.derivative()).integral(a + tail - LN_2)
+    """
+    Return the series of ln cosh u without overflow, from its derivative tanh(u) u'.
+
+    ln cosh a = a - ln(1 + tanh a).
+    """
+    slope = tanh(u)
+    value = np.abs(u.c[0]) - elementary.log1p(np.abs(slope.c[0]))
+    return (slope * u.derivative()).integral(value)

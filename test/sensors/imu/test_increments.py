@@ -9,6 +9,8 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.numerics import compilation
 from ins_sim.core.sensors.imu import increments
 from ins_sim.core.sensors.imu.ideal import MotionImu
+from ins_sim.core.sensors.imu.readings import samples_of
+from ins_sim.core.sensors.imu.stream import PacedImu
 from ins_sim.core.timeseries.histories import ImuSamples
 
 N = 500
@@ -66,6 +68,11 @@ def test_an_imu_on_a_motion_gives_equal_bits_compiled_and_plain(kind, more, monk
             parts.append(imu.advance(int(RNG.choice([1, 2, 30, 200]))))
         runs += [ImuSamples.concatenate(parts)[:N],
                  MotionImu(s.imu_sensor, motion, 70_000_000).advance(N)]
+    monkeypatch.setattr(compilation, 'compiled', None)
+    live = PacedImu(s.imu_sensor, motion)
+    readings = [r for t in runs[0].t_ns.tolist() for r in live.push(t, (0.0,), (0.0,), (0.0,))]
+    # A node must not stop to compile.
+    runs.append(samples_of(readings))
     for run in runs[1:]:
         for name, values in runs[0].arrays().items():
             assert np.array_equal(getattr(run, name), values), name

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
@@ -223,7 +224,8 @@ class PacedImu(Sensor):
             left = min(BLOCK, (round(end_s * 1e9) - imu.next_ns) // imu.dt_ns + 1)
         if left <= 0:
             return False
-        block = imu.advance(left)
+        with plain_only():
+            block = imu.advance(left)
         parity = [None] * left if block.parity is None else block.parity.tolist()
         self._ready = list(zip(block.t_ns.tolist(), map(tuple, block.omega.tolist()),
                                map(tuple, block.f.tolist()), parity))[::-1]
