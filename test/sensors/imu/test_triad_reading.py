@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ins_sim.core.numerics import compilation
+from ins_sim.core.sensors.imu import triad_errors
 from ins_sim.core.sensors.imu.sampling import consecutive, Sampler
 from ins_sim.core.sensors.imu.triad_errors import TriadErrors
 from ins_sim.core.timeseries.histories import ImuSamples
@@ -30,9 +31,11 @@ def triad(names):
                        7, 0, 'gyro', DT, WARM)
 
 
-@pytest.fixture(params=['plain', 'compiled'])
+@pytest.fixture(params=['arrays', 'loop', 'compiled'])
 def tier(request, monkeypatch):
-    """Let loops run in plain Python, or compiled from the first sample."""
+    """Let blocks be read by arrays, by the loop in plain Python, or compiled at once."""
+    if request.param == 'loop':
+        monkeypatch.setattr(triad_errors, 'run', lambda *inputs: compilation.run(*inputs[:4]))
     if request.param == 'compiled' and compilation.numba() is None:
         pytest.skip('Numba is not installed')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', 0 if request.param == 'compiled' else 10**9)

@@ -9,7 +9,7 @@ from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
 from .triad_model import temperature_off, triad_model
-from .triad_reading import AT_REST, read, remember_rows, respond, ZERO
+from .triad_reading import AT_REST, read, read_arrays, read_rows, ZERO
 
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
 # variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
@@ -94,21 +94,12 @@ class TriadErrors:
             warm = temperature_off(self._temperature, t_s)
         if self._noise is not None:
             noise = self._noise_rows(first, len(values))
-        driven = respond(self._geometry, self._response, self._by_force, self._by_temperature,
-                         values.T, forces.T, warm)
         last, lagged, carried = self.state
-        readings = np.stack(driven, axis=-1)
-        if self._lags is None and self._quantum is None:
-            if noise is not None:
-                readings += noise
-            if self._most is not None:
-                readings = np.minimum(np.maximum(readings, np.negative(self._most)), self._most)
-        else:
-            following = last is not None and first == last + 1
-            inputs = (self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
-                      following, lagged, carried, readings)
-            readings = np.empty_like(readings)
-            lagged, carried = run(remember_rows, len(readings), inputs, readings)
+        inputs = (self._geometry, self._response, self._by_force, self._by_temperature,
+                  self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
+                  last is not None and first == last + 1, lagged, carried, values, forces, warm)
+        readings = np.empty((len(values), 3))
+        lagged, carried = run(read_rows, len(readings), inputs, readings, read_arrays)
         self.state = first + len(readings) - 1, lagged, carried
         return readings
 

@@ -171,5 +171,7 @@ def reported_variance(variances, sigmas):
 
 def temperature_off(temperature, t_s):
     """Return by how much the instruments are warmer than at calibration, K, at times t_s."""
-    return (temperature.constant_c - temperature.reference_c + temperature.ramp_c_h * t_s / 3600.0
-            + temperature.amplitude_c * sin(2.0 * math.pi * t_s / temperature.period_s))
+    off = temperature.constant_c - temperature.reference_c + temperature.ramp_c_h * t_s / 3600.0
+    if temperature.amplitude_c:
+        off = off + temperature.amplitude_c * sin(2.0 * math.pi * t_s / temperature.period_s)
+    return off

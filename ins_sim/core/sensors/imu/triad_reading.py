@@ -1,5 +1,5 @@
 """
-What a triad makes of its input: the step of its errors, a pure function, and a loop over it.
+What a triad makes of its input: the step of its errors, a pure function, and loops over it.
 
 Terms that are off are None.  In the order of the signal: ``respond`` has the terms that act at
 once, ``remember`` those that need the samples before: lags and pulses, and between them noise and
@@ -7,6 +7,8 @@ range.
 """
 
 import math
+
+import numpy as np
 
 ZERO = (0.0, 0.0, 0.0)
 # What the lags carry where nothing is carried yet.
@@ -114,20 +116,43 @@ def remember(lags, noise, most, quantum, dt, per_dt, following, lagged, carried,
     return (x, y, z), lagged, carried
 
 
-def remember_rows(lags, noise, most, quantum, dt, per_dt, following, lagged, carried, driven,
-                  out):
+def read_rows(geometry, response, by_force, by_temperature, lags, noise, most, quantum, dt,
+              per_dt, following, lagged, carried, values, forces, warm, out):
     """
     Write the readings of consecutive samples into out; return what is carried behind the last.
 
-    noise, driven, out: rows of three, one behind the other; the rest as of ``remember``, which
-    this repeats.
+    noise, values, forces, out: rows of three, one behind the other; warm: one a sample, or None.
+    The rest is as of ``read``, which this repeats.
     """
-    for i in range(0, len(driven), 3):
-        reading, lagged, carried = remember(
-            lags, three_of(noise, i), most, quantum, dt, per_dt, following, lagged, carried,
-            (driven[i], driven[i + 1], driven[i + 2]))
+    for i in range(0, len(values), 3):
+        reading, lagged, carried = read(
+            geometry, response, by_force, by_temperature, lags, three_of(noise, i), most, quantum,
+            dt, per_dt, following, lagged, carried, three_of(values, i), three_of(forces, i),
+            one_of(warm, i // 3))
         out[i], out[i + 1], out[i + 2] = reading
         following = True
+    return lagged, carried
+
+
+def read_arrays(geometry, response, by_force, by_temperature, lags, noise, most, quantum, dt,
+                per_dt, following, lagged, carried, values, forces, warm, out):
+    """Do what ``read_rows`` does with arrays (n, 3), sample by sample only what needs it."""
+    out[:] = np.stack(respond(geometry, response, by_force, by_temperature, values.T, forces.T,
+                              warm), axis=-1)
+    if lags is None and quantum is None:
+        if noise is not None:
+            out += noise
+        if most is not None:
+            out[:] = np.minimum(np.maximum(out, np.negative(most)), most)
+        return lagged, carried
+    noises = [None] * len(out) if noise is None else noise.tolist()
+    readings = []
+    for driven, added in zip(out.tolist(), noises):
+        reading, lagged, carried = remember(lags, added, most, quantum, dt, per_dt, following,
+                                            lagged, carried, driven)
+        readings.append(reading)
+        following = True
+    out[:] = readings
     return lagged, carried
 
 
@@ -136,6 +161,13 @@ def three_of(row, i):
     if row is None:
         return None
     return row[i], row[i + 1], row[i + 2]
+
+
+def one_of(row, i):
+    """Return entry i of a sequence, or None where there is none."""
+    if row is None:
+        return None
+    return row[i]
 
 
 def pass_lag(lag, start, u):
