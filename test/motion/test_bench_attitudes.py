@@ -59,6 +59,14 @@ def test_the_rate_is_that_of_the_attitude(name):
                                atol=bound)
 
 
+@pytest.mark.parametrize('name', MOTIONS)
+def test_the_truth_where_nothing_moves_is_that_of_any_motion(name):
+    """What is found once for all instants is what each of them would give."""
+    motion, t_ns = bench(name), np.round(TIMES * 1e9).astype(np.int64)
+    for field, values in ins_sim.Motion.at(motion, t_ns).arrays().items():
+        assert np.array_equal(getattr(motion.at(t_ns), field), values), field
+
+
 def test_all_motions_at_a_bench_are_here():
     """Every kind of the table that a bench has."""
     kinds = [kind for kind in ins_sim.settings.motion.MOTIONS if kind not in (

@@ -10,6 +10,7 @@ from ins_sim.core.numerics import elementary, taylor
 from ins_sim.core.numerics.compilation import run
 from . import bench_attitudes as attitudes
 from .motion import Motion
+from .truth import translation, truth_of
 
 TWO_PI = 2.0 * math.pi
 UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -36,16 +37,23 @@ class BenchMotion(Motion):
             return *self._path(t), attitude(constants, t)
 
         super().__init__(pose, 2, earth_rotation, period_s, self._path)
-        self._force = None
+        self._still = None
         if excursion is None:
-            # Where nothing moves one instant tells the specific force of all.
-            force = super().force_at(np.zeros(1, dtype=np.int64))[2]
-            self._force = tuple(float(component[0]) for component in force)
+            # One instant tells velocity, rate and specific force in n of all.
+            found = translation(*self._path(taylor.Series.time(np.zeros(1), 2)), earth_rotation)
+            self._still = tuple(tuple(float(x[0]) for x in vector) for vector in found)
 
     def _path(self, t):
         if self._excursion is None:
             return tuple(t.constant(x) for x in self._spot)
         return ellipsoid.moved(*self._spot, self._excursion(t))
+
+    def at(self, t_ns):
+        """Return the Truth at motion times t_ns (n,) int64."""
+        if self._still is None:
+            return super().at(t_ns)
+        t = taylor.Series.time(np.asarray(t_ns) * 1e-9, 1)
+        return truth_of(t_ns, self._spot, *self._still, self._attitude(self._constants, t))
 
     def attitude_at(self, t_ns):
         """Return latitude, longitude, floats if nothing moves, and q_nb (n, 4)."""
@@ -63,7 +71,9 @@ class BenchMotion(Motion):
 
     def force_at(self, t_ns):
         """Return latitude, longitude and specific force in n, floats if nothing moves."""
-        return super().force_at(t_ns) if self._force is None else (*self._spot[:2], self._force)
+        if self._still is None:
+            return super().force_at(t_ns)
+        return *self._spot[:2], self._still[2]
 
 
 def _base(motion):

@@ -15,7 +15,17 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
     t_ns (n,) int64; lat, lon, height: Series of order >= 2 (rad, rad, m); q_nb: tuple of four
     Series of order >= 1.  Rate omega_ib_b = C_bn omega_in_n + 2 q* q'.
     """
-    v_n, omega_in_n, f_n = translation(lat, lon, height, earth_rotation)
+    moved = translation(lat, lon, height, earth_rotation)
+    return truth_of(t_ns, (lat.value, lon.value, height.value), *moved, q_nb)
+
+
+def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
+    """
+    Return the Truth of ``translation`` and of an attitude given as Taylor series.
+
+    place: lat, lon, height.  Components are arrays (n,), or floats where nothing moves; q_nb:
+    tuple of four Series of order >= 1.
+    """
     q = tuple(x.value for x in q_nb)
     q_rate = tuple(x.derivative().value for x in q_nb)
     half_rate = quaternion.multiply(quaternion.conjugate(q), q_rate)
@@ -24,11 +34,11 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
     omega_ib_b = tuple(a + b for a, b in zip(omega_in_b, omega_nb_b))
 
     def stack(components):
-        return np.stack(components, axis=-1)
+        return np.stack([np.broadcast_to(x, q[0].shape) for x in components], axis=-1)
 
-    return Truth(t_ns=t_ns, lat=lat.value, lon=lon.value, height=height.value,
-                 v_n=stack(v_n), q_nb=stack(q), omega_ib_b=stack(omega_ib_b),
-                 f_ib_b=stack(quaternion.rotate_back(q, f_n)))
+    lat, lon, height = (np.broadcast_to(x, q[0].shape).copy() for x in place)
+    return Truth(t_ns=t_ns, lat=lat, lon=lon, height=height, v_n=stack(v_n), q_nb=stack(q),
+                 omega_ib_b=stack(omega_ib_b), f_ib_b=stack(quaternion.rotate_back(q, f_n)))
 
 
 def translation(lat, lon, height, earth_rotation):
