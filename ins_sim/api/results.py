@@ -126,19 +126,21 @@ class Run:
 
     def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
         from ins_sim.report import storage, summary
+        from ins_sim.report.spool import Spool
         storage.check_free(checked_path('folder', folder), overwrite, option='overwrite=True')
-        try:
-            prediction = predict(self.settings, self.motion)
-        except NoPrediction:
-            prediction = None
-        title = summary.title(self.settings)
-        rows = summary.summary_rows(self.settings, self.errors, self.twin, prediction)
-        if self.own_motion:
-            # Published figures belong to the motion of the settings.
-            rows = [replace(row, published=None) for row in rows]
-            title = f'{type(self.motion).__name__} given as an object'
-        storage.write_run(folder, self.settings, self.result, rows, prediction, title, overwrite,
-                          report)
+        with Spool(storage.existing_parent(folder)) as spool:
+            try:
+                prediction = predict(self.settings, self.motion, spool.store)
+            except NoPrediction:
+                prediction = None
+            title = summary.title(self.settings)
+            rows = summary.summary_rows(self.settings, self.errors, self.twin, prediction)
+            if self.own_motion:
+                # Published figures belong to the motion of the settings.
+                rows = [replace(row, published=None) for row in rows]
+                title = f'{type(self.motion).__name__} given as an object'
+            storage.write_run(folder, self.settings, self.result, rows, prediction, title,
+                              overwrite, report)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -14,14 +14,13 @@ def add_arguments(parser):
 
 def run(chosen):
     """Predict and show; return the exit code."""
-    import numpy as np
     from rich.console import Console
     from rich.table import Table
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
     from ins_sim.report import summary, table
     settings = arguments.read_settings(chosen)
-    prediction = predict(settings, read_motion(settings.motion_generator))
+    prediction = predict(settings, read_motion(settings.motion_generator), collect=None)
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
     shown = Table(title=summary.title(settings))
@@ -31,9 +30,8 @@ def run(chosen):
         shown.add_row(f'mean drift {name}', 'deg/h',
                       table.number_text(prediction.drift[axis] * summary.DEG_PER_HOUR),
                       table.number_text(drift and drift[axis]))
-    largest = np.abs(prediction.position).max(axis=0)
     for axis, name in ((1, 'N'), (0, 'E')):
-        shown.add_row(f'max |d{name}|', 'm', table.number_text(largest[axis]),
+        shown.add_row(f'max |d{name}|', 'm', table.number_text(prediction.largest[axis]),
                       table.number_text(place and place[1 - axis]))
     console = Console()
     console.print(shown)

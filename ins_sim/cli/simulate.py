@@ -31,8 +31,9 @@ def run(chosen):
     from ins_sim.core.prediction.predict import predict
     from ins_sim.core.simulation.aided import make_instruments, simulate_aided
     from ins_sim.core.simulation.inertial import simulate
+    from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
-    from ins_sim.report import storage, summary, table
+    from ins_sim.report import spool, storage, summary, table
     from .progress import progress_bars
     aided = arguments.read_aided_settings(chosen) if chosen.aided else None
     settings = aided.simulation if aided else arguments.read_settings(chosen)
@@ -43,28 +44,31 @@ def run(chosen):
     motion = read_motion(settings.motion_generator)
     # Made before the run, so that settings that do not fit are refused before it.
     instruments = None if aided is None else make_instruments(aided)
-    try:
-        prediction = predict(settings, motion)
-    except NoPrediction as reason:
-        prediction = None
-        console.print(str(reason))
-    with progress_bars(console) as add_bar:
-        result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'))
-        flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
-                                                          add_bar('aiding'))
-    rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
-    report = None if aided is None else _report(aided, flown, result)
-    storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
-                      report)
-    table.show_table(title, rows, console)
-    for line in (*summary.gap_lines(result.faults),
-                 *summary.parity_lines(settings.imu_sensor, result.imu)):
-        console.print(line)
-    if report is not None:
-        report.show(console)
-    console.print(f'written: {chosen.output}')
-    if write_bag is not None:
-        write_bag(result, console, None if aided is None else (aided, flown))
+    with spool.Spool(storage.existing_parent(chosen.output)) as spooled:
+        try:
+            prediction = predict(settings, motion, spooled.store)
+        except NoPrediction as reason:
+            prediction = None
+            console.print(str(reason))
+        with progress_bars(console) as add_bar:
+            # The aided stages take whole histories.
+            result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'),
+                              spooled.store if aided is None else Collected)
+            flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
+                                                              add_bar('aiding'))
+        rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
+        report = None if aided is None else _report(aided, flown, result)
+        storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
+                          report)
+        table.show_table(title, rows, console)
+        for line in (*summary.gap_lines(result.faults),
+                     *summary.parity_lines(settings.imu_sensor, result.imu)):
+            console.print(line)
+        if report is not None:
+            report.show(console)
+        console.print(f'written: {chosen.output}')
+        if write_bag is not None:
+            write_bag(result, console, None if aided is None else (aided, flown))
     return 0
 
 

@@ -1,5 +1,7 @@
 """An offline run as a bag: the topics that the nodes would publish, at their own stamps."""
 
+from bisect import bisect_left, bisect_right
+
 import numpy as np
 
 from ins_sim.bags.windows import write_windows
@@ -8,7 +10,7 @@ from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
+from ins_sim.core.sensors.tuned_gyro.parity import parity_rows, ParityTest
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest_name
@@ -99,13 +101,11 @@ class _Source:
             generator.rate_hz)
         self.count = round(generator.duration_s * SECOND) // self._dt_ns + 1
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
-        clock = SampleClock(strapdown, period_ns(strapdown.rate_hz))
+        self._instant = SampleClock(strapdown, period_ns(strapdown.rate_hz)).instant
         self._run, self._aiding = run, aiding
-        self._omega = _rates_at(run.states.t_ns, clock.instant(run.imu.t_ns), run.imu.omega)
         self._parity = None
         if run.imu.parity is not None:
-            self._parity = parity_rows(
-                settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu)
+            self._parity = ParityTest(settings.imu_sensor, PairInstrument(settings.imu_sensor))
 
     def window(self, first, stop):
         """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""
@@ -113,31 +113,43 @@ class _Source:
         truth = self._motion.at(self._first_ns + k * self._dt_ns)
         # whatever is behind the last sample belongs to the last window
         last = stop == self.count
-        begin = truth.t_ns[0] if first else -np.inf
+        begin = int(truth.t_ns[0]) if first else -np.inf
         end = np.inf if last else self._first_ns + stop * self._dt_ns
         run = self._run
-        sensed = _between(run.imu.t_ns, begin, end)
         solved = _between(run.states.t_ns, begin, end)
-        imu, states, errors = run.imu[sensed], run.states[solved], run.errors[solved]
+        imu, states, errors = (run.imu[_between(run.imu.t_ns, begin, end)], run.states[solved],
+                               run.errors[solved])
         blocks = {topics.CLOCK_TOPIC: (truth.t_ns[k % self._clock_every == 0], None)}
         for record, values in (
                 (truth, convert.truth_blocks(self._truth_frame, truth)),
                 (imu, convert.imu_block(imu)),
-                (states, convert.state_blocks(self._frame, states, self._omega[solved])),
+                (states, convert.state_blocks(self._frame, states, self._rates(states))),
                 (errors, convert.error_blocks(errors))):
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
-            blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
+            blocks[topics.IMU_PARITY] = imu.t_ns, parity_rows(self._parity, imu)
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
 
+    def _rates(self, states):
+        """Return the readings of the gyros at the instants of a part of the solution."""
+        if not len(states):
+            return np.empty((0, 3))
+        imu, instant = self._run.imu, self._instant
+        near = imu[bisect_left(imu.t_ns, states.t_ns[0], key=instant):
+                   bisect_right(imu.t_ns, states.t_ns[-1], key=instant)]
+        return _rates_at(states.t_ns, instant(near.t_ns), near.omega)
+
 
 def _between(t_ns, begin, end):
-    return slice(*np.searchsorted(t_ns, (begin, end)).tolist())
+    """Return the slice of the instants from begin to before end."""
+    return slice(bisect_left(t_ns, begin), bisect_left(t_ns, end))
 
 
 def _rates_at(t_ns, instants_ns, omega):
     """Return the readings of the gyros (n, 3) at instants t_ns, zero where there is none."""
+    if not len(instants_ns):
+        return np.zeros((len(t_ns), 3))
     k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)
     return np.where((instants_ns[k] == t_ns)[:, np.newaxis], omega[k], 0.0)

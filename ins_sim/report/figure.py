@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .plotting import COLOURS, finish_panel, new_figure, save_png, thinned
+from .plotting import COLOURS, finish_panel, MOST_POINTS, new_figure, save_png, thinned
 from .summary import DEG_PER_HOUR
 
 
@@ -10,12 +10,15 @@ def save_figure(path, title, errors, prediction=None):
     """Save the figure as PNG; errors: NavErrors, prediction: Prediction or None."""
     errors = thinned(errors)
     t_min = (errors.t_ns - errors.t_ns[0]) * 1e-9 / 60.0
+    if prediction is not None:
+        every = max(20, len(prediction.t_s) // MOST_POINTS)
+        t_predicted, predicted = prediction.t_s[::every] / 60.0, prediction.position[::every]
     figure = new_figure(9, 9)
     top, middle, bottom = figure.subplots(3, 1, sharex=True)
     for axis, name in enumerate(('east', 'north')):
         top.plot(t_min, errors.position[:, axis], color=COLOURS[name], label=f'{name}, measured')
         if prediction is not None:
-            top.plot(prediction.t_s[::20] / 60.0, prediction.position[::20, axis], 'k--', lw=1,
+            top.plot(t_predicted, predicted[:, axis], 'k--', lw=1,
                      label='linear prediction' if axis else None)
     for axis, name in enumerate(COLOURS):
         middle.plot(t_min, np.degrees(errors.attitude[:, axis]) * 3600.0, color=COLOURS[name],

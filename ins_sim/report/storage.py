@@ -7,12 +7,13 @@ import os
 from pathlib import Path
 import shutil
 import tempfile
-from zipfile import BadZipFile
+from zipfile import BadZipFile, ZipFile
 
 import numpy as np
+from numpy.lib import format as npy_format
 
 from ins_sim import parameter_files
-from ins_sim.core.timeseries.histories import ImuSamples
+from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
 from . import figure
 
 MARK = 'summary.json'
@@ -27,7 +28,7 @@ def check_free(folder, force, mark=MARK, option='--force'):
     mark: the file by which what a command writes is known; option: how the caller spells force.
     """
     folder = Path(folder)
-    parent = next(p for p in folder.absolute().parents if p.exists())
+    parent = existing_parent(folder)
     if not parent.is_dir() or not os.access(parent, os.W_OK):
         raise ValueError(f'{folder} cannot be made in {parent}; expected a folder that may be '
                          'written')
@@ -38,6 +39,11 @@ def check_free(folder, force, mark=MARK, option='--force'):
     if not folder.is_dir() or (any(folder.iterdir()) and not (folder / mark).exists()):
         raise ValueError(f'{folder} holds no {mark}; {option} replaces only what the same command '
                          'wrote')
+
+
+def existing_parent(folder):
+    """Return the nearest folder above one that need not exist yet."""
+    return next(p for p in Path(folder).absolute().parents if p.exists())
 
 
 @contextmanager
@@ -84,11 +90,27 @@ def write_run(folder, settings, run, rows, prediction, title, force=False, aided
             arrays.update(aided.arrays())
             parameters, rows = aided.parameters(), [*rows, *aided.rows]
             aided.save_figures(work)
-        np.savez(work / ARRAYS, **arrays)
+        write_arrays(work / ARRAYS, arrays)
         (work / PARAMETERS).write_text(parameters, encoding='utf-8')
         figure.save_figure(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
+
+
+def write_arrays(path, arrays):
+    """Write arrays by name, or SpooledColumns, as ``numpy.savez`` does, block by block."""
+    with ZipFile(path, 'w') as archive:
+        for name, array in arrays.items():
+            # The size is known only afterwards: it may be beyond what a small header can hold.
+            with archive.open(f'{name}.npy', 'w', force_zip64=True) as member:
+                if isinstance(array, np.ndarray):
+                    npy_format.write_array(member, array, allow_pickle=False)
+                    continue
+                npy_format.write_array_header_1_0(member, {
+                    'descr': npy_format.dtype_to_descr(array.dtype), 'fortran_order': False,
+                    'shape': array.shape})
+                for first in range(0, len(array), BLOCK):
+                    member.write(array[first:first + BLOCK].data)
 
 
 def read_imu(folder):

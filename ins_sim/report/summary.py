@@ -81,27 +81,37 @@ def summary_rows(settings, errors, twin=None, prediction=None):
     """Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction."""
     key = study_key(settings)
     place, drift = PUBLISHED_POSITION.get(key), PUBLISHED_DRIFT.get(key)
+    end, twin_end = errors.drift[-1], None if twin is None else twin.drift[-1]
     table = []
     for axis, name in enumerate(('east', 'north', 'up')):
         table.append(SummaryRow(
             f'mean drift {name}', 'deg/h',
             None if prediction is None else prediction.drift[axis] * DEG_PER_HOUR,
-            errors.drift[-1, axis] * DEG_PER_HOUR,
-            None if twin is None else twin.drift[-1, axis] * DEG_PER_HOUR,
+            end[axis] * DEG_PER_HOUR,
+            None if twin is None else twin_end[axis] * DEG_PER_HOUR,
             None if drift is None else drift[axis]))
+    largest = _largest(block.position for block in errors.blocks())
+    if twin is not None:
+        twin_largest = _largest(block.position for block in twin.blocks())
     for axis, name in ((1, 'N'), (0, 'E')):
         table.append(SummaryRow(
-            f'max |d{name}|', 'm',
-            None if prediction is None else np.abs(prediction.position[:, axis]).max(),
-            np.abs(errors.position[:, axis]).max(),
-            None if twin is None else np.abs(twin.position[:, axis]).max(),
+            f'max |d{name}|', 'm', None if prediction is None else prediction.largest[axis],
+            largest[axis], None if twin is None else twin_largest[axis],
             None if place is None else place[1 - axis]))
     if twin is not None:
+        apart = _largest(block.position - other.position
+                         for block, other in zip(errors.blocks(), twin.blocks()))
         for axis, name in ((1, 'N'), (0, 'E')):
-            table.append(SummaryRow(
-                f'max |d{name} - twin|', 'm', None,
-                np.abs(errors.position[:, axis] - twin.position[:, axis]).max(), None, None))
+            table.append(SummaryRow(f'max |d{name} - twin|', 'm', None, apart[axis], None, None))
     return table
+
+
+def _largest(blocks):
+    """Return the largest magnitudes (3,) in blocks (n, 3)."""
+    largest = np.zeros(3)
+    for block in blocks:
+        largest = np.maximum(largest, np.abs(block).max(axis=0))
+    return largest
 
 
 def gap_lines(faults):

@@ -12,6 +12,8 @@ from ins_sim.core.sensors.tuned_gyro.instrument import make_pair
 SUBSAMPLES = 8
 STEP_S = 0.1
 PER_PERIOD = 4096
+# Instants that are evaluated at once.
+BLOCK = 16384
 
 
 def _nanoseconds(t_s):
@@ -51,21 +53,40 @@ def mean_drift(motion, tau, earth_rotation, start_s, span_s):
     """
     length = motion.period_s or span_s
     count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
-    truth = motion.at(_nanoseconds(start_s + length * np.arange(count) / count))
-    omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, earth_rotation)
-    density, _ = drift_density(truth, omega_in, tau)
-    return density.mean(axis=0)
+    total = np.zeros(3)
+    for first in range(0, count, BLOCK):
+        k = np.arange(first, min(first + BLOCK, count))
+        truth = motion.at(_nanoseconds(start_s + length * k / count))
+        omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, earth_rotation)
+        density, _ = drift_density(truth, omega_in, tau)
+        total = np.add.reduce(np.concatenate([total[None], density]), axis=0)
+    return total / count
 
 
-def late_attitude_error(truth, omega_in_n, tau, step_s):
+class LateAttitudeError:
     """
-    Return beta (n, 3), rad: the boundary term and the running integral of ``drift_density``.
+    Attitude error beta of late channels: the boundary term and the integral of ``drift_density``.
 
-    truth (n,): at steps of step_s; tau (3,): delays, s.
+    tau (3,): delays, s; step_s: interval between the instants, s.
     """
-    density, late = drift_density(truth, omega_in_n, tau)
-    running = np.cumsum(0.5 * step_s * (density[1:] + density[:-1]), axis=0)
-    return late[0] - late + np.concatenate([np.zeros((1, 3)), running])
+
+    def __init__(self, tau, step_s):
+        self._tau, self._step_s = tau, step_s
+        self._first = self._integral = None
+
+    def advance(self, truth, omega_in):
+        """
+        Return beta (n, 3), rad.
+
+        truth (n,), omega_in (n, 3): the first instant is the last one of the block before.
+        """
+        density, late = drift_density(truth, omega_in, self._tau)
+        if self._first is None:
+            self._first, self._integral = late[0], np.zeros((1, 3))
+        running = np.cumsum(np.concatenate([
+            self._integral, 0.5 * self._step_s * (density[1:] + density[:-1])]), axis=0)
+        self._integral = running[-1:]
+        return self._first - late + running
 
 
 class NoPrediction(ValueError):
@@ -81,24 +102,36 @@ def exact_pair(gyro, step_s):
         raise NoPrediction(f'no prediction: {error}') from None
 
 
-def pair_attitude_error(motion, gyro, tau, t):
+class PairAttitudeError:
     """
-    Return beta (n, 3), rad, of two tuned gyros: the integral of R (reading - rate).
+    Attitude error beta of two tuned gyros: the integral of R (reading - rate).
 
-    gyro: settings.Gyro; tau (3,): delays, s; t (n,): motion times, s.  The rotors are run over the
-    rates of the motion; the mean rate of a step is Simpson's.
+    motion: that of the run; gyro: settings.Gyro; tau (3,): delays, s; start_s: first instant, s of
+    motion time; step_s: interval between the instants, s.  The rotors are run over the rates of
+    the motion; the mean rate of a step is Simpson's.
     """
-    step_s = (t[-1] - t[0]) / (len(t) - 1)
-    halves = t[0] + 0.5 * step_s * np.arange(2 * len(t) - 1)
-    late = np.stack([motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
-                     for i, d in enumerate(tau)], axis=-1)
-    pair = exact_pair(gyro, step_s)
-    pair.settle(late[0])
-    reading, _ = pair.advance(np.stack((late[:-1:2], late[1::2], late[2::2]), axis=1))
-    truth = motion.at(_nanoseconds(halves))
-    w = truth.omega_ib_b
-    growth = _to_n(truth[1::2], reading - (w[:-1:2] + 4.0 * w[1::2] + w[2::2]) / 6.0)
-    return np.concatenate([np.zeros((1, 3)), np.cumsum(step_s * growth, axis=0)])
+
+    def __init__(self, motion, gyro, tau, start_s, step_s):
+        self._motion, self._tau = motion, tau
+        self._start_s, self._step_s = start_s, step_s
+        self._pair, self._integral = exact_pair(gyro, step_s), None
+
+    def advance(self, first, count):
+        """Return beta (count + 1, 3), rad, from instant ``first`` on; in turn from 0."""
+        halves = self._start_s + 0.5 * self._step_s * np.arange(2 * first,
+                                                                2 * (first + count) + 1)
+        late = np.stack([self._motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
+                         for i, d in enumerate(self._tau)], axis=-1)
+        if self._integral is None:
+            self._pair.settle(late[0])
+            self._integral = np.zeros((1, 3))
+        reading, _ = self._pair.advance(np.stack((late[:-1:2], late[1::2], late[2::2]), axis=1))
+        truth = self._motion.at(_nanoseconds(halves))
+        w = truth.omega_ib_b
+        growth = _to_n(truth[1::2], reading - (w[:-1:2] + 4.0 * w[1::2] + w[2::2]) / 6.0)
+        running = np.cumsum(np.concatenate([self._integral, self._step_s * growth]), axis=0)
+        self._integral = running[-1:]
+        return running
 
 
 def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):

@@ -18,53 +18,104 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
 
 
-def propagate_errors(truth, omega_in, f_n, beta, df_n, fine_s, per_step, rotation, position,
-                     velocity):
+class ErrorModel:
     """
-    Return attitude (n, 3), rad, and position (n, 3), m, errors at every per_step-th fine instant.
+    Attitude and position errors, carried from block to block of a grid in time.
 
-    truth, omega_in, f_n, beta, df_n: (m, ...) on a grid of fine_s; beta: attitude error without
-    the turning of n; df_n: error of the specific force.  position, velocity: initial errors in n.
-    Over a step the coefficients are their means; RK4 carries the slow state.
+    Over a step the coefficients are their means over its fine intervals; RK4 carries the slow
+    state.
+
+    Parameters
+    ----------
+    fine_s : interval of the grid, s
+    per_step : intervals of a step
+    rotation : whether the Earth turns
+    position, velocity : initial errors in n, m and m/s
+
     """
-    def mean(x):
-        body = x[:-1].reshape(-1, per_step, *x.shape[1:]).mean(axis=1)
-        ends = (x[per_step::per_step] - x[:-1:per_step]) / (2.0 * per_step)
-        return body + ends
 
-    spin = ellipsoid.rotation_rate(rotation)
-    sin, cos = np.sin(truth.lat), np.cos(truth.lat)
-    r_n, r_e = ellipsoid.radii(sin)
-    g = ellipsoid.gravity(sin, truth.height)
-    pull = np.stack((g / (r_e + truth.height), g / (r_n + truth.height)), axis=-1)
-    pull[:, 0] += spin * spin
-    pull[:, 1] += (spin * sin) ** 2
-    force = mean(np.cross(beta, f_n) + df_n)
-    turn = mean(-np.cross(omega_in, beta))
-    rows = zip(mean(omega_in).tolist(), mean(f_n).tolist(), force.tolist(), turn.tolist(),
-               mean(pull).tolist())
+    def __init__(self, fine_s, per_step, rotation, position, velocity):
+        self._per_step, self._step_s = per_step, fine_s * per_step
+        self._spin = ellipsoid.rotation_rate(rotation)
+        self._start, self._state = (position, velocity), None
 
-    h = fine_s * per_step
-    east, north, _ = position
-    v = truth.v_n[0]
-    tilt = (-north / (r_n[0] + truth.height[0]), east / (r_e[0] + truth.height[0]),
-            east * math.tan(truth.lat[0]) / (r_e[0] + truth.height[0]))
-    carried = quaternion.cross(tilt, tuple(v))
-    turning = quaternion.cross((0.0, spin * cos[0], spin * sin[0]), (east, north, 0.0))
-    state = (0.0, 0.0, 0.0, east, north, velocity[0] + carried[0] + turning[0],
-             velocity[1] + carried[1] + turning[1])
-    states = [state]
-    for row in rows:
-        state = _rk4(state, row, h)
-        states.append(state)
-    states = np.array(states)
-    place = np.concatenate([states[:, 3:5], np.zeros((len(states), 1))], axis=1)
-    return states[:, :3] + beta[::per_step], place
+    def advance(self, truth, omega_in, f_n, beta, df_n):
+        """
+        Return attitude (n + 1, 3), rad, and position (n + 1, 3), m, errors at the ends of n steps.
+
+        truth, omega_in, f_n, beta, df_n: (n per_step + 1, ...), those of the first instant being
+        those of the last one of the block before; beta: attitude error without the turning of n;
+        df_n: error of the specific force.
+        """
+        sin, cos = np.sin(truth.lat), np.cos(truth.lat)
+        r_n, r_e = ellipsoid.radii(sin)
+        g = ellipsoid.gravity(sin, truth.height)
+        spin = self._spin
+        pull = np.stack((g / (r_e + truth.height), g / (r_n + truth.height)), axis=-1)
+        pull[:, 0] += spin * spin
+        pull[:, 1] += (spin * sin) ** 2
+        if self._state is None:
+            self._state = self._first_state(truth, r_n, r_e, sin, cos)
+        columns = [column for table in (
+            omega_in, f_n, np.cross(beta, f_n) + df_n, -np.cross(omega_in, beta), pull)
+            for column in self._means(table).T.tolist()]
+        states = [self._state]
+        for row in zip(*columns):
+            states.append(advance_errors(states[-1], row, self._step_s))
+        self._state = states[-1]
+        states = np.array(states)
+        place = np.concatenate([states[:, 3:5], np.zeros((len(states), 1))], axis=1)
+        return states[:, :3] + beta[::self._per_step], place
+
+    def _first_state(self, truth, r_n, r_e, sin, cos):
+        (east, north, _), velocity = self._start
+        tilt = (-north / (r_n[0] + truth.height[0]), east / (r_e[0] + truth.height[0]),
+                east * math.tan(truth.lat[0]) / (r_e[0] + truth.height[0]))
+        carried = quaternion.cross(tilt, tuple(truth.v_n[0]))
+        turning = quaternion.cross((0.0, self._spin * cos[0], self._spin * sin[0]),
+                                   (east, north, 0.0))
+        return (0.0, 0.0, 0.0, east, north, velocity[0] + carried[0] + turning[0],
+                velocity[1] + carried[1] + turning[1])
+
+    def _means(self, x):
+        """Return the means over the steps, by the trapezium rule."""
+        n = self._per_step
+        return (x[:-1].reshape(-1, n, *x.shape[1:]).mean(axis=1)
+                + (x[n::n] - x[:-1:n]) / (2.0 * n))
+
+
+def advance_errors(y, row, h):
+    """
+    Return the slow state after a step of h seconds, by RK4.
+
+    y: gamma (3), p_E, p_N, s_E, s_N; row: means over the step of omega_in (3), f_n (3), force (3),
+    turn (3) and the pull on E and N.
+    """
+    k1 = _rate(y, row)
+    k2 = _rate(_ahead(y, k1, 0.5 * h), row)
+    k3 = _rate(_ahead(y, k2, 0.5 * h), row)
+    a, b, c, d, e, f, g = _rate(_ahead(y, k3, h), row)
+    p, q, r, s, t, u, v = y
+    sixth = h / 6.0
+    return (p + sixth * (k1[0] + 2.0 * (k2[0] + k3[0]) + a),
+            q + sixth * (k1[1] + 2.0 * (k2[1] + k3[1]) + b),
+            r + sixth * (k1[2] + 2.0 * (k2[2] + k3[2]) + c),
+            s + sixth * (k1[3] + 2.0 * (k2[3] + k3[3]) + d),
+            t + sixth * (k1[4] + 2.0 * (k2[4] + k3[4]) + e),
+            u + sixth * (k1[5] + 2.0 * (k2[5] + k3[5]) + f),
+            v + sixth * (k1[6] + 2.0 * (k2[6] + k3[6]) + g))
+
+
+def _ahead(y, k, step):
+    a, b, c, d, e, f, g = y
+    p, q, r, s, t, u, v = k
+    return (a + step * p, b + step * q, c + step * r, d + step * s, e + step * t, f + step * u,
+            g + step * v)
 
 
 def _rate(y, row):
     g_e, g_n, g_u, p_e, p_n, s_e, s_n = y
-    (w_e, w_n, w_u), (f_e, f_n, f_u), (a_e, a_n, _), (t_e, t_n, t_u), (k_e, k_n) = row
+    w_e, w_n, w_u, f_e, f_n, f_u, a_e, a_n, _, t_e, t_n, t_u, k_e, k_n = row
     # p_U = 0 at all times, hence s_U = (omega_in x p)_U
     s_u = w_e * p_n - w_n * p_e
     return (t_e - (w_n * g_u - w_u * g_n), t_n - (w_u * g_e - w_e * g_u),
@@ -72,15 +123,3 @@ def _rate(y, row):
             s_e + w_u * p_n, s_n - w_u * p_e,
             a_e + g_n * f_u - g_u * f_n - k_e * p_e - (w_n * s_u - w_u * s_n),
             a_n + g_u * f_e - g_e * f_u - k_n * p_n - (w_u * s_e - w_e * s_u))
-
-
-def _rk4(y, row, h):
-    def ahead(k, step):
-        return tuple(a + step * b for a, b in zip(y, k))
-
-    k1 = _rate(y, row)
-    k2 = _rate(ahead(k1, 0.5 * h), row)
-    k3 = _rate(ahead(k2, 0.5 * h), row)
-    k4 = _rate(ahead(k3, h), row)
-    return tuple(a + h / 6.0 * (b + 2.0 * (c + d) + e)
-                 for a, b, c, d, e in zip(y, k1, k2, k3, k4))

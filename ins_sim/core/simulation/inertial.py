@@ -9,11 +9,13 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.navigation.navigator import InertialNavigator
 from ins_sim.core.navigation.sample_clock import SampleClock
+from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import StreamImu
 from ins_sim.core.sensors.imu.with_errors import with_errors
+from ins_sim.core.timeseries.collecting import Collected
 from ins_sim.core.timeseries.histories import ImuSamples, NavErrors, NavStates, Truth
 
 BLOCK = 4096
@@ -36,6 +38,7 @@ class SimulationResult:
     faults: tuple = ()
 
 
+@paused_in_blocks
 def imu_blocks(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
     sensor = settings.imu_sensor
@@ -73,6 +76,7 @@ def _ideal(settings, motion):
             yield block
 
 
+@paused_in_blocks
 def navigate_blocks(settings, motion, blocks, faults=None):
     """
     Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
@@ -99,13 +103,14 @@ def samples_with_truth(imu, t_ns, truth):
     return zip(t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()), poses)
 
 
-def simulate(settings, motion, twin=True, progress=None):
+def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
     Return the SimulationResult of SimulationSettings.
 
     motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
-    called with the fraction done.  Raises ValueError where the settings name no run of finite
-    length.
+    called with the fraction done; collect: called once for each history, it returns what takes
+    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
+    where the settings name no run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -113,6 +118,8 @@ def simulate(settings, motion, twin=True, progress=None):
     twin = twin and settings.delayed
     total = 1.0 + _steps(generator)
     total *= period_ns(generator.rate_hz) * (2 if twin else 1)
+    first_ns = round(generator.start_s * 1e9)
+    faults = []
 
     def watch(blocks, done):
         for imu in blocks:
@@ -120,29 +127,29 @@ def simulate(settings, motion, twin=True, progress=None):
             if progress is not None:
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
-    first_ns = round(generator.start_s * 1e9)
-    imu, faults = [], []
-
-    def keep(blocks):
-        for block in blocks:
-            imu.append(block)
-            yield block
-
-    parts = list(navigate_blocks(
-        settings.strapdown, motion, keep(watch(imu_blocks(settings, motion), 0)), faults))
-    if not parts:
+    sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
+    blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
+    for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
+        for store, part in zip(flown, parts):
+            store.append(part)
+    truth, states, errors = (store.history() for store in flown)
+    if truth is None:
         raise ValueError('the run has no navigation output; expected duration_s longer than '
                          'initial.after_s')
-    truth, states, errors = (cls.concatenate(p) for cls, p in zip(
-        (Truth, NavStates, NavErrors), zip(*parts)))
     twin_errors = None
     if twin:
-        ideal = settings.without_delays()
-        blocks = watch(imu_blocks(ideal, motion), total / 2)
-        twin_errors = NavErrors.concatenate(
-            e for _, _, e in navigate_blocks(settings.strapdown, motion, blocks))
-    return SimulationResult(truth, ImuSamples.concatenate(imu), states, errors, twin_errors,
-                            tuple(faults))
+        store = collect()
+        blocks = watch(imu_blocks(settings.without_delays(), motion), total / 2)
+        for _, _, part in navigate_blocks(settings.strapdown, motion, blocks):
+            store.append(part)
+        twin_errors = store.history()
+    return SimulationResult(truth, sensed.history(), states, errors, twin_errors, tuple(faults))
+
+
+def _kept(blocks, store):
+    for block in blocks:
+        store.append(block)
+        yield block
 
 
 def _check_start(settings):

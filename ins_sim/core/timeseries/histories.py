@@ -4,6 +4,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+# Rows that are read, joined or compared at once where a history need not be in memory.
+BLOCK = 8192
+
 
 class History:
     """Slicing and joining along the leading (time) axis; a field that is None stays None."""
@@ -18,6 +21,11 @@ class History:
         """Return {field: array} of the fields that are there."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
+
+    def blocks(self, length=BLOCK):
+        """Yield the history in blocks of consecutive rows."""
+        for first in range(0, len(self), length):
+            yield self[first:first + length]
 
     @classmethod
     def concatenate(cls, parts):
