@@ -13,7 +13,7 @@ SUBSAMPLES = 8
 STEP_S = 0.1
 PER_PERIOD = 4096
 # Instants that are evaluated at once.
-BLOCK = 16384
+BLOCK = 8192
 
 
 def _nanoseconds(t_s):

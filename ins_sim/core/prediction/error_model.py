@@ -16,6 +16,7 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import compilation
 
 
 class ErrorModel:
@@ -56,15 +57,14 @@ class ErrorModel:
         pull[:, 1] += (spin * sin) ** 2
         if self._state is None:
             self._state = self._first_state(truth, r_n, r_e, sin, cos)
-        columns = [column for table in (
-            omega_in, f_n, np.cross(beta, f_n) + df_n, -np.cross(omega_in, beta), pull)
-            for column in self._means(table).T.tolist()]
-        states = [self._state]
-        for row in zip(*columns):
-            states.append(advance_errors(states[-1], row, self._step_s))
-        self._state = states[-1]
-        states = np.array(states)
-        place = np.concatenate([states[:, 3:5], np.zeros((len(states), 1))], axis=1)
+        means = [self._means(values) for values in (
+            omega_in, f_n, np.cross(beta, f_n) + df_n, -np.cross(omega_in, beta), pull)]
+        states = np.empty((len(pull) // self._per_step + 1, 7))
+        states[0] = self._state
+        count = len(states) - 1
+        self._state = compilation.run(advance_through, count,
+                                      (self._state, self._step_s, count, *means), states[1:])
+        place = np.concatenate([states[:, 3:5], np.zeros((count + 1, 1))], axis=1)
         return states[:, :3] + beta[::self._per_step], place
 
     def _first_state(self, truth, r_n, r_e, sin, cos):
@@ -84,13 +84,27 @@ class ErrorModel:
                 + (x[n::n] - x[:-1:n]) / (2.0 * n))
 
 
-def advance_errors(y, row, h):
+def advance_through(state, h, count, omega_in, f_n, force, turn, pull, out):
+    """Advance by the steps whose coefficients are in flat columns; return the state at the end."""
+    for k in range(count):
+        i, j = 3 * k, 2 * k
+        state = advance_errors(
+            state, (omega_in[i], omega_in[i + 1], omega_in[i + 2]),
+            (f_n[i], f_n[i + 1], f_n[i + 2]), (force[i], force[i + 1]),
+            (turn[i], turn[i + 1], turn[i + 2]), (pull[j], pull[j + 1]), h)
+        for axis in range(7):
+            out[7 * k + axis] = state[axis]
+    return state
+
+
+def advance_errors(y, omega_in, f_n, force, turn, pull, h):
     """
     Return the slow state after a step of h seconds, by RK4.
 
-    y: gamma (3), p_E, p_N, s_E, s_N; row: means over the step of omega_in (3), f_n (3), force (3),
-    turn (3) and the pull on E and N.
+    y: gamma (3), p_E, p_N, s_E, s_N; the others are means over the step: omega_in (3), f_n (3),
+    the horizontal force, the turning of beta (3), and the pull on E and on N.
     """
+    row = (*omega_in, *f_n, *force, *turn, *pull)
     k1 = _rate(y, row)
     k2 = _rate(_ahead(y, k1, 0.5 * h), row)
     k3 = _rate(_ahead(y, k2, 0.5 * h), row)
@@ -115,7 +129,7 @@ def _ahead(y, k, step):
 
 def _rate(y, row):
     g_e, g_n, g_u, p_e, p_n, s_e, s_n = y
-    w_e, w_n, w_u, f_e, f_n, f_u, a_e, a_n, _, t_e, t_n, t_u, k_e, k_n = row
+    w_e, w_n, w_u, f_e, f_n, f_u, a_e, a_n, t_e, t_n, t_u, k_e, k_n = row
     # p_U = 0 at all times, hence s_U = (omega_in x p)_U
     s_u = w_e * p_n - w_n * p_e
     return (t_e - (w_n * g_u - w_u * g_n), t_n - (w_u * g_e - w_e * g_u),
