@@ -38,16 +38,25 @@ class SimulationResult:
     faults: tuple = ()
 
 
-@paused_in_blocks
 def imu_blocks(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
-    sensor = settings.imu_sensor
+    return sensed_blocks(settings.imu_sensor, _ideal(settings, motion))
+
+
+@paused_in_blocks
+def sensed_blocks(sensor, ideal):
+    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
     errors = with_errors(sensor)
     sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))
-    for block in _ideal(settings, motion):
+    for block in ideal:
         block = sampler.take(block if errors is None else errors.advance(block))
         if len(block):
             yield block
+
+
+def reading_count(generator, dt_ns):
+    """Return how many readings an IMU with a sampling period of dt_ns takes on the motion."""
+    return _steps(generator) * period_ns(generator.rate_hz) // dt_ns + 1
 
 
 def truth_blocks(generator, motion):
@@ -61,10 +70,9 @@ def truth_blocks(generator, motion):
 def _ideal(settings, motion):
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
-    steps = _steps(generator)
     if sensor.source == 'motion':
         imu = MotionImu(sensor, motion, first_ns)
-        left = steps * period_ns(generator.rate_hz) // imu.dt_ns + 1
+        left = reading_count(generator, imu.dt_ns)
         while left > 0:
             yield imu.advance(min(BLOCK, left))
             left -= BLOCK
