@@ -5,6 +5,8 @@ import numpy as np
 from .plotting import COLOURS, finish_panel, MOST_POINTS, new_figure, save_png, thinned
 from .summary import DEG_PER_HOUR
 
+MARGINS = {'left': 0.12, 'right': 0.98, 'bottom': 0.06, 'top': 0.94, 'hspace': 0.08}
+
 
 def save_figure(path, title, errors, prediction=None):
     """Save the figure as PNG; errors: NavErrors, prediction: Prediction or None."""
@@ -13,7 +15,7 @@ def save_figure(path, title, errors, prediction=None):
     if prediction is not None:
         every = max(20, len(prediction.t_s) // MOST_POINTS)
         t_predicted, predicted = prediction.t_s[::every] / 60.0, prediction.position[::every]
-    figure = new_figure(9, 9)
+    figure = new_figure(9, 9, MARGINS)
     top, middle, bottom = figure.subplots(3, 1, sharex=True)
     for axis, name in enumerate(('east', 'north')):
         top.plot(t_min, errors.position[:, axis], color=COLOURS[name], label=f'{name}, measured')

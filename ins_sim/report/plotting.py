@@ -4,7 +4,10 @@ What all figures share: size, colours, the number of points drawn, and how a fig
 ``Figure`` objects are used without pyplot, so no window is opened and no backend is chosen.
 """
 
-from matplotlib.figure import Figure
+from ins_sim.core.numerics.garbage_collection import collector_paused
+
+with collector_paused:
+    from matplotlib.figure import Figure
 
 DPI = 110
 # More points of a curve than this cannot be told apart.
@@ -12,9 +15,18 @@ MOST_POINTS = 4000
 COLOURS = {'east': 'tab:red', 'north': 'tab:blue', 'up': 'tab:green'}
 
 
-def new_figure(width, height):
-    """Return an empty figure, size in inches, whose parts do not overlap."""
-    return Figure(figsize=(width, height), layout='constrained')
+def new_figure(width, height, margins=None):
+    """
+    Return an empty figure, size in inches, whose parts do not overlap.
+
+    margins: of the panels, as ``Figure.subplots_adjust`` takes them, where they are known; to find
+    them takes as long as a third of the drawing.
+    """
+    if margins is None:
+        return Figure(figsize=(width, height), layout='constrained')
+    figure = Figure(figsize=(width, height))
+    figure.subplots_adjust(**margins)
+    return figure
 
 
 def thinned(values):
@@ -30,5 +42,6 @@ def finish_panel(axes, label):
 
 
 def save_png(figure, path):
-    """Save a figure as PNG."""
-    figure.savefig(path, dpi=DPI)
+    """Save a figure as PNG, quickly rather than as small as can be."""
+    with collector_paused:
+        figure.savefig(path, dpi=DPI, pil_kwargs={'compress_level': 2})
