@@ -94,6 +94,8 @@ class SpooledColumn:
             row = range(self._count)[index]
             return self._read(row, row + 1)[0]
         start, stop, step = index.indices(self._count)
+        if step < 1:
+            raise ValueError(f'the step of the slice is {step}; expected at least 1')
         if step == 1:
             return self._read(start, max(start, stop))
         # Picked out block by block, as the rows in between need not fit into memory.
