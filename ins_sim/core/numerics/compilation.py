@@ -14,6 +14,7 @@ from contextvars import ContextVar
 import dis
 from functools import lru_cache
 from hashlib import blake2b
+from importlib.util import find_spec
 import logging
 import math
 import sys
@@ -113,7 +114,25 @@ def numba():
         _say_plain(error)
         return None
     event.register('numba:compile', _announcer(event))
+    _spare_linear_algebra()
     return found
+
+
+def _spare_linear_algebra():
+    """
+    Load Numba's array functions without SciPy's linear algebra, which takes 0.2 s.
+
+    Numba imports it there only to know whether it exists, and again where compiled code needs it.
+    """
+    name = 'scipy.linalg.cython_blas'
+    if name in sys.modules or 'numba.np.arraymath' in sys.modules:
+        return
+    sys.modules[name] = None
+    try:
+        from numba.np import arraymath
+    finally:
+        del sys.modules[name]
+    arraymath._HAVE_BLAS = find_spec('scipy') is not None
 
 
 def _say_plain(error):
