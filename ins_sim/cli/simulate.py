@@ -29,12 +29,13 @@ def run(chosen):
     from rich.console import Console
     from ins_sim.core.prediction.drift import NoPrediction
     from ins_sim.core.prediction.predict import predict
-    from ins_sim.core.simulation.aided import make_instruments, simulate_aided
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
     from ins_sim.report import spool, storage, summary, table
     from .progress import progress_bars
+    if chosen.aided:
+        from ins_sim.core.simulation.aided import make_instruments, simulate_aided
     aided = arguments.read_aided_settings(chosen) if chosen.aided else None
     settings = aided.simulation if aided else arguments.read_settings(chosen)
     storage.check_free(chosen.output, chosen.force)

@@ -111,6 +111,24 @@ def samples_with_truth(imu, t_ns, truth):
     return zip(t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()), poses)
 
 
+class _RecentTruth:
+    """The truth of a motion; what was asked for last is not computed again."""
+
+    def __init__(self, motion):
+        self._motion, self._last = motion, None
+
+    def at(self, t_ns):
+        """Return the Truth at instants."""
+        last = self._last
+        if last is not None and len(t_ns) and t_ns[0] >= last.t_ns[0] and (
+                t_ns[-1] <= last.t_ns[-1]):
+            k = np.minimum(np.searchsorted(last.t_ns, t_ns), len(last) - 1)
+            if np.array_equal(last.t_ns[k], t_ns):
+                return last if len(k) == len(last) else last[k]
+        self._last = self._motion.at(t_ns)
+        return self._last
+
+
 def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
     Return the SimulationResult of SimulationSettings.
@@ -135,6 +153,9 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
             if progress is not None:
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
+    if settings.imu_sensor.source == 'stream':
+        # The IMU and the navigation ask for the truth at the same instants.
+        motion = _RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
     blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
