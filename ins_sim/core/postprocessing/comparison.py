@@ -82,11 +82,16 @@ def _velocity(states, t_ns, values):
 
 
 def _attitude(states, t_ns, values):
-    from scipy.spatial.transform import Rotation, Slerp
-    own = Slerp((states.t_ns - states.t_ns[0]) * 1e-9, Rotation.from_quat(states.q_nb))(
-        (t_ns - states.t_ns[0]) * 1e-9).as_quat()
-    return np.array([quaternion.logarithm(quaternion.multiply(a, quaternion.conjugate(b)))
-                     for a, b in zip(own.tolist(), values.tolist())])
+    k = np.clip(np.searchsorted(states.t_ns, t_ns), 1, len(states) - 1)
+    start = states.t_ns[k - 1]
+    part = (t_ns - start) / (states.t_ns[k] - start)
+    found = []
+    for u, a, b, q in zip(part.tolist(), states.q_nb[k - 1].tolist(), states.q_nb[k].tolist(),
+                          values.tolist()):
+        x, y, z = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(a), b))
+        own = quaternion.multiply(a, quaternion.exponential((u * x, u * y, u * z)))
+        found.append(quaternion.logarithm(quaternion.multiply(own, quaternion.conjugate(q))))
+    return np.array(found)
 
 
 def _drawn(track, t_ns):

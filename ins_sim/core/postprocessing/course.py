@@ -6,6 +6,7 @@ import numpy as np
 
 from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.numerics import elementary
 
 
 def navigated_headings(imu, state, kind, spin):
@@ -34,20 +35,22 @@ def find_course(turning, displacements, start_ns, distance_m, search_s):
         return None, 'has no way to show a course'
     middles, ways = displacements
     j = int(np.searchsorted(middles, start_ns))
-    way, parts = 0j, []
+    along, across, parts = 0.0, 0.0, []
     for t_ns, turned in turning:
         if t_ns > start_ns + round(search_s * 1e9):
             break
         while j < len(middles) and middles[j] <= t_ns:
             east, north = ways[j]
-            parts.append(complex(north, east) * complex(math.cos(turned), -math.sin(turned)))
-            way += parts[-1]
+            s, c = elementary.sincos(turned)
+            parts.append((north * c + east * s, east * c - north * s))
+            along, across = along + parts[-1][0], across + parts[-1][1]
             j += 1
-        if abs(way) >= distance_m:
-            across = np.imag(np.array(parts) * (way.conjugate() / abs(way)))
-            scatter = math.degrees(float(np.sqrt((across ** 2).sum())) / abs(way))
-            return math.atan2(way.imag, way.real), (
-                f'over {abs(way):.1f} m until {(t_ns - start_ns) * 1e-9:.1f} s after the start, '
+        way = math.sqrt(along * along + across * across)
+        if way >= distance_m:
+            aside = [(b * along - a * across) / way for a, b in parts]
+            scatter = math.degrees(math.sqrt(sum(x * x for x in aside)) / way)
+            return elementary.atan2(across, along), (
+                f'over {way:.1f} m until {(t_ns - start_ns) * 1e-9:.1f} s after the start, '
                 f'scatter {scatter:.2g} deg')
-    return None, (f'moves {abs(way):.3g} m on one course within {search_s:g} s '
-                  f'(alignment.course_distance_m {distance_m:g})')
+    return None, (f'moves {math.sqrt(along * along + across * across):.3g} m on one course within '
+                  f'{search_s:g} s (alignment.course_distance_m {distance_m:g})')

@@ -10,6 +10,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
+from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 from .course import find_course, navigated_headings
@@ -198,8 +199,8 @@ class _Search:
             lat = where[0]
             figures = {'stationary_s': (still.end_ns - still.start_ns) * 1e-9,
                        'force_sd_m_s2': still.force_sd, 'rate_sd_rad_s': still.rate_sd,
-                       'gravity_excess_m_s2': float(np.linalg.norm(still.force)
-                                                    - ellipsoid.gravity(math.sin(lat), where[2]))}
+                       'gravity_excess_m_s2': math.sqrt(sum(x * x for x in still.force.tolist()))
+                       - ellipsoid.gravity(elementary.sin(lat), where[2])}
             q_nb, compassed = self._headed(still, k, where, again, notes, figures)
             v = (0.0, 0.0, 0.0) if self._s.initial.velocity == 'auto' else \
                 self._velocity(k, q_nb, again)

@@ -2,18 +2,18 @@
 
 import math
 
-import numpy as np
-
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics import elementary
 from ins_sim.settings.suggest import nearest_name
 
 
 def levelled_mounting(force, yaw):
     """Return q_bs: the shortest turn that brings a force (3,) up, then one by yaw about up."""
-    x, y, z = (force / np.linalg.norm(force)).tolist()
+    x, y, z = force.tolist()
+    size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
     # upside down any level axis will do
-    axis = (y, -x, 0.0) if math.hypot(x, y) > 1e-12 else (1.0, 0.0, 0.0)
-    scale = math.atan2(math.hypot(x, y), z) / math.hypot(*axis)
+    axis, length = ((y, -x, 0.0), level) if level > 1e-12 * size else ((1.0, 0.0, 0.0), 1.0)
+    scale = elementary.atan2(level, z) / length
     return quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
                                quaternion.exponential(tuple(scale * a for a in axis)))
 

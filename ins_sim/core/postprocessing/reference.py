@@ -1,6 +1,7 @@
 """What a solution is compared with: position, velocity and attitude, each at its own stamps."""
 
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -65,7 +66,9 @@ class Reference:
         if self.attitude is None:
             return None
         q = self.attitude.at([t_ns])[0]
-        return None if np.isnan(q).any() else tuple((q / np.linalg.norm(q)).tolist())
+        x, y, z, w = q.tolist()
+        size = math.sqrt(x * x + y * y + z * z + w * w)
+        return None if np.isnan(q).any() else (x / size, y / size, z / size, w / size)
 
     def displacements(self):
         """

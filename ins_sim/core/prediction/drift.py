@@ -7,7 +7,9 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth.rates import rate_of_n
+from ins_sim.core.numerics import elementary
 from ins_sim.core.sensors.tuned_gyro.instrument import make_pair
+from .fourier import fourier_coefficients
 
 SUBSAMPLES = 8
 STEP_S = 0.1
@@ -150,24 +152,35 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
                          'a periodic motion')
     t = start_s + motion.period_s * np.arange(count) / count
     truth = motion.at(_nanoseconds(t))
-    harmonic = 2.0 * np.pi / motion.period_s * np.fft.fftfreq(count, 1.0 / count)
-    w = np.fft.fft(truth.omega_ib_b, axis=0) / count
-    if callable(responses):
-        error = ((responses(harmonic) - np.eye(3)) * w[:, None, :]).sum(axis=-1)
-    else:
-        error = np.stack([(h(harmonic) - 1.0) * w[:, i] for i, h in enumerate(responses)], axis=-1)
+    w_re, w_im, harmonics = fourier_coefficients(truth.omega_ib_b)
+    omega = 2.0 * np.pi / motion.period_s * harmonics
+    h = (responses(omega) if callable(responses)
+         else np.stack([channel(omega) for channel in responses], axis=-1)[:, None, :] * np.eye(3))
+    # Real products alone: those of complex arrays round as the processor likes.
+    h_re, h_im = h.real - np.eye(3), h.imag
+    error_re = (h_re * w_re[:, None, :] - h_im * w_im[:, None, :]).sum(axis=-1)
+    error_im = (h_re * w_im[:, None, :] + h_im * w_re[:, None, :]).sum(axis=-1)
     drift = np.zeros(3)
     for i in range(3):
         unit = np.zeros((count, 3))
         unit[:, i] = 1.0
-        r = np.fft.fft(_to_n(truth, unit), axis=0) / count
-        drift += (r * np.conj(error[:, i])[:, None]).sum(axis=0).real
+        r_re, r_im, _ = fourier_coefficients(_to_n(truth, unit))
+        drift += (r_re * error_re[:, i, None] + r_im * error_im[:, i, None]).sum(axis=0)
     return drift
 
 
 def delay_response(tau):
     """Return the frequency response exp(-j w tau) of a delay, s."""
-    return lambda omega: np.exp(-1j * omega * tau)
+    return lambda omega: delayed(np.ones(np.shape(omega), dtype=complex), omega * tau)
+
+
+def delayed(response, phase):
+    """Return a complex response times exp(-j phase)."""
+    s, c = elementary.sincos(phase)
+    late = np.empty(response.shape, dtype=complex)
+    late.real = response.real * c + response.imag * s
+    late.imag = response.imag * c - response.real * s
+    return late
 
 
 def two_axis_resonances(motion, tau):
@@ -186,7 +199,8 @@ def two_axis_resonances(motion, tau):
     for sign, name in ((1.0, "psi' = 2 gamma'"), (-1.0, "psi' = -2 gamma'")):
         rate = sign * 2.0 * motion.two_axis.gamma_rate_rad_s
         phase = psi - sign * 2.0 * gamma
-        size = sign * 0.125 * rate * rate * (tau[1] - tau[2]) * math.cos(theta) * (
-            1.0 - sign * math.sin(theta))
-        found.append((name, rate, size * np.array((math.cos(phase), math.sin(phase), 0.0))))
+        s, c = elementary.sincos(theta)
+        size = sign * 0.125 * rate * rate * (tau[1] - tau[2]) * c * (1.0 - sign * s)
+        north, east = elementary.sincos(phase)
+        found.append((name, rate, size * np.array((east, north, 0.0))))
     return found

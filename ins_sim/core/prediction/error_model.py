@@ -10,13 +10,11 @@ position error and s its inertial velocity,
 with p_U = 0.  It is the psi-angle model of Benson 1975 (Groves section 5.7) in inertial velocity.
 """
 
-import math
-
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.numerics import compilation
+from ins_sim.core.numerics import compilation, elementary
 
 
 class ErrorModel:
@@ -48,7 +46,7 @@ class ErrorModel:
         those of the last one of the block before; beta: attitude error without the turning of n;
         df_n: error of the specific force.
         """
-        sin, cos = np.sin(truth.lat), np.cos(truth.lat)
+        sin, cos = elementary.sincos(truth.lat)
         r_n, r_e = ellipsoid.radii(sin)
         g = ellipsoid.gravity(sin, truth.height)
         spin = self._spin
@@ -70,7 +68,7 @@ class ErrorModel:
     def _first_state(self, truth, r_n, r_e, sin, cos):
         (east, north, _), velocity = self._start
         tilt = (-north / (r_n[0] + truth.height[0]), east / (r_e[0] + truth.height[0]),
-                east * math.tan(truth.lat[0]) / (r_e[0] + truth.height[0]))
+                east * (sin[0] / cos[0]) / (r_e[0] + truth.height[0]))
         carried = quaternion.cross(tilt, tuple(truth.v_n[0]))
         turning = quaternion.cross((0.0, self._spin * cos[0], self._spin * sin[0]),
                                    (east, north, 0.0))

@@ -9,8 +9,9 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.timeseries.collecting import Collected
 from ins_sim.core.timeseries.histories import History
-from .drift import (_nanoseconds, _to_n, BLOCK, channel_drift, exact_pair, LateAttitudeError,
-                    mean_drift, PairAttitudeError, STEP_S, SUBSAMPLES, two_axis_resonances)
+from .drift import (_nanoseconds, _to_n, BLOCK, channel_drift, delayed, exact_pair,
+                    LateAttitudeError, mean_drift, PairAttitudeError, STEP_S, SUBSAMPLES,
+                    two_axis_resonances)
 from .error_model import ErrorModel
 
 
@@ -129,5 +130,5 @@ class _FineRun:
         if not motion.period_s:
             return self._last_beta / self._span_s
         response = exact_pair(self._gyro, self._fine_s).response
-        return channel_drift(motion, lambda w: response(w) * np.exp(
-            -1j * np.multiply.outer(w, tau))[:, None, :])
+        return channel_drift(motion, lambda w: delayed(
+            response(w), np.multiply.outer(w, tau)[:, None, :]))
