@@ -100,7 +100,7 @@ class SpooledColumn:
             return self._read(start, max(start, stop))
         # Picked out block by block, as the rows in between need not fit into memory.
         length = step * max(1, BLOCK // step)
-        parts = [self._read(first, min(first + length, stop))[::step]
+        parts = [self._read(first, min(first + length, stop))[::step].copy()
                  for first in range(start, stop, length)]
         return np.concatenate(parts) if parts else self._read(0, 0)
 
