@@ -23,15 +23,14 @@ LONG = (('simulate, 10 days at 1 Hz', ('simulate', *SLOW, f'duration_s:={10 * DA
         ('predict, 10 days', ('predict', *SLOW, f'duration_s:={10 * DAY_S}.0'), False, 300))
 
 
-def measure(words):
-    """Return the largest memory, MB, and the CPU seconds of ``ins_sim`` with these words."""
-    process = subprocess.Popen([sys.executable, '-m', 'ins_sim.cli.main', *words],
-                               env={**os.environ, 'PYTHONPATH': str(HERE.parent)},
+def measure(command):
+    """Return the largest memory, MB, and the CPU seconds of a command."""
+    process = subprocess.Popen(command, env={**os.environ, 'PYTHONPATH': str(HERE.parent)},
                                stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
-        raise RuntimeError(f'ins_sim {" ".join(words)} failed')
+        raise RuntimeError(f'{" ".join(command)} failed')
     return used.ru_maxrss / 1024.0, used.ru_utime + used.ru_stime
 
 
@@ -40,7 +39,7 @@ def main(full=False):
     for name, words, writes, most in (*SHORT, *(LONG if full else ())):
         with tempfile.TemporaryDirectory() as folder:
             output = ['-o', str(Path(folder) / 'run')] if writes else []
-            memory, seconds = measure([*words, *output])
+            memory, seconds = measure([sys.executable, '-m', 'ins_sim.cli.main', *words, *output])
         print(f'{name}: {memory:.0f} MB (target {most}), {seconds:.1f} s of CPU', flush=True)
 
 

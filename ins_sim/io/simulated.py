@@ -10,7 +10,7 @@ from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
-from ins_sim.core.sensors.tuned_gyro.parity import parity_rows, ParityTest
+from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest_name
@@ -105,7 +105,8 @@ class _Source:
         self._run, self._aiding = run, aiding
         self._parity = None
         if run.imu.parity is not None:
-            self._parity = ParityTest(settings.imu_sensor, PairInstrument(settings.imu_sensor))
+            self._parity = parity_rows(
+                settings.imu_sensor, PairInstrument(settings.imu_sensor), run.imu[:])
 
     def window(self, first, stop):
         """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""
@@ -116,9 +117,9 @@ class _Source:
         begin = int(truth.t_ns[0]) if first else -np.inf
         end = np.inf if last else self._first_ns + stop * self._dt_ns
         run = self._run
+        sensed = _between(run.imu.t_ns, begin, end)
         solved = _between(run.states.t_ns, begin, end)
-        imu, states, errors = (run.imu[_between(run.imu.t_ns, begin, end)], run.states[solved],
-                               run.errors[solved])
+        imu, states, errors = run.imu[sensed], run.states[solved], run.errors[solved]
         blocks = {topics.CLOCK_TOPIC: (truth.t_ns[k % self._clock_every == 0], None)}
         for record, values in (
                 (truth, convert.truth_blocks(self._truth_frame, truth)),
@@ -127,7 +128,7 @@ class _Source:
                 (errors, convert.error_blocks(errors))):
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
-            blocks[topics.IMU_PARITY] = imu.t_ns, parity_rows(self._parity, imu)
+            blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}

@@ -128,7 +128,7 @@ def parity_lines(sensor, imu):
         return []
     from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
     from ins_sim.core.sensors.tuned_gyro.parity import parity_windows
-    found = parity_windows(sensor, PairInstrument(sensor), imu)
+    found = parity_windows(sensor, PairInstrument(sensor), imu[:])
     beyond = found[found[:, 3] > 0.0]
     if not len(beyond):
         most = (np.abs(found[:, 1]) / found[:, 2]).max() if len(found) else 0.0
