@@ -1,10 +1,9 @@
 """
-What one step costs in pure Python, and how long an hour takes offline.
+What one step of a node costs in plain Python, without what receives and publishes.
 
-Run: python benchmarks/core_step.py [--hour]
+Run: python benchmarks/core_step.py
 """
 
-import sys
 from time import process_time
 
 import numpy as np
@@ -22,9 +21,6 @@ from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.settings.imu import ImuSensorSettings
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ins_sim.settings.strapdown import StrapdownSettings
-from ins_sim.core.simulation.inertial import simulate
-from ins_sim.settings.simulation import SimulationSettings
-from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
 from ins_sim.messages.convert import truth_blocks
 
@@ -103,17 +99,6 @@ def tuned_step_us(steps=5000, repeats=5, rate_hz=1000.0):
     return best / steps * 1e6
 
 
-def hour_s():
-    """Return CPU seconds of one hour of motion 2 at 100 Hz offline, twin left out."""
-    late = {'gyro.delay_us.y': 1.0, 'source': 'motion'}
-    settings = SimulationSettings(build(MotionGeneratorSettings, {}),
-                                  build(ImuSensorSettings, late), build(StrapdownSettings, {}))
-    motion = read_motion(settings.motion_generator)
-    start = process_time()
-    simulate(settings, motion, twin=False)
-    return process_time() - start
-
-
 def main():
     """Print the figures."""
     imu, navigator = step_us()
@@ -121,8 +106,6 @@ def main():
           f'{navigator:.1f} us, together {imu + navigator:.1f} us (target 60)')
     print(f'one step of the IMU with two tuned gyros and every error: {tuned_step_us():.1f} us '
           '(target 120)')
-    if '--hour' in sys.argv:
-        print(f'one hour of motion 2 at 100 Hz offline: {hour_s():.1f} s (target 60)')
 
 
 if __name__ == '__main__':

@@ -12,7 +12,10 @@ import sys
 HERE = Path(__file__).resolve().parent
 # script, words of the short run, words of the full one, whether it needs rclpy
 SCRIPTS = (
-    ('core_step', [], ['--hour'], False),
+    ('core_step', [], [], False),
+    ('steps', ['60000'], ['360000'], False),
+    ('whole_run', ['600'], ['3600'], False),
+    ('memory', [], ['--full'], False),
     ('pyins_peer', ['600'], ['3600'], False),
     ('parts', ['600'], ['3600'], False),
     ('bags', ['20000'], ['100000'], False),
