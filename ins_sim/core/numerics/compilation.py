@@ -130,9 +130,11 @@ def _spare_linear_algebra():
     sys.modules[name] = None
     try:
         from numba.np import arraymath
+        arraymath._HAVE_BLAS = find_spec('scipy') is not None
+    except Exception:  # noqa: B902 - Numba of another version loads it later, in its own way
+        LOG.debug('the array functions of Numba cannot be loaded ahead', exc_info=True)
     finally:
         del sys.modules[name]
-    arraymath._HAVE_BLAS = find_spec('scipy') is not None
 
 
 def _say_plain(error):
