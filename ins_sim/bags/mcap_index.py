@@ -17,6 +17,8 @@ from .piece import Channel
 # channel, sequence, log time and publish time are at least behind the length of a message
 BEHIND_LENGTH = form.MESSAGE_HEAD.size - form.RECORD.size
 LATEST_NS = 2**63 - 1
+# So much is read before its pages are given back.
+HELD_BYTES = 1 << 25
 
 
 @dataclass
@@ -68,9 +70,16 @@ class McapIndex:
         """Return the error of a corrupt file."""
         return ValueError(f'{self.path} is corrupt at byte {position}: {why}')
 
+    def give_back(self, start, stop):
+        """Let go of the memory of a part of the file; it is read again where it is used again."""
+        start -= start % mmap.PAGESIZE
+        if hasattr(mmap, 'MADV_DONTNEED'):
+            self.mapped.madvise(mmap.MADV_DONTNEED, start, stop - start)
+
     def _walk(self, closed):
         """Find chunks, schemas, channels and loose messages; return whether there is an end."""
         position, size = len(form.MAGIC), self._size
+        held = 0
         unpack, head = form.RECORD.unpack_from, form.RECORD.size
         while True:
             if position + head > size:
@@ -92,6 +101,9 @@ class McapIndex:
             if opcode in (form.DATA_END, form.FOOTER):
                 return True
             position = stop
+            if position - held > HELD_BYTES:
+                self.give_back(held, position)
+                held = position
         if closed:
             raise self.corrupt(position, f'a record of {length} bytes is longer than the file')
         self.cut = (f'{self.path.name} is cut: its last {size - position} of {size} bytes are no '

@@ -119,6 +119,11 @@ class McapReader(McapIndex):
             if own:
                 raw = self._open(chunk)
                 yield chunk, ((n, self._indexed(chunk, raw, n)) for n in own)
+                if self.mapped is not None:
+                    # The indices of its channels stand behind the chunk.
+                    self.give_back(chunk.first, max(
+                        offset + count * form.INDEX_ENTRY.itemsize
+                        for offset, count in chunk.index.values()))
 
     def _open(self, chunk):
         """Return the bytes of a chunk."""
