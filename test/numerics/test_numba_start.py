@@ -11,7 +11,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import compilation
 compilation.compiled(quaternion.multiply)((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.6, 0.8))
-print('scipy' in sys.modules)
+print('scipy.linalg' in sys.modules)
 import numba
 product = numba.njit(lambda a, b: np.linalg.inv(a) @ b)
 print(product(np.diag([2.0, 4.0]), np.eye(2)).tolist())
