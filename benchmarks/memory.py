@@ -10,6 +10,8 @@ import subprocess
 import sys
 import tempfile
 
+from paired import environment
+
 HERE = Path(__file__).resolve().parent
 DAY_S = 86400
 # name, words of the verb, whether it writes into a folder, most MB
@@ -25,8 +27,7 @@ LONG = (('simulate, 10 days at 1 Hz', ('simulate', *SLOW, f'duration_s:={10 * DA
 
 def measure(command):
     """Return the largest memory, MB, and the CPU seconds of a command."""
-    process = subprocess.Popen(command, env={**os.environ, 'PYTHONPATH': str(HERE.parent)},
-                               stdout=subprocess.DEVNULL)
+    process = subprocess.Popen(command, env=environment(HERE.parent), stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
