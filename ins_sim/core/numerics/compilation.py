@@ -32,6 +32,8 @@ REPLACED = {elementary.sqrt: math.sqrt, taylor.sincos: elementary.sincos}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
+# Where Numba is loaded already, the code of one more loop takes this part of it.
+PART_OF_CODE = 0.125
 _taken, _broken = {}, set()
 _plain_only = ContextVar('plain_only', default=False)
 
@@ -53,7 +55,8 @@ def run(loop, count, inputs, out, plain=None):
 
     """
     _taken[loop] = _taken.get(loop, 0) + count
-    if _taken[loop] > PLAIN_SAMPLES and not _plain_only.get():
+    enough = PLAIN_SAMPLES * (PART_OF_CODE if numba.cache_info().currsize else 1.0)
+    if _taken[loop] > enough and not _plain_only.get():
         fast = compiled(loop)
         if fast is not None:
             try:
