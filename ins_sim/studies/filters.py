@@ -9,7 +9,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
 from ins_sim.core.simulation.aided import make_instruments
-from ins_sim.core.simulation.aided_run import navigate_aided, with_truth
+from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
 from ins_sim.settings.aided_navigator import FILTERS
 
 STEP_S = 5.0
@@ -68,28 +68,39 @@ def fly_filters(settings, cases, run):
     Return the FilterFlight of each FilterCase on one flight: AidedSimulationSettings, its seeds
     plus run.
 
-    The readings of the IMU are made once.  Raises ValueError as the stages do.
+    The readings of the IMU, and the fixes of each length of window, are made once.  Raises
+    ValueError as the stages do.
     """
     settings = run_settings(settings, run)
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     check_length(generator, motion)
     blocks = list(with_truth(motion, inertial.imu_blocks(settings.simulation, motion)))
-    return [_fly(settings, case, blocks) for case in cases]
+    chosen = {cycles: _with_cycles(settings, cycles) for cycles in {c.cycles for c in cases}}
+    fixes = {cycles: _fixes(s, blocks) for cycles, s in chosen.items()}
+    return [_fly(chosen[case.cycles].aided_navigator, case, blocks, fixes[case.cycles])
+            for case in cases]
 
 
-def _fly(settings, case, blocks):
-    navigator, meter = settings.aided_navigator, settings.velocity_meter
-    window = replace(meter.window, cycles=case.cycles)
-    every = max(1, round(STEP_S * navigator.rate_hz))
-    settings = replace(
-        settings, velocity_meter=replace(meter, window=window),
-        aided_navigator=replace(navigator, filter=case.filter, window=window,
-                                output_every=every,
-                                gnss_model=replace(navigator.gnss_model,
-                                                   use=navigator.gnss_model.use
-                                                   and FILTERS[case.filter].takes_gnss)))
-    flown = navigate_aided(settings.aided_navigator, blocks, *make_instruments(settings))
+def _with_cycles(settings, cycles):
+    """Return AidedSimulationSettings with windows of the velocity meter of that many cycles."""
+    window = replace(settings.velocity_meter.window, cycles=cycles)
+    return replace(settings, velocity_meter=replace(settings.velocity_meter, window=window),
+                   aided_navigator=replace(settings.aided_navigator, window=window))
+
+
+def _fixes(settings, blocks):
+    """Return the fixes of velocity meter and GNSS."""
+    return [[fix for _, truth in blocks for fix in instrument.advance(truth)]
+            for instrument in make_instruments(settings)]
+
+
+def _fly(settings, case, blocks, fixes):
+    used = settings.gnss_model.use and FILTERS[case.filter].takes_gnss
+    settings = replace(settings, filter=case.filter,
+                       output_every=max(1, round(STEP_S * settings.rate_hz)),
+                       gnss_model=replace(settings.gnss_model, use=used))
+    flown = navigate_aided(settings, blocks, *map(Reported, fixes))
     errors = flown.errors
     weighed = [t.outcome for t in flown.judged if t.source == METER]
     refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']

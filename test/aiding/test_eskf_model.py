@@ -75,7 +75,7 @@ class Flight:
         """Advance over STEPS samples."""
         for k in range(1, STEPS + 1):
             before = self.ins.q_nb, self.ins.v_b, self.ins.v
-            u = self.ins.take(k * 10_000_000, self._omega, FORCE, ())
+            u = self.ins.take(k * 10_000_000, self._omega, FORCE)
             self.filter.step(self.ins, before, u, STEP_S)
         return self
 

@@ -29,7 +29,7 @@ def fly(motion, filter_name, windows, gain=0.4, bias=(0.0, 0.0), offset=(0.0, 0.
     for sample in samples:
         for taken in navigator.step(*sample):
             innovations.append(taken.outcome)
-            left.append(np.subtract(bias, navigator._ins.accelerometer_bias[:2]))
+            left.append(np.subtract(bias, navigator.ins.accelerometer_bias[:2]))
     return innovations, np.array(left)
 
 

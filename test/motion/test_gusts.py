@@ -8,6 +8,7 @@ from scipy.integrate import quad
 from scipy.signal import welch
 
 from ins_sim.core.motion.route.gusts import Gusts, HIGHEST, LINES, LOWEST
+from ins_sim.core.numerics import elementary
 
 SIGMA, LENGTH, AIRSPEED = 0.5, 500.0, 200.0
 TAU = LENGTH / AIRSPEED
@@ -99,3 +100,18 @@ def test_the_flight_has_its_gusts():
     assert np.abs(difference).max() < 2e-3
     rms = np.sqrt((gust_velocity(motion, t_ns) ** 2).mean(axis=0))
     assert np.abs(rms - 0.5).max() < 0.05
+
+
+def test_any_cutting_gives_the_same_bits():
+    """One instant, two, or a thousand at a time, and each sinusoid added by itself."""
+    gusts = Gusts(SIGMA, LENGTH, AIRSPEED, 3)
+    t = np.arange(1000) * 0.0137
+    whole = np.array([axis.c for axis in gusts.displacement(t)])
+    edges = [0, 1, 1, 2, 4, 260, 517, 774, 1000]
+    parts = [np.array([axis.c for axis in gusts.displacement(t[a:b])])
+             for a, b in zip(edges, edges[1:])]
+    np.testing.assert_array_equal(np.concatenate(parts, axis=2), whole)
+    alone = np.zeros(1000)
+    for w, phase in zip(gusts.rates[1].tolist(), gusts._phases[1].tolist()):
+        alone += elementary.sin(t * w + phase) * (gusts.amplitude / w)
+    np.testing.assert_array_equal(alone, whole[1, 0])

@@ -21,8 +21,7 @@ SECOND = np.array((2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0)) / 180.0
 
 def local(truth):
     """Return q_en (4, n)."""
-    return frames.local_level(np.sin(truth.lat / 2), np.cos(truth.lat / 2),
-                              np.sin(truth.lon / 2), np.cos(truth.lon / 2))
+    return frames.level_frame(truth.lat, truth.lon)
 
 
 @pytest.mark.parametrize('groups, h_s, v_bound, f_bound, rate_bound', [

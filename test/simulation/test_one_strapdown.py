@@ -6,10 +6,13 @@ from ins_sim.core.aiding.corrected_strapdown import CorrectedStrapdown
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import KINDS
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import mechanization
+from ins_sim.core.navigation.increments import (fixed_rate_increments, integrals,
+                                                uneven_increments)
 from ins_sim.core.navigation.navigator import InertialNavigator
 from ins_sim.core.navigation.recorded import RecordedNavigator
 from ins_sim.core.navigation.strapdown import Strapdown
+from ins_sim.core.navigation.vertical_channel import (DAMPED, damping, FREE, FROM_TRUTH,
+                                                      NO_DAMPING)
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.strapdown import StrapdownSettings
 import pytest
@@ -17,9 +20,9 @@ import pytest
 SPIN = ellipsoid.ROTATION_RATE
 DT_NS = 10_000_000
 PLACE = (0.95, 0.6, 300.0, (50.0, 100.0, 1.0), quaternion.normalise((0.1, 0.2, 0.3, 0.9)))
-CHANNELS = {'free': ((mechanization.FREE, ()), ()),
-            'truth': ((mechanization.FROM_TRUTH, ()), (301.0, 0.5)),
-            'damped': ((mechanization.DAMPED, mechanization.damping(100.0)), (301.0,))}
+CHANNELS = {'free': ((FREE, NO_DAMPING), ()),
+            'truth': ((FROM_TRUTH, NO_DAMPING), (301.0, 0.5)),
+            'damped': ((DAMPED, damping(100.0)), (301.0,))}
 
 
 def samples(count):
@@ -34,9 +37,9 @@ def of_increments(count, integrated):
     """Yield stamps, rotation vectors and velocity increments of ``samples`` but the first."""
     last = None
     for t_ns, omega, f in samples(count):
-        now = mechanization.integrals(omega, f, DT_NS * 1e-9)
+        now = integrals(omega, f, DT_NS * 1e-9)
         if last is not None:
-            yield t_ns, *mechanization.fixed_rate_increments(integrated, now, last)
+            yield t_ns, *fixed_rate_increments(integrated, now, last)
         last = now
 
 
@@ -48,14 +51,14 @@ def test_a_copy_is_a_snapshot(kind, channel):
     steps = list(of_increments(200, True))
     whole = Strapdown(5_000_000_000, PLACE, SPIN, *chosen, orientation=kind)
     for step in steps[:100]:
-        whole.advance(*step, reference)
+        whole.advance(*step, *reference)
     kept = whole.copy()
     at_copy = kept.solution
     for step in steps[100:]:
-        whole.advance(*step, reference)
+        whole.advance(*step, *reference)
     assert kept.solution == at_copy != whole.solution
     for step in steps[100:]:
-        kept.advance(*step, reference)
+        kept.advance(*step, *reference)
     assert kept.solution == whole.solution
 
 
@@ -73,8 +76,8 @@ def test_simulated_and_aided_navigation_share_the_strapdown(channel, integrated)
     alone = Strapdown(t_ns, PLACE, SPIN, *options)
     for sample, increment in zip(rest, of_increments(300, integrated)):
         navigator.step(*sample, truth)
-        aided.take(*sample, reference)
-        alone.advance(*increment, reference)
+        aided.take(*sample, *reference)
+        alone.advance(*increment, *reference)
         assert navigator.solution == aided.solution == alone.solution
 
 
@@ -88,7 +91,7 @@ def test_recorded_navigation_shares_the_strapdown(channel):
     recorded.step(t_ns, omega, f)
     alone = Strapdown(t_ns, PLACE, SPIN, *options)
     for sample, increment in zip(rest, of_increments(300, False)):
-        alone.advance(*increment, reference)
+        alone.advance(*increment, *reference)
         assert recorded.step(*sample, 301.0) == alone.solution
 
 
@@ -96,9 +99,8 @@ def test_even_and_uneven_increments_agree():
     """At a fixed rate the two functions differ by rounding only."""
     last, now = ((o, f) for _, o, f in samples(2))
     dt = 0.01
-    even = mechanization.fixed_rate_increments(True, mechanization.integrals(*now, dt),
-                                               mechanization.integrals(*last, dt))
-    uneven = mechanization.uneven_increments('integrated', last, now, dt, dt)
+    even = fixed_rate_increments(True, integrals(*now, dt), integrals(*last, dt))
+    uneven = uneven_increments('integrated', last, now, dt, dt)
     for a, b in zip(even, uneven):
         assert a == pytest.approx(b, rel=1e-14, abs=1e-16)
 
@@ -109,7 +111,7 @@ def test_a_correction_keeps_the_attitude_that_it_sets():
     ins = CorrectedStrapdown(t_ns, omega, f, 0.01, PLACE, SPIN, True)
     assert ins.solution == PLACE
     for sample in rest:
-        ins.take(*sample, ())
+        ins.take(*sample)
     before = ins.solution
     ins.correct(position=(1.0, 2.0, 3.0), velocity=(0.1, 0.2, 0.3))
     assert ins.solution[3] == tuple(a - b for a, b in zip(before[3], (0.1, 0.2, 0.3)))

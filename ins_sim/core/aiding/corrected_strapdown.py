@@ -1,16 +1,56 @@
 """The strapdown that can be corrected: biases taken off the readings, errors off the solution."""
 
+import copy
+
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.earth import ellipsoid
+from ins_sim.core.attitude.integration import turn
+from ins_sim.core.earth import ellipsoid, frames
 from ins_sim.core.earth.rates import rate_on_earth
+from ins_sim.core.navigation import mechanization
 from ins_sim.core.navigation.increments import fixed_rate_increments, integrals
-from ins_sim.core.navigation.strapdown import Strapdown
+from ins_sim.core.navigation.strapdown import level_attitude
 from ins_sim.core.navigation.vertical_channel import FREE
 
 ZERO = (0.0, 0.0, 0.0)
 
 
-class CorrectedStrapdown(Strapdown):
+def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
+    """
+    Advance the corrected strapdown over the interval that ends at t_ns.
+
+    Parameters
+    ----------
+    constants : start_ns; rate of the Earth, rad/s; whether the readings are plain integrals;
+        vertical channel
+    biases : of the gyros, rad/s, and of the accelerometers, m/s^2, which are subtracted
+    carry : t_ns; ``mechanization.PLACE``; q_ib; q_nb; velocity in b (m/s); rate, rad/s, and
+        integrals of the last interval
+    t_ns, omega, f : the reading, rad/s and m/s^2
+    height, v_u : m, m/s, at t_ns, for the channel FROM_TRUTH
+
+    Returns
+    -------
+    carry : as above, at t_ns
+    delta_v : velocity increment in b at the start of the interval, m/s
+
+    """
+    start_ns, spin, integrated, channel = constants
+    (bx, by, bz), (ax, ay, az) = biases
+    last_ns, place, q_ib, _, _, _, last = carry
+    dt = (t_ns - last_ns) * 1e-9
+    rate = (omega[0] - bx, omega[1] - by, omega[2] - bz)
+    now = integrals(rate, (f[0] - ax, f[1] - ay, f[2] - az), dt)
+    phi, delta_v = fixed_rate_increments(integrated, now, last)
+    place = mechanization.advance(place, q_ib, delta_v, dt, spin,
+                                  spin * ((last_ns - start_ns) * 1e-9), channel,
+                                  (height, v_u, 0.0, 0.0, 0.0))
+    q_ib = turn(q_ib, phi)
+    q_nb = level_attitude(place[0], place[1], q_ib, spin * ((t_ns - start_ns) * 1e-9))
+    v_b = quaternion.rotate_back(q_nb, (place[3], place[4], place[5]))
+    return (t_ns, place, q_ib, q_nb, v_b, rate, now), delta_v
+
+
+class CorrectedStrapdown:
     """
     The inertial solution between corrections; a copy is a snapshot.
 
@@ -25,50 +65,103 @@ class CorrectedStrapdown(Strapdown):
 
     Attributes
     ----------
-    q_nb, v_b : attitude, and velocity in b, at t_ns
-    rate : last reading of the gyros less its bias
+    constants, carry : as of ``take_reading``; the properties are read from them
     gyro_bias, accelerometer_bias : what is taken off the readings, rad/s and m/s^2, in b
 
     """
 
     def __init__(self, t_ns, omega, f, dt, place, spin, integrated, channel=FREE):
-        super().__init__(t_ns, place, spin, channel)
-        self._integrated = integrated
+        self.constants = t_ns, spin, integrated, channel
         self.gyro_bias = self.accelerometer_bias = ZERO
-        self.rate, self._last = omega, integrals(omega, f, dt)
+        lat, lon, height, v, q_nb = place
+        self._set(t_ns, mechanization.begin(lat, lon, height, v, 0.0), q_nb, omega,
+                  integrals(omega, f, dt))
 
-    def set_attitude(self, q_nb):
-        """Replace the attitude by another one relative to n."""
-        super().set_attitude(q_nb)
-        self._keep(q_nb)
+    def copy(self):
+        """Return a snapshot."""
+        return copy.copy(self)
 
-    def _keep(self, q_nb):
-        self.q_nb, self.v_b = q_nb, quaternion.rotate_back(q_nb, self.v)
+    def _set(self, t_ns, place, q_nb, rate, last):
+        q_ib = frames.inertial_attitude(place[0], place[1] + self._earth_angle(t_ns), q_nb)
+        self.carry = (t_ns, place, q_ib, q_nb, quaternion.rotate_back(q_nb, place[3:6]), rate,
+                      last)
 
-    def attitude(self):
-        """Return q_nb, as it was set or found at the end of the last interval."""
-        return self.q_nb
+    def _earth_angle(self, t_ns):
+        """Return the rotation of the Earth since the start, rad."""
+        start_ns, spin = self.constants[:2]
+        return spin * ((t_ns - start_ns) * 1e-9)
+
+    @property
+    def t_ns(self):
+        """Return the instant of the solution."""
+        return self.carry[0]
+
+    @property
+    def lat(self):
+        """Return the latitude, rad."""
+        return self.carry[1][0]
+
+    @property
+    def lon(self):
+        """Return the longitude, rad."""
+        return self.carry[1][1]
+
+    @property
+    def height(self):
+        """Return the height, m."""
+        return self.carry[1][2]
+
+    @property
+    def v(self):
+        """Return v_n, m/s."""
+        return self.carry[1][3:6]
+
+    @property
+    def q_nb(self):
+        """Return the attitude, as it was set or found at the end of the last interval."""
+        return self.carry[3]
+
+    @property
+    def v_b(self):
+        """Return the velocity in b, m/s."""
+        return self.carry[4]
+
+    @property
+    def rate(self):
+        """Return the last reading of the gyros less its bias, rad/s."""
+        return self.carry[5]
+
+    @property
+    def spin(self):
+        """Return the rotation rate of the Earth, rad/s."""
+        return self.constants[1]
+
+    @property
+    def biases(self):
+        """Return what is taken off gyros, rad/s, and accelerometers, m/s^2."""
+        return self.gyro_bias, self.accelerometer_bias
+
+    @property
+    def solution(self):
+        """Return lat, lon, height, v_n, q_nb."""
+        place = self.carry[1]
+        return *place[0:3], place[3:6], self.carry[3]
 
     @property
     def rate_to_earth(self):
         """Return the rate of b relative to the Earth, in b, rad/s."""
         return rate_on_earth(self.lat, self.q_nb, self.rate, self.spin)
 
-    def take(self, t_ns, omega, f, reference):
+    def take(self, t_ns, omega, f, height=0.0, v_u=0.0):
         """
         Take the reading of the interval that ends at t_ns; return its velocity increment, m/s.
 
-        omega, f: rad/s and m/s^2; reference: as of ``Strapdown.advance``.  The increment is in b
-        at the start of the interval, biases taken off.
+        omega, f: rad/s and m/s^2; height, v_u: m, m/s, at its end for the channel FROM_TRUTH.  The
+        increment is in b at the start of the interval, biases taken off.
         """
-        (bx, by, bz), (ax, ay, az) = self.gyro_bias, self.accelerometer_bias
-        self.rate = rate = omega[0] - bx, omega[1] - by, omega[2] - bz
-        now = integrals(rate, (f[0] - ax, f[1] - ay, f[2] - az), (t_ns - self.t_ns) * 1e-9)
-        phi, u = fixed_rate_increments(self._integrated, now, self._last)
-        self._last = now
-        self.advance(t_ns, phi, u, *reference)
-        self._keep(super().attitude())
-        return u
+        self.carry, delta_v = take_reading(self.constants, self.biases, self.carry, t_ns, omega,
+                                           f, height, v_u)
+        return delta_v
 
     def correct(self, position=ZERO, velocity=ZERO, turned=ZERO):
         """
@@ -77,12 +170,15 @@ class CorrectedStrapdown(Strapdown):
         position m; velocity m/s; turned: rotation vector of the attitude, q_nb = exp(turned)
         q_nb_true, rad.
         """
-        v = self.v
-        self.move(*ellipsoid.moved(self.lat, self.lon, self.height,
-                                   (-position[0], -position[1], -position[2])),
-                  (v[0] - velocity[0], v[1] - velocity[1], v[2] - velocity[2]))
+        t_ns, place, _, q_nb, _, rate, last = self.carry
+        lat, lon, height, v_e, v_n, v_u, *rest = place
+        lat, lon, height = ellipsoid.moved(lat, lon, height,
+                                           (-position[0], -position[1], -position[2]))
+        place = mechanization.renewed(
+            (lat, lon, height, v_e - velocity[0], v_n - velocity[1], v_u - velocity[2], *rest),
+            self._earth_angle(t_ns))
         back = quaternion.exponential((-turned[0], -turned[1], -turned[2]))
-        self.set_attitude(quaternion.normalise(quaternion.multiply(back, self.q_nb)))
+        self._set(t_ns, place, quaternion.normalise(quaternion.multiply(back, q_nb)), rate, last)
 
     def add_biases(self, gyro=ZERO, accelerometer=ZERO):
         """Take more off the readings from now on, rad/s and m/s^2 in b."""

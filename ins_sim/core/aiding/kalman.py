@@ -1,8 +1,9 @@
 """The measurement update of a Kalman filter, and what tells whether it is consistent."""
 
-import math
-
 import numpy as np
+
+from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.matrices import dot, is_positive_definite, product, solved
 
 
 def innovation(p, h, r):
@@ -11,9 +12,9 @@ def innovation(p, h, r):
 
     p (n, n) covariance; h (m, n); r (m, m).  Raises numpy.linalg.LinAlgError where S is singular.
     """
-    ph = p @ h.T
-    s = h @ ph + r
-    return s, np.linalg.solve(s, ph.T).T
+    ph = product(p, h.T)
+    s = product(h, ph) + r
+    return s, solved(s, ph.T).T
 
 
 def joseph(p, h, r, gain):
@@ -22,14 +23,14 @@ def joseph(p, h, r, gain):
 
     (I - K H) P (I - K H)' + K R K' (Bucy and Joseph 1968; Groves 3.58).
     """
-    a = np.eye(len(p)) - gain @ h
-    p = a @ p @ a.T + gain @ r @ gain.T
+    a = np.eye(len(p)) - product(gain, h)
+    p = product(product(a, p), a.T) + product(product(gain, r), gain.T)
     return 0.5 * (p + p.T)
 
 
 def normalised_square(z, s):
     """Return z' S^-1 z: of an innovation the NIS, of an error the NEES."""
-    return float(z @ np.linalg.solve(s, z))
+    return dot(z, solved(s, z[:, np.newaxis])[:, 0])
 
 
 def chi_square_tail(square, freedom):
@@ -42,7 +43,7 @@ def chi_square_tail(square, freedom):
     for k in range(1, freedom // 2):
         term *= half / k
         total += term
-    return math.exp(-half) * total if half < 700.0 else 0.0
+    return elementary.exp(-half) * total if half < 700.0 else 0.0
 
 
 def is_covariance(p):
@@ -50,9 +51,5 @@ def is_covariance(p):
     scale = np.sqrt(np.abs(np.diagonal(p)))
     if not np.isfinite(p).all() or not (np.diagonal(p) > 0.0).all():
         return False
-    try:
-        # of the correlations, so that metres and radians weigh alike
-        np.linalg.cholesky(p / np.outer(scale, scale))
-    except np.linalg.LinAlgError:
-        return False
-    return True
+    # Of the correlations, so that metres and radians weigh alike.
+    return is_positive_definite(p / np.multiply.outer(scale, scale))

@@ -46,7 +46,8 @@ class MountingCalibration:
     @property
     def least_squares(self):
         """Return mu of the least squares and the turn, rad, and its standard deviation."""
-        return self.fitted - self.dpsi, math.hypot(self.fitted_sigma, self.dpsi_sigma)
+        variance = self.fitted_sigma * self.fitted_sigma + self.dpsi_sigma * self.dpsi_sigma
+        return self.fitted - self.dpsi, math.sqrt(variance)
 
 
 def calibrate_mounting(states, gnss, meter):

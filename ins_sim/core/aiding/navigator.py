@@ -5,8 +5,8 @@ A late fix is processed at its own instant: the navigator restores the snapshot 
 the fix, and advances again over the samples since then.
 """
 
-from bisect import insort
-from collections import deque, namedtuple
+from bisect import bisect_left, insort
+from collections import namedtuple
 from dataclasses import replace
 import math
 
@@ -18,17 +18,17 @@ from ins_sim.core.numerics.located import located
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.settings.aided_navigator import FILTERS
+from . import segment
 from .corrected_strapdown import CorrectedStrapdown
+from .filtered_strapdown import FilteredStrapdown
 from .filters.base import INVALID_FIX, refused_fix
 from .fix_checks import check_ahead, check_gnss, check_velocity
+from .past import FixEntry, FlownSamples, Past
 
-SNAPSHOT_NS = 1_000_000_000
 METER, GNSS = 'velocity_meter', 'gnss'
 
 # A fix that was processed: its source, its instant (ns of motion time) and the FixOutcome.
 JudgedFix = namedtuple('JudgedFix', 'source t_ns outcome')
-_Entry = namedtuple('_Entry', 'source fix')
-_Snapshot = namedtuple('_Snapshot', 't_ns ins filter window_start_ns')
 
 
 def filter_class(name):
@@ -51,8 +51,6 @@ class AidedNavigator:
 
     Attributes
     ----------
-    filter : AidingFilter or None
-        None until the solution starts.
     sources : tuple of str
         The instruments that aid: METER, GNSS.
     """
@@ -69,19 +67,33 @@ class AidedNavigator:
         self.sources = tuple(source for source, use in used.items() if use)
         self._altimeter = settings.vertical.channel == 'altimeter'
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
-        self._first_ns = self._ins = self.filter = None
-        self._pending, self._samples, self._log = [], deque(), []
-        self._snapshots = deque()
+        self._first_ns = self._flight = None
+        self._pending, self._past = [], Past(self._buffer_ns, self._dt_ns)
 
     @property
     def navigates(self):
         """Return whether there is a solution."""
-        return self._ins is not None
+        return self._flight is not None
+
+    @property
+    def filter(self):
+        """Return the AidingFilter, or None until the solution starts."""
+        return self._flight.filter if self._flight else None
+
+    @property
+    def ins(self):
+        """Return the CorrectedStrapdown; there is none until the solution starts."""
+        return self._flight.ins
+
+    @property
+    def takes_segments(self):
+        """Return whether there is a solution, and ``run`` can take more than one sample of it."""
+        return self._flight is not None and self._flight.takes_segments
 
     @property
     def solution(self):
         """Return lat, lon, height, v_n, q_nb at the last sample."""
-        return self._ins.solution
+        return self.ins.solution
 
     def step(self, t_ns, omega, f, truth):
         """
@@ -90,22 +102,58 @@ class AidedNavigator:
         omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb), which starts the
         solution, with the initial errors, and then is the altimeter.
         """
-        vertical = (truth[2], truth[3][2]) if self._altimeter else ()
-        if self._ins is None:
+        if self._flight is None:
             if self._first_ns is None:
                 self._first_ns = t_ns
             if t_ns < self._first_ns + self._after_ns:
                 return None
             self._start(t_ns, omega, f, truth)
         else:
-            self._samples.append((t_ns, omega, f, vertical))
-            self._advance(*self._samples[-1])
-            # a sum is finite only if all of it is
-            if not math.isfinite(sum(self._ins.v) + self._ins.lat + self._ins.height):
+            one = segment.one_sample(t_ns, omega, f, truth[2], truth[3][2])
+            self._flight.advance(one, 0, 1)
+            self._past.add_samples(one, 0, 1)
+            if not self._flight.is_finite:
                 raise StreamFault(f'the solution at {seconds(t_ns)} is no number any more; '
                                   'expected finite readings', restart=True)
         self._keep()
         return self._due()
+
+    def run(self, samples, first, stop, out, put_out):
+        """
+        Take samples as ``step`` does, but none at which a fix arrives; return their end.
+
+        That is the first of them, if the solution is no number at a sample: ``step`` then finds
+        out at which.
+
+        Parameters
+        ----------
+        samples : segment.Samples
+        first, stop : int
+            The samples that may be taken, stop not included; the solution has started before.
+        out : flat array
+            The solution at each sample is written into it, see ``segment.fly``.
+        put_out : callable
+            Called with the range of samples whose solutions are written, while the filter is as
+            it is at these samples.
+        """
+        flight = self._flight
+        if self._pending:
+            stop = bisect_left(samples.t_ns, self._pending[0].fix.arrival_ns, first, stop)
+        if stop == first:
+            return first
+        stop = flight.cut(samples, first, stop, self._past.next_ns)
+        flight.begin_window()
+        before = flight.ins.carry, flight.filter.sums
+        flight.fly(samples, first, stop, out)
+        if not flight.is_finite:
+            flight.ins.carry, flight.filter.sums = before
+            return first
+        put_out(first, stop - 1)
+        flight.pause()
+        put_out(stop - 1, stop)
+        self._past.add_samples(samples, first, stop)
+        self._keep()
+        return stop
 
     def take(self, source, fix):
         """
@@ -118,9 +166,9 @@ class AidedNavigator:
             check_velocity(fix, self._settings.window.cycles, self._dt_ns)
         else:
             check_gnss(fix)
-        if self._ins is not None:
-            check_ahead(source, fix.t_ns, self._ins.t_ns, self._dt_ns + self._buffer_ns)
-        insort(self._pending, _Entry(source, fix), key=_arrival)
+        if self.navigates:
+            check_ahead(source, fix.t_ns, self.ins.t_ns, self._dt_ns + self._buffer_ns)
+        insort(self._pending, FixEntry(source, fix), key=_arrival)
 
     def take_arrived(self, waiting, t_ns):
         """
@@ -141,48 +189,26 @@ class AidedNavigator:
         error = quaternion.exponential((tilt * draw[4], tilt * draw[5], azimuth * draw[6]))
         place = lat, lon, height, v, quaternion.multiply(error, q_nb)
         channel = FROM_TRUTH if self._altimeter else FREE
-        self._ins = CorrectedStrapdown(t_ns, omega, f, self._dt_ns * 1e-9, place, self._spin,
-                                       self._settings.input == 'integrated', channel)
+        ins = CorrectedStrapdown(t_ns, omega, f, self._dt_ns * 1e-9, place, self._spin,
+                                 self._settings.input == 'integrated', channel)
         p, s = initial.position_sigma_m, initial.velocity_sigma_m_s
-        self._ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
-                          velocity=(-s * draw[2], -s * draw[3], 0.0))
-        self.filter = self._filter_class(self._settings, self._ins)
-        self._window_start_ns = t_ns
-
-    def _advance(self, t_ns, omega, f, vertical):
-        ins, filter_ = self._ins, self.filter
-        if ins.t_ns // self._window_ns != self._window_start_ns // self._window_ns:
-            # Not at the end of the window, so that the fix of that instant still finds its sums.
-            filter_.begin_window(ins)
-            self._window_start_ns = ins.t_ns
-        before, last_ns = (ins.q_nb, ins.v_b, ins.v), ins.t_ns
-        u = ins.take(t_ns, omega, f, vertical)
-        filter_.step(ins, before, u, (t_ns - last_ns) * 1e-9)
+        ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
+                    velocity=(-s * draw[2], -s * draw[3], 0.0))
+        self._flight = FilteredStrapdown(ins, self._filter_class(self._settings, ins),
+                                         self._window_ns)
 
     def _keep(self):
-        """Take a snapshot now and then; forget what is older than the buffer."""
-        self._snapshot()
-        oldest_ns = self._ins.t_ns - self._buffer_ns
-        while len(self._snapshots) > 1 and self._snapshots[1].t_ns <= oldest_ns:
-            self._snapshots.popleft()
-        start_ns = self._snapshots[0].t_ns
-        while self._samples and self._samples[0][0] <= start_ns:
-            self._samples.popleft()
-        while self._log and self._log[0].fix.t_ns <= start_ns - self._dt_ns:
-            self._log.pop(0)
-
-    def _snapshot(self):
-        """Take a snapshot, before the fixes of this instant, unless the last one is young."""
-        ins = self._ins
-        if not self._snapshots or ins.t_ns - self._snapshots[-1].t_ns >= SNAPSHOT_NS:
-            self._snapshots.append(_Snapshot(ins.t_ns, ins.copy(), self.filter.copy(),
-                                             self._window_start_ns))
+        """Take a snapshot now and then, before the fixes of now."""
+        if self.ins.t_ns >= self._past.next_ns:
+            self._past.add_snapshot(self._flight)
+            self._past.forget(self.ins.t_ns)
 
     def _due(self):
         """Process the fixes that have arrived by now; return a list of JudgedFix."""
         judged = []
-        while self._pending and self._pending[0].fix.arrival_ns <= self._ins.t_ns:
+        while self._pending and self._pending[0].fix.arrival_ns <= self.ins.t_ns:
             entry = self._pending.pop(0)
+            self._past.forget(self.ins.t_ns)
             outcome = self._unfit(entry) or self._insert(entry)
             self._check()
             judged.append(JudgedFix(entry.source, entry.fix.t_ns, outcome))
@@ -195,48 +221,47 @@ class AidedNavigator:
             return refused_fix(f'{INVALID_FIX}: {fix.status}')
         if entry.source not in self.sources:
             return refused_fix(f'{entry.source} is not used')
-        if fix.t_ns < self._snapshots[0].t_ns:
-            late = (self._ins.t_ns - fix.t_ns) * 1e-9
+        if fix.t_ns < self._past.start_ns:
+            late = (self.ins.t_ns - fix.t_ns) * 1e-9
             return refused_fix(f'the fix is {late:.3f} s old; expected at most buffer_s, '
                                f'{self._settings.buffer_s:g} s, and none before the start')
-        if any(_instant(other) == _instant(entry) for other in reversed(self._log)
-               if other.fix.t_ns >= fix.t_ns):
+        if self._past.knows(entry):
             return refused_fix(f'the fix at {seconds(fix.t_ns)} has come before')
         return None
 
     def _insert(self, entry):
-        insort(self._log, entry, key=_instant)
-        if entry.fix.t_ns > self._ins.t_ns - self._dt_ns and self._log[-1] is entry:
+        newest = self._past.add_fix(entry)
+        if newest and entry.fix.t_ns > self.ins.t_ns - self._dt_ns:
             return self._apply(entry)
         return self._replay(entry)
 
     def _replay(self, wanted):
         """Restore the snapshot before a fix, and advance again; return the FixOutcome."""
-        now_ns, found = self._ins.t_ns, None
-        while self._snapshots[-1].t_ns > wanted.fix.t_ns:
-            self._snapshots.pop()
-        start = self._snapshots[-1]
-        self._ins, self.filter = start.ins.copy(), start.filter.copy()
-        self._window_start_ns = start.window_start_ns
-        log = deque(e for e in self._log if e.fix.t_ns > start.t_ns - self._dt_ns)
-        samples = deque(s for s in self._samples if s[0] > start.t_ns)
+        now_ns, found = self.ins.t_ns, None
+        self._flight, flown, fixes = self._past.go_back(wanted.fix.t_ns)
+        flight = self._flight
         while True:
-            while log and log[0].fix.t_ns <= self._ins.t_ns:
-                entry = log.popleft()
+            while fixes and fixes[0].fix.t_ns <= flight.ins.t_ns:
+                entry = fixes.popleft()
                 outcome = self._apply(entry)
                 found = outcome if entry is wanted else found
-            if not samples:
+            if not flown:
                 return found
-            self._advance(*samples.popleft())
-            if self._ins.t_ns < now_ns:
-                self._snapshot()
+            samples, first, end = flown.popleft()
+            event_ns = min(self._past.next_ns, fixes[0].fix.t_ns if fixes else math.inf)
+            stop = flight.cut(samples, first, end, event_ns)
+            if stop < end:
+                flown.appendleft(FlownSamples(samples, stop, end))
+            flight.advance(samples, first, stop)
+            if self._past.next_ns <= flight.ins.t_ns < now_ns:
+                self._past.add_snapshot(flight)
 
     def _apply(self, entry):
-        fix, ins = entry.fix, self._ins
+        fix, ins = entry.fix, self.ins
         if entry.source == GNSS:
             return self.filter.update_gnss(ins, fix, ins.rate_to_earth,
                                            self._settings.gnss_model.lever_arm_m)
-        if self._window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
+        if self._flight.window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
             return refused_fix('the solution does not cover its window')
         forward, left = fix.velocity
         known = self._settings.meter_model.bias_x_m_s / fix.cycles
@@ -246,12 +271,8 @@ class AidedNavigator:
         """Raise StreamFault if the covariance is no longer positive definite."""
         if not self.filter.healthy:
             raise StreamFault(f'the covariance of filter {self._settings.filter} at '
-                              f'{seconds(self._ins.t_ns)} is not positive definite; expected '
-                              'errors that the model can follow', restart=True)
-
-
-def _instant(entry):
-    return entry.fix.t_ns, entry.source
+                              f'{seconds(self.ins.t_ns)} is not positive definite; '
+                              'expected errors that the model can follow', restart=True)
 
 
 def _arrival(entry):

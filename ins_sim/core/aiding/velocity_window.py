@@ -1,93 +1,160 @@
-"""Sums over the current window of the velocity meter, as the filters need them."""
+"""
+Sums over the current window of the velocity meter, as the filters need them.
 
-from collections import namedtuple
-import copy
+Each sum is a tuple of floats, and a function returns it one cycle later. A filter has the sums
+that it asks for; the others are None, and stay None.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.attitude.matrix import dcm_of
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import elementary
 
 
-class _Sums:
-    """Sums over a window: values are replaced, never changed, so a shallow copy is a snapshot."""
+class BodyMean(NamedTuple):
+    """
+    Mean velocity in b over the window so far, by the trapezoid of its cycles.
 
-    def __init__(self):
-        self.clear()
+    time_s: length of the window so far; path: integral of the velocity forward and left, m.
+    """
 
-    def copy(self):
-        """Return a snapshot."""
-        return copy.copy(self)
-
-
-class BodyMean(_Sums):
-    """Mean velocity in b over the window so far, by the trapezoid of its cycles."""
-
-    def clear(self):
-        """Begin a window."""
-        self.time_s = 0.0
-        self._sum = (0.0, 0.0)
-
-    def add(self, before, after, dt):
-        """Take a cycle: the velocities in b at its ends, m/s, and its length, s."""
-        half = 0.5 * dt
-        self._sum = (self._sum[0] + half * (before[0] + after[0]),
-                     self._sum[1] + half * (before[1] + after[1]))
-        self.time_s += dt
-
-    def shift(self, forward, left):
-        """Take an estimated error off the integral, m."""
-        self._sum = self._sum[0] - forward, self._sum[1] - left
+    time_s: float = 0.0
+    path: tuple[float, float] = (0.0, 0.0)
 
     @property
     def value(self):
         """Return the mean forward and left velocity, m/s."""
-        return self._sum[0] / self.time_s, self._sum[1] / self.time_s
+        return self.path[0] / self.time_s, self.path[1] / self.time_s
 
 
-class Integrals(_Sums):
+class Integrals(NamedTuple):
     """
     The matrices of the window, of the level axes (East, North) and the body's (forward, left).
 
     a1 = sum C T_c, a2 = sum A1 T_c, b1 = sum C^T T_c / T, b2 = sum C^T A1 T_c / T (docs/theory.md,
     "Aided navigation"). They map a constant error of the acceleration in b (a1, a2, b2) or of the
     velocity in n (b1) to the errors at the end of the window: a1 to velocity, a2 to position, b1
-    and b2 to the mean velocity in b. Each is (2, 2).
+    and b2 to the mean velocity in b. Here each is four floats, row by row, b1 and b2 times T.
     """
 
-    def clear(self):
-        """Begin a window."""
-        self.time_s = 0.0
-        self._a1 = self._a2 = self._b1 = self._b2 = (0.0,) * 4
+    a1: tuple = (0.0, 0.0, 0.0, 0.0)
+    a2: tuple = (0.0, 0.0, 0.0, 0.0)
+    b1: tuple = (0.0, 0.0, 0.0, 0.0)
+    b2: tuple = (0.0, 0.0, 0.0, 0.0)
 
-    def add(self, q_nb, dt):
-        """Take a cycle: the attitude at its middle, and its length, s."""
-        m = dcm_of(q_nb)
-        c = (m[0], m[1], m[3], m[4])
-        last, half = self._a1, 0.5 * dt
-        self._a1 = now = tuple(a + b * dt for a, b in zip(last, c))
-        mid = tuple(0.5 * (a + b) for a, b in zip(last, now))
-        self._a2 = tuple(a + half * (x + y) for a, x, y in zip(self._a2, last, now))
-        t = (c[0], c[2], c[1], c[3])
-        self._b1 = tuple(a + x * dt for a, x in zip(self._b1, t))
-        product = (t[0] * mid[0] + t[1] * mid[2], t[0] * mid[1] + t[1] * mid[3],
-                   t[2] * mid[0] + t[3] * mid[2], t[2] * mid[1] + t[3] * mid[3])
-        self._b2 = tuple(a + x * dt for a, x in zip(self._b2, product))
-        self.time_s += dt
-
-    @property
-    def matrices(self):
-        """Return a1, a2, b1, b2."""
-        sums = self._a1, self._a2, self._b1, self._b2
-        a1, a2, b1, b2 = (np.array(x).reshape(2, 2) for x in sums)
-        return a1, a2, b1 / self.time_s, b2 / self.time_s
+    def matrices(self, time_s):
+        """Return a1, a2, b1, b2, each (2, 2), of a window of that length."""
+        a1, a2, b1, b2 = (np.array(x).reshape(2, 2) for x in self)
+        return a1, a2, b1 / time_s, b2 / time_s
 
 
-class DoubleIntegral(namedtuple('DoubleIntegral', 'once twice', defaults=2 * ((0.0, 0.0),))):
+class DoubleIntegral(NamedTuple):
     """An acceleration (forward, left) integrated once, m/s, and twice, m, over the window."""
 
-    def after(self, increment, dt):
-        """Return the integrals a cycle later: increment, m/s, in dt, s."""
-        a, b, half = self.once, self.twice, 0.5 * dt
-        return DoubleIntegral((a[0] + increment[0], a[1] + increment[1]),
-                              (b[0] + dt * a[0] + half * increment[0],
-                               b[1] + dt * a[1] + half * increment[1]))
+    once: tuple[float, float] = (0.0, 0.0)
+    twice: tuple[float, float] = (0.0, 0.0)
+
+
+class Force(NamedTuple):
+    """Integral of the specific force in b, m/s, over some samples, and their time, s."""
+
+    steps: int = 0
+    time_s: float = 0.0
+    increment: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+class WindowSums(NamedTuple):
+    """
+    All sums of a filter, or None.
+
+    mean: BodyMean; integrals: Integrals; accelerations: DoubleIntegral of the acceleration in b,
+    and of its part rate x velocity; turned: turn about the vertical axis of b, rad; force: Force.
+    """
+
+    mean: tuple
+    integrals: tuple | None = None
+    accelerations: tuple | None = None
+    turned: float | None = None
+    force: tuple | None = None
+
+
+def sums_after(mean, integrals, accelerations, turned, force, before, after, position, rate,
+               delta_v, dt):
+    """
+    Return WindowSums a cycle later, as a plain tuple.
+
+    mean to force: the sums before; before, after: q_nb, velocity in b and in n, m/s, at the ends
+    of the cycle; position: latitude and longitude (rad) and height (m) at its end; rate: rad/s;
+    delta_v: velocity increment in b of the start, m/s; dt: its length, s.
+    """
+    return (mean_after(mean, before[1], after[1], dt),
+            None if integrals is None else integrals_after(integrals, before[0], after[0], dt),
+            None if accelerations is None else accelerations_after(accelerations, before, after,
+                                                                   position, dt),
+            None if turned is None else turned + rate[2] * dt,
+            None if force is None else force_after(force, delta_v, dt))
+
+
+def mean_after(mean, before, after, dt):
+    """Return a BodyMean a cycle later: velocities in b at its ends, m/s, and its length, s."""
+    time_s, path = mean
+    half = 0.5 * dt
+    return time_s + dt, (path[0] + half * (before[0] + after[0]),
+                         path[1] + half * (before[1] + after[1]))
+
+
+def integrals_after(integrals, q_start, q_end, dt):
+    """Return Integrals a cycle later: the attitudes q_nb at its ends, and its length, s."""
+    a1, a2, b1, b2 = integrals
+    m = dcm_of(middle_attitude(q_start, q_end))
+    c = (m[0], m[1], m[3], m[4])
+    t = (c[0], c[2], c[1], c[3])
+    now = _weighted(a1, c, dt)
+    mid = (0.5 * (a1[0] + now[0]), 0.5 * (a1[1] + now[1]), 0.5 * (a1[2] + now[2]),
+           0.5 * (a1[3] + now[3]))
+    both = (a1[0] + now[0], a1[1] + now[1], a1[2] + now[2], a1[3] + now[3])
+    product = (t[0] * mid[0] + t[1] * mid[2], t[0] * mid[1] + t[1] * mid[3],
+               t[2] * mid[0] + t[3] * mid[2], t[2] * mid[1] + t[3] * mid[3])
+    return (now, _weighted(a2, both, 0.5 * dt), _weighted(b1, t, dt),
+            _weighted(b2, product, dt))
+
+
+def _weighted(total, x, weight):
+    return (total[0] + x[0] * weight, total[1] + x[1] * weight, total[2] + x[2] * weight,
+            total[3] + x[3] * weight)
+
+
+def accelerations_after(accelerations, before, after, position, dt):
+    """
+    Return the DoubleIntegrals of the acceleration a cycle later; arguments as of sums_after.
+
+    The acceleration is resolved in a level frame that does not turn about the vertical while the
+    vehicle follows a great circle.
+    """
+    whole, turning = accelerations
+    (q_start, b_start, v), (q_end, b_end, v_end), (lat, _, height) = before, after, position
+    sin_lat, cos_lat = elementary.sincos(lat)
+    _, r_e = ellipsoid.radii(sin_lat)
+    spin = v[0] * (sin_lat / cos_lat) / (r_e + height) * dt
+    w = quaternion.rotate_back(middle_attitude(q_start, q_end), (
+        v_end[0] - v[0] - spin * v[1], v_end[1] - v[1] + spin * v[0], v_end[2] - v[2]))
+    turn = w[0] - b_end[0] + b_start[0], w[1] - b_end[1] + b_start[1]
+    return twice_integrated(whole, w, dt), twice_integrated(turning, turn, dt)
+
+
+def twice_integrated(total, increment, dt):
+    """Return a DoubleIntegral a cycle later: increment of the velocity, m/s, in dt, s."""
+    (a, b), half = total, 0.5 * dt
+    return ((a[0] + increment[0], a[1] + increment[1]),
+            (b[0] + dt * a[0] + half * increment[0], b[1] + dt * a[1] + half * increment[1]))
+
+
+def force_after(force, delta_v, dt):
+    """Return a Force a cycle later: the velocity increment, m/s, in dt, s."""
+    steps, time_s, f = force
+    return steps + 1, time_s + dt, (f[0] + delta_v[0], f[1] + delta_v[1], f[2] + delta_v[2])

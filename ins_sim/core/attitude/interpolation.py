@@ -60,4 +60,5 @@ def continuous_quaternions(q):
 
 def middle_attitude(q_start, q_end):
     """Return the attitude half-way between two that are near."""
-    return quaternion.normalise(tuple(0.5 * (a + b) for a, b in zip(q_start, q_end)))
+    return quaternion.normalise((0.5 * (q_start[0] + q_end[0]), 0.5 * (q_start[1] + q_end[1]),
+                                 0.5 * (q_start[2] + q_end[2]), 0.5 * (q_start[3] + q_end[3])))

@@ -16,6 +16,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 from . import ellipsoid
 
 FLATTENING2 = 1.0 - ellipsoid.ECCENTRICITY2
@@ -25,24 +26,16 @@ LEAST_ANGLE = 1e-6
 
 def unit_vector(lat, lon):
     """Return the three components, in e, of the points at geodetic lat, lon (rad)."""
-    sin, cos, _, sqrt = _functions(lat)
-    sl, cl = FLATTENING2 * sin(lat), cos(lat)
+    (sl, cl), (sin_lon, cos_lon) = sincos(lat), sincos(lon)
+    sl = FLATTENING2 * sl
     norm = sqrt(sl * sl + cl * cl)
-    return cl * cos(lon) / norm, cl * sin(lon) / norm, sl / norm
+    return cl * cos_lon / norm, cl * sin_lon / norm, sl / norm
 
 
 def coordinates(u):
     """Return geodetic lat, lon (rad) of three components of any length, in e."""
-    _, _, atan2, sqrt = _functions(u[0])
     p = sqrt(u[0] * u[0] + u[1] * u[1])
     return atan2(u[2], FLATTENING2 * p), atan2(u[1], u[0])
-
-
-def _functions(x):
-    """Return sin, cos, atan2 and sqrt for a float or for an array."""
-    if isinstance(x, np.ndarray):
-        return np.sin, np.cos, np.arctan2, np.sqrt
-    return math.sin, math.cos, math.atan2, math.sqrt
 
 
 def dot(a, b):
@@ -61,8 +54,8 @@ class Leg:
     def __init__(self, lat1, lon1, lat2, lon2):
         self.u1, self.u2 = unit_vector(lat1, lon1), unit_vector(lat2, lon2)
         normal = quaternion.cross(self.u1, self.u2)
-        size = math.sqrt(dot(normal, normal))
-        angle = math.atan2(size, dot(self.u1, self.u2))
+        size = sqrt(dot(normal, normal))
+        angle = atan2(size, dot(self.u1, self.u2))
         if not LEAST_ANGLE < angle < math.pi - LEAST_ANGLE:
             kind = 'the same point' if angle < 1.0 else 'antipodes'
             raise ValueError(
@@ -72,14 +65,13 @@ class Leg:
         # of a short leg the product is not quite square to u1, which would be read as Z
         slip = dot(normal, self.u1)
         normal = tuple(x - slip * u for x, u in zip(normal, self.u1))
-        size = math.sqrt(dot(normal, normal))
+        size = sqrt(dot(normal, normal))
         self.n = tuple(x / size for x in normal)
         self.e2 = quaternion.cross(self.n, self.u1)
         self.length = ellipsoid.MEAN_RADIUS * angle
 
     def to_xz(self, lat, lon):
         """Return X, Z (m) of points at geodetic lat, lon (rad); X within half a turn."""
-        _, _, atan2, sqrt = _functions(lat)
         u = unit_vector(lat, lon)
         along, across = dot(u, self.u1), dot(u, self.e2)
         # atan2 for the asin: as exact far from the leg as near it
@@ -93,9 +85,8 @@ class Leg:
 
     def direction(self, x, z):
         """Return the unit vector, three components in e, of points at X, Z (m)."""
-        sin, cos, _, _ = _functions(x)
-        a, b = x / ellipsoid.MEAN_RADIUS, z / ellipsoid.MEAN_RADIUS
-        along, across, side = cos(b) * cos(a), cos(b) * sin(a), -sin(b)
+        (sin_x, cos_x), (sin_z, cos_z) = (sincos(d / ellipsoid.MEAN_RADIUS) for d in (x, z))
+        along, across, side = cos_z * cos_x, cos_z * sin_x, -sin_z
         return tuple(along * p + across * q + side * r
                      for p, q, r in zip(self.u1, self.e2, self.n))
 
@@ -111,7 +102,6 @@ class Leg:
 
 def course_of(u, n):
     """Return the course at u of the circle about the pole n, three components each, rad."""
-    atan2 = _functions(u[0])[2]
     ahead = quaternion.cross(n, u)
     # East is (-u_y, u_x, 0)/p and north (-u_x u_z, -u_y u_z, p^2)/p
     east = u[0] * ahead[1] - u[1] * ahead[0]

@@ -9,23 +9,23 @@ class Decimation:
     """
     Which outputs are published: every n-th sampling period, counted from the first output.
 
-    every: n; dt_ns: sampling period.  Periods are counted by the stamps, so that a gap does not
-    shift the outputs behind it.
+    every: n; dt_ns: sampling period; first_ns: instant of the first output, or None.  Periods are
+    counted by the stamps, so that a gap does not shift the outputs behind it.
     """
 
     def __init__(self, every, dt_ns):
-        self._every, self._dt_ns, self._first_ns = every, dt_ns, None
+        self._every, self._dt_ns, self.first_ns = every, dt_ns, None
 
     def begins(self, t_ns):
         """Return whether a run begins with the output of t_ns: the first, or time jumps back."""
-        if self._first_ns is None or t_ns < self._first_ns:
-            self._first_ns = t_ns
+        if self.first_ns is None or t_ns < self.first_ns:
+            self.first_ns = t_ns
             return True
         return False
 
     def due(self, t_ns):
         """Return whether the outputs of t_ns, of a run that has begun, are published."""
-        return (t_ns - self._first_ns + self._dt_ns // 2) // self._dt_ns % self._every == 0
+        return (t_ns - self.first_ns + self._dt_ns // 2) // self._dt_ns % self._every == 0
 
 
 class NavigationLoop:
@@ -44,8 +44,8 @@ class NavigationLoop:
     """
 
     def __init__(self, make_navigator, dt_ns, output_every=1, on_fault='stop', faults=None):
-        self._make, self._dt_ns, self._on_fault = make_navigator, dt_ns, on_fault
-        self._decimation = Decimation(output_every, dt_ns)
+        self._make, self.dt_ns, self._on_fault = make_navigator, dt_ns, on_fault
+        self.decimation = Decimation(output_every, dt_ns)
         self.faults = [] if faults is None else faults
         self.navigator, self._last_ns = make_navigator(), None
 
@@ -69,8 +69,8 @@ class NavigationLoop:
             self._last_ns = t_ns
             output = self._take(sample)
             if output is not None:
-                self._decimation.begins(t_ns)
-                yield k, output, self._decimation.due(t_ns)
+                self.decimation.begins(t_ns)
+                yield k, output, self.decimation.due(t_ns)
 
     def run_block(self, t_ns, *columns):
         """
@@ -81,9 +81,9 @@ class NavigationLoop:
         index of the first output; due: indices of the outputs that are published, from first.
         """
         regular = np.ones(len(t_ns), dtype=bool)
-        regular[1:] = is_regular(np.diff(t_ns), self._dt_ns)
+        regular[1:] = is_regular(np.diff(t_ns), self.dt_ns)
         if self._last_ns is not None and len(t_ns):
-            regular[0] = is_regular(t_ns[0] - self._last_ns, self._dt_ns)
+            regular[0] = is_regular(t_ns[0] - self._last_ns, self.dt_ns)
         start = 0
         for stop in (*np.flatnonzero(~regular).tolist(), len(t_ns)):
             if stop > start:
@@ -92,8 +92,8 @@ class NavigationLoop:
                 self._last_ns = int(t_ns[stop - 1])
                 if len(output[0]):
                     stamps = output[0].t_ns
-                    self._decimation.begins(int(stamps[0]))
-                    yield stop - len(stamps), output, np.flatnonzero(self._decimation.due(stamps))
+                    self.decimation.begins(int(stamps[0]))
+                    yield stop - len(stamps), output, np.flatnonzero(self.decimation.due(stamps))
             start = stop
             if stop < len(t_ns) and not self._passes(int(t_ns[stop])):
                 start = stop + 1
@@ -121,7 +121,7 @@ class NavigationLoop:
 
     def check(self, t_ns, last_ns):
         """Raise StreamFault unless t_ns is the sample that follows last_ns."""
-        check_interval('imu', t_ns, last_ns, self._dt_ns)
+        check_interval('imu', t_ns, last_ns, self.dt_ns)
 
     def step(self, *sample):
         """Give a sample to the navigator; return its output."""

@@ -54,23 +54,41 @@ def run(loop, count, inputs, out, plain=None):
         loop in plain Python
 
     """
-    _taken[loop] = _taken.get(loop, 0) + count
-    enough = PLAIN_SAMPLES * (PART_OF_CODE if numba.cache_info().currsize else 1.0)
-    if _taken[loop] > enough and not _plain_only.get():
-        fast = compiled(loop)
-        if fast is not None:
-            try:
-                return fast(*(a.ravel() if isinstance(a, np.ndarray) else a for a in inputs),
-                            out.reshape(-1))
-            except numba().core.errors.NumbaError as error:
-                _say_plain(error)
-                _broken.add(loop)
+    fast = compiled_if_it_pays(loop, count)
+    if fast is not None:
+        return fast(*(a.ravel() if isinstance(a, np.ndarray) else a for a in inputs),
+                    out.reshape(-1))
     if plain is not None:
         return plain(*inputs, out)
     rows = [0.0] * out.size
     carry = loop(*(a.ravel().tolist() if isinstance(a, np.ndarray) else a for a in inputs), rows)
     out.reshape(-1)[:] = rows
     return carry
+
+
+def compiled_if_it_pays(loop, count):
+    """
+    Return the compiled copy of a loop that is to take count samples more, or None.
+
+    Where it cannot be compiled after all, the loop itself is called, which takes arrays as well.
+    """
+    _taken[loop] = _taken.get(loop, 0) + count
+    enough = PLAIN_SAMPLES * (PART_OF_CODE if numba.cache_info().currsize else 1.0)
+    if _taken[loop] <= enough or _plain_only.get():
+        return None
+    fast = compiled(loop)
+    if fast is None:
+        return None
+
+    def guarded(*inputs):
+        try:
+            return fast(*inputs)
+        except numba().core.errors.NumbaError as error:
+            _say_plain(error)
+            _broken.add(loop)
+            return loop(*inputs)
+
+    return guarded
 
 
 @contextmanager

@@ -4,17 +4,10 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
-from ins_sim.core.navigation.errors import level_errors
-from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import AidedErrors, NavStates, Truth
-from .inertial import samples_with_truth
-
-NONE = (np.nan,) * 3
-UNKNOWN = (NONE,) * 3
+from .aided_loop import AidedBlock, AidedLoop
 
 
 @dataclass(frozen=True)
@@ -72,53 +65,28 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, run=0):
     return chain.finish()
 
 
-class _AidedLoop(NavigationLoop):
-    """Gives the navigator the fixes that have arrived before each sample."""
-
-    # Fixes on their way: (arrival_ns, source, fix), in the order of arrival.
-    waiting = ()
-
-    def step(self, t_ns, *sample):
-        """Give the fixes and a sample to the navigator; return its output."""
-        self.navigator.take_arrived(self.waiting, t_ns)
-        return super().step(t_ns, *sample)
-
-
 class _Chain:
     def __init__(self, settings, run):
-        self._loop = _AidedLoop(partial(AidedNavigator, settings, run),
-                                period_ns(settings.rate_hz), settings.output_every,
-                                settings.on_fault)
-        self._truth, self._solutions, self._errors = [], [], []
-        self._judged, self._t_ns = [], []
+        self._loop = AidedLoop(partial(AidedNavigator, settings, run),
+                               period_ns(settings.rate_hz), settings.output_every,
+                               settings.on_fault)
+        self._parts, self._judged = [], []
 
     def block(self, imu, truth, fixes):
         """Step through a block; fixes: (arrival_ns, source, fix)."""
         # A fix that is on its way from an earlier block may arrive after one of this block.
         self._loop.waiting = sorted([*self._loop.waiting, *fixes], key=lambda entry: entry[:2])
-        kept, samples = [], list(samples_with_truth(imu, imu.t_ns, truth))
-        for k, judged, due in self._loop.run(samples):
-            self._judged.extend(judged)
-            if due:
-                kept.append(k)
-                self._put_out(*samples[k])
-        if kept:
-            self._truth.append(truth[kept])
-
-    def _put_out(self, t_ns, omega, f, truth):
-        solution, filter_ = self._loop.navigator.solution, self._loop.navigator.filter
-        self._t_ns.append(t_ns)
-        self._solutions.append(solution)
-        self._errors.append((*level_errors(solution, truth), *(filter_.sigmas() or UNKNOWN)[::-1],
-                             filter_.estimates, filter_.estimate_sigmas() or NONE))
+        block = AidedBlock(imu, truth, self._loop)
+        self._judged += self._loop.run_block(block)
+        found = block.records()
+        if found:
+            self._parts.append(found)
 
     def finish(self):
         """Return the AidedResult."""
-        if not self._truth:
+        if not self._parts:
             raise ValueError('the run has no navigation output; expected duration_s longer than '
                              'initial.after_s')
-        t_ns = np.array(self._t_ns, dtype=np.int64)
-        return AidedResult(Truth.concatenate(self._truth),
-                           NavStates(t_ns, *map(np.array, zip(*self._solutions))),
-                           AidedErrors(t_ns, *map(np.array, zip(*self._errors))),
-                           tuple(self._judged), tuple(self._loop.faults))
+        truth, states, errors = (cls.concatenate(parts) for cls, parts in zip(
+            (Truth, NavStates, AidedErrors), zip(*self._parts)))
+        return AidedResult(truth, states, errors, tuple(self._judged), tuple(self._loop.faults))

@@ -3,7 +3,12 @@
 from collections import namedtuple
 import copy
 
-from ..velocity_window import BodyMean
+from ..velocity_window import (BodyMean, DoubleIntegral, Force, Integrals, sums_after,
+                               WindowSums)
+
+# What the sums that a filter can ask for start from.
+EMPTY = {'mean': tuple(BodyMean()), 'integrals': tuple(Integrals()),
+         'accelerations': (tuple(DoubleIntegral()),) * 2, 'turned': 0.0, 'force': tuple(Force())}
 
 # Prefix of the reason given for a fix that the instrument itself marks as invalid.
 INVALID_FIX = 'the fix is none'
@@ -64,8 +69,10 @@ class AidingFilter:
 
     Attributes
     ----------
-    mean : BodyMean
-        Mean velocity of the solution over the window so far, in b, forward and left, m/s.
+    sums : tuple
+        What is summed over the samples of the window so far, the fields of ``WindowSums``.
+    needs : tuple of str
+        The fields of ``WindowSums`` that the filter uses beside the mean, a class attribute.
     estimates : tuple of float
         Estimated mounting error of the velocity meter (rad, antennas turned left is positive)
         and its forward and lateral scale errors; constant zero if not estimated.
@@ -84,6 +91,7 @@ class AidingFilter:
         Largest coefficient that the transition matrix leaves out, in SI units (1/s or 1/s^2).
     """
 
+    needs = ()
     healthy = True
     estimates = (0.0, 0.0, 0.0)
     states = ()
@@ -92,17 +100,37 @@ class AidingFilter:
 
     def __init__(self, settings, ins):
         self.settings = settings
-        self.mean = BodyMean()
+        self.sums = tuple(EMPTY[name] if name in ('mean', *self.needs) else None
+                          for name in WindowSums._fields)
+
+    @property
+    def mean(self):
+        """Return the BodyMean of the solution over the window so far."""
+        return BodyMean(*self.sums[0])
+
+    @property
+    def window(self):
+        """Return the sums by name, WindowSums."""
+        return WindowSums(*self.sums)
+
+    def clear(self, name):
+        """Set one of the sums to where it starts from."""
+        self.replace(name, EMPTY[name])
+
+    def replace(self, name, value):
+        """Replace one of the sums."""
+        self.sums = tuple(self.window._replace(**{name: value}))
 
     def copy(self):
         """Return a snapshot, which later calls of the methods do not change."""
-        snapshot = copy.copy(self)
-        snapshot.mean = self.mean.copy()
-        return snapshot
+        return copy.copy(self)
 
     def step(self, ins, before, delta_v, dt):
         """
         Follow one IMU sample; called after the strapdown has advanced over it.
+
+        A filter that overrides this method is called for every sample, which is slow. The sums
+        of a filter that does not are computed for many samples at once.
 
         Parameters
         ----------
@@ -115,7 +143,25 @@ class AidingFilter:
         dt : float
             Length of the interval, s.
         """
-        self.mean.add(before[1], ins.v_b, dt)
+        _, place, _, q_nb, v_b, rate, _ = ins.carry
+        self.sums = sums_after(*self.sums, before, (q_nb, v_b, place[3:6]), place[0:3], rate,
+                               delta_v, dt)
+        if self.samples_left() == 0:
+            self.pause(ins)
+
+    def samples_left(self):
+        """Return after how many samples from now ``pause`` is to be called, or None."""
+        return None
+
+    def pause(self, ins):
+        """
+        Do what is not done at every sample, such as to propagate a covariance.
+
+        Parameters
+        ----------
+        ins : CorrectedStrapdown
+            The solution now.
+        """
 
     def begin_window(self, ins):
         """
@@ -129,7 +175,7 @@ class AidingFilter:
         ins : CorrectedStrapdown
             The solution at the end of the last window.
         """
-        self.mean.clear()
+        self.clear('mean')
 
     def update_velocity(self, ins, fix):
         """

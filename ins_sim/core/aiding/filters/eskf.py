@@ -5,6 +5,7 @@ import numpy as np
 from ins_sim.core.attitude import matrix, quaternion
 from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.numerics.matrices import applied
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
 from . import eskf_model as model
 from .. import kalman
@@ -14,6 +15,8 @@ from .base import AidingFilter, FixOutcome
 # covariance stays positive definite (m, m/s, rad, m/s^2, rad/s, m; mounting rad, scale errors).
 FLOOR = np.array([1e-3] * 3 + [1e-5] * 3 + [1e-8] * 3 + [1e-9] * 3 + [1e-12] * 3 + [1e-9] * 2
                  + [1e-9, 1e-9, 1e-9])
+# Places of the diagonal in a matrix row by row.
+DIAGONAL = slice(None, None, model.SIZE + 1)
 GATE = 'its innovation is beyond the gate'
 # Duration of a typical turn, and time constant over which the rate is smoothed, s.
 TURN_S, SMOOTHING_S = 50.0, 10.0
@@ -29,14 +32,15 @@ class ErrorStateFilter(AidingFilter):
     effect of the errors on that mean.
     """
 
+    needs = ('force',)
     states = model.STATES
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
         initial, imu, meter = settings.initial, settings.imu_model, settings.meter_model
         self._altimeter = settings.vertical.channel == 'altimeter'
-        self._held = (settings.vertical.height_sigma_m ** 2,
-                      settings.vertical.velocity_sigma_m_s ** 2)
+        self._held = np.square((settings.vertical.height_sigma_m,
+                                settings.vertical.velocity_sigma_m_s)).tolist()
         tilt = 1e-3 * initial.tilt_sigma_mrad
         sigmas = ([initial.position_sigma_m] * 2 + [settings.vertical.height_sigma_m]
                   + [initial.velocity_sigma_m_s] * 2 + [settings.vertical.velocity_sigma_m_s]
@@ -51,7 +55,9 @@ class ErrorStateFilter(AidingFilter):
                  + [imu.accelerometer_bias_walk_ug_sqrt_h * UG / SQRT_H] * 3
                  + [imu.gyro_bias_walk_deg_h_sqrt_h * DEG_H / SQRT_H] * 3 + [0.0] * 5)
         self._density = np.square(walks)
-        self._gyro_scale = (1e-6 * imu.gyro_scale_sigma_ppm) ** 2
+        self._every = settings.covariance_every
+        scale = 1e-6 * imu.gyro_scale_sigma_ppm
+        self._gyro_scale = scale * scale
         self._turning = (0.0, 0.0, 0.0)
         self._spin = ins.spin
         self._begin(ins)
@@ -59,34 +65,24 @@ class ErrorStateFilter(AidingFilter):
     def _begin(self, ins):
         """Begin an interval of the covariance propagation."""
         self._start = (ins.q_nb, ins.v)
-        self._steps, self._time_s, self._force = 0, 0.0, (0.0, 0.0, 0.0)
+        self.clear('force')
 
-    def step(self, ins, before, delta_v, dt):
-        """Sum the force; every ``covariance_every`` samples propagate the covariance."""
-        super().step(ins, before, delta_v, dt)
-        f = self._force
-        self._force = (f[0] + delta_v[0], f[1] + delta_v[1], f[2] + delta_v[2])
-        self._time_s += dt
-        self._steps += 1
-        if self._steps >= self.settings.covariance_every:
-            self._propagate(ins)
+    def samples_left(self):
+        """Return how many samples remain until the covariance is propagated."""
+        return self._every - self.sums[-1][0]
 
-    def transition(self, ins):
-        """Return the transition matrix over the samples since the last propagation, (20, 20)."""
-        q_start, v_start = self._start
-        dt = self._time_s
-        q_mid = middle_attitude(q_start, ins.q_nb)
-        f_n = quaternion.rotate(q_mid, tuple(x / dt for x in self._force))
-        v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
-        c = matrix.attitude_matrix(q_mid)
-        return model.transition(model.dynamics(ins.lat, ins.height, v, c, f_n, self._spin), dt)
-
-    def _propagate(self, ins):
-        if not self._steps:
+    def pause(self, ins):
+        """Propagate the covariance over the samples since the last time."""
+        steps, dt, _ = self.window.force
+        if not steps:
             return
-        phi, dt = self.transition(ins), self._time_s
-        half = np.diag(0.5 * dt * (self._density + self._of_turns(ins, dt)))
-        p = phi @ (self.covariance + half) @ phi.T + half
+        half = self._density.copy()
+        half[model.TILT] += self._of_turns(ins, dt)
+        half *= 0.5 * dt
+        p = self.covariance.copy()
+        p.reshape(-1)[DIAGONAL] += half
+        p = model.propagated(p, self._change(ins))
+        p.reshape(-1)[DIAGONAL] += half
         if self._altimeter:
             for k, variance in zip(model.DOWN, self._held):
                 p[k, :] = p[:, k] = 0.0
@@ -94,23 +90,36 @@ class ErrorStateFilter(AidingFilter):
         self.covariance = 0.5 * (p + p.T)
         self._begin(ins)
 
+    def transition(self, ins):
+        """Return the transition matrix over the samples since the last propagation, (20, 20)."""
+        return model.transition(self._change(ins))
+
+    def _change(self, ins):
+        q_start, v_start = self._start
+        _, dt, (f_x, f_y, f_z) = self.window.force
+        q_mid = middle_attitude(q_start, ins.q_nb)
+        f_n = quaternion.rotate(q_mid, (f_x / dt, f_y / dt, f_z / dt))
+        v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
+        return model.change(model.dynamics(ins.lat, ins.height, v, matrix.dcm_of(q_mid), f_n,
+                                           self._spin), dt)
+
     def _of_turns(self, ins, dt):
         """
-        Return the noise density that gyro scale factors and misalignment cause in turns, (20,).
+        Return the noise density of the tilt by gyro scale factors and misalignment in turns.
 
         These errors are constant, but are not states. They are replaced by white noise of the
         tilt that has the same effect after TURN_S at the present rate. The rate is smoothed,
         because the errors of a weave cancel. The azimuth gets no such noise: its standard
         deviation is large in comparison, and the error of a turn cancels in the turn back.
         """
-        density = np.zeros(model.SIZE)
-        if self._gyro_scale:
-            turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(self._start[0]),
-                                                              ins.q_nb))
-            part = min(1.0, dt / SMOOTHING_S)
-            self._turning = tuple(w + part * (x / dt - w) for w, x in zip(self._turning, turned))
-            density[model.TILT] = self._gyro_scale * TURN_S * sum(w * w for w in self._turning)
-        return density
+        if not self._gyro_scale:
+            return 0.0
+        turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(self._start[0]),
+                                                          ins.q_nb))
+        part = min(1.0, dt / SMOOTHING_S)
+        x, y, z = self._turning = tuple(w + part * (angle / dt - w)
+                                        for w, angle in zip(self._turning, turned))
+        return self._gyro_scale * TURN_S * (x * x + y * y + z * z)
 
     def velocity_model(self, ins, fix):
         """Return the innovation of the velocity meter and its matrix."""
@@ -119,12 +128,12 @@ class ErrorStateFilter(AidingFilter):
 
     def update_velocity(self, ins, fix):
         """Update with a fix whose window ends now."""
-        self._propagate(ins)
+        self.pause(ins)
         return self._update(ins, *self.velocity_model(ins, fix), np.square(fix.sigma))
 
     def update_gnss(self, ins, fix, rate, lever):
         """Update with a GNSS fix; with an altimeter its vertical components are not used."""
-        self._propagate(ins)
+        self.pause(ins)
         z, h = self.gnss_model(ins, fix, rate, lever)
         variances = np.square((*fix.position_sigma, *fix.velocity_sigma))
         if self._altimeter:
@@ -138,7 +147,7 @@ class ErrorStateFilter(AidingFilter):
         ago = (ins.t_ns - fix.t_ns) * 1e-9
         east, north, up = position_error(ins.lat, ins.lon, ins.height, fix.lat, fix.lon,
                                          fix.height)
-        arm, speed = c @ lever, c @ np.cross(rate, lever)
+        arm, speed = applied(c, lever), applied(c, quaternion.cross(rate, lever))
         z = np.concatenate([(east, north, up) + arm - ago * np.array(ins.v),
                             np.array(ins.v) + speed - fix.v_n])
         return z, model.gnss_matrix(c, np.array(lever), np.array(rate))
@@ -151,7 +160,7 @@ class ErrorStateFilter(AidingFilter):
         if kalman.chi_square_tail(nis, len(z)) < self.settings.gate_probability:
             return FixOutcome(innovation, nis, len(z), False, GATE)
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
-        self.correct(ins, (gain @ z).tolist())
+        self.correct(ins, applied(gain, z).tolist())
         return FixOutcome(innovation, nis, len(z))
 
     def correct(self, ins, x):
@@ -159,7 +168,8 @@ class ErrorStateFilter(AidingFilter):
         ins.correct(x[0:3], x[3:6], x[6:9])
         ins.add_biases(gyro=tuple(-b for b in x[12:15]), accelerometer=tuple(-b for b in x[9:12]))
         self.estimates = tuple(a - b for a, b in zip(self.estimates, x[17:20]))
-        self.mean.shift(x[15], x[16])
+        time_s, (forward, left) = self.mean
+        self.replace('mean', (time_s, (forward - x[15], left - x[16])))
         self._begin(ins)
 
     def begin_window(self, ins):
@@ -167,7 +177,7 @@ class ErrorStateFilter(AidingFilter):
         super().begin_window(ins)
         p = self.covariance.copy()
         p[model.ETA, :] = p[:, model.ETA] = 0.0
-        p[15, 15] = p[16, 16] = FLOOR[15] ** 2
+        p[15, 15] = p[16, 16] = FLOOR[15] * FLOOR[15]
         self.covariance = p
 
     @property

@@ -3,8 +3,7 @@
 import math
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import middle_attitude
-from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.matrices import applied
 from ..velocity_window import DoubleIntegral, Integrals
 from .base import AidingFilter, FixOutcome, refused_fix
 
@@ -34,25 +33,17 @@ class ConventionalFilter(AidingFilter):
 class MatrixFilter(AidingFilter):
     """Base class of the filters that use the matrices A1, A2, B1, B2 of the window."""
 
-    def __init__(self, settings, ins):
-        super().__init__(settings, ins)
-        self.integrals = Integrals()
+    needs = ('integrals',)
 
-    def copy(self):
-        """Return a snapshot."""
-        snapshot = super().copy()
-        snapshot.integrals = self.integrals.copy()
-        return snapshot
-
-    def step(self, ins, before, delta_v, dt):
-        """Add one sample to the matrices of the window."""
-        super().step(ins, before, delta_v, dt)
-        self.integrals.add(middle_attitude(before[0], ins.q_nb), dt)
+    @property
+    def matrices(self):
+        """Return a1, a2, b1, b2 of the window so far, see ``velocity_window.Integrals``."""
+        return Integrals(*self.window.integrals).matrices(self.mean.time_s)
 
     def begin_window(self, ins):
         """Clear the matrices."""
         super().begin_window(ins)
-        self.integrals.clear()
+        self.clear('integrals')
 
 
 class _ChainedFilter(AidingFilter):
@@ -89,34 +80,21 @@ class PaperFilter(_ChainedFilter):
     navigation").
     """
 
-    def __init__(self, settings, ins):
-        super().__init__(settings, ins)
-        self._all = self._turn = DoubleIntegral()
-
-    def step(self, ins, before, delta_v, dt):
-        """Integrate the acceleration in b twice, and separately its part rate x velocity."""
-        super().step(ins, before, delta_v, dt)
-        q_start, b_start, v = before
-        # Resolve the acceleration in a level frame that does not turn about the vertical while
-        # the vehicle follows a great circle.
-        _, r_e = ellipsoid.radii(math.sin(ins.lat))
-        spin = v[0] * math.tan(ins.lat) / (r_e + ins.height) * dt
-        w = quaternion.rotate_back(middle_attitude(q_start, ins.q_nb), (
-            ins.v[0] - v[0] - spin * v[1], ins.v[1] - v[1] + spin * v[0], ins.v[2] - v[2]))
-        turn = w[0] - ins.v_b[0] + b_start[0], w[1] - ins.v_b[1] + b_start[1]
-        self._all, self._turn = self._all.after(w, dt), self._turn.after(turn, dt)
+    needs = ('accelerations',)
 
     def update_velocity(self, ins, fix):
         """Correct acceleration, velocity and position by equation (20); refuse turns."""
         t = self.mean.time_s
         scale = 2.0 / (t * t)
-        now = [(scale * self._all.twice[k], scale * self._turn.twice[k], fix.velocity[k])
+        whole, turning = (DoubleIntegral(*x).twice for x in self.window.accelerations)
+        now = [(scale * whole[k], scale * turning[k], fix.velocity[k])
                for k in range(2)]
         last = self._follow(now)
         if last is None:
             return FIRST
         innovation = tuple(a[0] + b[0] - 2.0 * (a[2] - b[2]) / t for a, b in zip(now, last))
-        turning = math.hypot(*(a[1] + b[1] for a, b in zip(now, last)))
+        x, y = (a[1] + b[1] for a, b in zip(now, last))
+        turning = math.sqrt(x * x + y * y)
         if turning > TURN_LIMIT:
             return FixOutcome(innovation, taken=False, reason=(
                 f'filter paper refuses a window in which the body turns: it would take '
@@ -132,7 +110,7 @@ class PaperFilter(_ChainedFilter):
     def begin_window(self, ins):
         """Clear the integrals."""
         super().begin_window(ins)
-        self._all = self._turn = DoubleIntegral()
+        self.clear('accelerations')
 
 
 class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
@@ -147,16 +125,16 @@ class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
     def update_velocity(self, ins, fix):
         """Correct acceleration, velocity and position."""
         z, t = self.residual(fix), self.mean.time_s
-        a1, _, _, b2 = self.integrals.matrices
+        a1, _, _, b2 = self.matrices
         last = self._follow(z)
         if last is None:
             return FIRST
         nu = (z[0] - last[0]) / t, (z[1] - last[1]) / t
         w = tuple(self.settings.gain * x for x in nu)
-        e, n = (a1 @ w).tolist()
+        e, n = applied(a1, w).tolist()
         half = 0.5 * t
         ins.correct(position=(half * e, half * n, 0.0), velocity=(e, n, 0.0))
         ins.add_biases(accelerometer=(*w, 0.0))
-        back = (b2 @ w).tolist()
+        back = applied(b2, w).tolist()
         self._last = z[0] - back[0], z[1] - back[1]
         return FixOutcome(nu)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics.matrices import applied, product
 from ins_sim.core.numerics.units import STANDARD_GRAVITY, UG
 from .. import kalman
 from .base import FixOutcome
@@ -30,6 +31,7 @@ class WindowFilter(MatrixFilter):
     error times the velocity. The strapdown is corrected after each window.
     """
 
+    needs = ('integrals', 'turned')
     states = ('position_e', 'position_n', 'velocity_e', 'velocity_n',
               'acceleration_x', 'acceleration_y', 'offset_x', 'offset_y')
     observed_at = 'start'
@@ -39,35 +41,31 @@ class WindowFilter(MatrixFilter):
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
         initial, model, meter = settings.initial, settings.imu_model, settings.meter_model
-        speed = max(1.0, math.hypot(*ins.v[:2]))
+        speed = max(1.0, _root_sum(*ins.v[:2]))
         tilt = 1e-3 * initial.tilt_sigma_mrad * STANDARD_GRAVITY
-        w = math.hypot(tilt, model.accelerometer_bias_sigma_ug * UG)
-        cross = math.hypot(1e-3 * initial.azimuth_sigma_mrad,
-                           math.radians(meter.mounting_sigma_arcmin / 60.0))
+        w = _root_sum(tilt, model.accelerometer_bias_sigma_ug * UG)
+        cross = _root_sum(1e-3 * initial.azimuth_sigma_mrad,
+                          math.radians(meter.mounting_sigma_arcmin / 60.0))
         sigmas = ([initial.position_sigma_m] * 2 + [initial.velocity_sigma_m_s] * 2 + [w] * 2
                   + [speed * meter.scale_x_sigma, speed * cross])
         self.covariance = np.diag(np.maximum(np.array(sigmas), FLOOR) ** 2)
-        self._noise = np.array([0.0] * 4 + [ACCELERATION_WALK ** 2] * 2 + [OFFSET_WALK ** 2] * 2)
-        self._walk = (model.velocity_random_walk_m_s_sqrt_h / 60.0) ** 2
+        self._noise = np.array([0.0] * 4 + [ACCELERATION_WALK] * 2 + [OFFSET_WALK] * 2) ** 2
+        walk = model.velocity_random_walk_m_s_sqrt_h / 60.0
+        self._walk = walk * walk
         self._tilt = tilt
         self._offset = (0.0, 0.0)
-        self._propagated, self._turned = False, 0.0
-
-    def step(self, ins, before, delta_v, dt):
-        """Add one sample to the matrices of the window, and the turn about the vertical."""
-        super().step(ins, before, delta_v, dt)
-        self._turned += ins.rate[2] * dt
+        self._propagated = False
 
     def velocity_model(self, ins, fix):
         """Return the innovation, and its derivative by the errors at the start of the window."""
-        _, _, b1, b2 = self.integrals.matrices
+        _, _, b1, b2 = self.matrices
         return (np.subtract(self.residual(fix), self._offset),
                 np.hstack([np.zeros((2, 2)), b1, b2, np.eye(2)]))
 
     def update_velocity(self, ins, fix):
         """Estimate the errors at the start of the window; correct the strapdown at its end."""
         t = self.mean.time_s
-        a1, a2, _, _ = self.integrals.matrices
+        a1, a2, _, _ = self.matrices
         z, h = self.velocity_model(ins, fix)
         r = np.diag(np.square(fix.sigma))
         s, gain = kalman.innovation(self.covariance, h, r)
@@ -76,11 +74,11 @@ class WindowFilter(MatrixFilter):
             self._propagate(ins)
             return FixOutcome(tuple(z.tolist()), nis, 2, False,
                               'its innovation is beyond the gate')
-        x = gain @ z
+        x = applied(gain, z)
         self.covariance = kalman.joseph(self.covariance, h, r, gain)
         self._propagate(ins)
-        dp = x[:2] + t * x[2:4] + a2 @ x[4:6]
-        dv = x[2:4] + a1 @ x[4:6]
+        dp = x[:2] + t * x[2:4] + applied(a2, x[4:6])
+        dv = x[2:4] + applied(a1, x[4:6])
         self.correct(ins, np.concatenate([dp, dv, x[4:8]]))
         return FixOutcome(tuple(z.tolist()), nis, 2)
 
@@ -93,7 +91,7 @@ class WindowFilter(MatrixFilter):
 
     def transition(self, ins):
         """Return the transition matrix from the start of the window to the present."""
-        a1, a2, _, _ = self.integrals.matrices
+        a1, a2, _, _ = self.matrices
         phi = np.eye(8)
         phi[0:2, 2:4] = self.mean.time_s * np.eye(2)
         phi[0:2, 4:6] = a2
@@ -104,11 +102,12 @@ class WindowFilter(MatrixFilter):
         t, phi = self.mean.time_s, self.transition(ins)
         q = self._noise * t
         # The part of dW that is due to tilt is constant in n and therefore turns in b.
-        q[4:6] += (self._tilt * self._turned) ** 2
-        self._turned = 0.0
+        turned = self._tilt * self.window.turned
+        q[4:6] += turned * turned
+        self.clear('turned')
         q[2:4] += self._walk * t
-        q[0:2] += self._walk * t ** 3 / 3.0
-        self.covariance = phi @ self.covariance @ phi.T + np.diag(q)
+        q[0:2] += self._walk * (t * t * t) / 3.0
+        self.covariance = product(product(phi, self.covariance), phi.T) + np.diag(q)
         self._propagated = True
 
     def begin_window(self, ins):
@@ -127,3 +126,8 @@ class WindowFilter(MatrixFilter):
         """Return standard deviations; 0 for what is not estimated (vertical, attitude)."""
         e, n, ve, vn = np.sqrt(np.diagonal(self.covariance)[:4]).tolist()
         return (e, n, 0.0), (ve, vn, 0.0), (0.0, 0.0, 0.0)
+
+
+def _root_sum(a, b):
+    """Return the root of the sum of two squares, floats."""
+    return math.sqrt(a * a + b * b)

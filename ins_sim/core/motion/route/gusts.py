@@ -12,9 +12,12 @@ import math
 import numpy as np
 
 from ins_sim.core.numerics import noise, taylor
+from ins_sim.core.numerics.elementary import atan2, sincos
 
 LINES = 20
 LOWEST, HIGHEST = 0.05, 20.0
+# Instants at a time: 60 sinusoids of so many stay in the cache.
+CHUNK = 256
 
 
 class Gusts:
@@ -27,25 +30,29 @@ class Gusts:
 
     def __init__(self, sigma, length, airspeed, seed):
         draws = noise.indexed_noise(seed, 0, 'gusts', 6).uniforms(0, LINES).T
-        low, high = math.atan(LOWEST), math.atan(HIGHEST)
+        low, high = atan2(LOWEST, 1.0), atan2(HIGHEST, 1.0)
         part = (np.arange(LINES) + draws[:3]) / LINES
-        self.rates = np.tan(low + part * (high - low)) * (airspeed / length)
+        sin, cos = sincos(low + part * (high - low))
+        self.rates = sin / cos * (airspeed / length)
         self.amplitude = sigma * math.sqrt(2.0 / LINES)
         self._phases = 2.0 * math.pi * draws[3:]
 
     def displacement(self, t):
         """Return three Series of order 2: where the gusts have carried to at t (n,), s; in m."""
-        return tuple(self._component(t, *lines) for lines in zip(self.rates.tolist(),
-                                                                 self._phases.tolist()))
+        parts = [self._displaced(t[k:k + CHUNK]) for k in range(0, max(1, len(t)), CHUNK)]
+        return tuple(taylor.Series(np.concatenate(rows, axis=1)) for rows in zip(*parts))
 
-    def _component(self, t, rates, phases):
-        c = np.zeros((3, len(t)))
-        for w, phase in zip(rates, phases):
-            # with vector units NumPy's tangent takes a tenth of its sine and cosine
-            half = np.tan(t * (0.5 * w) + 0.5 * phase)
-            share = 2.0 / (1.0 + half * half)
-            sin = half * share
-            c[0] += sin * (self.amplitude / w)
-            c[1] += (share - 1.0) * self.amplitude
-            c[2] -= sin * (0.5 * self.amplitude * w)
-        return taylor.Series(c)
+    def _displaced(self, t):
+        """Return the Taylor coefficients of each axis, (3, n)."""
+        w = self.rates[:, :, np.newaxis]
+        sin, cos = sincos(t * w + self._phases[:, :, np.newaxis])
+        sums = (_summed(sin * (self.amplitude / w)), _summed(cos * self.amplitude),
+                _summed(sin * (-0.5 * self.amplitude * w)))
+        return [np.stack(rows) for rows in zip(*sums)]
+
+
+def _summed(lines):
+    """Return the sum of lines (3, LINES, n) in their order, whatever n is, (3, n)."""
+    if lines.shape[-1] == 1:
+        return np.cumsum(lines, axis=1)[:, -1]
+    return np.add.reduce(lines, axis=1)

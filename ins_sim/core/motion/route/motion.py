@@ -17,7 +17,7 @@ import numpy as np
 from ins_sim.core.attitude import angles, quaternion
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.great_circle import GreatCircleRoute
-from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics import elementary, taylor
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from ..motion import Motion
 from ..truth import truth_from_pose
@@ -102,7 +102,8 @@ def route_motion(motion, datum, earth):
 def _wind(settings):
     """Return the wind, East and North, m/s: it blows from its direction."""
     direction = math.radians(settings.wind_from_deg)
-    return (-settings.wind_m_s * math.sin(direction), -settings.wind_m_s * math.cos(direction))
+    sin, cos = elementary.sincos(direction)
+    return -settings.wind_m_s * sin, -settings.wind_m_s * cos
 
 
 def _check(settings, made_good):
@@ -115,7 +116,7 @@ def _check(settings, made_good):
     rate = math.radians(settings.turn_rate_deg_s)
     if settings.weave == 'flown':
         rate += math.radians(settings.weave_deg) * 2.0 * math.pi / settings.weave_period_s
-    bank = math.degrees(math.atan(settings.airspeed_m_s * rate / STANDARD_GRAVITY))
+    bank = math.degrees(elementary.atan2(settings.airspeed_m_s * rate, STANDARD_GRAVITY))
     if bank > STEEPEST_DEG:
         raise ValueError(
             f'motion.route.turn_rate_deg_s {settings.turn_rate_deg_s:g} deg/s and the weave need '

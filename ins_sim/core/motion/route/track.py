@@ -18,13 +18,17 @@ import numpy as np
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.great_circle import FLATTENING2
 from ins_sim.core.numerics import taylor
-from ins_sim.core.numerics.elementary import sqrt
+from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 
 # of the expansions about the knots: what is left out is below rounding (docs/design/route.md)
 ORDER = 10
 STEP_M = 2000.0
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_K = 1.0 - FLATTENING2 ** 2
+# Nodes and weights of Gauss and Legendre with eight points.
+_NODES = (-0.9602898564975363, -0.7966664774136267, -0.525532409916329, -0.1834346424956498,
+          0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363)
+_WEIGHTS = (0.10122853629037626, 0.22238103445337448, 0.31370664587788727, 0.362683783378362,
+            0.362683783378362, 0.31370664587788727, 0.22238103445337448, 0.10122853629037626)
+_K = 1.0 - FLATTENING2 * FLATTENING2
 
 
 def _metric(sin_lat, cos_lat, height):
@@ -62,23 +66,25 @@ class Flow:
 
     def course(self, lat, psi):
         """Return the course on the sphere, rad, floats."""
-        m_e, m_n, _, _ = _metric(math.sin(lat), math.cos(lat), self.height)
-        return math.atan2((self.airspeed * math.sin(psi) + self.wind[0]) * m_e,
-                          (self.airspeed * math.cos(psi) + self.wind[1]) * m_n)
+        m_e, m_n, _, _ = _metric(*sincos(lat), self.height)
+        sin_psi, cos_psi = sincos(psi)
+        return atan2((self.airspeed * sin_psi + self.wind[0]) * m_e,
+                     (self.airspeed * cos_psi + self.wind[1]) * m_n)
 
     def on_leg(self, leg, x):
         """Return lat, lon, heading (rad) and X' (m/s) on an orthodrome.Leg at x (n,), m."""
         lat, lon = leg.from_xz(x, np.zeros_like(x))
         chi = leg.course(lat, lon)
-        m_e, m_n, _, _ = _metric(np.sin(lat), np.cos(lat), self.height)
-        east, north = np.sin(chi) / m_e, np.cos(chi) / m_n
-        size = np.sqrt(east * east + north * north)
+        m_e, m_n, _, _ = _metric(*sincos(lat), self.height)
+        sin_chi, cos_chi = sincos(chi)
+        east, north = sin_chi / m_e, cos_chi / m_n
+        size = sqrt(east * east + north * north)
         east, north = east / size, north / size
         w_e, w_n = self.wind
         # wind triangle: the air velocity takes off what the wind has across the track
         across, along = w_e * north - w_n * east, w_e * east + w_n * north
-        speed = np.sqrt(self.airspeed ** 2 - across * across) + along
-        psi = np.arctan2(speed * east - w_e, speed * north - w_n)
+        speed = sqrt(self.airspeed * self.airspeed - across * across) + along
+        psi = atan2(speed * east - w_e, speed * north - w_n)
         return lat, lon, psi, ellipsoid.MEAN_RADIUS * speed / size
 
 
@@ -103,12 +109,13 @@ def leg_piece(flow, leg, first, last):
     kilometres: exact to rounding, as X' changes over thousands.
     """
     count = max(1, math.ceil((last - first) / STEP_M))
-    x = np.linspace(first, last, count + 1)
     half = 0.5 * (last - first) / count
-    inner = (x[:-1, None] + half) + half * _NODES
-    speed = flow.on_leg(leg, inner.ravel())[3].reshape(inner.shape)
-    t = np.concatenate([[0.0], np.cumsum(half * (_WEIGHTS / speed).sum(axis=1))])
-    lat, lon, psi, _ = flow.on_leg(leg, x[:-1])
+    x = first + 2.0 * half * np.arange(count)
+    spent = np.zeros(count)
+    for node, weight in zip(_NODES, _WEIGHTS):
+        spent = spent + weight / flow.on_leg(leg, (x + half) + half * node)[3]
+    t = np.concatenate([[0.0], np.cumsum(half * spent)])
+    lat, lon, psi, _ = flow.on_leg(leg, x)
     return LegPiece(t[:-1], lat, lon, psi, np.zeros((count, 1)), float(t[-1]))
 
 

@@ -10,14 +10,16 @@ is solved for, so that it ends on the next great circle and along it.
 import math
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.elementary import sincos
+from ins_sim.core.numerics.extrapolation import extrapolated_step
 from .track import LegPiece, STEP_M
 
-# of the integration, and between knots: at most this angle and STEP_M, and a roll in eight
+# Steps of the integration, and distances of knots: at most this angle and STEP_M, and a part of
+# the roll that leaves 2e-10 m/s between the knots (docs/design/route.md).
 STEP_ANGLE = 0.05
-ROLL_STEPS = 8
+ROLL_STEPS = 12
 # Below this legs are joined without a turn: the course jumps by no more, rad.
 STRAIGHT = 1e-10
 SHARPEST = math.radians(170.0)
@@ -31,8 +33,8 @@ class TurnProfile:
     """
     The rate over a turn by angle (rad, signed), at most rate (rad/s), rolling in roll_s.
 
-    longest_s: what a step may be; parts: length (s), step (s), and the rate as a polynomial of
-    the time since the start of the part.
+    longest_s: what a step may be; parts: length (s), step (s) at most, and the coefficients of
+    the rate as a polynomial of the time since the start of the part, constant first.
     """
 
     def __init__(self, angle, rate, roll_s, longest_s):
@@ -41,52 +43,51 @@ class TurnProfile:
             hold_s, peak = 0.0, angle / roll_s
         else:
             peak = math.copysign(rate, angle)
-        s = np.polynomial.Polynomial((0.0, 1.0 / roll_s))
-        rise = peak * s ** 3 * (10.0 - 15.0 * s + 6.0 * s * s)
+        r = 1.0 / roll_s
+        cube = peak * (r * r * r)
+        rise = (0.0, 0.0, 0.0, 10.0 * cube, -15.0 * cube * r, 6.0 * cube * (r * r))
         step = min(longest_s, STEP_ANGLE / max(abs(peak), 1e-9))
         roll_step = min(roll_s / ROLL_STEPS, step)
         self.parts = [(roll_s, roll_step, rise)]
         if hold_s > 0.0:
-            self.parts.append((hold_s, step, np.polynomial.Polynomial((peak,))))
-        self.parts.append((roll_s, roll_step, peak - rise))
+            self.parts.append((hold_s, step, (peak,)))
+        self.parts.append((roll_s, roll_step, (peak, *(-c for c in rise[1:]))))
 
 
 def fly_turn(flow, state, profile):
     """
     Return the Piece of a turn from state (lat, lon, heading, rad), and the state at its end.
 
-    Eighth order (Dormand and Prince) with steps so short that it is exact to rounding.
+    Eighth order, with steps so short that it is exact to rounding.
     """
-    t, states, turn, start = [], [], [], 0.0
-    for length, step, polynomial in profile.parts:
-        coefficients = polynomial.coef[::-1].tolist()
+    t, states, turn, start, state = [], [], [], 0.0, tuple(state)
+    for length, longest, polynomial in profile.parts:
 
         def rates(time, y):
             rate = 0.0
-            for c in coefficients:
+            for c in polynomial[::-1]:
                 rate = rate * time + c
-            lat, _, psi = y.tolist()
-            return flow.rates(math.sin(lat), math.cos(lat), math.sin(psi), math.cos(psi), rate)
+            return flow.rates(*sincos(y[0]), *sincos(y[2]), rate)
 
-        solution = solve_ivp(rates, (0.0, length), state, 'DOP853', max_step=step,
-                             first_step=min(step, length), rtol=1e-13, atol=1e-13)
-        state = solution.y[:, -1]
-        t.append(solution.t[:-1] + start)
-        states.append(solution.y[:, :-1])
-        turn.append(_taylor(polynomial, solution.t[:-1]))
+        count = math.ceil(length / longest)
+        step = length / count
+        for k in range(count):
+            t.append(k * step + start)
+            states.append(state)
+            turn.append(_taylor(polynomial, k * step))
+            state = extrapolated_step(rates, k * step, state, step)
         start += length
-    lat, lon, psi = np.concatenate(states, axis=1)
-    return LegPiece(np.concatenate(t), lat, lon, psi, np.concatenate(turn), start), state.tolist()
+    lat, lon, psi = np.array(states).T
+    return LegPiece(np.array(t), lat, lon, psi, np.array(turn), start), state
 
 
 def _taylor(polynomial, t):
-    """Return the Taylor coefficients (m, 6) of a polynomial at t (m,)."""
-    rows = np.zeros((len(t), 6))
-    factorial = 1.0
-    for k in range(6):
-        rows[:, k] = polynomial(t) / factorial
-        polynomial, factorial = polynomial.deriv(), factorial * (k + 1)
-    return rows
+    """Return the six Taylor coefficients at t of a polynomial, by Horner's scheme."""
+    c = [*polynomial, *(0.0,) * (6 - len(polynomial))]
+    for k in range(5):
+        for j in range(4, k - 1, -1):
+            c[j] += t * c[j + 1]
+    return c
 
 
 def turn_between(flow, before, after, rate, roll_s):
@@ -104,34 +105,41 @@ def turn_between(flow, before, after, rate, roll_s):
     if abs(angle) > SHARPEST:
         raise ValueError(f'a turn of {math.degrees(abs(angle)):.1f} deg; expected at most '
                          f'{math.degrees(SHARPEST):.0f} deg')
-    lead = flow.airspeed * (math.tan(0.5 * abs(angle)) / rate + 0.5 * roll_s)
+    sin_half, cos_half = sincos(0.5 * abs(angle))
+    lead = flow.airspeed * (sin_half / cos_half / rate + 0.5 * roll_s)
 
     def attempt(start, by):
         lat, lon, psi, _ = flow.on_leg(before, np.array([start * before.length]))
-        piece, end = fly_turn(flow, (lat[0], lon[0], psi[0]), TurnProfile(
-            float(by), rate, roll_s, STEP_M / flow.airspeed))
-        off = np.array((after.to_xz(*end[:2])[1] / ellipsoid.MEAN_RADIUS,
-                        _wrap(flow.course(end[0], end[2]) - after.course(*end[:2]))))
+        piece, end = fly_turn(flow, (float(lat[0]), float(lon[0]), float(psi[0])), TurnProfile(
+            by, rate, roll_s, STEP_M / flow.airspeed))
+        off = (after.to_xz(*end[:2])[1] / ellipsoid.MEAN_RADIUS,
+               _wrap(flow.course(end[0], end[2]) - after.course(*end[:2])))
         return off, piece, end
 
-    unknown, best = np.array((1.0 - lead / before.length, angle)), None
+    start, by, best = 1.0 - lead / before.length, angle, None
     for _ in range(8):
-        found = attempt(*unknown)
-        if best is None or np.abs(found[0]).max() < np.abs(best[0][0]).max():
-            best = found, unknown
-        else:
+        found = attempt(start, by)
+        if best is not None and not _largest(found[0]) < _largest(best[0][0]):
             break
-        slopes = np.stack([(attempt(*(unknown + h))[0] - found[0]) / h.sum()
-                           for h in np.diag((_STEP_START, _STEP_ANGLE))], axis=1)
-        try:
-            unknown = unknown - np.linalg.solve(slopes, found[0])
-        except np.linalg.LinAlgError:
+        best, (x, y) = (found, start), found[0]
+        # Newton, with slopes by differences.
+        (a, c), (b, d) = (
+            [(p - q) / h for p, q in zip(attempt(start + h_1, by + h_2)[0], found[0])]
+            for h, h_1, h_2 in ((_STEP_START, _STEP_START, 0.0), (_STEP_ANGLE, 0.0, _STEP_ANGLE)))
+        determinant = a * d - b * c
+        if determinant == 0.0:
             break
-    (off, piece, end), (start, _) = best[0], best[1].tolist()
-    if not np.abs(off).max() <= _CLOSE:
+        start -= (d * x - b * y) / determinant
+        by -= (a * y - c * x) / determinant
+    (off, piece, end), start = best
+    if not _largest(off) <= _CLOSE:
         raise ValueError(f'a turn of {math.degrees(angle):.1f} deg that ends on no path to the '
                          'next point; expected longer legs or a smaller turn')
     return start * before.length, piece, after.to_xz(*end[:2])[0]
+
+
+def _largest(off):
+    return max(abs(off[0]), abs(off[1]))
 
 
 def _wrap(angle):

@@ -11,12 +11,26 @@ so that it makes good J0(A) V, and its displacements about that are periodic sum
 
 import math
 
-from scipy.special import jv
-
 from ins_sim.core.numerics import taylor
 
 # of the Bessel functions that are left out
 _LEAST = 1e-15
+
+
+def bessel(k, x):
+    """
+    Return the Bessel function J_k(x) by its power series (Abramowitz and Stegun 9.1.10).
+
+    The terms of |x| <= 1 fall from the first on, so that no digits cancel.
+    """
+    half, term = 0.5 * x, 1.0
+    for j in range(1, k + 1):
+        term = term * half / j
+    total, square = term, half * half
+    for j in range(1, 30):
+        term = -term * square / (j * (j + k))
+        total += term
+    return total
 
 
 class Weave:
@@ -28,13 +42,13 @@ class Weave:
 
     def __init__(self, amplitude, period_s, airspeed):
         self._amplitude, self._rate = amplitude, 2.0 * math.pi / period_s
-        self.made_good = float(jv(0, amplitude))
+        self.made_good = bessel(0, amplitude)
         self._terms = []
         k = 1
-        while abs(float(jv(k, amplitude))) > _LEAST:
+        while abs(bessel(k, amplitude)) > _LEAST:
             # k = 1, 2, 3, 4, ...: right +, along -, right -, along +
             sign = 1.0 if k % 4 in (0, 1) else -1.0
-            reach = sign * 2.0 * airspeed * float(jv(k, amplitude)) / (k * self._rate)
+            reach = sign * 2.0 * airspeed * bessel(k, amplitude) / (k * self._rate)
             self._terms.append((k, reach))
             k += 1
 

@@ -8,11 +8,16 @@ the axes of the antennas, X1 forward, Y1 up, Z1 right, which the mounting error 
 from collections import deque
 import math
 
+import numpy as np
+
+from ins_sim.core.numerics.elementary import atan2, sincos
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.streams.faults import (check_finite, check_interval, INTERVAL_TOLERANCE,
                                          StreamFault)
 from ins_sim.core.streams.restarts import RestartDetector
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
+from .blocks import in_order, pieces
+from .limits import all_measurable, why_not_measurable
 from .reading import Reading
 from .surrogate import SurrogateWindows, velocity_sigmas
 
@@ -46,8 +51,7 @@ class VelocityMeter:
         self._cycles = settings.window.cycles
         self._span_ns = self._cycles * self._dt_ns
         self._latency_ns = round(settings.window.latency_ms * 1e6)
-        yaw = math.radians(settings.antennas.mounting_yaw_arcmin / 60.0)
-        self._cos, self._sin = math.cos(yaw), math.sin(yaw)
+        self._sin, self._cos = sincos(math.radians(settings.antennas.mounting_yaw_arcmin / 60.0))
         self._waits = settings.attack_angle == 'ins'
         self._calm_ns = [(round(a * 1e9), round(b * 1e9)) for a, b in
                          zip(settings.drop_outs.start_s, settings.drop_outs.end_s)]
@@ -86,8 +90,7 @@ class VelocityMeter:
             if self._runs.first_is_ahead:
                 self._ins = {}
         self._truth_ns = t_ns
-        forward, left, up = v_b
-        v = (self._cos * forward + self._sin * left, up, self._sin * forward - self._cos * left)
+        v = self._in_antennas(v_b)
         if self._last is None:
             self._repeatable = True
         elif t_ns == self._last[0] and self._repeatable:
@@ -101,6 +104,12 @@ class VelocityMeter:
             self._close(index)
             self._open(index)
         return self._complete()
+
+    def _in_antennas(self, v_b):
+        """Return V_x1, V_y1, V_z1 of a velocity in body axes FLU, floats or arrays."""
+        forward, left, up = v_b
+        return (self._cos * forward + self._sin * left, up,
+                self._sin * forward - self._cos * left)
 
     def push_ins(self, t_ns, v_b):
         """
@@ -144,7 +153,7 @@ class VelocityMeter:
         return fixes
 
     def _forget_ins(self):
-        # the truth is the first of the two
+        # The truth is the first of the two.
         self._runs, self._last_ins_ns, self._ins = RestartDetector(), None, {}
 
     def advance(self, t_ns, v_b, height, ins_v_b=None):
@@ -155,11 +164,66 @@ class VelocityMeter:
         Raises StreamFault.
         """
         fixes = []
-        ins = ins_v_b.tolist() if ins_v_b is not None else [None] * len(t_ns)
-        for t, v, h, w in zip(t_ns.tolist(), v_b.tolist(), height.tolist(), ins):
+        index = (t_ns + self._dt_ns // 2) // self._dt_ns
+        for a, b in pieces(index % self._cycles == 0):
+            fixes += self._advance_truth(t_ns[a:b], v_b[a:b], height[a:b])
+            if ins_v_b is not None:
+                fixes += self.advance_ins(t_ns[a:b], ins_v_b[a:b])
+        return fixes
+
+    def _advance_truth(self, t_ns, v_b, height):
+        """Return the fixes of cycles of which none but the last ends a window."""
+        first = len(t_ns) - 1
+        if first < 2 or not self._add_cycles(t_ns[:-1], v_b[:-1], height[:-1]):
+            first = 0
+        fixes = []
+        for t, v, h in zip(t_ns[first:].tolist(), v_b[first:].tolist(), height[first:].tolist()):
             fixes += self.push_truth(t, v, h)
-            if w is not None:
-                fixes += self.push_ins(t, w)
+        return fixes
+
+    def _add_cycles(self, t_ns, v_b, height):
+        """Add cycles to the open window at once; return False if each is to be looked at."""
+        if self._last is None or t_ns[0] <= self._truth_ns:
+            return False
+        last_ns, v_last, height_last = self._last
+        v = np.column_stack((v_last, self._in_antennas(v_b.T)))
+        height, most_ns = np.append(height_last, height), INTERVAL_TOLERANCE * self._dt_ns
+        off = (t_ns + self._dt_ns // 2) % self._dt_ns - self._dt_ns // 2
+        if not ((abs(np.diff(t_ns, prepend=last_ns) - self._dt_ns) <= most_ns).all()
+                and (abs(off) <= most_ns).all() and np.isfinite(v).all()
+                and np.isfinite(height).all()):
+            return False
+        if self._start is not None and self._why_not == VALID:
+            if not (hasattr(self._method, 'add_cycles')
+                    and all_measurable(self._settings.limits, v, height)):
+                return False
+            self._sum = self._method.add_cycles(self._sum, v)
+        self._last = int(t_ns[-1]), tuple(v[:, -1].tolist()), float(height[-1])
+        self._truth_ns, self._repeatable = self._last[0], False
+        return True
+
+    def advance_ins(self, t_ns, v_b):
+        """
+        Return the VelocityFixes of a block of velocities of the INS, those of single pushes.
+
+        t_ns (n,) int64; v_b (n, 3).  Raises StreamFault.
+        """
+        fixes, half_ns = [], self._dt_ns // 2
+        ends = -(-(t_ns - half_ns) // self._span_ns) * self._span_ns
+        for a, b in pieces(np.diff(ends, append=0) != 0):
+            # Those before the window can be over are added at once.
+            end_ns = int(ends[a])
+            inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
+            rising = (np.diff(t_ns[a:inside]) > 0).all() and (
+                self._last_ins_ns is None or t_ns[a] > self._last_ins_ns)
+            if a + 2 < inside and rising and self._waits and np.isfinite(
+                    v_b[a:inside]).all() and not self._runs.first_is_ahead:
+                self._ins[end_ns] = in_order(self._ins.get(end_ns, (0.0, 0.0, 0.0)),
+                                             v_b[a:inside].T)
+                self._last_ins_ns = int(t_ns[inside - 1])
+                a = inside
+            for t, v in zip(t_ns[a:b].tolist(), v_b[a:b].tolist()):
+                fixes += self.push_ins(t, v)
         return fixes
 
     def _open(self, index):
@@ -172,22 +236,11 @@ class VelocityMeter:
         if self._start is None or self._why_not != VALID:
             return
         _, v_last, height_last = last
-        self._why_not = self._measurable(v_last, height_last)
+        self._why_not = why_not_measurable(self._settings.limits, v_last, height_last)
         if self._why_not == VALID:
-            self._why_not = self._measurable(v, height)
+            self._why_not = why_not_measurable(self._settings.limits, v, height)
         if self._why_not == VALID:
             self._sum = self._method.add(self._sum, index, v_last, v)
-
-    def _measurable(self, v, height):
-        """Return VALID where the instrument measures, or why it does not."""
-        limits = self._settings.limits
-        if not limits.height_min_m <= height <= limits.height_max_m:
-            return 'height outside the limits'
-        if not limits.speed_min_m_s <= v[0] <= limits.speed_max_m_s:
-            return 'speed outside the limits'
-        if abs(v[2]) > v[0] or abs(v[1]) > v[0]:
-            return 'sideslip or angle of attack beyond 45 deg'
-        return VALID
 
     def _close(self, index):
         """End the window at index periods, if one was open; it waits for its angle."""
@@ -222,7 +275,7 @@ class VelocityMeter:
         forward, left, up = self._ins[end_ns]
         if abs(up) >= forward:
             return NO_ANGLE, 0.0, None
-        return VALID, -up / forward, math.atan2(-left, forward)
+        return VALID, -up / forward, atan2(-left, forward)
 
     def _fix(self, index, why_not, total, angle_status, tan_alpha, slip):
         """
@@ -239,7 +292,7 @@ class VelocityMeter:
         sigma = NOTHING
         if reading.status == VALID:
             if slip is None:
-                slip = math.atan2(reading.v_z, reading.v_x)
+                slip = atan2(reading.v_z, reading.v_x)
             sigma = velocity_sigmas(self._settings.surrogate, self._cycles, slip)
         end_ns = index * self._dt_ns
         return VelocityFix(

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ins_sim.core.earth.rates import body_velocity
+from .meter import WAIT_NS
 
 
 class MeterOnTruth:
@@ -14,7 +15,7 @@ class MeterOnTruth:
     """
 
     def __init__(self, meter):
-        self._meter, self._ins = meter, None
+        self._meter, self._ins, self._next = meter, None, 0
 
     def follow_ins(self, t_ns, v_b):
         """Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s."""
@@ -25,11 +26,16 @@ class MeterOnTruth:
         v_b = body_velocity(truth)
         if self._ins is None:
             return self._meter.advance(truth.t_ns, v_b, truth.height, v_b)
-        found = self._meter.advance(truth.t_ns, v_b, truth.height)
         t_ns, ins_v_b = self._ins
-        span = slice(*np.searchsorted(t_ns, (truth.t_ns[0], truth.t_ns[-1] + 1)).tolist())
-        for now_ns, v in zip(t_ns[span].tolist(), ins_v_b[span].tolist()):
-            found += self._meter.push_ins(now_ns, v)
+        found = []
+        # The meter waits for the INS for WAIT_NS only: so neither runs ahead by as much.
+        step = max(1, int(np.searchsorted(truth.t_ns, truth.t_ns[0] + WAIT_NS // 2)))
+        for first in range(0, len(truth), step):
+            here = slice(first, first + step)
+            found += self._meter.advance(truth.t_ns[here], v_b[here], truth.height[here])
+            last = self._next
+            self._next = int(np.searchsorted(t_ns, truth.t_ns[here][-1], side='right'))
+            found += self._meter.advance_ins(t_ns[last:self._next], ins_v_b[last:self._next])
         return found
 
     def finish(self):

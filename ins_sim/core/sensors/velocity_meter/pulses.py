@@ -11,6 +11,9 @@ sigma_theta), and a decay of the field itself over T_d, signals i and j at times
 
 so that signal i is a mixture, by a constant factor of G, of three independent processes of one
 spectrum, ahead by t_i (docs/theory.md, "Correlation velocity meter", Signals).
+
+Fourier transforms and products of complex arrays have their last bits from the processor: fixes
+of this mode are the same on one machine only.
 """
 
 import math
@@ -19,6 +22,7 @@ from typing import NamedTuple
 from numpy import fft
 import numpy as np
 
+from ins_sim.core.numerics.elementary import exp, sincos
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.timeseries.fixes import VALID
 from .antennas import antenna_geometry
@@ -28,6 +32,7 @@ from .reading import PAIRS, read_correlations, Reading, secant
 SIGMAS = 5.0
 # added to the diagonal of G, which is singular where two antennas follow one another
 JITTER = 1e-9
+LN_10 = 2.302585092994046
 # 0.3 s and 100 MB a cycle
 MOST_MODES = 1 << 20
 
@@ -60,7 +65,7 @@ class Field:
         self._lengths = tuple(beam.wavelength_m / (4.0 * math.pi * sigma) for sigma in
                               (beam.sigma_theta_x_rad, beam.sigma_theta_z_rad))
         self._decay = 1.0 / signal.decay_time_s if signal.decay_time_s else 0.0
-        self._noise = 10.0 ** (-0.05 * signal.snr_db) / math.sqrt(2.0)
+        self._noise = exp(-0.05 * LN_10 * signal.snr_db) / math.sqrt(2.0)
         self.lag_s = settings.lag_s
         self.length = settings.samples + signal.lags - 1
         # one period of the synthesis holds the samples and the longest correlation
@@ -68,8 +73,8 @@ class Field:
                  + SIGMAS * max(self._lengths)) / limits.speed_min_m_s
         self._period = power_of_two(self.length + math.ceil(reach / self.lag_s))
         # sideslip of 45 deg at the greatest forward speed is the fastest that is measured
-        fastest = math.hypot(math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths),
-                             self._decay)
+        across = math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths)
+        fastest = math.sqrt(across * across + self._decay * self._decay)
         bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
         if bands * self._period > MOST_MODES:
             raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz with '
@@ -98,17 +103,18 @@ class Field:
         across = (centres[:, 1] * u_x - centres[:, 0] * u_z) / math.sqrt(along_2)
         apart, late = across[:, None] - across, leads[:, None] - leads
         lost = (self._decay * self._decay * rate_2 / along_2) * late * late
-        return Shape(leads, math.sqrt(rate_2), np.exp(-0.5 * (apart * apart + lost)))
+        return Shape(leads, math.sqrt(rate_2), exp(-0.5 * (apart * apart + lost)))
 
     def signals(self, normals, speed, v_z, tan_alpha):
         """Return the complex amplitudes (3, length) made of ``width`` normal numbers."""
         leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
         modes = len(self._omega)
         parts = normals[:6 * modes].view(complex).reshape(3, modes)
-        spectrum = np.exp(-0.25 * (self._omega / rate) ** 2)
+        spectrum = exp(-0.25 * (self._omega / rate) ** 2)
         spectrum /= math.sqrt(2.0) * math.sqrt(float((spectrum * spectrum).sum()))
         parts = np.linalg.cholesky(mixture + JITTER * np.eye(3)) @ (parts * spectrum)
-        parts *= np.exp(1j * leads[:, None] * self._omega)
+        sin, cos = sincos(leads[:, None] * self._omega)
+        parts *= cos + 1j * sin
         # what lies beyond the band of the samples is seen inside it
         folded = np.empty((3, self._period), dtype=complex)
         folded[:, self._place] = parts.reshape(3, -1, self._period).sum(axis=1)
@@ -120,7 +126,7 @@ class Field:
         """Return the five functions that are expected without noise, (5, lags) by PAIRS."""
         leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
         t = self.lag_s * np.arange(lags)
-        rows = [mixture[i, j] * np.exp(-0.5 * (rate * (t - leads[i] + leads[j])) ** 2)
+        rows = [mixture[i, j] * exp(-0.5 * (rate * (t - leads[i] + leads[j])) ** 2)
                 for i, j in PAIRS]
         return np.array(rows) ** 2 if detection == 'power' else np.array(rows)
 
@@ -204,8 +210,8 @@ class SignalWindows:
         total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
         """
         x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
-        signals = self._field.signals(self._normals.normal_block(index)[0], math.hypot(x, y), z,
-                                      -y / x)
+        signals = self._field.signals(self._normals.normal_block(index)[0],
+                                      math.sqrt(x * x + y * y), z, -y / x)
         one = self._correlator.sums(signals)
         return one if total is None else Sums(*(a + b for a, b in zip(total, one)))
 

@@ -8,6 +8,7 @@ Source: Ivanov, Vestnik Koncerna PVO Almaz-Antey 2, 2015, with the corrections o
 import math
 from typing import NamedTuple
 
+from ins_sim.core.numerics.elementary import atan2, log, sincos
 from ins_sim.core.timeseries.fixes import VALID
 
 # lags whose correlation is at least this part of the greatest are fitted
@@ -55,7 +56,8 @@ def log_quadratic(values, first, even=False):
     middle, top = 0 if even else first + len(values) // 2, max(values)
     s0 = s1 = s2 = s3 = s4 = t0 = t1 = t2 = 0.0
     for k, value in enumerate(values, first - middle):
-        w, y = (value / top) ** 2, math.log(value)
+        part, y = value / top, log(value)
+        w = part * part
         s0, s1, s2, s3, s4 = s0 + w, s1 + w * k, s2 + w * k**2, s3 + w * k**3, s4 + w * k**4
         t0, t1, t2 = t0 + w * y, t1 + w * y * k, t2 + w * y * k**2
     if even:
@@ -160,7 +162,9 @@ def sideslip(r12, r23, a, b, geometry, tan_alpha):
     """
     x0 = geometry.x0 / secant(tan_alpha)
     sine = geometry.s2 * (r12 - r23) / (2.0 * x0 * geometry.y0 * (a * a + b * b))
-    return 0.5 * math.asin(sine) if abs(sine) <= 1.0 else None
+    if abs(sine) > 1.0:
+        return None
+    return 0.5 * atan2(sine, math.sqrt((1.0 - sine) * (1.0 + sine)))
 
 
 def read_correlations(correlations, lag_s, geometry, tan_alpha):
@@ -177,7 +181,7 @@ def read_correlations(correlations, lag_s, geometry, tan_alpha):
             return Reading(f'{name} {peak.status}')
     p12, p23, *autos = peaks
     tau = (p12.lag * lag_s, p23.lag * lag_s)
-    g = (p12.g / lag_s ** 2, p23.g / lag_s ** 2)
+    g = (p12.g / (lag_s * lag_s), p23.g / (lag_s * lag_s))
     a, b = slowness(tau, geometry, tan_alpha)
     trace, v_z_delays = delay_velocity(a, b, geometry)
     r12 = (p12.ln_max - 0.5 * (autos[0].ln_max + autos[1].ln_max)) / g[0]
@@ -185,4 +189,5 @@ def read_correlations(correlations, lag_s, geometry, tan_alpha):
     beta = sideslip(r12, r23, a, b, geometry, tan_alpha)
     if beta is None:
         return Reading('amplitudes of R12 and R23 give no sideslip')
-    return Reading(VALID, trace / secant(tan_alpha), trace * math.tan(beta), v_z_delays, tau, g)
+    sin, cos = sincos(beta)
+    return Reading(VALID, trace / secant(tan_alpha), trace * (sin / cos), v_z_delays, tau, g)

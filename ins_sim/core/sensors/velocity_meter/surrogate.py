@@ -7,8 +7,10 @@ velocity meter", Surrogate).
 
 import math
 
+from ins_sim.core.numerics.elementary import atan2
 from ins_sim.core.numerics.noise import indexed_noise
 from ins_sim.core.timeseries.fixes import VALID
+from .blocks import in_order
 from .reading import Reading, secant
 
 
@@ -19,9 +21,10 @@ def velocity_sigmas(surrogate, cycles, beta):
     surrogate: settings; beta: sideslip, rad.  sigma_x/sqrt(N) sqrt(1 + (slip_x beta)^2), and
     sqrt(sigma_z^2 + (slip_z beta)^2)/sqrt(N).
     """
-    root = math.sqrt(cycles)
-    return (surrogate.sigma_x_m_s * math.hypot(1.0, surrogate.slip_x * beta) / root,
-            math.hypot(surrogate.sigma_z_m_s, surrogate.slip_z_m_s * beta) / root)
+    root, x, z = math.sqrt(cycles), surrogate.slip_x * beta, surrogate.slip_z_m_s * beta
+    sigma_z = surrogate.sigma_z_m_s
+    return (surrogate.sigma_x_m_s * math.sqrt(1.0 + x * x) / root,
+            math.sqrt(sigma_z * sigma_z + z * z) / root)
 
 
 class SurrogateWindows:
@@ -35,8 +38,8 @@ class SurrogateWindows:
         self._surrogate, self._cycles = settings.surrogate, settings.window.cycles
         beam = settings.beam
         self._scale_x = 1.0 + self._surrogate.k_x
-        self._scale_z = (1.0 + self._surrogate.k_z) * (
-            beam.sigma_theta_z_rad / beam.sigma_theta_x_rad) ** 2
+        ratio = beam.sigma_theta_z_rad / beam.sigma_theta_x_rad
+        self._scale_z = (1.0 + self._surrogate.k_z) * (ratio * ratio)
         self._normals = indexed_noise(settings.seed, run, 'velocity_meter.surrogate', 2)
 
     def add(self, total, index, v_last, v):
@@ -49,6 +52,10 @@ class SurrogateWindows:
         return (x + 0.5 * (v_last[0] + v[0]), y + 0.5 * (v_last[1] + v[1]),
                 z + 0.5 * (v_last[2] + v[2]))
 
+    def add_cycles(self, total, v):
+        """Return the sum with cycles, as ``add`` gives it; v (3, n + 1): at their ends, m/s."""
+        return in_order(total or (0.0, 0.0, 0.0), 0.5 * (v[:, :-1] + v[:, 1:]))
+
     def read(self, total, index, tan_alpha):
         """
         Return the Reading of the window that ends at index periods.
@@ -57,11 +64,12 @@ class SurrogateWindows:
         components by (cos taken / cos true)^2, as with signals.
         """
         v_x, v_y, v_z = (part / self._cycles for part in total)
-        scale = (secant(v_y / v_x) / secant(tan_alpha)) ** 2
-        sigma_x, sigma_z = velocity_sigmas(self._surrogate, self._cycles, math.atan2(v_z, v_x))
+        ratio = secant(v_y / v_x) / secant(tan_alpha)
+        scale = ratio * ratio
+        sigma_x, sigma_z = velocity_sigmas(self._surrogate, self._cycles, atan2(v_z, v_x))
         # each cycle has its own noise, so that long windows average that of the short ones
         cycles = self._normals.normals(index - self._cycles + 1, self._cycles)
-        n_x, n_z = (cycles.sum(axis=0) / math.sqrt(self._cycles)).tolist()
+        n_x, n_z = (x / math.sqrt(self._cycles) for x in in_order((0.0, 0.0), cycles.T))
         return Reading(VALID, self._scale_x * scale * v_x
                        + self._surrogate.bias_x_m_s / self._cycles + sigma_x * n_x,
                        self._scale_z * scale * v_z + sigma_z * n_z)

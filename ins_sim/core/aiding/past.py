@@ -1,0 +1,101 @@
+"""What a navigator keeps of its past, to go back to the instant of a fix that comes late."""
+
+from bisect import bisect_right, insort
+from collections import deque
+import math
+from typing import Any, NamedTuple
+
+from .segment import Samples
+
+SNAPSHOT_NS = 1_000_000_000
+
+
+class FixEntry(NamedTuple):
+    """A fix and its source."""
+
+    source: str
+    fix: Any
+
+
+class FlownSamples(NamedTuple):
+    """Samples that were flown: those from first to stop, stop not included."""
+
+    samples: Samples
+    first: int
+    stop: int
+
+    @property
+    def end_ns(self):
+        """Return the stamp of the last one."""
+        return self.samples.t_ns[self.stop - 1]
+
+    def after(self, t_ns):
+        """Return those after an instant."""
+        return self._replace(first=bisect_right(self.samples.t_ns, t_ns, self.first, self.stop))
+
+
+class Past:
+    """
+    Snapshots, and the samples and fixes since the first of them.
+
+    buffer_ns: how far back a fix may be; dt_ns: sampling period, by which a sample may be later
+    than the fix that was taken at it.
+    """
+
+    def __init__(self, buffer_ns, dt_ns):
+        self._buffer_ns, self._dt_ns = buffer_ns, dt_ns
+        self._snapshots, self._flown, self._fixes = deque(), deque(), []
+        # When the next snapshot is due.
+        self.next_ns = -math.inf
+
+    @property
+    def start_ns(self):
+        """Return the instant of the first snapshot, the earliest a fix may have."""
+        return self._snapshots[0].ins.t_ns
+
+    def add_samples(self, samples, first, stop):
+        """Remember samples that were flown."""
+        self._flown.append(FlownSamples(samples, first, stop))
+
+    def add_fix(self, entry):
+        """Remember a FixEntry; return whether none of a later instant is known."""
+        insort(self._fixes, entry, key=_instant)
+        return self._fixes[-1] is entry
+
+    def knows(self, entry):
+        """Return whether a fix of that source and instant has come before."""
+        return any(_instant(other) == _instant(entry) for other in reversed(self._fixes)
+                   if other.fix.t_ns >= entry.fix.t_ns)
+
+    def add_snapshot(self, flight):
+        """Remember a copy of a FilteredStrapdown."""
+        self._snapshots.append(flight.copy())
+        self.next_ns = flight.ins.t_ns + SNAPSHOT_NS
+
+    def forget(self, t_ns):
+        """Forget what no fix that may come at an instant needs."""
+        oldest_ns = t_ns - self._buffer_ns
+        while len(self._snapshots) > 1 and self._snapshots[1].ins.t_ns <= oldest_ns:
+            self._snapshots.popleft()
+        while self._flown and self._flown[0].end_ns <= self.start_ns:
+            self._flown.popleft()
+        while self._fixes and self._fixes[0].fix.t_ns <= self.start_ns - self._dt_ns:
+            self._fixes.pop(0)
+
+    def go_back(self, t_ns):
+        """
+        Forget the snapshots after an instant.
+
+        Return a copy of the last one before it, the FlownSamples and the FixEntries since.
+        """
+        while self._snapshots[-1].ins.t_ns > t_ns:
+            self._snapshots.pop()
+        flight, start_ns = self._snapshots[-1].copy(), self._snapshots[-1].ins.t_ns
+        self.next_ns = start_ns + SNAPSHOT_NS
+        flown = (run.after(start_ns) for run in self._flown if run.end_ns > start_ns)
+        fixes = (e for e in self._fixes if e.fix.t_ns > start_ns - self._dt_ns)
+        return flight, deque(flown), deque(fixes)
+
+
+def _instant(entry):
+    return entry.fix.t_ns, entry.source
