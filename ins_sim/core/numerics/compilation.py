@@ -28,7 +28,7 @@ from .compile_cache import cache_folder
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
-REPLACED = {elementary.sqrt: math.sqrt, taylor.sincos: elementary.sincos}
+REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp, taylor.sincos: elementary.sincos}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
@@ -217,7 +217,7 @@ class _Graph:
             for name in sorted(attributes):
                 setattr(shadow, name, self._copied(getattr(value, name), ()))
             return shadow
-        if isinstance(value, (bool, int, float, tuple)):
+        if isinstance(value, (bool, int, float, tuple, np.generic)):
             self._digest.update(repr(value).encode())
         return value
 

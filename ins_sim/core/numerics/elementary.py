@@ -62,7 +62,19 @@ def sincos(x):
     """
     k = (x * TWO_OVER_PI + ROUND) - ROUND
     s, c = sine_cosine_kernel(((x - k * HALF_PI_1) - k * HALF_PI_2) - k * HALF_PI_3)
-    # quarter turns: k = 2 half + odd, and the halves change both signs
+    return quarters_on(s, c, k)
+
+
+def sincos_of_quarters(x):
+    """Return sine and cosine of an angle in quarter turns."""
+    k = (x + ROUND) - ROUND
+    s, c = sine_cosine_kernel((x - k) * (0.5 * math.pi))
+    return quarters_on(s, c, k)
+
+
+def quarters_on(s, c, k):
+    """Return sine and cosine of an angle k quarter turns further on."""
+    # k = 2 half + odd, and the halves change both signs
     half = ((k - 0.5) * 0.5 + ROUND) - ROUND
     odd = k - 2.0 * half
     even = 1.0 - odd
@@ -160,9 +172,18 @@ def log_kernel(m, k):
     return k * LN_2_1 - ((half - (s * (half + r) + k * LN_2_2)) - f)
 
 
+def parts(x):
+    """Return m from 0.5 to 1 and the integer k with x = m 2^k."""
+    return np.frexp(x) if isinstance(x, np.ndarray) else math.frexp(x)
+
+
 def log(x):
     """Return the natural logarithm of x > 0."""
-    m, k = np.frexp(x) if isinstance(x, np.ndarray) else math.frexp(x)
+    return log_of_parts(*parts(x))
+
+
+def log_of_parts(m, k):
+    """Return ln(m 2^k) for m from 0.5 to 1."""
     small = m < 0.5 * SQRT_2
     return log_kernel(m * (1.0 + small), k - small * 1.0)
 

@@ -14,11 +14,22 @@ import math
 
 import numpy as np
 
+from . import elementary, normals
+from .compilation import run
+
 BLOCK = 256
 # Processes live on the indices 0 to 2**LEVELS: 600 days at 20 kHz.
 LEVELS = 40
+# After so many correlation times nothing is left of a process.
+GONE = 700.0
 _BLOCK_LEVELS = BLOCK.bit_length() - 1
-_NORMAL, _UNIFORM = 0, 1
+# So many normal numbers in plain Python take as long as one sample of a loop.
+SAMPLE = 64
+# So many numbers are made faster by floats than by arrays.
+FEW = 64
+_NORMAL, _UNIFORM = np.uint64(0), np.uint64(1)
+# The generator of the normal numbers, named in the manifest of a run: other numbers, other name.
+NOISE = 'philox4x64-10 box-muller, version 2'
 
 
 def indexed_noise(seed, run, name, width=None, block=BLOCK):
@@ -35,12 +46,12 @@ class IndexedNoise:
     """
 
     def __init__(self, seed, run, name, width=None, block=BLOCK):
-        digest = blake2b(repr((int(seed), int(run), str(name))).encode(), digest_size=16).digest()
-        self._philox = np.random.Philox(key=np.frombuffer(digest, '<u8'))
+        self.key = key_of(seed, run, name)
+        self._philox = np.random.Philox(key=self.key)
         self._state = self._philox.state
-        self._generator = np.random.Generator(self._philox)
-        self._shape = block if width is None else (block, width)
+        self._shape = (block,) if width is None else (block, width)
         self._block = block
+        self._count = block * (width or 1)
         self._normals_of = self._uniforms_of = None
         self._normals = self._uniforms = ()
 
@@ -62,35 +73,74 @@ class IndexedNoise:
 
     def normals(self, first, count):
         """Return the normals of the samples first to first + count - 1, (count, ...)."""
-        return _cut(self.normal_block, self._block, first, count)
+        return cut(self.normal_blocks, self._block, first, count)
 
     def uniforms(self, first, count):
         """Return the uniforms of the samples first to first + count - 1, (count, ...)."""
-        return _cut(self.uniform_block, self._block, first, count)
+        return cut(self._uniform_blocks, self._block, first, count)
 
     def normal_block(self, block):
         """Return the normals of one block, (block,) or (block, width)."""
-        self._seek(block, _NORMAL)
-        return self._generator.standard_normal(self._shape)
+        return self.normal_blocks(block, 1)
+
+    def normal_blocks(self, first, blocks):
+        """Return the normals of blocks from first, (blocks * block,) or with width columns."""
+        _check(first)
+        # the words of a counter make four numbers
+        whole = -(-self._count // 4) * 4
+        made = np.empty((blocks, whole))
+        run(normals.fill, made.size // SAMPLE, (self.key[0], self.key[1], _NORMAL, first, blocks,
+                                                whole), made, self._fill)
+        return made[:, :self._count].reshape(blocks * self._block, *self._shape[1:])
+
+    def _fill(self, _, __, kind, first, blocks, count, out):
+        """Write what ``normals.fill`` writes, by operations on arrays, or floats if these are few."""
+        words = np.stack([self._words(first + b, int(kind), count) for b in range(blocks)])
+        if out.size <= FEW:
+            out[:] = np.reshape(normals.of_word_list(words.ravel().tolist()), out.shape)
+        else:
+            out[:] = normals.of_words(words)
 
     def uniform_block(self, block):
         """Return the uniforms of one block, (block,) or (block, width)."""
-        self._seek(block, _UNIFORM)
-        return self._generator.random(self._shape)
+        return self._uniform_blocks(block, 1)
 
-    def _seek(self, block, kind):
-        """Go to the counter of a block; its low word counts inside the block."""
-        if block < 0:
-            raise ValueError(f'the sample index lies in block {block}; expected an index >= 0')
+    def _uniform_blocks(self, first, blocks):
+        _check(first)
+        words = np.concatenate([self._words(first + b, int(_UNIFORM), self._count)
+                                for b in range(blocks)])
+        # the upper 53 bits, as NumPy does
+        uniforms = (words >> np.uint64(11)).astype(np.float64) * 2.0 ** -53
+        return uniforms.reshape(blocks * self._block, *self._shape[1:])
+
+    def _words(self, block, kind, count):
+        """Return count words; the low word of the counter counts inside the block."""
         counter = self._state['state']['counter']
         counter[0], counter[1], counter[2] = 0, block, kind
         self._philox.state = self._state
+        return self._philox.random_raw(count)
 
 
-def _cut(block_of, length, first, count):
-    blocks = range(first // length, (first + count - 1) // length + 1)
-    start = first - blocks[0] * length
-    return np.concatenate([block_of(b) for b in blocks])[start:start + count]
+def key_of(seed, run_number, name):
+    """Return the key of a stream, two words uint64."""
+    text = repr((int(seed), int(run_number), str(name)))
+    return np.frombuffer(blake2b(text.encode(), digest_size=16).digest(), '<u8')
+
+
+def _check(block):
+    if block < 0:
+        raise ValueError(f'the sample index lies in block {block}; expected an index >= 0')
+
+
+def cut(blocks_of, length, first, count):
+    """
+    Return the samples first to first + count - 1 out of blocks.
+
+    blocks_of: function (first block, blocks) -> samples; length: samples of a block.
+    """
+    block = first // length
+    samples = blocks_of(block, (first + count - 1) // length + 1 - block)
+    return samples[first - block * length:][:count]
 
 
 class Processes:
@@ -125,7 +175,7 @@ class Processes:
         walk = np.isinf(time_s)
         span = math.ldexp(dt_s, LEVELS)
         first = np.where(walk, 0.0, sigma * ends[0])
-        kept = np.exp(-span / time_s)
+        kept = np.array([_kept(span, t) for t in time_s.tolist()])
         last = np.where(walk, sigma * math.sqrt(span),
                         sigma * np.sqrt(1.0 - kept * kept)) * ends[1] + kept * first
 
@@ -143,30 +193,41 @@ class Processes:
 
     def block(self, b):
         """Return the values at the samples b * BLOCK to b * BLOCK + BLOCK - 1, (BLOCK, m)."""
-        normals = self._inner.normal_block(b)
-        x = np.empty((BLOCK + 1, normals.shape[1]))
-        x[0], x[BLOCK] = self._knot(b), self._knot(b + 1)
+        return self.blocks(b, 1)
+
+    def blocks(self, first, count):
+        """Return the values of blocks from first, (count * BLOCK, m)."""
+        width = self._c.shape[1]
+        numbers = self._inner.normal_blocks(first, count).reshape(count, BLOCK, width)
+        x = np.empty((count, BLOCK + 1, width))
+        ends = np.stack([self._knot(b) for b in range(first, first + count + 1)])
+        x[:, 0], x[:, BLOCK] = ends[:-1], ends[1:]
         for level in range(_BLOCK_LEVELS - 1, -1, -1):
             d = 1 << level
-            x[d::2 * d] = (self._c[level] * (x[0:BLOCK:2 * d] + x[2 * d::2 * d])
-                           + self._s[level] * normals[d::2 * d])
-        return x[:BLOCK]
+            x[:, d::2 * d] = (self._c[level] * (x[:, 0:BLOCK:2 * d] + x[:, 2 * d::2 * d])
+                              + self._s[level] * numbers[:, d::2 * d])
+        return x[:, :BLOCK].reshape(count * BLOCK, width)
 
     def values(self, first, count):
         """Return the values at the samples first to first + count - 1, (count, m)."""
-        return _cut(self.block, BLOCK, first, count)
+        return cut(self.blocks, BLOCK, first, count)
 
 
 def _weight(h, time_s):
     """Return c of a half interval h, s; of a random walk exactly 1/2."""
     if math.isinf(time_s):
         return 0.5
-    kept = math.exp(-h / time_s)
+    kept = _kept(h, time_s)
     return kept / (1.0 + kept * kept)
+
+
+def _kept(h, time_s):
+    """Return what is left of a process after h, s: exp(-h / T)."""
+    return elementary.exp(-h / time_s) if h < GONE * time_s else 0.0
 
 
 def _spread(h, sigma, time_s):
     """Return s of a half interval h, s."""
     if math.isinf(time_s):
         return sigma * math.sqrt(0.5 * h)
-    return sigma * math.sqrt(math.tanh(h / time_s))
+    return sigma * math.sqrt(elementary.tanh(h / time_s))

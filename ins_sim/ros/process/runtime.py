@@ -77,6 +77,7 @@ def node_main(load, args=None, **more):
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 
+        from ins_sim.core.numerics.compilation import plain_only
         from .last_resort import exit_within
         node_class = load()
     except ImportError as error:
@@ -104,7 +105,9 @@ def node_main(load, args=None, **more):
         # what the start has made stays: a collector that walks it again and again costs 10 %
         gc.collect()
         gc.freeze()
-        getattr(node, 'run', _spin)(executor, stop)
+        # a node must not stop for the seconds that a compiler takes
+        with plain_only():
+            getattr(node, 'run', _spin)(executor, stop)
         executor.shutdown()
     exit_within(END_S, stop.code)
     if node is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.compilation import run
-from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
+from ins_sim.core.numerics.noise import BLOCK, cut, indexed_noise, Processes
 from .triad_model import temperature_off, triad_model
 from .triad_reading import AT_REST, read, read_arrays, read_rows, ZERO
 
@@ -72,7 +72,7 @@ class TriadErrors:
         if self._noise is not None:
             if index // BLOCK != self._noise_of:
                 self._noise_of = index // BLOCK
-                self._rows = self._noise(self._noise_of).tolist()
+                self._rows = self._noise(self._noise_of, 1).tolist()
             noise = self._rows[index % BLOCK]
         reading, lagged, carried = read(
             self._geometry, self._response, self._by_force, self._by_temperature, self._lags,
@@ -93,7 +93,7 @@ class TriadErrors:
         if self._by_temperature is not None:
             warm = temperature_off(self._temperature, t_s)
         if self._noise is not None:
-            noise = self._noise_rows(first, len(values))
+            noise = cut(self._noise, BLOCK, first, len(values))
         last, lagged, carried = self.state
         inputs = (self._geometry, self._response, self._by_force, self._by_temperature,
                   self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
@@ -102,12 +102,6 @@ class TriadErrors:
         lagged, carried = run(read_rows, len(readings), inputs, readings, read_arrays)
         self.state = first + len(readings) - 1, lagged, carried
         return readings
-
-    def _noise_rows(self, first, count):
-        """Return the additive errors (count, 3) of the samples from first."""
-        blocks = range(first // BLOCK, (first + count - 1) // BLOCK + 1)
-        rows = np.concatenate([self._noise(block) for block in blocks])
-        return rows[first - blocks[0] * BLOCK:][:count]
 
 
 def _never_off(temperature):
@@ -174,34 +168,47 @@ def discrete_lag(frequency_hz, order, dt_s):
 
 
 def make_noise(model, seed, run, name, dt_s):
-    """Return the function block number -> (BLOCK, 3) of all additive errors, or None."""
+    """
+    Return the function of all additive errors, or None where there are none.
+
+    It takes the number of a block and how many there are from it; it returns their rows, three
+    columns.
+    """
     fixed = np.array([b + d for b, d in zip(model.bias, drawn_once(
         seed, run, f'{name}.turn_on_bias', model.turn_on_sigma))])
     white = np.array(model.white) / math.sqrt(dt_s)
     terms = []
     if any(model.white):
-        normals = indexed_noise(seed, run, f'{name}.white', 3).normal_block
-        terms.append(lambda b: white * normals(b))
+        normals = indexed_noise(seed, run, f'{name}.white', 3).normal_blocks
+        terms.append(lambda first, count: white * normals(first, count))
     hour = tuple(s / 60.0 if math.isinf(t) else s
                  for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time))
     # The stream of the Gauss-Markov process keeps its old name: seeds keep their numbers.
     for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
                               ('walk', model.walk, (math.inf,) * 3)):
         if any(sigma):
-            terms.append(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s).block)
+            terms.append(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s).blocks)
     if any(model.flicker):
         sigma = np.multiply.outer([FLICKER_SIGMA] * len(FLICKER_TIMES), model.flicker)
         time = np.repeat(FLICKER_TIMES, 3)
-        flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).block
-        terms.append(lambda b: flicker(b).reshape(BLOCK, -1, 3).sum(axis=1))
+        flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).blocks
+        terms.append(lambda first, count: _sums_of_three(flicker(first, count)))
     if not terms and not fixed.any():
         return None
 
-    def noise(block):
-        total = np.empty((BLOCK, 3))
+    def noise(first, count):
+        total = np.empty((count * BLOCK, 3))
         total[:] = fixed
         for term in terms:
-            total += term(block)
+            total += term(first, count)
         return total
 
     return noise
+
+
+def _sums_of_three(columns):
+    """Return the sums, three columns, of columns in groups of three, added in their order."""
+    total = columns[:, 0:3]
+    for k in range(3, columns.shape[1], 3):
+        total = total + columns[:, k:k + 3]
+    return total
