@@ -5,7 +5,7 @@ import pytest
 from support.studies import MOTION_1, MOTION_2, run_offline, settings, study
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.navigation import mechanization
+from ins_sim.core.navigation import increments
 
 WOBBLE = {'motion.kind': 'sinusoids', 'motion.sinusoids.angle_deg': [20.0, 15.0, 25.0],
           'motion.sinusoids.position_m': [2.0, 3.0, 1.0],
@@ -71,7 +71,7 @@ def test_exact_increments_at_large_angles():
             for x, c in zip(nodes, weights))
         # equal samples before and now: no coning and no sculling between them
         zero = (0.0, 0.0, 0.0)
-        phi, u = mechanization.two_sample_increments(tuple(w), tuple(f), zero, zero)
+        phi, u = increments.two_sample_increments(tuple(w), tuple(f), zero, zero)
         np.testing.assert_allclose(phi, w)
         np.testing.assert_allclose(u, exact, rtol=1e-12, atol=1e-13)
 

@@ -10,8 +10,9 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid, frames
 from ins_sim.core.navigation import mechanization
 from ins_sim.core.postprocessing.comparison import compare_with_reference, error_rows
-from ins_sim.core.navigation.mechanization import uneven_increments
+from ins_sim.core.navigation.increments import uneven_increments
 from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.navigation.vertical_channel import FREE
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
 from ins_sim.core.postprocessing.imu_record import RecordedImu
@@ -184,6 +185,6 @@ def test_free_navigation_is_the_kernel_of_the_strapdown():
     solution = nav.step(int(imu.t_ns[1]), *samples[1])
     _, u = uneven_increments('instant', *samples, 0.01, 0.01)
     q_ib = frames.inertial_attitude(state[0], state[1], state[4])
-    position, v, _ = mechanization.advance(
-        q_ib, state[:3], state[3], u, 0.01, spin, spin * 0.005, mechanization.FREE, ())
-    assert solution[:4] == (*position, v)
+    place = mechanization.advance(mechanization.begin(*state[:4], 0.0), q_ib, u, 0.01, spin, 0.0,
+                                  FREE, (0.0, 0.0, 0.0, 0.0, 0.0))
+    assert solution[:4] == (*place[:3], place[3:6])

@@ -26,9 +26,9 @@ PLACE = ('lat', 'lon', 'height', 'v_e', 'v_n', 'v_u', 'sin_lat', 'cos_lat', 'sin
          'age')
 # Steps between two computations of the sines from the angles; rounding grows as 1e-16 a step.
 RENEWED_EVERY = 256.0
-# Within 6.4 km of a pole, and where n turns by more than 4 mrad in half an interval, the step is
-# done in Cartesian coordinates.
-POLAR, TURN = 1e-3, 4e-3
+# Within 3 deg of a pole, and where n turns by more than 4 mrad in half an interval, the step is
+# done in Cartesian coordinates: a polar flight would turn n by a mrad a second and more.
+POLAR, TURN = 0.05, 4e-3
 
 
 def begin(lat, lon, height, v, earth_angle):

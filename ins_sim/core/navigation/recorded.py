@@ -88,6 +88,6 @@ class RecordedLoop(NavigationLoop):
         if not self._bridges:
             self.gap = str(fault)
             return False
-        self.navigator.bridge_next(self._dt_ns)
+        self.navigator.bridge_next(self.dt_ns)
         self.bridged += 1
         return True

@@ -28,7 +28,8 @@ from .compile_cache import cache_folder
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
-REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp, taylor.sincos: elementary.sincos}
+REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
+            taylor.sincos: elementary.sincos}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
@@ -73,7 +74,7 @@ def compiled_if_it_pays(loop, count):
     Where it cannot be compiled after all, the loop itself is called, which takes arrays as well.
     """
     _taken[loop] = _taken.get(loop, 0) + count
-    enough = PLAIN_SAMPLES * (PART_OF_CODE if numba.cache_info().currsize else 1.0)
+    enough = PLAIN_SAMPLES * (PART_OF_CODE if 'numba' in sys.modules else 1.0)
     if _taken[loop] <= enough or _plain_only.get():
         return None
     fast = compiled(loop)

@@ -94,7 +94,7 @@ class IndexedNoise:
         return made[:, :self._count].reshape(blocks * self._block, *self._shape[1:])
 
     def _fill(self, _, __, kind, first, blocks, count, out):
-        """Write what ``normals.fill`` writes, by operations on arrays, or floats if these are few."""
+        """Write what ``normals.fill`` writes, by operations on arrays, or on a few floats."""
         words = np.stack([self._words(first + b, int(kind), count) for b in range(blocks)])
         if out.size <= FEW:
             out[:] = np.reshape(normals.of_word_list(words.ravel().tolist()), out.shape)
