@@ -2,7 +2,7 @@
 
 import math
 
-from ins_sim.core.numerics import compilation, elementary
+from ins_sim.core.numerics import compilation, elementary, elementwise
 import mpmath
 import numpy as np
 import pytest
@@ -103,3 +103,15 @@ def test_a_turn_is_taken_off():
     assert elementary.shorter_turn(1.0) == 1.0
     assert elementary.shorter_turn(4.0) == 4.0 - 2.0 * math.pi
     assert elementary.shorter_turn(-4.0 - 2.0 * math.pi) == -4.0 - 2.0 * math.pi + 4.0 * math.pi
+
+
+@pytest.mark.parametrize('name', ['sincos', 'tanh', 'atan2', 'log1p'])
+def test_long_arrays_have_the_bits_of_floats(name, monkeypatch):
+    """Compiled loops over values, where Numba is there."""
+    monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', -1)
+    arguments = points() if name == 'atan2' else (np.abs(points()[1]),)
+    if name == 'log1p':
+        arguments = (arguments[0] / arguments[0].max(),)
+    found = np.asarray(getattr(elementwise, name)(*arguments))
+    expected = [getattr(elementary, name)(*p) for p in zip(*(a.tolist() for a in arguments))]
+    assert found.tolist() == np.moveaxis(np.array(expected), 0, -1).tolist()

@@ -22,14 +22,14 @@ from types import CodeType, FunctionType, ModuleType
 
 import numpy as np
 
-from . import elementary, taylor
+from . import elementary
 from .compile_cache import cache_folder
 
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
 REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
-            taylor.sincos: elementary.sincos}
+            elementary.times_power_of_two: elementary.float_times_power_of_two}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192

@@ -124,6 +124,11 @@ def times_power_of_two(x, k):
     """Return x 2^k for an integer k given as a float; exact unless it leaves the range."""
     if isinstance(x, np.ndarray):
         return np.ldexp(x, np.where(k == k, k, 0.0).astype(np.int64))
+    return float_times_power_of_two(x, k)
+
+
+def float_times_power_of_two(x, k):
+    """Return x 2^k of floats; x where k is no number."""
     return math.ldexp(x, int(k)) if k == k else x
 
 

@@ -7,7 +7,8 @@ series.  Recurrences: Griewank and Walther, "Evaluating Derivatives", 2nd ed., t
 
 import numpy as np
 
-from . import elementary
+from . import elementary, elementwise
+from .compilation import REPLACED
 
 
 class Series:
@@ -122,9 +123,9 @@ def _cauchy(a, b, k, first):
 def sincos(u):
     """Return sin u and cos u of a series, or of a float or an array."""
     if not isinstance(u, Series):
-        return elementary.sincos(u)
+        return elementwise.sincos(u) if isinstance(u, np.ndarray) else elementary.sincos(u)
     s, c = np.empty_like(u.c), np.empty_like(u.c)
-    s[0], c[0] = elementary.sincos(u.c[0])
+    s[0], c[0] = elementwise.sincos(u.c[0])
     w = u.derivative().c
     for k in range(1, len(u.c)):
         s[k] = _cauchy(w, c, k - 1, 0) / k
@@ -140,7 +141,7 @@ def sin(u):
 def tanh(u):
     """Return the series of tanh u, from T' = (1 - T^2) u'."""
     t, v = np.empty_like(u.c), np.empty_like(u.c)
-    t[0] = elementary.tanh(u.c[0])
+    t[0] = elementwise.tanh(u.c[0])
     v[0] = 1.0 - t[0] * t[0]
     w = u.derivative().c
     for k in range(1, len(u.c)):
@@ -162,7 +163,7 @@ def sqrt(u):
 def atan2(y, x):
     """Return the series of the angle of (x, y), from a' = (x y' - y x') / (x^2 + y^2)."""
     rate = (x * y.derivative() - y * x.derivative()) / (x * x + y * y)
-    return rate.integral(elementary.atan2(y.c[0], x.c[0]))
+    return rate.integral(elementwise.atan2(y.c[0], x.c[0]))
 
 
 def log_cosh(u):
@@ -172,5 +173,9 @@ def log_cosh(u):
     ln cosh a = a - ln(1 + tanh a).
     """
     slope = tanh(u)
-    value = np.abs(u.c[0]) - elementary.log1p(np.abs(slope.c[0]))
+    value = np.abs(u.c[0]) - elementwise.log1p(np.abs(slope.c[0]))
     return (slope * u.derivative()).integral(value)
+
+
+# In compiled loops there are floats only.
+REPLACED[sincos] = elementary.sincos
