@@ -26,23 +26,32 @@ def rows(folder):
 
 
 def test_round_trip_from_the_settings(tmp_path, capsys):
-    """Three hours of the FOG at rest: N within 5 %, B within 20 %, K within 30 % of its preset."""
-    out = tmp_path / 'fog'
-    assert main(['allan', *FOG, '-o', str(out)]) == 0
+    """
+    Records of three hours of the FOG at rest: N within 5 %, B within 20 %, K within 30 %.
+
+    From seed to seed B scatters by 13 % and K by 20 %, and one of them may hide the other: the
+    root mean square of three records is held to the bounds.  Pulses are made five times as large
+    as in the preset, so that every record shows them.
+    """
+    found = []
+    for seed in (1, 2, 3):
+        out = tmp_path / f'fog_{seed}'
+        assert main(['allan', *FOG, '-p', f'seed:={seed}', '-p',
+                     'gyro.errors.quantisation_arcsec:=[0.5, 0.5, 0.5]', '-o', str(out)]) == 0
+        found.append(rows(out))
     shown = capsys.readouterr().out
     print(shown)
     for text in ('gyro: imu_tactical_fog, 10 Hz, 10800', 'deg/sqrt(h)', 'deg/h/sqrt(h)', 'arcsec',
                  'm/s/sqrt(h)', 'ug/sqrt(h)', 'mm/s', 'settings'):
         assert text in shown
-    found = rows(out)
-    preset = {'gyro': (0.012, 0.075, 0.3), 'accelerometer': (0.02, 20.0, 100.0)}
+    preset = {'gyro': (0.012, 0.075, 0.3, 0.5 / 12 ** 0.5), 'accelerometer': (0.02, 20.0, 100.0)}
     for triad, values in preset.items():
-        for symbol, value, tolerance in zip('NBK', values, (0.05, 0.2, 0.3)):
-            row = found[triad, symbol]
-            assert row['settings'] == pytest.approx([value] * 3)
-            assert row['all'] == pytest.approx(value, rel=tolerance), row
-    assert found['gyro', 'Q']['settings'] == pytest.approx([0.1 / 12 ** 0.5] * 3)
-    assert found['gyro', 'Q']['all'] == pytest.approx(0.1 / 12 ** 0.5, rel=0.2)
+        for symbol, value, tolerance in zip('NBKQ', values, (0.05, 0.2, 0.3, 0.2)):
+            records = [record[triad, symbol] for record in found]
+            assert all(row['settings'] == pytest.approx([value] * 3) for row in records)
+            seen = [row['all'] for row in records if row['all'] is not None]
+            assert len(seen) >= 2, (triad, symbol)
+            assert np.sqrt(np.mean(np.square(seen))) == pytest.approx(value, rel=tolerance)
 
 
 def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
