@@ -80,6 +80,15 @@ def test_an_array_of_points_has_the_bits_of_floats():
         elementary.atan2(*p) for p in zip(y.tolist(), x.tolist())]
 
 
+@pytest.mark.parametrize('x', [0.0, -0.0, 0.3, -0.784999, 0.785, 0.7853981633974483, 1e-300])
+def test_the_short_way_has_the_bits_of_the_long_one(x):
+    """Signs of zero included."""
+    assert repr(elementary.sincos(x)) == repr(elementary.general_sincos(x))
+    for y in (0.0, 0.1, 0.66 * x, 2.0 * x, -x):
+        for point in ((y, x), (x, y)):
+            assert repr(elementary.atan2(*point)) == repr(elementary.general_atan2(*point))
+
+
 @pytest.mark.parametrize('name', ['sin', 'cos', 'atan2'])
 def test_compiled_functions_have_the_bits_of_plain_ones(name):
     plain = getattr(elementary, name)

@@ -127,7 +127,11 @@ def offset(lat, lon, height, other):
 
     other: (lat, lon, height). Longitudes may differ by whole turns.
     """
-    sin_lat, cos_lat = sincos(lat)
+    return offset_at(lat, lon, height, other, *sincos(lat))
+
+
+def offset_at(lat, lon, height, other, sin_lat, cos_lat):
+    """Return ``offset``, sine and cosine of the latitude being known."""
     east, north = level_metres(other[0] - lat, shorter_turn(other[1] - lon), sin_lat, cos_lat,
                                height)
     return east, north, other[2] - height

@@ -76,8 +76,11 @@ def level_frame(lat, inertial_lon):
 
     C_en = Rz(lon + 90 deg) Rx(90 deg - lat), ENU to ECEF; floats or arrays.
     """
-    sin_lat, cos_lat = sincos(0.5 * lat)
-    sin_lon, cos_lon = sincos(0.5 * inertial_lon)
+    return frame_of_halves(*sincos(0.5 * lat), *sincos(0.5 * inertial_lon))
+
+
+def frame_of_halves(sin_lat, cos_lat, sin_lon, cos_lon):
+    """Return ``level_frame`` of the sines and cosines of half the angles."""
     sx, cx = (cos_lat - sin_lat) * ROOT_HALF, (cos_lat + sin_lat) * ROOT_HALF
     sz, cz = (sin_lon + cos_lon) * ROOT_HALF, (cos_lon - sin_lon) * ROOT_HALF
     return cz * sx, sz * sx, sz * cx, cz * cx

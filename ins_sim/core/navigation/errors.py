@@ -7,7 +7,7 @@ drift carries from sample to sample.
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.frames import level_frame
+from ins_sim.core.earth.frames import frame_of_halves
 from ins_sim.core.numerics import elementary
 
 
@@ -23,11 +23,19 @@ def level_errors(solution, truth):
     solution, truth: (lat, lon, height, v_n, q_nb), floats or arrays.  The attitude error is that
     of q_nb, each in its own n: q_nb = exp(error) q_nb_true (phi-angle), rad.
     """
-    lat, lon, height, v, q_nb = solution
-    lat_t, lon_t, height_t, v_t, q_nb_t = truth
-    turned = quaternion.logarithm(quaternion.multiply(q_nb, quaternion.conjugate(q_nb_t)))
-    return (turned, (v[0] - v_t[0], v[1] - v_t[1], v[2] - v_t[2]),
-            position_error(lat, lon, height, lat_t, lon_t, height_t))
+    lat, lon, height, _, q_nb = solution
+    position = position_error(lat, lon, height, *truth[:3])
+    return attitude_error(q_nb, truth[4]), velocity_error(solution[3], truth[3]), position
+
+
+def attitude_error(q_nb, q_nb_t):
+    """Return the rotation vector of a computed attitude, q_nb = exp(error) q_nb_t, rad."""
+    return quaternion.logarithm(quaternion.multiply(q_nb, quaternion.conjugate(q_nb_t)))
+
+
+def velocity_error(v, v_t):
+    """Return the velocity less the true one, m/s."""
+    return v[0] - v_t[0], v[1] - v_t[1], v[2] - v_t[2]
 
 
 def inertial_errors(state, truth, earth_angle):
@@ -41,9 +49,12 @@ def inertial_errors(state, truth, earth_angle):
     """
     q_ib, lat, lon, height, v = state
     lat_t, lon_t, height_t, v_t, q_nb_t = truth
-    q_nb = quaternion.multiply(
-        quaternion.conjugate(level_frame(lat_t, lon_t + earth_angle)), q_ib)
-    return level_errors((lat, lon, height, v, q_nb), truth)
+    sin_half, cos_half = elementary.sincos(0.5 * lat_t)
+    q_in = frame_of_halves(sin_half, cos_half, *elementary.sincos(0.5 * (lon_t + earth_angle)))
+    delta = attitude_error(quaternion.multiply(quaternion.conjugate(q_in), q_ib), q_nb_t)
+    sin_lat, cos_lat = 2.0 * sin_half * cos_half, 1.0 - 2.0 * sin_half * sin_half
+    position = ellipsoid.offset_at(lat_t, lon_t, height_t, (lat, lon, height), sin_lat, cos_lat)
+    return delta, velocity_error(v, v_t), position
 
 
 # What ``drift`` carries: the last sample (latitude and inertial longitude of the truth, attitude

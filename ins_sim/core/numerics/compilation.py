@@ -29,7 +29,9 @@ LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
 REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
-            elementary.times_power_of_two: elementary.float_times_power_of_two}
+            elementary.times_power_of_two: elementary.float_times_power_of_two,
+            elementary.sincos: elementary.general_sincos,
+            elementary.atan2: elementary.general_atan2}
 # A loop is run in plain Python until it has taken so many samples in this process: to load Numba
 # and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192

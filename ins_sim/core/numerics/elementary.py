@@ -18,12 +18,16 @@ import numpy as np
 
 # x + ROUND - ROUND is x rounded to an integer, ties to even, for |x| below 2^51
 ROUND = 6755399441055744.0
+# below it an angle has less than half a quarter turn
+SHORT = 0.785
 TWO_OVER_PI = 0.6366197723675814
 # pi/2 in three parts of 33 bits, whose products with integers below 2^20 are exact
 HALF_PI_1, HALF_PI_2, HALF_PI_3 = (1.5707963267341256, 6.077100506303966e-11,
                                    2.0222662487959506e-21)
 # pi/4 in two parts; three times the first is exact
 QUARTER_PI_1, QUARTER_PI_2 = 0.7853981633974456, 2.7193112105566926e-15
+# tangent up to which an angle is taken from the axis
+FLAT = 0.66
 LN_2_1, LN_2_2 = 0.6931471803691238, 1.9082149292705877e-10
 ONE_OVER_LN_2 = 1.4426950408889634
 SQRT_2 = 1.4142135623730951
@@ -60,6 +64,15 @@ def sincos(x):
     Within 2.5 ulp from 10 to 1.6e6 rad; beyond, the rounding of the reduction is added, which is
     at most that of x itself.
     """
+    if isinstance(x, float) and -SHORT < x < SHORT:
+        # what general_sincos comes to, in a third of the time
+        s, c = sine_cosine_kernel(x)
+        return s + 0.0, c
+    return general_sincos(x)
+
+
+def general_sincos(x):
+    """Return ``sincos`` without a choice by the size of x."""
     k = (x * TWO_OVER_PI + ROUND) - ROUND
     s, c = sine_cosine_kernel(((x - k * HALF_PI_1) - k * HALF_PI_2) - k * HALF_PI_3)
     return quarters_on(s, c, k)
@@ -95,22 +108,24 @@ def cos(x):
 
 def atan2(y, x):
     """Return the angle of the point (x, y) from the x axis, -pi to pi; zero at the origin."""
+    if isinstance(x, float) and isinstance(y, float) and 0.0 < y < FLAT * x:
+        # what general_atan2 comes to, in half the time
+        t = y / x
+        return t + arc_tangent_rest(t)
+    return general_atan2(y, x)
+
+
+def general_atan2(y, x):
+    """Return ``atan2`` without a choice by the size of x and y."""
     a, b = abs(y), abs(x)
     steep = a > b
     # exact: each of them is either a or b
     low, high = a * (1.0 - steep) + b * steep, b * (1.0 - steep) + a * steep
-    # above 0.66 the angle is taken from the diagonal
-    near = low > 0.66 * high
+    # above FLAT the angle is taken from the diagonal
+    near = low > FLAT * high
     over = high + near * low
     t = (low - near * high) / (over + (over == 0.0))
-    z = t * t
-    p = z * ((((-8.750608600031904122785e-01 * z - 1.615753718733365076637e+01) * z
-               - 7.500855792314704667340e+01) * z - 1.228866684490136173410e+02) * z
-             - 6.485021904942025371773e+01)
-    q = ((((z + 2.485846490142306297962e+01) * z + 1.650270098316988542046e+02) * z
-          + 4.328810604912902668951e+02) * z + 4.853903996359136964868e+02) * z \
-        + 1.945506571482613964425e+02
-    r = t + t * (p / q)
+    r = t + arc_tangent_rest(t)
     # eighths of a turn between the axis and t, and the sense in which t counts from there
     eighths, sense = near * 1.0, 1.0
     eighths, sense = eighths + steep * (2.0 - 2.0 * eighths), sense - steep * 2.0
@@ -118,6 +133,18 @@ def atan2(y, x):
     eighths, sense = eighths + back * (4.0 - 2.0 * eighths), sense * (1.0 - back * 2.0)
     angle = eighths * QUARTER_PI_1 + (sense * r + eighths * QUARTER_PI_2)
     return angle * (1.0 - (y < 0.0) * 2.0)
+
+
+def arc_tangent_rest(t):
+    """Return arctan t - t for |t| <= 0.66."""
+    z = t * t
+    p = z * ((((-8.750608600031904122785e-01 * z - 1.615753718733365076637e+01) * z
+               - 7.500855792314704667340e+01) * z - 1.228866684490136173410e+02) * z
+             - 6.485021904942025371773e+01)
+    q = ((((z + 2.485846490142306297962e+01) * z + 1.650270098316988542046e+02) * z
+          + 4.328810604912902668951e+02) * z + 4.853903996359136964868e+02) * z \
+        + 1.945506571482613964425e+02
+    return t * (p / q)
 
 
 def times_power_of_two(x, k):

@@ -178,4 +178,4 @@ def log_cosh(u):
 
 
 # In compiled loops there are floats only.
-REPLACED[sincos] = elementary.sincos
+REPLACED[sincos] = elementary.general_sincos
