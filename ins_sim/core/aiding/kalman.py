@@ -3,7 +3,7 @@
 import numpy as np
 
 from ins_sim.core.numerics import elementary
-from ins_sim.core.numerics.matrices import dot, is_positive_definite, product, solved
+from ins_sim.core.numerics.fixed_order import dot, is_positive_definite, product, solve
 
 
 def innovation(p, h, r):
@@ -14,7 +14,7 @@ def innovation(p, h, r):
     """
     ph = product(p, h.T)
     s = product(h, ph) + r
-    return s, solved(s, ph.T).T
+    return s, solve(s, ph.T).T
 
 
 def joseph(p, h, r, gain):
@@ -30,7 +30,7 @@ def joseph(p, h, r, gain):
 
 def normalised_square(z, s):
     """Return z' S^-1 z: of an innovation the NIS, of an error the NEES."""
-    return dot(z, solved(s, z[:, np.newaxis])[:, 0])
+    return dot(z, solve(s, z))
 
 
 def chi_square_tail(square, freedom):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics import elementary, taylor
 from . import quaternion
 
 
@@ -27,8 +27,9 @@ def to_compass(q_nb):
     # the vertical in b gives roll and pitch, the forward axis in n the heading
     up = quaternion.rotate_back(q, (zero, zero, one))
     east, north, _ = quaternion.rotate(q, (one, zero, zero))
-    pitch = np.arctan2(up[0], np.hypot(up[1], up[2]))
-    return np.arctan2(up[1], up[2]), pitch, np.arctan2(east, north) % (2.0 * np.pi)
+    pitch = elementary.atan2(up[0], np.sqrt(up[1] * up[1] + up[2] * up[2]))
+    return (elementary.atan2(up[1], up[2]), pitch,
+            elementary.atan2(east, north) % (2.0 * math.pi))
 
 
 def about_axis(axis, angle):
@@ -63,4 +64,4 @@ def from_rpy(roll, pitch, yaw):
 
 def roll_of_matrix(c):
     """Return gamma of C_nb = Rz Ry(-theta) Rx(gamma), nine floats, rad."""
-    return math.atan2(c[7], c[8])
+    return elementary.atan2(c[7], c[8])

@@ -54,8 +54,9 @@ def newton_value(differences, s0, s1, s2):
 
 def continuous_quaternions(q):
     """Return (n, 4) quaternions with the signs that make neighbours differ least."""
-    dot = (q[1:] * q[:-1]).sum(axis=1)
-    return q * np.concatenate([[1.0], np.cumprod(np.where(dot < 0.0, -1.0, 1.0))])[:, None]
+    x, y, z, w = (q[1:] * q[:-1]).T
+    back = x + y + z + w < 0.0
+    return q * np.concatenate([[1.0], np.cumprod(np.where(back, -1.0, 1.0))])[:, None]
 
 
 def middle_attitude(q_start, q_end):

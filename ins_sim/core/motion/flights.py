@@ -32,8 +32,9 @@ def _cruise(t):
     climb, slow = (t - 300.0) / 80.0, (t - 3200.0) / 80.0
     s = t * 100.0 + (taylor.log_cosh(climb) - taylor.log_cosh(slow)) * (65.0 * 80.0)
     s = s - 65.0 * 80.0 * (_log_cosh(300.0 / 80.0) - _log_cosh(3200.0 / 80.0))
-    c = sum((taylor.tanh((t - tk) / width) * (0.5 * step) + 0.5 * step
-             for step, tk, width in CROSS_TRACK), t.constant(0.0))
+    c = t.constant(0.0)
+    for step, tk, width in CROSS_TRACK:
+        c = c + (taylor.tanh((t - tk) / width) * (0.5 * step) + 0.5 * step)
     sin, cos = elementary.sincos(math.radians(300.0))
     h = (taylor.tanh((t - 600.0) / 250.0) - taylor.tanh((t - 3000.0) / 250.0)) * 4900.0 + 200.0
     return s * sin + c * cos, s * cos - c * sin, h
@@ -50,6 +51,13 @@ def _aggressive(t):
     h = (taylor.sin(t * (TWO_PI / 90.0)) * 1200.0 + taylor.sin(t * (TWO_PI / 37.0)) * 300.0
          + 5000.0)
     return ((1.0 - c1) * 8000.0 + (1.0 - c2) * 1200.0, s1 * 8000.0 + s2 * 1200.0, h)
+
+
+def _wobbling(angle, t, terms):
+    """Return an angle with the terms of a wobble added to it; both Series."""
+    for amplitude_deg, frequency, phase in terms:
+        angle = angle + taylor.sin(t * (TWO_PI * frequency) + phase) * math.radians(amplitude_deg)
+    return angle
 
 
 def _flight(path, trim_deg, wobble):
@@ -70,12 +78,9 @@ def _flight(path, trim_deg, wobble):
             gamma = taylor.atan2(speed * psi.derivative(), t.constant(STANDARD_GRAVITY))
             # The angles are known to an order that is two lower.
             low = taylor.Series(t.c[:len(gamma.c)])
-            added = {name: sum((taylor.sin(low * (TWO_PI * f) + phase) * math.radians(a)
-                                for a, f, phase in terms), low.constant(0.0))
-                     for name, terms in wobble.items()}
-            q_nb = angles.from_angles(-(psi + added['psi']),
-                                      theta + added['theta'] + math.radians(trim_deg),
-                                      gamma + added['gamma'])
+            psi, theta, gamma = (_wobbling(angle, low, wobble[name]) for name, angle in (
+                ('psi', psi), ('theta', theta), ('gamma', gamma)))
+            q_nb = angles.from_angles(-psi, theta + math.radians(trim_deg), gamma)
             return *located(east, north, height), q_nb
 
         return pose, lambda t: located(*path(t))

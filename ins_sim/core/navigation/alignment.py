@@ -14,6 +14,8 @@ import numpy as np
 
 from ins_sim.core.attitude import matrix, quaternion
 from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics.elementary import sincos
+from ins_sim.core.numerics.fixed_order import dot, length
 from ins_sim.core.numerics.instants import seconds
 
 # A window of fewer samples has no variance to speak of.
@@ -63,7 +65,7 @@ class _Windows:
         mean = np.add.reduceat(x, self.first) / count
         off = x - np.repeat(mean, self.count, axis=0)
         variance = np.add.reduceat(off * off, self.first) / np.maximum(count - 1, 1)
-        return mean, np.sqrt(variance.mean(axis=1))
+        return mean, np.sqrt((variance[:, 0] + variance[:, 1] + variance[:, 2]) / 3.0)
 
 
 def find_standstill(imu, limits, speed_at=None, longest=False):
@@ -79,7 +81,7 @@ def find_standstill(imu, limits, speed_at=None, longest=False):
     windows = _Windows(imu, limits.window_s)
     quiet = (windows.full & (windows.force_sd <= limits.force_sd_m_s2)
              & (windows.rate_sd <= limits.rate_sd_rad_s)
-             & (np.linalg.norm(windows.rate, axis=1) <= limits.rate_rad_s))
+             & (length(windows.rate) <= limits.rate_rad_s))
     moving = np.zeros_like(quiet)
     if speed_at is not None:
         moving = np.nan_to_num(speed_at(windows.middle_ns)) > limits.speed_m_s
@@ -123,21 +125,26 @@ def _standstill(imu, windows, start, stop):
     return Standstill(
         first, last, int(imu.t_ns[first]), int(imu.t_ns[last - 1]),
         imu.f[first:last].mean(axis=0), imu.omega[first:last].mean(axis=0),
-        float(windows.force_sd[run].mean()), float(windows.rate_sd[run].mean()),
+        _mean(windows.force_sd[run]), _mean(windows.rate_sd[run]),
         scatter / math.sqrt(count if count > 1 else last - first), count)
+
+
+def _mean(values):
+    """Return the mean of values (n,), added in their order."""
+    return float(np.cumsum(values)[-1]) / len(values)
 
 
 def _nothing(windows, quiet, moving, best, limits):
     k = int(np.argmin(np.where(windows.full, windows.force_sd, np.inf)))
-    full_s = int(windows.full.sum()) * windows.length_s
+    full_s = np.count_nonzero(windows.full) * windows.length_s
     what = (f'no stationary interval of {limits.shortest_s:g} s in {full_s:g} s: the longest has '
             f'{best * windows.length_s:g} s, the quietest window, at '
             f'{seconds(windows.middle_ns[k])}, a standard deviation of '
             f'{windows.force_sd[k]:.3g} m/s^2 (limit {limits.force_sd_m_s2:g}) and '
             f'{windows.rate_sd[k]:.3g} rad/s (limit {limits.rate_sd_rad_s:g})')
     if (quiet & moving).any():
-        what += (f', and in {int((quiet & moving).sum())} quiet windows the reference moves '
-                 f'faster than {limits.speed_m_s:g} m/s')
+        what += (f', and in {np.count_nonzero(quiet & moving)} quiet windows the reference '
+                 f'moves faster than {limits.speed_m_s:g} m/s')
     return what
 
 
@@ -160,17 +167,23 @@ class Gyrocompass:
 
 def gyrocompass(still, lat):
     """Return the Gyrocompass of a Standstill at a latitude, rad."""
-    up = still.force / np.linalg.norm(still.force)
+    up = still.force / length(still.force)
     east = np.cross(still.rate, up)
-    level = float(np.linalg.norm(east))
+    level = length(east)
+    spin_level, spin_up = _spin(lat)
     q_nb, sigma = None, math.inf
     if level > 0.0:
         east /= level
         q_nb = _attitude(east, up)
-        sigma = math.sqrt(float(((still.rate_error * east) ** 2).sum())) \
-            / (ellipsoid.ROTATION_RATE * math.cos(lat))
-    return Gyrocompass(q_nb, sigma, float(np.linalg.norm(still.rate)) - ellipsoid.ROTATION_RATE,
-                       float(still.rate @ up) - ellipsoid.ROTATION_RATE * math.sin(lat))
+        sigma = length(still.rate_error * east) / spin_level
+    return Gyrocompass(q_nb, sigma, length(still.rate) - ellipsoid.ROTATION_RATE,
+                       dot(still.rate, up) - spin_up)
+
+
+def _spin(lat, rate=ellipsoid.ROTATION_RATE):
+    """Return the level (North) and upward rate of the Earth, rad/s."""
+    s, c = sincos(lat)
+    return rate * c, rate * s
 
 
 def is_trusted(compass, still, lat, sigma):
@@ -180,8 +193,7 @@ def is_trusted(compass, still, lat, sigma):
     Its standard error must not exceed sigma; nor may the bias that shows in length or upward part
     of the mean rate, beyond three standard errors, be one that turns the heading by more.
     """
-    allowed = sigma * ellipsoid.ROTATION_RATE * math.cos(lat) + 3.0 * float(
-        np.linalg.norm(still.rate_error))
+    allowed = sigma * _spin(lat)[0] + 3.0 * length(still.rate_error)
     return compass.sigma <= sigma and max(abs(compass.excess), abs(compass.excess_up)) <= allowed
 
 
@@ -191,16 +203,17 @@ def level_attitude(force, heading):
 
     Raises ValueError where the forward axis is vertical, so that it has no heading.
     """
-    up = force / np.linalg.norm(force)
+    up = force / length(force)
     forward = np.array([1.0, 0.0, 0.0]) - up[0] * up
-    length = float(np.linalg.norm(forward))
-    if length < 0.02:
+    size = length(forward)
+    if size < 0.02:
         raise ValueError('the forward axis is within 1 deg of the vertical, so that it has no '
                          'heading; expected another mounting (mounting.source, '
                          'mounting.rpy_deg)')
-    forward /= length
+    forward /= size
     right = np.cross(forward, up)
-    return _attitude(math.sin(heading) * forward + math.cos(heading) * right, up)
+    s, c = sincos(heading)
+    return _attitude(s * forward + c * right, up)
 
 
 def _attitude(east, up):
@@ -211,5 +224,5 @@ def _attitude(east, up):
 
 def gyro_bias(still, q_nb, lat, spin):
     """Return the mean rate less that of the Earth, (3,) rad/s, of a Standstill; spin: rad/s."""
-    earth_b = quaternion.rotate_back(q_nb, (0.0, spin * math.cos(lat), spin * math.sin(lat)))
+    earth_b = quaternion.rotate_back(q_nb, (0.0, *_spin(lat, spin)))
     return still.rate - np.array(earth_b)

@@ -126,5 +126,6 @@ def level_attitude(lat, lon, q_ib, earth_angle):
 
 def runs_away(solution):
     """Return whether a solution has left what the strapdown's formulas hold for."""
-    lat, _, height, v, _ = solution
-    return not (abs(lat) < 0.4999 * math.pi and -1e5 < height < 1e6 and math.hypot(*v) < 1e5)
+    lat, _, height, (x, y, z), _ = solution
+    return not (abs(lat) < 0.4999 * math.pi and -1e5 < height < 1e6
+                and x * x + y * y + z * z < 1e10)

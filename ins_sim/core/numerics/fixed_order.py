@@ -1,5 +1,5 @@
 """
-Small matrices in a fixed order of operations.
+Small matrices, and lengths of vectors, in a fixed order of operations.
 
 BLAS and LAPACK choose their loops by the processor, and sums then round differently. Here sums
 are taken in the order of the indices, and complex numbers are multiplied in real arithmetic, so
@@ -27,10 +27,29 @@ def product(a, b):
 
 
 def _real_product(a, b):
-    total = a[:, :1] * b[:1]
-    for k in range(1, len(b)):
-        total = total + a[:, k:k + 1] * b[k:k + 1]
+    if len(a) == b.shape[1] == 1:
+        # a single sum would be taken in parts
+        return np.array(((dot(a[0], b[:, 0]),),))
+    # In this layout a sum over the first axis adds whole matrices, one after the other.
+    return np.add.reduce(np.multiply(a.T[:, :, np.newaxis], b[:, np.newaxis, :], order='C'))
+
+
+def applied(a, x):
+    """Return a x of a real matrix (n, m) and a vector (m,)."""
+    return _real_product(a, np.asarray(x)[:, np.newaxis])[:, 0]
+
+
+def dot(a, b):
+    """Return the sum of the products of two real vectors (m,), a float."""
+    total = 0.0
+    for x, y in zip(a.tolist(), b.tolist()):
+        total += x * y
     return total
+
+
+def length(vectors):
+    """Return the length of a real vector (m,), or of each row of (n, m)."""
+    return elementary.sqrt(_total(np.moveaxis(vectors * vectors, -1, 0)))
 
 
 def magnitude(z):
@@ -52,7 +71,11 @@ def complex_form(a):
 
 
 def solve(a, b):
-    """Return x with a x = b, vectors or matrices b, real or complex: elimination with pivots."""
+    """
+    Return x with a x = b, vectors or matrices b, real or complex: elimination with pivots.
+
+    Raises numpy.linalg.LinAlgError where a is singular.
+    """
     if np.iscomplexobj(a) or np.iscomplexobj(b):
         b = np.asarray(b, dtype=complex)
         return complex_form(solve(real_form(a), real_form(b.reshape(len(a), -1)))).reshape(b.shape)
@@ -60,12 +83,24 @@ def solve(a, b):
     rows = np.column_stack((a, b)).astype(float)
     for k in range(count):
         pivot = k + int(np.abs(rows[k:, k]).argmax())
+        if rows[pivot, k] == 0.0:
+            raise np.linalg.LinAlgError('singular matrix')
         rows[[k, pivot]] = rows[[pivot, k]]
         rows[k] = rows[k] / rows[k, k]
         for i in range(count):
             if i != k:
                 rows[i] = rows[i] - rows[i, k] * rows[k]
     return rows[:, count:].reshape(np.shape(b))
+
+
+def is_positive_definite(a):
+    """Return whether all pivots of a symmetric matrix (m, m) are positive."""
+    a = a.copy()
+    for k in range(len(a)):
+        if not a[k, k] > 0.0:
+            return False
+        a[k + 1:, k + 1:] -= np.multiply.outer(a[k + 1:, k], a[k, k + 1:] / a[k, k])
+    return True
 
 
 def balance(a):

@@ -155,7 +155,7 @@ def sqrt(u):
     r = np.empty_like(u.c)
     r[0] = np.sqrt(u.c[0])
     for k in range(1, len(u.c)):
-        inner = sum((r[j] * r[k - j] for j in range(1, k)), 0.0)
+        inner = _cauchy(r[1:], r[1:], k - 2, 0)
         r[k] = (u.c[k] - inner) / (2.0 * r[0])
     return Series(r)
 

@@ -119,5 +119,9 @@ def _row(comparison, start_ns, after_s):
     place, v, turn = (at(t) for t in (comparison.position, comparison.velocity,
                                       comparison.attitude))
     return ErrorRow(
-        after_s, place and math.hypot(*place[:2]), place and place[2], v and math.hypot(*v[:2]),
-        turn and math.degrees(math.hypot(*turn[:2])), turn and -math.degrees(turn[2]))
+        after_s, place and _level(place), place and place[2], v and _level(v),
+        turn and math.degrees(_level(turn)), turn and -math.degrees(turn[2]))
+
+
+def _level(vector):
+    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1])

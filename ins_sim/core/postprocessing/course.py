@@ -7,6 +7,7 @@ import numpy as np
 from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.navigation.recorded import RecordedNavigator
 from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import length
 
 
 def navigated_headings(imu, state, kind, spin):
@@ -47,8 +48,8 @@ def find_course(turning, displacements, start_ns, distance_m, search_s):
             j += 1
         way = math.sqrt(along * along + across * across)
         if way >= distance_m:
-            aside = [(b * along - a * across) / way for a, b in parts]
-            scatter = math.degrees(math.sqrt(sum(x * x for x in aside)) / way)
+            aside = np.array([(b * along - a * across) / way for a, b in parts])
+            scatter = math.degrees(length(aside) / way)
             return elementary.atan2(across, along), (
                 f'over {way:.1f} m until {(t_ns - start_ns) * 1e-9:.1f} s after the start, '
                 f'scatter {scatter:.2g} deg')

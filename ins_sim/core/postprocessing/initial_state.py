@@ -11,6 +11,7 @@ from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
 from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 from .course import find_course, navigated_headings
@@ -91,9 +92,9 @@ class _Search:
     def _speed_at(self, t_ns):
         """Return the speed of a reference that measures velocity, (n,) m/s, NaN where unknown."""
         if self._reference is not None and self._reference.velocity is not None:
-            return np.linalg.norm(self._reference.velocity_at(t_ns), axis=1)
+            return length(self._reference.velocity_at(t_ns))
         if self._odometry is not None:
-            return np.linalg.norm(self._odometry.velocity_b().at(t_ns), axis=1)
+            return length(self._odometry.velocity_b().at(t_ns))
         return np.full(len(t_ns), np.nan)
 
     def _moving(self, first, last, source, again):
@@ -199,8 +200,8 @@ class _Search:
             lat = where[0]
             figures = {'stationary_s': (still.end_ns - still.start_ns) * 1e-9,
                        'force_sd_m_s2': still.force_sd, 'rate_sd_rad_s': still.rate_sd,
-                       'gravity_excess_m_s2': math.sqrt(sum(x * x for x in still.force.tolist()))
-                       - ellipsoid.gravity(elementary.sin(lat), where[2])}
+                       'gravity_excess_m_s2': length(still.force) - ellipsoid.gravity(
+                           elementary.sin(lat), where[2])}
             q_nb, compassed = self._headed(still, k, where, again, notes, figures)
             v = (0.0, 0.0, 0.0) if self._s.initial.velocity == 'auto' else \
                 self._velocity(k, q_nb, again)

@@ -158,15 +158,20 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
          else np.stack([channel(omega) for channel in responses], axis=-1)[:, None, :] * np.eye(3))
     # Real products alone: those of complex arrays round as the processor likes.
     h_re, h_im = h.real - np.eye(3), h.imag
-    error_re = (h_re * w_re[:, None, :] - h_im * w_im[:, None, :]).sum(axis=-1)
-    error_im = (h_re * w_im[:, None, :] + h_im * w_re[:, None, :]).sum(axis=-1)
+    error_re = _row_sums(h_re * w_re[:, None, :] - h_im * w_im[:, None, :])
+    error_im = _row_sums(h_re * w_im[:, None, :] + h_im * w_re[:, None, :])
     drift = np.zeros(3)
     for i in range(3):
         unit = np.zeros((count, 3))
         unit[:, i] = 1.0
         r_re, r_im, _ = fourier_coefficients(_to_n(truth, unit))
-        drift += (r_re * error_re[:, i, None] + r_im * error_im[:, i, None]).sum(axis=0)
+        drift += np.add.reduce(r_re * error_re[:, i, None] + r_im * error_im[:, i, None], axis=0)
     return drift
+
+
+def _row_sums(rows):
+    """Return the sums of the three numbers of each row (..., 3)."""
+    return rows[..., 0] + rows[..., 1] + rows[..., 2]
 
 
 def delay_response(tau):

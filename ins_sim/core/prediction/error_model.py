@@ -52,7 +52,8 @@ class ErrorModel:
         spin = self._spin
         pull = np.stack((g / (r_e + truth.height), g / (r_n + truth.height)), axis=-1)
         pull[:, 0] += spin * spin
-        pull[:, 1] += (spin * sin) ** 2
+        level = spin * sin
+        pull[:, 1] += level * level
         if self._state is None:
             self._state = self._first_state(truth, r_n, r_e, sin, cos)
         means = [self._means(values) for values in (

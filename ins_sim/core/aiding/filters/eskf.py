@@ -5,7 +5,7 @@ import numpy as np
 from ins_sim.core.attitude import matrix, quaternion
 from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.navigation.errors import position_error
-from ins_sim.core.numerics.matrices import applied
+from ins_sim.core.numerics.fixed_order import applied
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
 from . import eskf_model as model
 from .. import kalman
@@ -49,7 +49,7 @@ class ErrorStateFilter(AidingFilter):
                   + [imu.gyro_bias_sigma_deg_h * DEG_H] * 3 + [0.0, 0.0]
                   + [meter.mounting_sigma_arcmin * DEG / 60.0, meter.scale_x_sigma,
                      meter.scale_z_sigma])
-        self.covariance = np.diag(np.maximum(sigmas, FLOOR) ** 2)
+        self.covariance = np.diag(np.square(np.maximum(sigmas, FLOOR)))
         walks = ([0.0] * 3 + [imu.velocity_random_walk_m_s_sqrt_h / SQRT_H] * 3
                  + [imu.angle_random_walk_deg_sqrt_h * DEG / SQRT_H] * 3
                  + [imu.accelerometer_bias_walk_ug_sqrt_h * UG / SQRT_H] * 3

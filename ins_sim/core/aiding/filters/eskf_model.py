@@ -6,7 +6,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.matrix import skew
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary
-from ins_sim.core.numerics.matrices import applied, product
+from ins_sim.core.numerics.fixed_order import applied, product
 
 SIZE = 20
 P, V, PHI, BA, BG = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)

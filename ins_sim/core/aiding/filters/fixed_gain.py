@@ -3,7 +3,7 @@
 import math
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.numerics.matrices import applied
+from ins_sim.core.numerics.fixed_order import applied
 from ..velocity_window import DoubleIntegral, Integrals
 from .base import AidingFilter, FixOutcome, refused_fix
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ins_sim.core.numerics.matrices import applied, product
+from ins_sim.core.numerics.fixed_order import applied, product
 from ins_sim.core.numerics.units import STANDARD_GRAVITY, UG
 from .. import kalman
 from .base import FixOutcome
@@ -48,8 +48,8 @@ class WindowFilter(MatrixFilter):
                           math.radians(meter.mounting_sigma_arcmin / 60.0))
         sigmas = ([initial.position_sigma_m] * 2 + [initial.velocity_sigma_m_s] * 2 + [w] * 2
                   + [speed * meter.scale_x_sigma, speed * cross])
-        self.covariance = np.diag(np.maximum(np.array(sigmas), FLOOR) ** 2)
-        self._noise = np.array([0.0] * 4 + [ACCELERATION_WALK] * 2 + [OFFSET_WALK] * 2) ** 2
+        self.covariance = np.diag(np.square(np.maximum(sigmas, FLOOR)))
+        self._noise = np.square([0.0] * 4 + [ACCELERATION_WALK] * 2 + [OFFSET_WALK] * 2)
         walk = model.velocity_random_walk_m_s_sqrt_h / 60.0
         self._walk = walk * walk
         self._tilt = tilt

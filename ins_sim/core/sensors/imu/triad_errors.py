@@ -136,7 +136,7 @@ def _geometry(model, seed, run, name):
                                                           (0.0, 0.0, 1.0))]
     rows = ((1.0, 0.0, 0.0), (yx, math.sqrt(1.0 - yx * yx), 0.0),
             (zx, zy, math.sqrt(1.0 - zx * zx - zy * zy)))
-    return tuple(sum(r * c for r, c in zip(row, column)) for row in rows for column in columns)
+    return tuple(a * x + b * y + c * z for a, b, c in rows for x, y, z in columns)
 
 
 def _response(model, seed, run, name):

@@ -52,6 +52,7 @@ class TriadModel:
     g_quadratic: tuple = (0.0, 0.0, 0.0)
 
 
+G2 = STANDARD_GRAVITY * STANDARD_GRAVITY
 _COMMON = {
     'gauss_markov_time_s': ('gauss_markov_time', 1.0),
     'scale_factor_ppm': ('scale', 1e-6),
@@ -73,9 +74,9 @@ KEYS = {
         'angle_random_walk_deg_sqrt_h': ('white', DEG / SQRT_H),
         'rate_random_walk_deg_h_sqrt_h': ('walk', DEG_H / SQRT_H),
         'bias_instability_deg_h': ('flicker', DEG_H),
-        'cubic_ppm_s2_deg2': ('cubic', 1e-6 / DEG ** 2),
+        'cubic_ppm_s2_deg2': ('cubic', 1e-6 / (DEG * DEG)),
         'g_sensitivity_deg_h_g': ('g_linear', DEG_H / STANDARD_GRAVITY),
-        'g2_sensitivity_deg_h_g2': ('g_quadratic', DEG_H / STANDARD_GRAVITY ** 2),
+        'g2_sensitivity_deg_h_g2': ('g_quadratic', DEG_H / G2),
         'saturation_deg_s': ('saturation', DEG),
         'quantisation_arcsec': ('quantum', DEG / 3600.0),
         'temperature_bias_deg_h_c': ('temperature_bias', DEG_H),
@@ -88,8 +89,8 @@ KEYS = {
         'velocity_random_walk_m_s_sqrt_h': ('white', 1.0 / SQRT_H),
         'acceleration_random_walk_ug_sqrt_h': ('walk', UG / SQRT_H),
         'bias_instability_ug': ('flicker', UG),
-        'quadratic_ug_g2': ('quadratic', UG / STANDARD_GRAVITY ** 2),
-        'cubic_ug_g3': ('cubic', UG / STANDARD_GRAVITY ** 3),
+        'quadratic_ug_g2': ('quadratic', UG / G2),
+        'cubic_ug_g3': ('cubic', UG / (G2 * STANDARD_GRAVITY)),
         'saturation_g': ('saturation', STANDARD_GRAVITY),
         'quantisation_mm_s': ('quantum', 1e-3),
         'temperature_bias_ug_c': ('temperature_bias', UG),
@@ -151,7 +152,8 @@ def noise_variance(model, dt_s):
     N^2/dt + (q/dt)^2/6: the pulses of a sample err by the difference of two remainders, each of
     variance q^2/12.
     """
-    return tuple(n * n / dt_s + (q / dt_s) ** 2 / 6.0 for n, q in zip(model.white, model.quantum))
+    return tuple(n * n / dt_s + q * q / (6.0 * dt_s * dt_s)
+                 for n, q in zip(model.white, model.quantum))
 
 
 def white_variance(settings, dt_s, name=''):

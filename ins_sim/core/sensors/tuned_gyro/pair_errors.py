@@ -103,8 +103,9 @@ class RotorErrors:
             self._normals = indexed_noise(seed, 0, 'gyro.dtg.pickoff', 4)
         scale = 1.0 / math.sqrt(dt_s)
         self._spreads = tuple(scale * d for d in self._densities)
-        self._constant = sum((_vibration(*each) for each in zip(
-            pair.gyros, errors.vibration_2n_deg_s, errors.vibration_2n_phase_deg)), ())
+        self._constant = tuple(part for each in zip(
+            pair.gyros, errors.vibration_2n_deg_s, errors.vibration_2n_phase_deg)
+            for part in _vibration(*each))
         p = pair.gyros[0].parameters
         per_moment = 1.0 / (p.input_inertia * p.omega)
         self.product_s = errors.spin_rate_product * (

@@ -58,8 +58,11 @@ def log_quadratic(values, first, even=False):
     for k, value in enumerate(values, first - middle):
         part, y = value / top, log(value)
         w = part * part
-        s0, s1, s2, s3, s4 = s0 + w, s1 + w * k, s2 + w * k**2, s3 + w * k**3, s4 + w * k**4
-        t0, t1, t2 = t0 + w * y, t1 + w * y * k, t2 + w * y * k**2
+        w1, wy = w * k, w * y
+        w2, wy1 = w1 * k, wy * k
+        w3 = w2 * k
+        s0, s1, s2, s3, s4 = s0 + w, s1 + w1, s2 + w2, s3 + w3, s4 + w3 * k
+        t0, t1, t2 = t0 + wy, t1 + wy1, t2 + wy1 * k
     if even:
         determinant = s4 * s0 - s2 * s2
         if determinant <= ROUNDING * s4 * s0:

@@ -1,0 +1,110 @@
+"""What decides the bits of a run is arithmetic that IEEE 754 fixes (docs/design/bits.md)."""
+
+import ast
+
+import pytest
+from support.places import ROOT
+
+CORE = ROOT / 'ins_sim' / 'core'
+FILES = {str(path.relative_to(CORE)): path for path in sorted(CORE.rglob('*.py'))}
+# The one place of the transcendental functions.
+ELEMENTARY = 'numerics/elementary.py'
+MODULES = {'math', 'cmath', 'np', 'numpy'}
+# Each C library, and NumPy for each processor, has its own.
+TRANSCENDENTAL = {
+    'sin', 'cos', 'tan', 'asin', 'acos', 'atan', 'atan2', 'arcsin', 'arccos', 'arctan', 'arctan2',
+    'exp', 'exp2', 'expm1', 'log', 'log1p', 'log2', 'log10', 'logaddexp', 'sinh', 'cosh', 'tanh',
+    'asinh', 'acosh', 'atanh', 'arcsinh', 'arccosh', 'arctanh', 'hypot', 'dist', 'pow', 'power',
+    'float_power', 'cbrt', 'sinc', 'angle', 'erf', 'erfc', 'gamma', 'lgamma', 'geomspace',
+    'logspace', 'phase', 'polar', 'rect', 'i0', 'hanning', 'hamming', 'blackman', 'kaiser'}
+# They add in an order that the processor chooses.
+PRODUCTS = {'linalg', 'fft', 'dot', 'vdot', 'inner', 'matmul', 'einsum', 'tensordot', 'convolve',
+            'correlate', 'polyfit', 'cov', 'corrcoef', 'trapezoid', 'trapz', 'sumprod', 'average',
+            'nansum', 'nanmean', 'nanstd', 'nanvar'}
+# Along the first axis rows are added one after another; in a row numbers are added in parts.
+SUMS = {'sum', 'mean', 'std', 'var', 'prod'}
+RECORDING = 'a recorded motion is splined by LAPACK: "bits: this machine" in its manifest'
+SIGNAL = 'mode signal lives in Fourier transforms: "bits: this machine" in its manifest'
+# File: what it uses all the same, and why it may.
+EXCEPTIONS = {
+    'motion/recorded/spline.py': ({'**', 'mean', 'scipy', 'sum'}, RECORDING),
+    'motion/recorded/faults.py': ({'**', 'cos', 'scipy', 'sin', 'sum'}, RECORDING),
+    'motion/recorded/quality.py': ({'**', 'cos', 'mean', 'sin', 'sinc'}, RECORDING),
+    'sensors/velocity_meter/pulses.py': ({'**', '@', 'fft', 'linalg', 'mean', 'sum'}, SIGNAL),
+    'aiding/mounting_calibration.py': (
+        {'**', '@', 'linalg', 'mean', 'sum'},
+        'least squares over a whole run; printed with three digits, in no array'),
+    'numerics/allan_deviation.py': ({'mean'}, 'printed and plotted, of a finished record'),
+    'streams/faults.py': ({'sum'}, 'only whether it is finite counts'),
+}
+
+
+def bits_of_the_machine(tree):
+    """Yield what in a tree has its bits from the machine: a name or an operator."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute):
+            value = node.value
+            of_module = isinstance(value, ast.Name) and value.id in MODULES
+            if of_module and node.attr in TRANSCENDENTAL | PRODUCTS and not _is_error(node, tree):
+                yield node.attr
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+            yield '@'
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+            # Of floats it is the pow of the C library; with two numbers the compiler's business.
+            if not all(isinstance(side, (ast.Constant, ast.UnaryOp))
+                       for side in (node.left, node.right)):
+                yield '**'
+        elif isinstance(node, ast.Call):
+            yield from _called(node)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            yield from _imported(node)
+
+
+def _is_error(node, tree):
+    """Return whether a name is only that of numpy.linalg.LinAlgError."""
+    return any(isinstance(outer, ast.Attribute) and outer.value is node
+               and outer.attr == 'LinAlgError' for outer in ast.walk(tree))
+
+
+def _called(node):
+    function = node.func
+    if isinstance(function, ast.Name):
+        # From Python 3.12 on it rounds less than adding does.
+        if function.id in ('sum', 'pow'):
+            yield function.id
+    elif isinstance(function, ast.Attribute):
+        axes = [ast.unparse(k.value) for k in node.keywords if k.arg == 'axis']
+        if function.attr in SUMS and axes != ['0'] or function.attr in ('dot', 'trace'):
+            yield function.attr
+
+
+def _imported(node):
+    """Yield what an import lets in by another name."""
+    base = node.module or '' if isinstance(node, ast.ImportFrom) else ''
+    names = {alias.name for alias in node.names}
+    for top in {(base or name).partition('.')[0] for name in names} & {'scipy', 'cmath'}:
+        yield top
+    if base in MODULES:
+        yield from names & (TRANSCENDENTAL | PRODUCTS | SUMS)
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_core_leaves_no_bit_to_the_machine(name):
+    """No transcendental function but those of elementary, no BLAS, no sums in another order."""
+    if name != ELEMENTARY:
+        found = set(bits_of_the_machine(ast.parse(FILES[name].read_text(encoding='utf-8'))))
+        # An exception that is no longer needed goes, too.
+        assert found == EXCEPTIONS.get(name, (set(),))[0]
+
+
+@pytest.mark.parametrize('text, expected', [
+    ('math.sin(x)', ['sin']), ('list(map(np.exp, x))', ['exp']), ('x @ y', ['@']),
+    ('x ** 3', ['**']), ('2.0 ** -53', []), ('np.linalg.norm(x)', ['linalg']),
+    ('raise np.linalg.LinAlgError', []), ('sum(x)', ['sum']), ('x.sum(axis=0)', []),
+    ('np.mean(x)', ['mean']), ('x.std(axis=1)', ['std']), ('x.dot(y)', ['dot']),
+    ('from math import cos, pi', ['cos']), ('import scipy.linalg', ['scipy']),
+    ('from numpy import fft', ['fft']), ('from .elementary import sin\nsin(x)', []),
+    ('import cmath', ['cmath']), ('math.sqrt(x) + np.add.reduce(x)', [])])
+def test_the_law_sees(text, expected):
+    """Calls, names handed on, operators and imports."""
+    assert list(bits_of_the_machine(ast.parse(text))) == expected
