@@ -4,7 +4,7 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow figures bench lint lock clean
+.PHONY: help setup demo test test-slow figures bench bits lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
@@ -13,6 +13,7 @@ help:
 	@echo 'make test-slow  run the slow tests'
 	@echo 'make figures    compute the long studies and render docs/validation.md'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
+	@echo 'make bits       compare the bits of runs between processors and versions of NumPy'
 	@echo 'make lint       check the style and the types'
 	@echo 'make lock       write requirements.lock again (UPGRADE=--upgrade: newest versions)'
 	@echo 'make clean      remove .venv, builds and caches'
@@ -35,6 +36,9 @@ figures:
 
 bench:
 	$(RUN) python benchmarks/run.py $(if $(AGAINST),--against $(AGAINST))
+
+bits:
+	$(RUN) python tools/bits.py
 
 lint:
 	$(RUN) python -m flake8

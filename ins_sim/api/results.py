@@ -108,8 +108,9 @@ class Run:
         """
         Write the run as ``ins_sim simulate -o`` does.
 
-        The folder appears when it is complete. It holds run.npz, parameters.yaml, summary.json
-        and errors.png. A motion given as an object is in the arrays but not in parameters.yaml.
+        The folder appears when it is complete. It holds run.npz, parameters.yaml,
+        manifest.yaml, summary.json and errors.png. A motion given as an object is in the arrays
+        but not in parameters.yaml.
 
         Parameters
         ----------
@@ -140,7 +141,7 @@ class Run:
                 rows = [replace(row, published=None) for row in rows]
                 title = f'{type(self.motion).__name__} given as an object'
             storage.write_run(folder, self.settings, self.result, rows, prediction, title,
-                              overwrite, report)
+                              overwrite, report, self.own_motion)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -15,10 +15,12 @@ from numpy.lib import format as npy_format
 from ins_sim import parameter_files
 from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
 from . import figure
+from .manifest import manifest
 
 MARK = 'summary.json'
 ARRAYS = 'run.npz'
 PARAMETERS = 'parameters.yaml'
+MANIFEST = 'manifest.yaml'
 
 
 def check_free(folder, force, mark=MARK, option='--force'):
@@ -68,13 +70,15 @@ def whole_folder(folder, force=False, mark=MARK):
         raise
 
 
-def write_run(folder, settings, run, rows, prediction, title, force=False, aided=None):
+def write_run(folder, settings, run, rows, prediction, title, force=False, aided=None,
+              own_motion=False):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder that appears when
     complete.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
-    aided: the ``aided.Report`` on this run, which goes into the same files, or None.
+    aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
+    own_motion: whether the motion is not that of the settings.
     """
     with whole_folder(folder, force) as work:
         arrays = {}
@@ -92,6 +96,8 @@ def write_run(folder, settings, run, rows, prediction, title, force=False, aided
             aided.save_figures(work)
         write_arrays(work / ARRAYS, arrays)
         (work / PARAMETERS).write_text(parameters, encoding='utf-8')
+        (work / MANIFEST).write_text(
+            manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
         figure.save_figure(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')

@@ -116,7 +116,7 @@ def test_a_saved_aided_run_is_that_of_the_command_line(aided, tmp_path):
 def same_folders(one, other):
     """Compare two folders of runs, pictures apart."""
     assert {p.name for p in one.iterdir()} == {p.name for p in other.iterdir()}
-    for name in ('parameters.yaml', 'summary.json'):
+    for name in ('parameters.yaml', 'manifest.yaml', 'summary.json'):
         assert (one / name).read_text() == (other / name).read_text()
     for name in {p.name for p in one.glob('*.npz')}:
         with np.load(one / name) as a, np.load(other / name) as b:

@@ -63,7 +63,7 @@ def ordered_samples(imu):
     kept = good
     if len(good) and (np.diff(good.t_ns) <= 0).any():
         kept = good[_rising(good.t_ns.tolist())]
-    losses = Losses(np.count_nonzero(~finite), len(good) - len(kept))
+    losses = Losses(int(np.count_nonzero(~finite)), len(good) - len(kept))
     if len(kept) < 2:
         raise ValueError(f'the IMU has {len(imu)} samples, {losses.not_finite} of them not finite '
                          f'and {losses.out_of_order} out of order; expected at least two good '

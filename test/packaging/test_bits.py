@@ -1,0 +1,43 @@
+"""The shipped configurations give the bits that are promised (docs/design/bits.md)."""
+
+import importlib
+import platform
+
+from ins_sim.core.numerics.compilation import numba
+import pytest
+from support.places import ROOT
+
+
+@pytest.fixture
+def bits(monkeypatch):
+    """Return the module tools/bits.py; skip where nothing is promised."""
+    if platform.machine() not in ('x86_64', 'AMD64'):
+        pytest.skip(f'the bits are promised for x86-64; this is {platform.machine()}')
+    monkeypatch.syspath_prepend(str(ROOT / 'tools'))
+    return importlib.import_module('bits')
+
+
+def expect(found, bits):
+    """Compare digests with those stored."""
+    assert len(found) > 60
+    assert not bits.different(found, bits.reference()), (
+        'if the numbers are meant to change: python tools/bits.py --write, and say so in '
+        'CHANGELOG.rst')
+
+
+def test_the_bits_are_those_stored(bits):
+    """Whatever the versions of Python, NumPy and the C library are here."""
+    expect(bits.in_child(options=['--plain']), bits)
+
+
+def test_an_older_processor_gives_the_same_bits(bits):
+    """NumPy and the C library take their loops without AVX and fused multiply-add."""
+    expect(bits.in_child(bits.older_processor(), ['--plain']), bits)
+
+
+@pytest.mark.slow
+def test_compiled_loops_give_the_same_bits(bits):
+    """Every loop compiled from its first sample on."""
+    if numba() is None:
+        pytest.skip('Numba is not installed')
+    expect(bits.in_child(options=['--compiled']), bits)
