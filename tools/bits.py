@@ -4,11 +4,11 @@ Compare the numbers of the shipped configurations between processors, libraries 
 Usage: python tools/bits.py [--write | --lines [--plain | --compiled]]
 
 Every configuration is run for a few seconds, and the digest of all its arrays is compared with
-that in test/support/bits.json: as this machine would do it, with the loops that NumPy and the C
+that in test/packaging/bits.json: as this machine would do it, with the loops that NumPy and the C
 library choose for an older processor, under three kernels of OpenBLAS, compiled and plain, and
 with an old and a new NumPy, in virtual environments that pip makes for it (docs/design/bits.md).
 
---write   write test/support/bits.json again, after a change that is meant to change numbers
+--write   write test/packaging/bits.json again, after a change that is meant to change numbers
 --lines   only print the digests of this process; --plain: without Numba, --compiled: with every
           loop compiled from its first sample on
 """
@@ -31,10 +31,11 @@ from ins_sim.core.numerics.noise import NOISE
 from ins_sim.core.prediction.drift import NoPrediction
 from ins_sim.core.prediction.predict import predict
 from ins_sim.report.aided_arrays import aided_arrays
+from ins_sim.report.storage import run_arrays
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-REFERENCE = ROOT / 'test' / 'support' / 'bits.json'
+REFERENCE = ROOT / 'test' / 'packaging' / 'bits.json'
 DURATION = 'duration_s:=2.0'
 # Two windows of the velocity meter, and an outage of GNSS within them.
 AIDED = ('duration_s:=2.5', 'outages.start_s:=[1.5]', 'outages.end_s:=[300.0]')
@@ -42,7 +43,7 @@ AIDED = ('duration_s:=2.5', 'outages.start_s:=[1.5]', 'outages.end_s:=[300.0]')
 NOT_PROMISED = ('aided-signal',)
 # As glibc from 2.33 on spells them, and as before.
 TUNABLES = 'glibc.cpu.hwcaps=' + ','.join(
-    f'-{name}{usable}' for name in ('AVX2', 'FMA', 'FMA4', 'AVX512F') for usable in ('', '_Usable'))
+    f'-{name}{usable}' for usable in ('', '_Usable') for name in ('AVX2', 'FMA', 'FMA4', 'AVX512F'))
 KERNELS = ('Nehalem', 'Haswell', 'SkylakeX')
 NUMPY = ('numpy==1.26.4', 'numpy==2.4.6')
 NEEDED = ('scipy<2', 'pyyaml<7', 'matplotlib<4', 'rich<16')
@@ -68,11 +69,7 @@ def _settings(read, arguments, *more):
 
 def _arrays(run):
     """Return {name: array} of all that is computed in a run, and predicted of it."""
-    found = {}
-    for name in ('truth', 'imu', 'states', 'errors', 'twin'):
-        record = getattr(run.result, name)
-        if record is not None:
-            found.update({f'{name}_{key}': value for key, value in record.arrays().items()})
+    found = run_arrays(run.result)
     try:
         prediction = predict(run.settings, run.motion)
     except NoPrediction:

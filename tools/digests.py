@@ -5,8 +5,9 @@ Usage: python tools/digests.py [-o FILE] [--shared-data FOLDER] [--only TEXT]
 
 Each line is ``configuration part digest``. Run it before and after a change of a kernel or of the
 structure of the code, and compare the two files: a line that differs is a number that changed.
-Only the command line is used, so that versions with another layout can be compared. Digests
-depend on the machine's NumPy and C library: compare files made on one machine.
+Only the command line is used, so that versions with another layout can be compared. Of
+recorded motions and of the signals of the velocity meter digests depend on the machine's NumPy:
+compare files made on one machine.
 """
 
 import argparse

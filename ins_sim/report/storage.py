@@ -81,11 +81,7 @@ def write_run(folder, settings, run, rows, prediction, title, force=False, aided
     own_motion: whether the motion is not that of the settings.
     """
     with whole_folder(folder, force) as work:
-        arrays = {}
-        for name in ('truth', 'imu', 'states', 'errors', 'twin'):
-            record = getattr(run, name)
-            if record is not None:
-                arrays.update({f'{name}_{k}': v for k, v in record.arrays().items()})
+        arrays = run_arrays(run)
         if prediction is not None:
             arrays['predicted_t_s'] = prediction.t_s
             arrays['predicted_position'] = prediction.position
@@ -101,6 +97,16 @@ def write_run(folder, settings, run, rows, prediction, title, force=False, aided
         figure.save_figure(work / 'errors.png', title, run.errors, prediction)
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
+
+
+def run_arrays(run):
+    """Return the arrays of a SimulationResult as {<record>_<field>: array}."""
+    arrays = {}
+    for name in ('truth', 'imu', 'states', 'errors', 'twin'):
+        record = getattr(run, name)
+        if record is not None:
+            arrays.update({f'{name}_{k}': v for k, v in record.arrays().items()})
+    return arrays
 
 
 def write_arrays(path, arrays):
