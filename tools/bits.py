@@ -43,7 +43,8 @@ AIDED = ('duration_s:=2.5', 'outages.start_s:=[1.5]', 'outages.end_s:=[300.0]')
 NOT_PROMISED = ('aided-signal',)
 # As glibc from 2.33 on spells them, and as before.
 TUNABLES = 'glibc.cpu.hwcaps=' + ','.join(
-    f'-{name}{usable}' for usable in ('', '_Usable') for name in ('AVX2', 'FMA', 'FMA4', 'AVX512F'))
+    f'-{name}{usable}' for name in ('AVX2', 'FMA', 'FMA4', 'AVX512F')
+    for usable in ('', '_Usable'))
 KERNELS = ('Nehalem', 'Haswell', 'SkylakeX')
 NUMPY = ('numpy==1.26.4', 'numpy==2.4.6')
 NEEDED = ('scipy<2', 'pyyaml<7', 'matplotlib<4', 'rich<16')
