@@ -81,8 +81,10 @@ def logarithm(q):
     """
     x, y, z, w = q
     n = elementary.sqrt(x * x + y * y + z * z)
+    # of a unit quaternion so near to one that the squares underflow
+    tiny = n < 1e-150
     sign = 1.0 - (w < 0.0) * 2.0
-    s = sign * 2.0 * elementary.atan2(n, abs(w)) / (n + (n == 0.0))
+    s = sign * 2.0 * (elementary.atan2(n, abs(w)) / (n + tiny) * (1.0 - tiny) + tiny)
     return x * s, y * s, z * s
 
 
