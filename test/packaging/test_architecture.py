@@ -57,7 +57,7 @@ EARTH = {'core.numerics', 'core.attitude', 'core.earth'}
 STREAMS = EARTH | {'core.timeseries', 'core.streams'}
 CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
-        'core.prediction', 'core.simulation'}
+        'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
                          'graph', 'studies', 'report'}
 MAY_IMPORT = {
@@ -74,7 +74,10 @@ MAY_IMPORT = {
     'core.postprocessing': EARTH | {'settings', 'core.timeseries', 'core.navigation'},
     'core.prediction': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
                                 'core.sensors'},
-    'core.simulation': (CORE | {'settings'}) - {'core.postprocessing', 'core.prediction'},
+    'core.simulation': (CORE | {'settings'}) - {'core.postprocessing', 'core.prediction',
+                                                'core.ensemble'},
+    'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',
+                                'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
     'bags': {'messages', 'settings.suggest'},

@@ -43,6 +43,12 @@ class InertialNavigator:
         """Return lat, lon, height, v_n, q_nb at the last sample."""
         return self._strapdown.solution
 
+    @property
+    def carry(self):
+        """Return what ``whole_run.solve`` carries: orientation, PLACE, integrals and instant."""
+        ins = self._strapdown
+        return ins.orientation, ins.place, self._last, ins.t_ns
+
     def step(self, t_ns, omega, f, truth):
         """
         Take the reading that ends at t_ns; return the errors of the solution, or None before it.
@@ -87,8 +93,7 @@ class InertialNavigator:
 
     def _solve(self, t_ns, omega, f, truth, solved):
         ins = self._strapdown
-        carry = ins.orientation, ins.place, self._last, ins.t_ns
-        inputs = (carry, ins.spin, ins.start_ns, ins.channel, ins.damping, self._integrated,
+        inputs = (self.carry, ins.spin, ins.start_ns, ins.channel, ins.damping, self._integrated,
                   t_ns, omega, f, truth.height, np.ascontiguousarray(truth.v_n[:, 2]))
         carry = compilation.run(whole_run.solve, len(t_ns), inputs, solved)
         orientation, place, self._last, last_ns = carry

@@ -38,16 +38,23 @@ class SimulationResult:
     faults: tuple = ()
 
 
-def imu_blocks(settings, motion):
+def imu_blocks(settings, motion, run=0):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
-    return sensed_blocks(settings.imu_sensor, _ideal(settings, motion))
+    return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion), run)
 
 
 @paused_in_blocks
-def sensed_blocks(sensor, ideal):
-    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
-    errors = with_errors(sensor)
-    sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))
+def sensed_blocks(sensor, ideal, run=0):
+    """
+    Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one.
+
+    run: number of the run in an ensemble; each has its own random numbers.
+    """
+    if run and sensor.gyro.model == 'dtg':
+        raise ValueError(f'run is {run} with gyro.model dtg; expected 0: the errors of tuned '
+                         'gyros are drawn for one run only')
+    errors = with_errors(sensor, run)
+    sampler = Sampler(sensor.sampling, sensor.seed, run, 'sampling', period_ns(sensor.rate_hz))
     for block in ideal:
         block = sampler.take(block if errors is None else errors.advance(block))
         if len(block):
@@ -67,7 +74,8 @@ def truth_blocks(generator, motion):
         yield motion.at(first_ns + period_ns(generator.rate_hz) * k)
 
 
-def _ideal(settings, motion):
+def ideal_blocks(settings, motion):
+    """Yield blocks of ImuSamples of the IMU without the errors that ``sensed_blocks`` adds."""
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
     if sensor.source == 'motion':
@@ -129,18 +137,18 @@ class _RecentTruth:
         return self._last
 
 
-def simulate(settings, motion, twin=True, progress=None, collect=Collected):
+def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=0):
     """
     Return the SimulationResult of SimulationSettings.
 
     motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
     called with the fraction done; collect: called once for each history, it returns what takes
-    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
-    where the settings name no run of finite length.
+    the blocks and gives the whole, such as Collected, which keeps it in memory; run: number of the
+    run in an ensemble.  Raises ValueError where the settings name no run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)
-    _check_start(settings)
+    check_start(settings)
     twin = twin and settings.delayed
     total = 1.0 + _steps(generator)
     total *= period_ns(generator.rate_hz) * (2 if twin else 1)
@@ -157,7 +165,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
         # The IMU and the navigation ask for the truth at the same instants.
         motion = _RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
-    blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
+    blocks = watch(_kept(imu_blocks(settings, motion, run), sensed), 0)
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
         for store, part in zip(flown, parts):
             store.append(part)
@@ -168,7 +176,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     twin_errors = None
     if twin:
         store = collect()
-        blocks = watch(imu_blocks(settings.without_delays(), motion), total / 2)
+        blocks = watch(imu_blocks(settings.without_delays(), motion, run), total / 2)
         for _, _, part in navigate_blocks(settings.strapdown, motion, blocks):
             store.append(part)
         twin_errors = store.history()
@@ -181,7 +189,7 @@ def _kept(blocks, store):
         yield block
 
 
-def _check_start(settings):
+def check_start(settings):
     """Raise ValueError where nominal instants, multiples of the period, would miss the start."""
     start_s, dt_ns = settings.motion_generator.start_s, period_ns(settings.imu_sensor.rate_hz)
     if settings.strapdown.imu_time == 'nominal' and round(1e9 * start_s) % dt_ns:

@@ -13,16 +13,18 @@ from ..sensor import Sensor
 from .sampling import consecutive
 
 
-def with_errors(settings):
+def with_errors(settings, run=0):
     """
     Return the InstrumentErrors of ImuSensorSettings, or None where nothing is left to them.
+
+    run: number of the run in an ensemble, part of the key of all random numbers.
 
     Raises ValueError where the error terms do not fit together.
     """
     gyro = outer_gyro_errors(settings)
     if gyro == GyroErrors() and settings.accelerometer.errors == AccelerometerErrors():
         return None
-    return InstrumentErrors(settings, gyro)
+    return InstrumentErrors(settings, gyro, run)
 
 
 def outer_gyro_errors(settings):
@@ -46,16 +48,16 @@ def reported_variances(settings):
 
 
 class InstrumentErrors:
-    """The errors of gyros (GyroErrors) and accelerometers of one IMU."""
+    """The errors of gyros (GyroErrors) and accelerometers of one IMU in one run."""
 
-    def __init__(self, settings, gyro_errors):
+    def __init__(self, settings, gyro_errors, run=0):
         # NumPy's generators cost a perfect node's start nothing
         from .triad_errors import TriadErrors
         self._dt_ns = period_ns(settings.rate_hz)
         dt = self._dt_ns * 1e-9
         triads = ((gyro_errors, 'gyro.errors'),
                   (settings.accelerometer.errors, 'accelerometer.errors'))
-        self._gyro, self._accel = (TriadErrors(errors, settings.seed, 0, name, dt,
+        self._gyro, self._accel = (TriadErrors(errors, settings.seed, run, name, dt,
                                                settings.temperature) for errors, name in triads)
 
     def step(self, t_ns, omega, f):

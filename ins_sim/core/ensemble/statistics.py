@@ -1,0 +1,130 @@
+"""
+Running statistics of errors: count, mean, co-moments, and histograms for percentiles.
+
+Runs come in groups. A group has moments of its own, which are merged in the order of the groups
+(Chan, Golub and LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
+Variances", 1979), so that the last bits do not depend on which group is computed first. All sums
+are taken run after run.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+# Bins of a histogram: one below the least size, EIGHTHS to each power of two, one above.
+LEAST, GREATEST, EIGHTHS = -60, 40, 8
+EDGES = np.concatenate([np.ldexp(1.0 + np.arange(EIGHTHS) / EIGHTHS, e)
+                        for e in range(LEAST, GREATEST + 1)])
+SIGNED_EDGES = np.concatenate([-EDGES[::-1], EDGES])
+
+
+class Moments(NamedTuple):
+    """
+    Of n quantities at m instants: count (m,), mean (m, n), sum of products of deviations (m, n, n).
+    """
+
+    count: np.ndarray
+    mean: np.ndarray
+    comoment: np.ndarray
+
+
+def moments_of(samples):
+    """Return the Moments of samples (m, runs, n); a run with a NaN or infinity is left out."""
+    instants, runs, width = samples.shape
+    valid = np.isfinite(samples).all(axis=2)
+    count, total = np.zeros(instants, dtype=np.int64), np.zeros((instants, width))
+    for k in range(runs):
+        count += valid[:, k]
+        total += np.where(valid[:, k, None], samples[:, k], 0.0)
+    mean = total / np.maximum(count, 1)[:, None]
+    comoment = np.zeros((instants, width, width))
+    for k in range(runs):
+        off = np.where(valid[:, k, None], samples[:, k] - mean, 0.0)
+        comoment += off[:, :, None] * off[:, None, :]
+    return Moments(count, mean, comoment)
+
+
+def merged(a, b):
+    """Return the Moments of the samples of both."""
+    count = a.count + b.count
+    per = 1.0 / np.maximum(count, 1)
+    off = b.mean - a.mean
+    mean = a.mean + off * (b.count * per)[:, None]
+    weight = a.count * (b.count * per)
+    comoment = (a.comoment + b.comoment) + off[:, :, None] * off[:, None, :] * weight[:, None, None]
+    return Moments(count, mean, comoment)
+
+
+def bins_of(samples):
+    """Return the numbers of the bins of finite samples; those of NaN mean nothing."""
+    return np.searchsorted(SIGNED_EDGES, samples, side='right')
+
+
+class ErrorStatistics:
+    """
+    Statistics of n quantities at m instants over runs.
+
+    Attributes
+    ----------
+    moments : Moments over all runs
+    histogram : (m, n, bins) numbers of runs; bin k lies below SIGNED_EDGES[k]
+
+    """
+
+    def __init__(self, instants, width):
+        self.moments = Moments(np.zeros(instants, dtype=np.int64), np.zeros((instants, width)),
+                               np.zeros((instants, width, width)))
+        self.histogram = np.zeros((instants, width, len(SIGNED_EDGES) + 1), dtype=np.int64)
+
+    def add(self, first, samples):
+        """Add samples (m, runs, n) of the instants from number first on."""
+        part = slice(first, first + len(samples))
+        found = merged(Moments(*(a[part] for a in self.moments)), moments_of(samples))
+        for whole, new in zip(self.moments, found):
+            whole[part] = new
+        valid = np.isfinite(samples).all(axis=2)
+        instant, run = np.nonzero(valid)
+        bins = bins_of(samples[instant, run])
+        np.add.at(self.histogram, ((first + instant)[:, None], np.arange(samples.shape[2]), bins),
+                  1)
+
+    def first(self, instants):
+        """Return the statistics of so many instants from the first."""
+        part = ErrorStatistics(0, self.mean.shape[1])
+        part.moments = Moments(*(a[:instants] for a in self.moments))
+        part.histogram = self.histogram[:instants]
+        return part
+
+    @property
+    def count(self):
+        """Return the number of runs at each instant, (m,)."""
+        return self.moments.count
+
+    @property
+    def mean(self):
+        """Return the means (m, n)."""
+        return self.moments.mean
+
+    @property
+    def covariance(self):
+        """Return the covariances (m, n, n), by count - 1; NaN of fewer than two runs."""
+        less = np.where(self.count > 1, self.count - 1.0, np.nan)
+        return self.moments.comoment / less[:, None, None]
+
+    def percentile(self, percent):
+        """
+        Return the values (m, n) below which so many percent of the runs lie.
+
+        Linear inside a bin, so within the width of a bin: an eighth of the value at most.
+        """
+        below = np.cumsum(self.histogram, axis=2)
+        wanted = 0.01 * percent * self.count[:, None]
+        found = np.full(self.mean.shape, np.nan)
+        for i, j in np.ndindex(*found.shape):
+            if self.count[i]:
+                k = int(np.searchsorted(below[i, j], wanted[i, 0]))
+                inside = self.histogram[i, j, k]
+                low, high = SIGNED_EDGES[[max(k - 1, 0), min(k, len(SIGNED_EDGES) - 1)]]
+                part = (wanted[i, 0] - (below[i, j, k] - inside)) / max(inside, 1)
+                found[i, j] = low + part * (high - low)
+        return found
