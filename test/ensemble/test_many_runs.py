@@ -13,7 +13,7 @@ from ins_sim.io.motion import read_motion
 
 NOISY = ('imu_tactical_fog',)
 LAGGED = ('accelerometer.errors.bandwidth_hz:=[20.0, 0.0, 30.0]',
-          'gyro.errors.quantization_arcsec:=[0.1, 0.1, 0.0]')
+          'gyro.errors.quantisation_arcsec:=[0.1, 0.1, 0.0]')
 
 
 def settings_of(*assignments, names=('motion_2',), seconds=12.0):

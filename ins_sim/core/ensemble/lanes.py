@@ -37,8 +37,7 @@ def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, 
         dt = (now_ns - last_ns) * 1e-9
         earth_angle = spin * ((last_ns - start_ns) * 1e-9)
         reference = height[k], v_u[k], damping[0], damping[1], damping[2]
-        increments_of(state, readings, 6 * LANES * k, dt, integrated)
-        if all_small(state, dt, spin):
+        if increments_of(state, readings, 6 * LANES * k, dt, spin, integrated):
             small_steps(state, dt, spin, channel, reference)
         else:
             for lane in range(LANES):
@@ -50,37 +49,36 @@ def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, 
     return state
 
 
-def increments_of(state, readings, first, dt, integrated):
-    """Write rotation vector and velocity increment of a sample, and its integrals."""
+def increments_of(state, readings, first, dt, spin, integrated):
+    """
+    Write rotation vector and velocity increment of a sample, and its integrals.
+
+    Return whether the next step is a small one for all runs, and none is to be renewed.
+    """
+    small, limit = 0, mechanization.TURN / (0.5 * dt)
     for lane in range(LANES):
         i = first + lane
         now = integrals((readings[i], readings[i + LANES], readings[i + 2 * LANES]),
                         (readings[i + 3 * LANES], readings[i + 4 * LANES],
                          readings[i + 5 * LANES]), dt)
-        s = 23 * LANES + lane
-        last = ((state[s], state[s + LANES], state[s + 2 * LANES]),
-                (state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES]))
-        phi, delta_v = fixed_rate_increments(integrated, now, last)
-        state[s], state[s + LANES], state[s + 2 * LANES] = now[0]
-        state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES] = now[1]
+        phi, delta_v = now
+        if integrated:
+            s = 23 * LANES + lane
+            last = ((state[s], state[s + LANES], state[s + 2 * LANES]),
+                    (state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES]))
+            phi, delta_v = fixed_rate_increments(integrated, now, last)
+            state[s], state[s + LANES], state[s + 2 * LANES] = now[0]
+            state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES] = now[1]
         s = CARRIED * LANES + lane
         state[s], state[s + LANES], state[s + 2 * LANES] = phi
         state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES] = delta_v
-
-
-def all_small(state, dt, spin):
-    """Return whether the next step is a small one for all runs, and none is to be renewed."""
-    small, limit = 0.0, mechanization.TURN / (0.5 * dt)
-    for lane in range(LANES):
         north = state[4 * LANES + lane] * state[15 * LANES + lane]
         east = state[3 * LANES + lane] * state[16 * LANES + lane] + spin
-        s = CARRIED * LANES + lane
-        x, y, z = state[s], state[s + LANES], state[s + 2 * LANES]
-        fine = ((state[7 * LANES + lane] > mechanization.POLAR) & (-limit < north)
-                & (north < limit) & (-limit < east) & (east < limit)
-                & (state[18 * LANES + lane] < mechanization.RENEWED_EVERY)
-                & (x * x + y * y + z * z <= quaternion.SMALL2))
-        small += fine * 1.0
+        x, y, z = phi
+        small += ((state[7 * LANES + lane] > mechanization.POLAR) & (-limit < north)
+                  & (north < limit) & (-limit < east) & (east < limit)
+                  & (state[18 * LANES + lane] < mechanization.RENEWED_EVERY)
+                  & (x * x + y * y + z * z <= quaternion.SMALL2))
     return small == LANES
 
 
