@@ -9,8 +9,12 @@ from ins_sim.core.navigation import whole_run
 from ins_sim.core.navigation.navigator import CHANNELS, InertialNavigator
 from ins_sim.core.navigation.vertical_channel import DAMPED, damping, NO_DAMPING
 from ins_sim.core.numerics import compilation
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.sampling import consecutive
+from ins_sim.core.sensors.imu.with_errors import with_errors
 from . import lanes
 from .lanes import LANES
+from .sensing import SensedTriad
 
 # Errors of a run: attitude, rad, velocity, m/s, and position, m, each East, North, Up.
 ERRORS = 9
@@ -23,13 +27,16 @@ class Group:
     Runs with the same truth and ideal readings.
 
     settings: SimulationSettings; runs: their numbers, at most 16; initial: function of the number
-    of a run that returns its Initial errors, or None for those of the settings; instruments: of
-    each run what makes its readings of ImuSamples, or None.
+    of a run that returns its Initial errors, or None for those of the settings.
     """
 
-    def __init__(self, settings, runs, initial, instruments):
+    def __init__(self, settings, runs, initial=None):
         strapdown = settings.strapdown
-        self.runs, self._instruments = tuple(runs), instruments
+        self.runs = tuple(runs)
+        self._dt_ns = period_ns(strapdown.rate_hz)
+        instruments = [with_errors(settings.imu_sensor, run) for run in self.runs]
+        self._gyro = _sensed([i and i.gyro for i in instruments], 0)
+        self._accelerometer = _sensed([i and i.accelerometer for i in instruments], 3)
         self._spin = ellipsoid.rotation_rate(strapdown.earth.rotation)
         self._channel = CHANNELS[strapdown.vertical.channel]
         self._damping = NO_DAMPING
@@ -49,10 +56,9 @@ class Group:
         return tuple(run for run, lost in zip(self.runs, self._lost) if lost)
 
     def wait(self, imu):
-        """Take ideal samples before the start of the strapdown."""
-        for instrument in self._instruments:
-            if instrument is not None:
-                instrument.advance(imu)
+        """Take ideal samples before the start of the strapdown: lags settle meanwhile."""
+        for part in _pieces(imu.t_ns // self._dt_ns):
+            self._sense(imu[part])
 
     def advance(self, imu, t_ns, truth, picked):
         """
@@ -63,7 +69,7 @@ class Group:
         """
         solved = [self._advance(imu[part], t_ns[part], truth[part],
                                 picked[(picked >= part.start) & (picked < part.stop)] - part.start)
-                  for part in _pieces(len(t_ns))]
+                  for part in _pieces(imu.t_ns // self._dt_ns)]
         return self._judged(t_ns[picked], np.concatenate(solved), truth[picked])
 
     def _advance(self, imu, t_ns, truth, picked):
@@ -93,13 +99,14 @@ class Group:
     def _sense(self, imu):
         """Return the readings (n, 6, LANES); lanes without a run have those of the first."""
         readings = np.empty((len(imu), 6, LANES))
-        for lane in reversed(range(LANES)):
-            instrument = self._instruments[lane if lane < len(self.runs) else 0]
-            if lane >= len(self.runs) and instrument is not None:
-                continue
-            own = imu if instrument is None else instrument.advance(imu)
-            readings[:, 0:3, lane], readings[:, 3:6, lane] = own.omega, own.f
-        readings[:, :, len(self.runs):] = readings[:, :, 0:1]
+        t_s, first = imu.t_ns * 1e-9, int(imu.t_ns[0]) // self._dt_ns
+        for triad, values, rows in ((self._gyro, imu.omega, readings[:, 0:3]),
+                                    (self._accelerometer, imu.f, readings[:, 3:6])):
+            if triad is None:
+                rows[:] = values[:, :, None]
+            else:
+                triad.read(first, values, imu.f, t_s, readings)
+                rows[:, :, len(self.runs):] = rows[:, :, 0:1]
         return readings
 
     def _start(self, t_ns, readings, truth):
@@ -145,5 +152,24 @@ class Group:
         return solved.T[:len(self.runs)], errors[0]
 
 
-def _pieces(count):
-    return [slice(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]
+def _sensed(triads, column):
+    """Return the SensedTriad of TriadErrors, or None of perfect ones."""
+    if all(triad is None or triad.perfect for triad in triads):
+        return None
+    return SensedTriad(triads, column)
+
+
+def _pieces(index):
+    """
+    Return slices of samples of consecutive indices.
+
+    They end where blocks of random numbers do, so that few of these are made twice.
+    """
+    pieces = []
+    for run in consecutive(index):
+        first = run.start
+        while first < run.stop:
+            end = min(run.stop, first + PIECE - int(index[first]) % PIECE)
+            pieces.append(slice(first, end))
+            first = end
+    return pieces

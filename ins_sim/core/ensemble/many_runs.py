@@ -13,7 +13,6 @@ from ins_sim.core.navigation.whole_run import SOLVED
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.sampling import Sampler
-from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.simulation.inertial import check_start, ideal_blocks
 from .group import ERRORS, Group
 from .lanes import LANES
@@ -52,7 +51,7 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     check_length(settings.motion_generator, motion)
     check_start(settings)
     _check(settings)
-    groups = [_group(settings, runs[first:first + LANES], initial)
+    groups = [Group(settings, runs[first:first + LANES], initial)
               for first in range(0, len(runs), LANES)]
     wanted = np.unique(np.round(1e9 * np.asarray(instants_s, dtype=float)).astype(np.int64))
     statistics, taken, truth = ErrorStatistics(len(wanted), ERRORS), [], None
@@ -80,10 +79,6 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
         np.concatenate([np.empty((0, SOLVED)), *(solved for solved, _ in found)]),
         np.concatenate([np.empty((0, ERRORS)), *(errors for _, errors in found)]),
         tuple(run for group in groups for run in group.diverged))
-
-
-def _group(settings, runs, initial):
-    return Group(settings, runs, initial, [with_errors(settings.imu_sensor, run) for run in runs])
 
 
 @paused_in_blocks

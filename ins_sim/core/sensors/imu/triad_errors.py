@@ -72,7 +72,7 @@ class TriadErrors:
         if self._noise is not None:
             if index // BLOCK != self._noise_of:
                 self._noise_of = index // BLOCK
-                self._rows = self._noise(self._noise_of, 1).tolist()
+                self._rows = self._noise.blocks(self._noise_of, 1).tolist()
             noise = self._rows[index % BLOCK]
         reading, lagged, carried = read(
             self._geometry, self._response, self._by_force, self._by_temperature, self._lags,
@@ -80,6 +80,18 @@ class TriadErrors:
             last is not None and index == last + 1, lagged, carried, value, force, warm)
         self.state = index, lagged, carried
         return reading
+
+    @property
+    def at_once(self):
+        """
+        Return geometry, response and AdditiveNoise where there is noise and nothing else, or None.
+
+        Then a reading is ``respond`` with both, and the noise, and nothing is carried.
+        """
+        if self._noise is None or any((self._by_force, self._by_temperature, self._lags,
+                                       self._most, self._quantum)):
+            return None
+        return self._geometry, self._response, self._noise
 
     def advance(self, first, values, forces, t_s):
         """
@@ -93,7 +105,7 @@ class TriadErrors:
         if self._by_temperature is not None:
             warm = temperature_off(self._temperature, t_s)
         if self._noise is not None:
-            noise = cut(self._noise, BLOCK, first, len(values))
+            noise = cut(self._noise.blocks, BLOCK, first, len(values))
         last, lagged, carried = self.state
         inputs = (self._geometry, self._response, self._by_force, self._by_temperature,
                   self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
@@ -167,42 +179,57 @@ def discrete_lag(frequency_hz, order, dt_s):
     return (a, b, e, d, mean * (e + 2.0 * h * (a - 1.0)), mean * (d - 1.0 + 2.0 * h * b))
 
 
-def make_noise(model, seed, run, name, dt_s):
+class AdditiveNoise:
     """
-    Return the function of all additive errors, or None where there are none.
+    All additive errors of a triad: a fixed bias, white noise and processes.
 
-    It takes the number of a block and how many there are from it; it returns their rows, three
-    columns.
+    Attributes
+    ----------
+    fixed : (3,) bias of this run
+    white : (3,) standard deviations of the white noise of a sample, or None
+    stream : IndexedNoise of the white noise, or None
+    processes : functions (first block, blocks) of rows that are added one after the other
+
     """
-    fixed = np.array([b + d for b, d in zip(model.bias, drawn_once(
-        seed, run, f'{name}.turn_on_bias', model.turn_on_sigma))])
-    white = np.array(model.white) / math.sqrt(dt_s)
-    terms = []
-    if any(model.white):
-        normals = indexed_noise(seed, run, f'{name}.white', 3).normal_blocks
-        terms.append(lambda first, count: white * normals(first, count))
-    hour = tuple(s / 60.0 if math.isinf(t) else s
-                 for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time))
-    # The stream of the Gauss-Markov process keeps its old name: seeds keep their numbers.
-    for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
-                              ('walk', model.walk, (math.inf,) * 3)):
-        if any(sigma):
-            terms.append(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s).blocks)
-    if any(model.flicker):
-        sigma = np.multiply.outer([FLICKER_SIGMA] * len(FLICKER_TIMES), model.flicker)
-        time = np.repeat(FLICKER_TIMES, 3)
-        flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).blocks
-        terms.append(lambda first, count: _sums_of_three(flicker(first, count)))
-    if not terms and not fixed.any():
-        return None
 
-    def noise(first, count):
+    def __init__(self, model, seed, run, name, dt_s):
+        self.fixed = np.array([b + d for b, d in zip(model.bias, drawn_once(
+            seed, run, f'{name}.turn_on_bias', model.turn_on_sigma))])
+        self.white = self.stream = None
+        if any(model.white):
+            self.white = np.array(model.white) / math.sqrt(dt_s)
+            self.stream = indexed_noise(seed, run, f'{name}.white', 3)
+        self.processes = []
+        hour = tuple(s / 60.0 if math.isinf(t) else s
+                     for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time))
+        # The stream of the Gauss-Markov process keeps its old name: seeds keep their numbers.
+        for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
+                                  ('walk', model.walk, (math.inf,) * 3)):
+            if any(sigma):
+                self.processes.append(Processes(seed, run, f'{name}.{term}', sigma, time,
+                                                dt_s).blocks)
+        if any(model.flicker):
+            sigma = np.multiply.outer([FLICKER_SIGMA] * len(FLICKER_TIMES), model.flicker)
+            time = np.repeat(FLICKER_TIMES, 3)
+            flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).blocks
+            self.processes.append(lambda first, count: _sums_of_three(flicker(first, count)))
+
+    def blocks(self, first, count):
+        """Return the rows, three columns, of blocks from first."""
         total = np.empty((count * BLOCK, 3))
-        total[:] = fixed
-        for term in terms:
-            total += term(first, count)
+        total[:] = self.fixed
+        if self.white is not None:
+            total += self.white * self.stream.normal_blocks(first, count)
+        for process in self.processes:
+            total += process(first, count)
         return total
 
+
+def make_noise(model, seed, run, name, dt_s):
+    """Return the AdditiveNoise, or None where there is none."""
+    noise = AdditiveNoise(model, seed, run, name, dt_s)
+    if noise.white is None and not noise.processes and not noise.fixed.any():
+        return None
     return noise
 
 

@@ -57,13 +57,15 @@ class InstrumentErrors:
         dt = self._dt_ns * 1e-9
         triads = ((gyro_errors, 'gyro.errors'),
                   (settings.accelerometer.errors, 'accelerometer.errors'))
-        self._gyro, self._accel = (TriadErrors(errors, settings.seed, run, name, dt,
-                                               settings.temperature) for errors, name in triads)
+        self.gyro, self.accelerometer = (
+            TriadErrors(errors, settings.seed, run, name, dt, settings.temperature)
+            for errors, name in triads)
 
     def step(self, t_ns, omega, f):
         """Return omega, f of the instrument for those of the ideal IMU at motion time t_ns."""
         index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
-        return (self._gyro.step(index, omega, f, t_s), self._accel.step(index, f, f, t_s))
+        return (self.gyro.step(index, omega, f, t_s),
+                self.accelerometer.step(index, f, f, t_s))
 
     def advance(self, imu):
         """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
@@ -71,8 +73,8 @@ class InstrumentErrors:
         for part in consecutive(imu.t_ns // self._dt_ns):
             first = int(imu.t_ns[part.start]) // self._dt_ns
             force, when = imu.f[part], t_s[part]
-            omega[part] = self._gyro.advance(first, imu.omega[part], force, when)
-            f[part] = self._accel.advance(first, force, force, when)
+            omega[part] = self.gyro.advance(first, imu.omega[part], force, when)
+            f[part] = self.accelerometer.advance(first, force, force, when)
         return ImuSamples(imu.t_ns, omega, f, imu.parity)
 
 

@@ -1,0 +1,81 @@
+"""
+What a step of one run of an ensemble costs, against the single run and the strapdown of pyins.
+
+Run: python benchmarks/ensemble.py [runs, by default 160] [steps, by default 36000]
+
+CPU time of the process with one thread, ns a run and step, the best of a few: the whole ensemble
+on motion 2 (truth and ideal readings are made once for all runs), and its parts.  pyins (from
+PyPI: python-ins) integrates the increments of one run.
+"""
+
+import sys
+from time import process_time
+
+from ins_sim import parameter_files, resources
+from ins_sim.core.ensemble import many_runs
+from ins_sim.io.motion import read_motion
+
+REPEATS = 3
+BIAS = ['gyro.errors.turn_on_bias_sigma_deg_h:=[0.1, 0.1, 0.1]',
+        'accelerometer.errors.turn_on_bias_sigma_ug:=[50.0, 50.0, 50.0]']
+WHITE = [*BIAS, 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
+         'accelerometer.errors.velocity_random_walk_m_s_sqrt_h:=[0.01, 0.01, 0.01]']
+IN_RUN = [*WHITE, 'gyro.errors.gauss_markov_sigma_deg_h:=[0.05, 0.05, 0.05]']
+
+
+def best_ns(work, steps):
+    """Return the least CPU time of a few calls, ns a step."""
+    best = float('inf')
+    for _ in range(REPEATS):
+        start = process_time()
+        work()
+        best = min(best, process_time() - start)
+    return 1e9 * best / steps
+
+
+def ensemble(runs, steps, assignments):
+    """Return a function that simulates an ensemble."""
+    settings = parameter_files.read([resources.parameter_file('motion_2')],
+                                    [f'duration_s:={steps / 100.0}', *assignments])
+    motion = read_motion(settings.motion_generator)
+    return lambda: many_runs.simulate_runs(settings, motion, range(runs), [steps / 100.0])
+
+
+def pyins_ns(steps):
+    """Return what a step of the strapdown of pyins costs, ns."""
+    import numpy as np
+    from pyins import sim, strapdown
+    t = 0.01 * np.arange(steps + 1)
+    angles = np.stack([np.degrees(0.5 * t), np.full(len(t), -30.0), np.degrees(t)], axis=-1)
+    truth, imu = sim.generate_imu(t, [55.75, 37.5, 0.0], angles, np.zeros((len(t), 3)),
+                                  'increment')
+    increments = strapdown.compute_increments_from_imu(imu, 'increment')
+
+    def work():
+        strapdown.Integrator(truth.iloc[0]).integrate(increments)
+
+    work()
+    return best_ns(work, steps)
+
+
+def main(runs=160, steps=36000):
+    """Print the table."""
+    try:
+        peer = pyins_ns(steps)
+        print(f'pyins, strapdown: {peer:.0f} ns a step')
+    except ImportError as error:
+        peer = float('nan')
+        print(f'pyins is not installed ({error}): pip install python-ins')
+    for name, assignments in (('different biases', BIAS), ('and six white normals', WHITE),
+                              ('and in-run biases of the gyros', IN_RUN)):
+        work = ensemble(runs, steps, assignments)
+        work()  # compiles
+        few = ensemble(16, steps, assignments)
+        # what truth and ideal readings cost does not count: they are the same for all runs
+        found = (best_ns(work, 1) - best_ns(few, 1)) / ((runs - 16) * steps)
+        print(f'{name:32} {found:6.1f} ns a run and step, pyins / this {peer / found:6.1f}',
+              flush=True)
+
+
+if __name__ == '__main__':
+    main(*map(int, sys.argv[1:]))
