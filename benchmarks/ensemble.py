@@ -1,7 +1,7 @@
 """
 What a step of one run of an ensemble costs, against the single run and the strapdown of pyins.
 
-Run: python benchmarks/ensemble.py [runs, by default 160] [steps, by default 36000]
+Run: python benchmarks/ensemble.py [runs, by default 48] [steps, by default 360000]
 
 CPU time of the process with one thread, ns a run and step, the best of a few: the whole ensemble
 on motion 2 (truth and ideal readings are made once for all runs), and its parts.  pyins (from
@@ -58,7 +58,7 @@ def pyins_ns(steps):
     return best_ns(work, steps)
 
 
-def main(runs=160, steps=36000):
+def main(runs=48, steps=360000):
     """Print the table."""
     try:
         peer = pyins_ns(steps)

@@ -18,6 +18,7 @@ from importlib.util import find_spec
 import logging
 import math
 import sys
+from threading import RLock
 from types import CodeType, FunctionType, ModuleType
 
 import numpy as np
@@ -38,6 +39,8 @@ PLAIN_SAMPLES = 8192
 # Where Numba is loaded already, the code of one more loop takes this part of it.
 PART_OF_CODE = 0.125
 _taken, _broken = {}, set()
+# Numba's folder of the cache is set for the whole process while a copy is made.
+_copying = RLock()
 _plain_only = ContextVar('plain_only', default=False)
 
 
@@ -111,9 +114,10 @@ def compiled(function):
     Functions that it calls must be functions of modules of this package too, of floats, tuples
     and arrays. A copy is compiled at its first call with new types, and kept in a cache.
     """
-    if numba() is None or function in _broken:
-        return None
-    return _compiled(function)
+    with _copying:
+        if numba() is None or function in _broken:
+            return None
+        return _compiled(function)
 
 
 @lru_cache(maxsize=None)
