@@ -62,7 +62,7 @@ class Group:
 
     def advance(self, imu, t_ns, truth, picked):
         """
-        Take samples, the first of which starts the strapdown; return the errors at the picked ones.
+        Take samples, the first of all starting the strapdown; return errors at the picked ones.
 
         imu: ImuSamples of the ideal instrument; t_ns: their instants; truth: Truth then; picked:
         numbers of samples.  Errors (m, runs, ERRORS), NaN of a run that has diverged.

@@ -20,7 +20,9 @@ SIGNED_EDGES = np.concatenate([-EDGES[::-1], EDGES])
 
 class Moments(NamedTuple):
     """
-    Of n quantities at m instants: count (m,), mean (m, n), sum of products of deviations (m, n, n).
+    Moments of n quantities at m instants.
+
+    count (m,); mean (m, n); comoment (m, n, n): sums of products of deviations from the mean.
     """
 
     count: np.ndarray
@@ -51,7 +53,8 @@ def merged(a, b):
     off = b.mean - a.mean
     mean = a.mean + off * (b.count * per)[:, None]
     weight = a.count * (b.count * per)
-    comoment = (a.comoment + b.comoment) + off[:, :, None] * off[:, None, :] * weight[:, None, None]
+    between = off[:, :, None] * off[:, None, :] * weight[:, None, None]
+    comoment = (a.comoment + b.comoment) + between
     return Moments(count, mean, comoment)
 
 
