@@ -93,20 +93,25 @@ def read_lanes(column, first, values, fixed, white, keys, geometry, response, ot
     out : of each sample six rows of LANES, of which those from number column are written
     """
     count, done = len(values) // 3, 0
-    z = np.zeros(3 * BLOCK)
+    row = 3 * BLOCK
+    z, z_of_lane = np.zeros(LANES * row), np.empty(row)
     while done < count:
         block = (first + done) // BLOCK
         skipped = first + done - block * BLOCK
         end = min(count, done + BLOCK - skipped)
         for lane in range(LANES):
             if white is not None:
-                normals.fill(keys[2 * lane], keys[2 * lane + 1], normals.ZERO, block, 1,
-                             3 * BLOCK, z)
-            turn, scale = nine_of(geometry, 9 * lane), twelve_of(response, 12 * lane)
-            bias = fixed[3 * lane], fixed[3 * lane + 1], fixed[3 * lane + 2]
-            for k in range(done, end):
-                x, y, w = respond(turn, scale, None, None, three_of(values, 3 * k), None, None)
-                a, b, c = with_white(white, bias, z, 3 * (k - done + skipped))
+                normals.fill(keys[2 * lane], keys[2 * lane + 1], normals.ZERO, block, 1, row,
+                             z_of_lane)
+                for i in range(row):
+                    z[lane * row + i] = z_of_lane[i]
+        for k in range(done, end):
+            value = three_of(values, 3 * k)
+            for lane in range(LANES):
+                turn, scale = nine_of(geometry, 9 * lane), twelve_of(response, 12 * lane)
+                bias = fixed[3 * lane], fixed[3 * lane + 1], fixed[3 * lane + 2]
+                x, y, w = respond(turn, scale, None, None, value, None, None)
+                a, b, c = with_white(white, bias, z, lane * row + 3 * (k - done + skipped))
                 a, b, c = with_others(others, a, b, c, lane, k, count)
                 i = (6 * k + column) * LANES + lane
                 out[i], out[i + LANES], out[i + 2 * LANES] = x + a, y + b, w + c
