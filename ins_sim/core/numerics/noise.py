@@ -20,6 +20,8 @@ from .compilation import run
 BLOCK = 256
 # Processes live on the indices 0 to 2**LEVELS: 600 days at 20 kHz.
 LEVELS = 40
+# Of so many knots in a row the normal numbers are made at once.
+KNOTS = 16
 # After so many correlation times nothing is left of a process.
 GONE = 700.0
 _BLOCK_LEVELS = BLOCK.bit_length() - 1
@@ -179,6 +181,11 @@ class Processes:
         last = np.where(walk, sigma * math.sqrt(span),
                         sigma * np.sqrt(1.0 - kept * kept)) * ends[1] + kept * first
 
+        @lru_cache(maxsize=4)
+        def numbers(group):
+            """Return the normal numbers of so many knots in a row."""
+            return knots.normal_blocks(group * KNOTS, KNOTS)
+
         @lru_cache(maxsize=256)
         def knot(b):
             """Return the values (m,) at sample b * BLOCK."""
@@ -187,7 +194,8 @@ class Processes:
             d = b & -b
             level = d.bit_length() - 1 + _BLOCK_LEVELS
             return (self._c[level] * (knot(b - d) + knot(b + d))
-                    + self._s[level] * knots.normal_block(b)[0])
+                    + self._s[level] * (numbers(b // KNOTS)[b % KNOTS] if b % KNOTS
+                                        else knots.normal_block(b)[0]))
 
         self._knot = knot
 
@@ -198,19 +206,49 @@ class Processes:
     def blocks(self, first, count):
         """Return the values of blocks from first, (count * BLOCK, m)."""
         width = self._c.shape[1]
-        numbers = self._inner.normal_blocks(first, count).reshape(count, BLOCK, width)
-        x = np.empty((count, BLOCK + 1, width))
         ends = np.stack([self._knot(b) for b in range(first, first + count + 1)])
-        x[:, 0], x[:, BLOCK] = ends[:-1], ends[1:]
-        for level in range(_BLOCK_LEVELS - 1, -1, -1):
-            d = 1 << level
-            x[:, d::2 * d] = (self._c[level] * (x[:, 0:BLOCK:2 * d] + x[:, 2 * d::2 * d])
-                              + self._s[level] * numbers[:, d::2 * d])
-        return x[:, :BLOCK].reshape(count * BLOCK, width)
+        found = np.empty((count * BLOCK, width))
+        run(bisect, len(found), (self._c, self._s, ends, self._inner.normal_blocks(first, count),
+                                 count, width), found, bisect_arrays)
+        return found
 
     def values(self, first, count):
         """Return the values at the samples first to first + count - 1, (count, m)."""
         return cut(self.blocks, BLOCK, first, count)
+
+
+def bisect(c, s, ends, numbers, count, width, out):
+    """
+    Write the values of Processes between knots, rows of width.
+
+    c, s: of each level, rows of width; ends: rows of the knots at the starts of count blocks and
+    behind the last; numbers: of each sample a row of normal numbers.
+    """
+    for b in range(count):
+        begin, knot = b * BLOCK * width, b * width
+        for m in range(width):
+            out[begin + m] = ends[knot + m]
+        for step in range(_BLOCK_LEVELS):
+            level = _BLOCK_LEVELS - 1 - step
+            d = 1 << level
+            for k in range(d, BLOCK, 2 * d):
+                i, off = begin + k * width, d * width
+                for m in range(width):
+                    right = ends[knot + width + m] if k + d == BLOCK else out[i + off + m]
+                    out[i + m] = (c[level * width + m] * (out[i - off + m] + right)
+                                  + s[level * width + m] * numbers[i + m])
+
+
+def bisect_arrays(c, s, ends, numbers, count, width, out):
+    """Write what ``bisect`` writes, by operations on arrays."""
+    numbers = numbers.reshape(count, BLOCK, width)
+    x = np.empty((count, BLOCK + 1, width))
+    x[:, 0], x[:, BLOCK] = ends[:-1], ends[1:]
+    for level in range(_BLOCK_LEVELS - 1, -1, -1):
+        d = 1 << level
+        x[:, d::2 * d] = (c[level] * (x[:, 0:BLOCK:2 * d] + x[:, 2 * d::2 * d])
+                          + s[level] * numbers[:, d::2 * d])
+    out[:] = x[:, :BLOCK].reshape(count * BLOCK, width)
 
 
 def _weight(h, time_s):

@@ -72,7 +72,7 @@ class TriadErrors:
         if self._noise is not None:
             if index // BLOCK != self._noise_of:
                 self._noise_of = index // BLOCK
-                self._rows = self._noise.blocks(self._noise_of, 1).tolist()
+                self._rows = self._noise(self._noise_of, 1).tolist()
             noise = self._rows[index % BLOCK]
         reading, lagged, carried = read(
             self._geometry, self._response, self._by_force, self._by_temperature, self._lags,
@@ -105,7 +105,7 @@ class TriadErrors:
         if self._by_temperature is not None:
             warm = temperature_off(self._temperature, t_s)
         if self._noise is not None:
-            noise = cut(self._noise.blocks, BLOCK, first, len(values))
+            noise = cut(self._noise, BLOCK, first, len(values))
         last, lagged, carried = self.state
         inputs = (self._geometry, self._response, self._by_force, self._by_temperature,
                   self._lags, noise, self._most, self._quantum, self._dt, self._per_dt,
@@ -214,7 +214,7 @@ class AdditiveNoise:
             flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).blocks
             self.processes.append(lambda first, count: _sums_of_three(flicker(first, count)))
 
-    def blocks(self, first, count):
+    def __call__(self, first, count):
         """Return the rows, three columns, of blocks from first."""
         total = np.empty((count * BLOCK, 3))
         total[:] = self.fixed
