@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, kstest
 
+from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.noise import BLOCK, indexed_noise, LEVELS, Processes
 
 QUANTILE = 1e-6
@@ -92,3 +93,15 @@ def test_infinite_correlation_time_is_a_random_walk_from_zero():
         step = np.diff(x[::d], axis=0) / math.sqrt(d * dt)
         assert within_chi2((step ** 2).sum(), step.size)
         assert abs((step[1:] * step[:-1]).mean()) < 5.0 / math.sqrt(step[1:].size)
+
+
+@pytest.mark.parametrize('first, count', [(0, 20000), (5 * BLOCK - 3, 9001), (10 ** 9, 12345)])
+def test_processes_in_plain_python_and_compiled(first, count):
+    """Arrays and compiled loops bisect to the same bits, wherever the samples are."""
+    def values():
+        return Processes(7, 3, 'x', [1.0, 2.0, 0.5], [10.0, math.inf, 300.0], 0.01).values(
+            first, count)
+
+    with plain_only():
+        plain = values()
+    np.testing.assert_array_equal(values(), plain)
