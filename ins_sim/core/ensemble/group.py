@@ -83,7 +83,7 @@ class Group:
                 solved[0] = np.concatenate([self._state[0:6], self._state[19:23]])
         if len(t_ns) > begun:
             later = picked >= begun
-            found = np.empty((int(later.sum()), whole_run.SOLVED, LANES))
+            found = np.empty((np.count_nonzero(later), whole_run.SOLVED, LANES))
             marks = np.append(picked[later] - begun, -1)
             inputs = (self._state, self._spin, self._start_ns, self._last_ns, self._channel,
                       self._damping, self._integrated, t_ns[begun:], readings[begun:],
