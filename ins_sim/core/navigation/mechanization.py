@@ -95,6 +95,15 @@ def turned(s, c, d):
     return s * cd + c * sd, c * cd - s * sd
 
 
+def accelerated(m_e, m_n, m_u, e, n, u, cos_m, sin_m, per_north, per_east, dt, earth_rate):
+    """Return a velocity (e, n, u) after dt of Coriolis acceleration at the velocity (m_...)."""
+    w_e = -m_n * per_north
+    about_axis = m_e * per_east + 2.0 * earth_rate
+    w_n, w_u = about_axis * cos_m, about_axis * sin_m
+    return (e - dt * (w_n * m_u - w_u * m_n), n - dt * (w_u * m_e - w_e * m_u),
+            u - dt * (w_e * m_n - w_n * m_e))
+
+
 def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     """Advance where n turns by less than 0.01 rad; delta_v_i: velocity increment in i, m/s."""
     (lat, lon, height, v_e, v_n, v_u, sin_lat, cos_lat, sin_lon, cos_lon, rest_lat, rest_lon, a_e,
@@ -121,13 +130,15 @@ def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     r_n, r_e = r_n + m_h, (r_e + m_h) * cos_m
     per_both = 1.0 / (r_n * r_e)
     per_north, per_east = per_both * r_e, per_both * r_n
-    # V' = f + g - (2 Omega + rho) x V
-    w_e = -m_n * per_north
-    about_axis = m_e * per_east + 2.0 * earth_rate
-    w_n, w_u = about_axis * cos_m, about_axis * sin_m
-    e = v_e + (d_e - dt * (w_n * m_u - w_u * m_n))
-    n = v_n + (d_n - dt * (w_u * m_e - w_e * m_u))
-    u = v_u + (d_u - dt * (w_e * m_n - w_n * m_e + g))
+    # V' = f + g - (2 Omega + rho) x V, in which V is corrected once to the mean of both ends: the
+    # error of the extrapolation, which follows the jerk, would leave a mean acceleration.
+    e, n, u = accelerated(m_e, m_n, m_u, v_e + d_e, v_n + d_n, v_u + (d_u - dt * g), cos_m, sin_m,
+                          per_north, per_east, dt, earth_rate)
+    m_e, m_n = 0.5 * (v_e + e), 0.5 * (v_n + n)
+    if channel != FROM_TRUTH:
+        m_u = 0.5 * (v_u + u)
+    e, n, u = accelerated(m_e, m_n, m_u, v_e + d_e, v_n + d_n, v_u + (d_u - dt * g), cos_m, sin_m,
+                          per_north, per_east, dt, earth_rate)
     h = height + half * (v_u + u)
     if channel == FROM_TRUTH:
         h, u = reference_height, reference_up
