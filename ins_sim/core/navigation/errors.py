@@ -23,9 +23,10 @@ def level_errors(solution, truth):
     solution, truth: (lat, lon, height, v_n, q_nb), floats or arrays.  The attitude error is that
     of q_nb, each in its own n: q_nb = exp(error) q_nb_true (phi-angle), rad.
     """
-    lat, lon, height, _, q_nb = solution
-    position = position_error(lat, lon, height, *truth[:3])
-    return attitude_error(q_nb, truth[4]), velocity_error(solution[3], truth[3]), position
+    lat, lon, height, v, q_nb = solution
+    lat_t, lon_t, height_t, v_t, q_nb_t = truth
+    return (attitude_error(q_nb, q_nb_t), velocity_error(v, v_t),
+            position_error(lat, lon, height, lat_t, lon_t, height_t))
 
 
 def attitude_error(q_nb, q_nb_t):

@@ -132,13 +132,14 @@ def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     per_north, per_east = per_both * r_e, per_both * r_n
     # V' = f + g - (2 Omega + rho) x V, in which V is corrected once to the mean of both ends: the
     # error of the extrapolation, which follows the jerk, would leave a mean acceleration.
-    e, n, u = accelerated(m_e, m_n, m_u, v_e + d_e, v_n + d_n, v_u + (d_u - dt * g), cos_m, sin_m,
-                          per_north, per_east, dt, earth_rate)
+    free_e, free_n, free_u = v_e + d_e, v_n + d_n, v_u + (d_u - dt * g)
+    e, n, u = accelerated(m_e, m_n, m_u, free_e, free_n, free_u, cos_m, sin_m, per_north,
+                          per_east, dt, earth_rate)
     m_e, m_n = 0.5 * (v_e + e), 0.5 * (v_n + n)
     if channel != FROM_TRUTH:
         m_u = 0.5 * (v_u + u)
-    e, n, u = accelerated(m_e, m_n, m_u, v_e + d_e, v_n + d_n, v_u + (d_u - dt * g), cos_m, sin_m,
-                          per_north, per_east, dt, earth_rate)
+    e, n, u = accelerated(m_e, m_n, m_u, free_e, free_n, free_u, cos_m, sin_m, per_north,
+                          per_east, dt, earth_rate)
     h = height + half * (v_u + u)
     if channel == FROM_TRUTH:
         h, u = reference_height, reference_up
