@@ -9,28 +9,17 @@ PyPI: python-ins) integrates the increments of one run.
 """
 
 import sys
-from time import process_time
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.ensemble import many_runs
 from ins_sim.io.motion import read_motion
+from steps import best_ns
 
-REPEATS = 3
 BIAS = ['gyro.errors.turn_on_bias_sigma_deg_h:=[0.1, 0.1, 0.1]',
         'accelerometer.errors.turn_on_bias_sigma_ug:=[50.0, 50.0, 50.0]']
 WHITE = [*BIAS, 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
          'accelerometer.errors.velocity_random_walk_m_s_sqrt_h:=[0.01, 0.01, 0.01]']
 IN_RUN = [*WHITE, 'gyro.errors.gauss_markov_sigma_deg_h:=[0.05, 0.05, 0.05]']
-
-
-def best_ns(work, steps):
-    """Return the least CPU time of a few calls, ns a step."""
-    best = float('inf')
-    for _ in range(REPEATS):
-        start = process_time()
-        work()
-        best = min(best, process_time() - start)
-    return 1e9 * best / steps
 
 
 def ensemble(runs, steps, assignments):
