@@ -82,7 +82,7 @@ class AidedNavigator:
 
     @property
     def ins(self):
-        """Return the CorrectedStrapdown; there is none until the solution starts."""
+        """Return the CorrectedStrapdown; not to be used before the solution has started."""
         return self._flight.ins
 
     @property

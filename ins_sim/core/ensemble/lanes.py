@@ -27,8 +27,8 @@ def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, 
     spin, start_ns, channel, damping, integrated, height, v_u : as of ``whole_run.solve``
     last_ns : instant of the state
     readings : of each sample, omega and f, six rows of LANES
-    picked : numbers of the samples of which the solution is written, in ascending order, and
-        behind them one that never comes
+    picked : indices of the samples whose solution is written, in ascending order, and last an
+        index that no sample has
     out : of each picked sample, SOLVED rows of LANES
     """
     p = 0

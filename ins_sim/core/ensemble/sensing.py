@@ -90,7 +90,7 @@ def read_lanes(column, first, values, fixed, white, keys, geometry, response, ot
     keys : of each lane the key of its white noise
     geometry, response : of each lane 9 and 12 numbers, as of ``respond``, or None
     others : of each lane, of each process, rows of three, or None
-    out : of each sample six rows of LANES, of which those from number column are written
+    out : of each sample six rows of LANES; the rows from index column on are written
     """
     count, done = len(values) // 3, 0
     row = 3 * BLOCK
@@ -137,7 +137,7 @@ def with_others(others, a, b, c, lane, k, count):
 
 
 def nine_of(rows, i):
-    """Return nine entries of a flat sequence from number i, or None where there is none."""
+    """Return nine entries of a flat sequence from index i; None if rows is None."""
     if rows is None:
         return None
     return (rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5], rows[i + 6],

@@ -157,14 +157,14 @@ def read_arrays(geometry, response, by_force, by_temperature, lags, noise, most,
 
 
 def three_of(row, i):
-    """Return three entries of a flat sequence from number i, or None where there is none."""
+    """Return three entries of a flat sequence from index i; None if row is None."""
     if row is None:
         return None
     return row[i], row[i + 1], row[i + 2]
 
 
 def one_of(row, i):
-    """Return entry i of a sequence, or None where there is none."""
+    """Return entry i of a sequence; None if row is None."""
     if row is None:
         return None
     return row[i]
