@@ -80,7 +80,7 @@ class Group:
             self._start(t_ns, readings, truth)
             begun = 1
             if len(picked) and picked[0] == 0:
-                solved[0] = np.concatenate([self._state[0:6], self._state[19:23]])
+                solved[0] = self._solved()
         if len(t_ns) > begun:
             later = picked >= begun
             found = np.empty((np.count_nonzero(later), whole_run.SOLVED, LANES))
@@ -127,6 +127,10 @@ class Group:
         if off.any() and not self._lost.all():
             self._state[:, off] = self._state[:, np.flatnonzero(~self._lost)[0], None]
 
+    def _solved(self):
+        """Return the SOLVED rows of the state."""
+        return np.concatenate([self._state[0:6], self._state[lanes.PLACES:lanes.PLACES + 4]])
+
     def _judged(self, t_ns, solved, truth):
         count = len(self.runs)
         rows = np.ascontiguousarray(np.moveaxis(solved, 2, 1)[:, :count]).reshape(
@@ -146,7 +150,7 @@ class Group:
 
         truth: Truth then.  Solutions (runs, SOLVED): lat, lon, height, v_n, q_ib.
         """
-        solved = np.concatenate([self._state[0:6], self._state[19:23]])
+        solved = self._solved()
         solved[:, self._lost] = np.nan
         errors = self._judged(np.array([self._last_ns]), solved[None], truth)
         return solved.T[:len(self.runs)], errors[0]

@@ -15,7 +15,7 @@ from ins_sim.core.navigation.whole_run import SOLVED
 LANES = 16
 # Numbers of a run: PLACE, q_ib, and the integrals of the last sample; then the increments of the
 # present one.
-PLACES, CARRIED, NUMBERS = 19, 29, 35
+PLACES, CARRIED, NUMBERS = 22, 32, 38
 
 
 def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, readings, height,
@@ -63,7 +63,7 @@ def increments_of(state, readings, first, dt, spin, integrated):
                          readings[i + 5 * LANES]), dt)
         phi, delta_v = now
         if integrated:
-            s = 23 * LANES + lane
+            s = 26 * LANES + lane
             last = ((state[s], state[s + LANES], state[s + 2 * LANES]),
                     (state[s + 3 * LANES], state[s + 4 * LANES], state[s + 5 * LANES]))
             phi, delta_v = fixed_rate_increments(integrated, now, last)
@@ -105,10 +105,11 @@ def lane_of(s, i):
              s[5 * LANES + i], s[6 * LANES + i], s[7 * LANES + i], s[8 * LANES + i],
              s[9 * LANES + i], s[10 * LANES + i], s[11 * LANES + i], s[12 * LANES + i],
              s[13 * LANES + i], s[14 * LANES + i], s[15 * LANES + i], s[16 * LANES + i],
-             s[17 * LANES + i], s[18 * LANES + i]),
-            (s[19 * LANES + i], s[20 * LANES + i], s[21 * LANES + i], s[22 * LANES + i]),
-            (s[29 * LANES + i], s[30 * LANES + i], s[31 * LANES + i]),
-            (s[32 * LANES + i], s[33 * LANES + i], s[34 * LANES + i]))
+             s[17 * LANES + i], s[18 * LANES + i], s[19 * LANES + i], s[20 * LANES + i],
+             s[21 * LANES + i]),
+            (s[22 * LANES + i], s[23 * LANES + i], s[24 * LANES + i], s[25 * LANES + i]),
+            (s[32 * LANES + i], s[33 * LANES + i], s[34 * LANES + i]),
+            (s[35 * LANES + i], s[36 * LANES + i], s[37 * LANES + i]))
 
 
 def put(s, i, place, q):
@@ -119,8 +120,9 @@ def put(s, i, place, q):
     s[9 * LANES + i], s[10 * LANES + i], s[11 * LANES + i] = place[9], place[10], place[11]
     s[12 * LANES + i], s[13 * LANES + i], s[14 * LANES + i] = place[12], place[13], place[14]
     s[15 * LANES + i], s[16 * LANES + i], s[17 * LANES + i] = place[15], place[16], place[17]
-    s[18 * LANES + i] = place[18]
-    s[19 * LANES + i], s[20 * LANES + i], s[21 * LANES + i], s[22 * LANES + i] = q
+    s[18 * LANES + i], s[19 * LANES + i], s[20 * LANES + i] = place[18], place[19], place[20]
+    s[21 * LANES + i] = place[21]
+    s[22 * LANES + i], s[23 * LANES + i], s[24 * LANES + i], s[25 * LANES + i] = q
 
 
 def write_solved(state, out, first):

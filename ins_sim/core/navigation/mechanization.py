@@ -4,15 +4,18 @@ The strapdown mechanization: the step of position and velocity over one sampling
 The inertial attitude q_ib is integrated from the gyros alone (``attitude.integration``). The step
 resolves the velocity increment in the local level frame at the middle of the interval. Sines and
 cosines of latitude and of inertial longitude are carried from middle to middle, turned by small
-angles, and the middle is extrapolated from the acceleration of the interval before, so that the
-step is straight-line arithmetic in + - * / (docs/theory.md, "Strapdown"; Savage, "Strapdown
-Inertial Navigation Integration Algorithm Design", JGCD 21, 1998).
+angles. The position at the middle is extrapolated with the acceleration of the interval before;
+the velocity there follows from the velocity increment of the interval itself and the Coriolis
+acceleration of the interval before, which changes slowly. So the step is straight-line arithmetic
+in + - * / (docs/theory.md, "Strapdown"; Savage, "Strapdown Inertial Navigation Integration
+Algorithm Design", JGCD 21, 1998).
 
 The state is a tuple of floats, PLACE: latitude, longitude, height, velocity East, North, Up; sine
 and cosine of latitude and of inertial longitude at the middle of the last interval, and the angles
 from there to its end; acceleration East, North, Up over it; 1 / (R_N + h) and
 1 / ((R_E + h) cos lat) at its middle; the bias of the vertical acceleration that the damping has
-estimated; and the steps since the sines were computed anew; in rad, m, s.
+estimated; the steps since the sines were computed anew; and Coriolis acceleration East, North, Up
+over the last interval; in rad, m, s.
 """
 
 from ins_sim.core.attitude import quaternion
@@ -23,7 +26,7 @@ from .vertical_channel import DAMPED, damped, FROM_TRUTH
 
 PLACE = ('lat', 'lon', 'height', 'v_e', 'v_n', 'v_u', 'sin_lat', 'cos_lat', 'sin_lon', 'cos_lon',
          'rest_lat', 'rest_lon', 'a_e', 'a_n', 'a_u', 'per_north', 'per_east', 'vertical_bias',
-         'age')
+         'age', 'c_e', 'c_n', 'c_u')
 # Steps between two computations of the sines from the angles; rounding grows as 1e-16 a step.
 RENEWED_EVERY = 256.0
 # Within 3 deg of a pole, and where n turns by more than 4 mrad in half an interval, the step is
@@ -38,17 +41,18 @@ def begin(lat, lon, height, v, earth_angle):
     v: velocity in n, m/s; earth_angle: rotation of e in i since they coincided, rad.
     """
     return renewed((lat, lon, height, v[0], v[1], v[2], 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0,
-                    0.0, 0.0, 0.0, 0.0, 0.0), earth_angle)
+                    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), earth_angle)
 
 
 def renewed(place, earth_angle):
     """Return PLACE with its sines and radii computed from latitude, longitude and height."""
-    lat, lon, h, v_e, v_n, v_u, _, _, _, _, _, _, a_e, a_n, a_u, _, _, bias, _ = place
+    lat, lon, h, v_e, v_n, v_u, _, _, _, _, _, _, a_e, a_n, a_u, _, _, bias, _, c_e, c_n, c_u = (
+        place)
     sin_lat, cos_lat = sincos(lat)
     sin_lon, cos_lon = sincos(lon + earth_angle)
     per_north, per_east = ellipsoid.level_angles(1.0, 1.0, sin_lat, cos_lat, h)
     return (lat, lon, h, v_e, v_n, v_u, sin_lat, cos_lat, sin_lon, cos_lon, 0.0, 0.0, a_e, a_n,
-            a_u, per_north, per_east, bias, 0.0)
+            a_u, per_north, per_east, bias, 0.0, c_e, c_n, c_u)
 
 
 def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, reference):
@@ -95,51 +99,44 @@ def turned(s, c, d):
     return s * cd + c * sd, c * cd - s * sd
 
 
-def accelerated(m_e, m_n, m_u, e, n, u, cos_m, sin_m, per_north, per_east, dt, earth_rate):
-    """Return a velocity (e, n, u) after dt of Coriolis acceleration at the velocity (m_...)."""
+def coriolis(m_e, m_n, m_u, cos_m, sin_m, per_north, per_east, earth_rate):
+    """Return -(2 Omega + rho) x V, East, North, Up, m/s^2, at the velocity V = (m_...)."""
     w_e = -m_n * per_north
     about_axis = m_e * per_east + 2.0 * earth_rate
     w_n, w_u = about_axis * cos_m, about_axis * sin_m
-    return (e - dt * (w_n * m_u - w_u * m_n), n - dt * (w_u * m_e - w_e * m_u),
-            u - dt * (w_e * m_n - w_n * m_e))
+    return w_u * m_n - w_n * m_u, w_e * m_u - w_u * m_e, w_n * m_e - w_e * m_n
 
 
 def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     """Advance where n turns by less than 0.01 rad; delta_v_i: velocity increment in i, m/s."""
     (lat, lon, height, v_e, v_n, v_u, sin_lat, cos_lat, sin_lon, cos_lon, rest_lat, rest_lon, a_e,
-     a_n, a_u, per_north, per_east, bias, age) = place
+     a_n, a_u, per_north, per_east, bias, age, c_e, c_n, c_u) = place
     x, y, z = delta_v_i
     reference_height, reference_up, c1, c2, c3 = reference
     half, quarter = 0.5 * dt, 0.25 * dt
     # The middle of the interval, if the acceleration is that of the interval before.
-    m_e, m_n, m_u = v_e + half * a_e, v_n + half * a_n, v_u + half * a_u
     m_h = height + half * (v_u + quarter * a_u)
     if channel == FROM_TRUTH:
-        m_u, m_h = 0.5 * (v_u + reference_up), 0.5 * (height + reference_height)
+        m_h = 0.5 * (height + reference_height)
     to_lat = half * (v_n + quarter * a_n) * per_north
     to_lon = half * (v_e + quarter * a_e) * per_east
     sin_m, cos_m = turned(sin_lat, cos_lat, rest_lat + to_lat)
     sin_l, cos_l = turned(sin_lon, cos_lon, rest_lon + (to_lon + half * earth_rate))
-    # Resolve the velocity increment in n at mid-interval.
-    level = cos_l * x + sin_l * y
-    d_e = cos_l * y - sin_l * x
-    d_n = cos_m * z - sin_m * level
-    d_u = cos_m * level + sin_m * z
     # 1 / (R_N + h) and 1 / ((R_E + h) cos lat) by one division
     r_n, r_e, g = ellipsoid.radii_and_gravity(sin_m, m_h)
     r_n, r_e = r_n + m_h, (r_e + m_h) * cos_m
     per_both = 1.0 / (r_n * r_e)
     per_north, per_east = per_both * r_e, per_both * r_n
-    # V' = f + g - (2 Omega + rho) x V, in which V is corrected once to the mean of both ends: the
-    # error of the extrapolation, which follows the jerk, would leave a mean acceleration.
-    free_e, free_n, free_u = v_e + d_e, v_n + d_n, v_u + (d_u - dt * g)
-    e, n, u = accelerated(m_e, m_n, m_u, free_e, free_n, free_u, cos_m, sin_m, per_north,
-                          per_east, dt, earth_rate)
-    m_e, m_n = 0.5 * (v_e + e), 0.5 * (v_n + n)
-    if channel != FROM_TRUTH:
-        m_u = 0.5 * (v_u + u)
-    e, n, u = accelerated(m_e, m_n, m_u, free_e, free_n, free_u, cos_m, sin_m, per_north,
-                          per_east, dt, earth_rate)
+    # Resolve the velocity increment in n at mid-interval.
+    level = cos_l * x + sin_l * y
+    e = v_e + (cos_l * y - sin_l * x)
+    n = v_n + (cos_m * z - sin_m * level)
+    u = v_u + (cos_m * level + sin_m * z - dt * g)
+    # V' = f + g - (2 Omega + rho) x V at the mean of both ends, if the last term has not changed.
+    m_e, m_n = 0.5 * (v_e + e) + half * c_e, 0.5 * (v_n + n) + half * c_n
+    m_u = 0.5 * (v_u + (reference_up if channel == FROM_TRUTH else u + dt * c_u))
+    c_e, c_n, c_u = coriolis(m_e, m_n, m_u, cos_m, sin_m, per_north, per_east, earth_rate)
+    e, n, u = e + dt * c_e, n + dt * c_n, u + dt * c_u
     h = height + half * (v_u + u)
     if channel == FROM_TRUTH:
         h, u = reference_height, reference_up
@@ -149,4 +146,4 @@ def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     per_dt = 1.0 / dt
     return (lat + d_lat, lon + d_lon, h, e, n, u, sin_m, cos_m, sin_l, cos_l, d_lat - to_lat,
             d_lon - to_lon + half * earth_rate, (e - v_e) * per_dt, (n - v_n) * per_dt,
-            (u - v_u) * per_dt, per_north, per_east, bias, age + 1.0)
+            (u - v_u) * per_dt, per_north, per_east, bias, age + 1.0, c_e, c_n, c_u)

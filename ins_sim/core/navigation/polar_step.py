@@ -17,7 +17,7 @@ from .vertical_channel import DAMPED, damped, FROM_TRUTH
 
 def advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference):
     """Advance PLACE as ``mechanization.small_step`` does, anywhere and over any interval."""
-    lat, lon, height, v_e, v_n, v_u, _, _, _, _, _, _, _, _, _, _, _, bias, age = place
+    lat, lon, height, v_e, v_n, v_u, _, _, _, _, _, _, _, _, _, _, _, bias, age, _, _, _ = place
     sin_lat, cos_lat = sincos(lat)
     sin_lon, cos_lon = sincos(lon + earth_angle)
     reference_height, reference_up, c1, c2, c3 = reference
@@ -46,7 +46,7 @@ def advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference):
     per_dt = 1.0 / dt
     return (atan2(s_lat, c_lat), lon + (d_lon - dt * earth_rate), h, e, n, u, s_lat, c_lat, s_lon,
             c_lon, 0.0, 0.0, (e - v_e) * per_dt, (n - v_n) * per_dt, (u - v_u) * per_dt, per_north,
-            per_east, bias, age + 1.0)
+            per_east, bias, age + 1.0, 0.0, 0.0, 0.0)
 
 
 def in_inertial(v_n, r, sin_lat, cos_lat, sin_lon, cos_lon, earth_rate):
