@@ -49,6 +49,8 @@ def pyins_ns(steps):
 
 def main(runs=48, steps=360000):
     """Print the table."""
+    if runs <= 16:
+        sys.exit(f'runs is {runs}; expected more than the 16 of the ensemble it is compared with')
     try:
         peer = pyins_ns(steps)
         print(f'pyins, strapdown: {peer:.0f} ns a step')

@@ -82,8 +82,8 @@ def logarithm(q):
     x, y, z, w = q
     n = elementary.sqrt(x * x + y * y + z * z)
     # of a unit quaternion so near to one that the squares underflow
-    tiny = n < 1e-150
-    sign = 1.0 - (w < 0.0) * 2.0
+    tiny = elementary.as_number(n < 1e-150)
+    sign = 1.0 - elementary.as_number(w < 0.0) * 2.0
     s = sign * 2.0 * (elementary.atan2(n, abs(w)) / (n + tiny) * (1.0 - tiny) + tiny)
     return x * s, y * s, z * s
 

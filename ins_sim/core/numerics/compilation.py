@@ -30,6 +30,7 @@ LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
 # What a compiled copy calls in place of a function of floats, arrays and Series.
 REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
+            elementary.as_number: elementary.float_as_number,
             elementary.times_power_of_two: elementary.float_times_power_of_two,
             elementary.sincos: elementary.general_sincos,
             elementary.atan2: elementary.general_atan2}

@@ -42,6 +42,16 @@ def sqrt(x):
     return x ** 0.5
 
 
+def as_number(condition):
+    """Return 1.0 where a comparison of floats or arrays holds, 0.0 where it does not."""
+    return condition * 1.0
+
+
+def float_as_number(condition):
+    """Return ``as_number`` of one comparison, in the form that compilers turn into a selection."""
+    return 1.0 if condition else 0.0
+
+
 def sine_cosine_kernel(r):
     """Return sin r and cos r for |r| <= pi/4."""
     z = r * r
@@ -118,21 +128,20 @@ def atan2(y, x):
 def general_atan2(y, x):
     """Return ``atan2`` without a choice by the size of x and y."""
     a, b = abs(y), abs(x)
-    steep = a > b
+    steep = as_number(a > b)
     # exact: each of them is either a or b
     low, high = a * (1.0 - steep) + b * steep, b * (1.0 - steep) + a * steep
     # above FLAT the angle is taken from the diagonal
-    near = low > FLAT * high
+    near = as_number(low > FLAT * high)
     over = high + near * low
-    t = (low - near * high) / (over + (over == 0.0))
+    t = (low - near * high) / (over + as_number(over == 0.0))
     r = t + arc_tangent_rest(t)
     # eighths of a turn between the axis and t, and the sense in which t counts from there
-    eighths, sense = near * 1.0, 1.0
-    eighths, sense = eighths + steep * (2.0 - 2.0 * eighths), sense - steep * 2.0
-    back = x < 0.0
+    eighths, sense = near + steep * (2.0 - 2.0 * near), 1.0 - steep * 2.0
+    back = as_number(x < 0.0)
     eighths, sense = eighths + back * (4.0 - 2.0 * eighths), sense * (1.0 - back * 2.0)
     angle = eighths * QUARTER_PI_1 + (sense * r + eighths * QUARTER_PI_2)
-    return angle * (1.0 - (y < 0.0) * 2.0)
+    return angle * (1.0 - as_number(y < 0.0) * 2.0)
 
 
 def arc_tangent_rest(t):
@@ -186,9 +195,9 @@ def expm1(x):
 def tanh(x):
     """Return tanh x, within 3 ulp."""
     a = abs(x)
-    far = a > 22.0
+    far = as_number(a > 22.0)
     e = expm1(2.0 * (a * (1.0 - far) + 22.0 * far))
-    return e / (e + 2.0) * (1.0 - (x < 0.0) * 2.0)
+    return e / (e + 2.0) * (1.0 - as_number(x < 0.0) * 2.0)
 
 
 def log_kernel(m, k):
@@ -216,8 +225,8 @@ def log(x):
 
 def log_of_parts(m, k):
     """Return ln(m 2^k) for m from 0.5 to 1."""
-    small = m < 0.5 * SQRT_2
-    return log_kernel(m * (1.0 + small), k - small * 1.0)
+    small = as_number(m < 0.5 * SQRT_2)
+    return log_kernel(m * (1.0 + small), k - small)
 
 
 def log1p(x):
