@@ -1,13 +1,12 @@
 """The strapdown that can be corrected: biases taken off the readings, errors off the solution."""
 
-import copy
-
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import turn
 from ins_sim.core.earth import ellipsoid, frames
 from ins_sim.core.earth.rates import rate_on_earth
 from ins_sim.core.navigation import mechanization
 from ins_sim.core.navigation.increments import fixed_rate_increments, integrals
+from ins_sim.core.navigation.placed import Placed
 from ins_sim.core.navigation.strapdown import level_attitude
 from ins_sim.core.navigation.vertical_channel import FREE
 
@@ -50,7 +49,7 @@ def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
     return (t_ns, place, q_ib, q_nb, v_b, rate, now), delta_v
 
 
-class CorrectedStrapdown:
+class CorrectedStrapdown(Placed):
     """
     The inertial solution between corrections; a copy is a snapshot.
 
@@ -77,10 +76,6 @@ class CorrectedStrapdown:
         self._set(t_ns, mechanization.begin(lat, lon, height, v, 0.0), q_nb, omega,
                   integrals(omega, f, dt))
 
-    def copy(self):
-        """Return a snapshot."""
-        return copy.copy(self)
-
     def _set(self, t_ns, place, q_nb, rate, last):
         q_ib = frames.inertial_attitude(place[0], place[1] + self._earth_angle(t_ns), q_nb)
         self.carry = (t_ns, place, q_ib, q_nb, quaternion.rotate_back(q_nb, place[3:6]), rate,
@@ -97,24 +92,9 @@ class CorrectedStrapdown:
         return self.carry[0]
 
     @property
-    def lat(self):
-        """Return the latitude, rad."""
-        return self.carry[1][0]
-
-    @property
-    def lon(self):
-        """Return the longitude, rad."""
-        return self.carry[1][1]
-
-    @property
-    def height(self):
-        """Return the height, m."""
-        return self.carry[1][2]
-
-    @property
-    def v(self):
-        """Return v_n, m/s."""
-        return self.carry[1][3:6]
+    def place(self):
+        """Return position and velocity, ``mechanization.PLACE``."""
+        return self.carry[1]
 
     @property
     def q_nb(self):
@@ -144,8 +124,7 @@ class CorrectedStrapdown:
     @property
     def solution(self):
         """Return lat, lon, height, v_n, q_nb."""
-        place = self.carry[1]
-        return *place[0:3], place[3:6], self.carry[3]
+        return *self.place[0:3], self.place[3:6], self.carry[3]
 
     @property
     def rate_to_earth(self):

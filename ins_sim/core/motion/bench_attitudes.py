@@ -2,8 +2,8 @@
 The attitudes of the bench motions: pure functions ``(constants, t) -> q_nb``.
 
 t is a float, an array, or a Taylor series, s; the bits are the same, so that the truth, which
-needs derivatives, and compiled loops share one source. A function ``..._rows`` is the loop over
-the instants t: it writes rows of four into the flat sequence out.
+needs derivatives, and compiled loops share one source. ROWS has the loop of each over the instants
+t, which writes rows of four into the flat sequence out.
 
 Constants are tuples of floats: ``base`` is an attitude, ``axis`` a unit vector, w an angular
 frequency in rad/s; angles and phases are in rad.
@@ -12,6 +12,7 @@ frequency in rad/s; angles and phases are in rad.
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_angles
 from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics.compilation import with_globals
 
 
 def about(axis, angle):
@@ -86,54 +87,12 @@ def series(angle, w, t):
 
 
 def static_rows(constants, t, out):
-    """Write the attitudes of ``static``."""
+    """Write the attitudes of ``static``; ROWS holds this loop for every function."""
     for k in range(len(t)):
         i = 4 * k
         out[i], out[i + 1], out[i + 2], out[i + 3] = static(constants, t[k])
 
 
-def rocking_left_rows(constants, t, out):
-    """Write the attitudes of ``rocking_left``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = rocking_left(constants, t[k])
-
-
-def rocking_right_rows(constants, t, out):
-    """Write the attitudes of ``rocking_right``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = rocking_right(constants, t[k])
-
-
-def two_axis_rows(constants, t, out):
-    """Write the attitudes of ``two_axis``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = two_axis(constants, t[k])
-
-
-def coning_rows(constants, t, out):
-    """Write the attitudes of ``coning``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = coning(constants, t[k])
-
-
-def sinusoids_rows(constants, t, out):
-    """Write the attitudes of ``sinusoids``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = sinusoids(constants, t[k])
-
-
-def harmonics_rows(constants, t, out):
-    """Write the attitudes of ``harmonics``."""
-    for k in range(len(t)):
-        i = 4 * k
-        out[i], out[i + 1], out[i + 2], out[i + 3] = harmonics(constants, t[k])
-
-
-ROWS = {static: static_rows, rocking_left: rocking_left_rows, rocking_right: rocking_right_rows,
-        two_axis: two_axis_rows, coning: coning_rows, sinusoids: sinusoids_rows,
-        harmonics: harmonics_rows}
+ROWS = {static: static_rows, **{
+    attitude: with_globals(static_rows, f'{attitude.__name__}_rows', static=attitude)
+    for attitude in (rocking_left, rocking_right, two_axis, coning, sinusoids, harmonics)}}

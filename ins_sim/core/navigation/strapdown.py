@@ -1,19 +1,17 @@
 """The strapdown: position, velocity and attitude from increments."""
 
-import copy
 import math
 
 from ins_sim.core.attitude import integration, quaternion
 from ins_sim.core.earth import frames
 from . import mechanization
+from .placed import Placed
 from .vertical_channel import FREE, NO_DAMPING
 
 
-class Strapdown:
+class Strapdown(Placed):
     """
     Position, velocity and attitude, advanced from increment to increment.
-
-    All state is replaced, never changed, so that a copy is a snapshot and costs as little as one.
 
     Parameters
     ----------
@@ -41,30 +39,6 @@ class Strapdown:
         lat, lon, height, v, q_nb = place
         self.place = mechanization.begin(lat, lon, height, v, 0.0)
         self.set_attitude(q_nb)
-
-    def copy(self):
-        """Return a snapshot."""
-        return copy.copy(self)
-
-    @property
-    def lat(self):
-        """Return the latitude, rad."""
-        return self.place[0]
-
-    @property
-    def lon(self):
-        """Return the longitude, rad."""
-        return self.place[1]
-
-    @property
-    def height(self):
-        """Return the height, m."""
-        return self.place[2]
-
-    @property
-    def v(self):
-        """Return v_n, m/s."""
-        return self.place[3:6]
 
     def move(self, lat, lon, height, v):
         """Replace position (rad, rad, m) and v_n (m/s); q_ib stays."""

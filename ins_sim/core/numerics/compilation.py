@@ -73,6 +73,13 @@ def run(loop, count, inputs, out, plain=None):
     return carry
 
 
+def with_globals(loop, name, **others):
+    """Return a copy of a loop under another name that calls other functions in place of some."""
+    copy = FunctionType(loop.__code__, {**loop.__globals__, **others}, name, loop.__defaults__)
+    copy.__module__, copy.__qualname__ = loop.__module__, name
+    return copy
+
+
 def compiled_if_it_pays(loop, count):
     """
     Return the compiled copy of a loop that is to take count samples more, or None.
