@@ -27,6 +27,10 @@ class Decimation:
         """Return whether the outputs of t_ns, of a run that has begun, are published."""
         return (t_ns - self.first_ns + self._dt_ns // 2) // self._dt_ns % self._every == 0
 
+    def due_rows(self, t_ns):
+        """Return the index, a slice or whole numbers, of those of outputs that are published."""
+        return slice(None) if self._every == 1 else np.flatnonzero(self.due(t_ns))
+
 
 class NavigationLoop:
     """
@@ -78,7 +82,7 @@ class NavigationLoop:
 
         t_ns (n,); columns: the further arguments of the navigator's ``advance``, which takes a
         stretch at once and returns its outputs, histories of the last samples of it.  first:
-        index of the first output; due: indices of the outputs that are published, from first.
+        index of the first output; due: as of ``Decimation.due_rows``, from first.
         """
         regular = np.ones(len(t_ns), dtype=bool)
         regular[1:] = is_regular(np.diff(t_ns), self.dt_ns)
@@ -93,7 +97,7 @@ class NavigationLoop:
                 if len(output[0]):
                     stamps = output[0].t_ns
                     self.decimation.begins(int(stamps[0]))
-                    yield stop - len(stamps), output, np.flatnonzero(self.decimation.due(stamps))
+                    yield stop - len(stamps), output, self.decimation.due_rows(stamps)
             start = stop
             if stop < len(t_ns) and not self._passes(int(t_ns[stop])):
                 start = stop + 1

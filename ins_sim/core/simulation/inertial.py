@@ -109,7 +109,7 @@ def navigate_blocks(settings, motion, blocks, faults=None):
         t_ns = clock.instant(imu.t_ns)
         truth = motion.at(t_ns)
         for first, (states, errors), due in loop.run_block(t_ns, imu.omega, imu.f, truth):
-            yield truth[first + due], states[due], errors[due]
+            yield truth[first:first + len(states)][due], states[due], errors[due]
 
 
 def samples_with_truth(imu, t_ns, truth):

@@ -18,7 +18,8 @@ class Collected:
         """Take the next block, a History."""
         self._kind = type(block)
         for name, values in block.arrays().items():
-            self._columns.setdefault(name, []).append(values)
+            # a column of a wider table would keep the whole table
+            self._columns.setdefault(name, []).append(np.ascontiguousarray(values))
 
     def history(self):
         """Return the History of all blocks, or None where there was none."""
