@@ -8,7 +8,8 @@ import pytest
 from scipy.stats import chi2, kstest
 
 from ins_sim.core.numerics.compilation import plain_only
-from ins_sim.core.numerics.noise import BLOCK, indexed_noise, LEVELS, Processes
+from ins_sim.core.numerics.noise import BLOCK, indexed_noise
+from ins_sim.core.numerics.processes import LEVELS, Processes
 
 QUANTILE = 1e-6
 

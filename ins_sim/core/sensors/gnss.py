@@ -141,7 +141,8 @@ class _Errors:
 
     def __init__(self, settings, run, dt_ns):
         # with the first fix: NumPy's generators cost the start of a node nothing
-        from ins_sim.core.numerics.noise import BLOCK, indexed_noise, Processes
+        from ins_sim.core.numerics.noise import BLOCK, indexed_noise
+        from ins_sim.core.numerics.processes import Processes
         errors, seed = settings.errors, settings.seed
         self._sigmas = errors.position_noise_m, errors.velocity_noise_m_s
         self._streams = [indexed_noise(seed, run, f'gnss.{name}', 3)

@@ -7,7 +7,8 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.compilation import run
-from ins_sim.core.numerics.noise import BLOCK, cut, indexed_noise, Processes
+from ins_sim.core.numerics.noise import BLOCK, cut, indexed_noise
+from ins_sim.core.numerics.processes import Processes
 from .triad_model import temperature_off, triad_model
 from .triad_reading import AT_REST, read, read_arrays, read_rows, ZERO
 
@@ -206,13 +207,15 @@ class AdditiveNoise:
         for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
                                   ('walk', model.walk, (math.inf,) * 3)):
             if any(sigma):
-                self.processes.append(Processes(seed, run, f'{name}.{term}', sigma, time,
-                                                dt_s).blocks)
+                self._add(Processes(seed, run, f'{name}.{term}', sigma, time, dt_s))
         if any(model.flicker):
             sigma = np.multiply.outer([FLICKER_SIGMA] * len(FLICKER_TIMES), model.flicker)
             time = np.repeat(FLICKER_TIMES, 3)
-            flicker = Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s).blocks
-            self.processes.append(lambda first, count: _sums_of_three(flicker(first, count)))
+            self._add(Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s))
+
+    def _add(self, made):
+        """Add Processes of which every third belongs to the same axis."""
+        self.processes.append(lambda first, count: made.sums(first, count, 3))
 
     def __call__(self, first, count):
         """Return the rows, three columns, of blocks from first."""
@@ -231,11 +234,3 @@ def make_noise(model, seed, run, name, dt_s):
     if noise.white is None and not noise.processes and not noise.fixed.any():
         return None
     return noise
-
-
-def _sums_of_three(columns):
-    """Return the sums, three columns, of columns in groups of three, added in their order."""
-    total = columns[:, 0:3]
-    for k in range(3, columns.shape[1], 3):
-        total = total + columns[:, k:k + 3]
-    return total

@@ -1,0 +1,189 @@
+"""
+Gauss-Markov processes and random walks as functions of the sample's index.
+
+They are made of the numbers of ``noise`` by bisection, so that a value depends on its index alone.
+"""
+
+from functools import lru_cache
+import math
+
+import numpy as np
+
+from . import elementary, normals
+from .compilation import run
+from .noise import BLOCK, check_block, cut, IndexedNoise, NORMAL, whole_counters
+
+# Processes live on the indices 0 to 2**LEVELS: 600 days at 20 kHz.
+LEVELS = 40
+# After so many correlation times nothing is left of a process.
+GONE = 700.0
+# The knots, one a block, are made so many in a row.
+KNOTS = 16
+_BLOCK_LEVELS = BLOCK.bit_length() - 1
+
+
+class Processes:
+    """
+    Gauss-Markov processes and random walks, each a column, as functions of the sample's index.
+
+    sigma, time_s, (m,): standard deviation and correlation time of stationary Gauss-Markov
+    processes; where time_s is infinite a random walk from 0 at index 0, sigma being its standard
+    deviation after one second.  dt_s: sampling period.
+
+    Not by recursion, which would need every sample before, but by bisection (Levy's construction
+    of Brownian motion): x_0 and x_N, N = 2**LEVELS, are drawn, and then with d the lowest set bit
+    of k, h = d dt and n_k the normal numbers of index k,
+
+        x_k = c_d (x_{k-d} + x_{k+d}) + s_d n_k
+
+    Gauss-Markov: c_d = 1/(2 cosh(h/T)), s_d = sigma sqrt(tanh(h/T)); random walk: c_d = 1/2,
+    s_d = sigma sqrt(h/2).  The joint distribution of all samples is the exact one.
+    """
+
+    def __init__(self, seed, run, name, sigma, time_s, dt_s):
+        sigma, time_s = np.asarray(sigma, dtype=float), np.asarray(time_s, dtype=float)
+        pairs = list(zip(sigma.tolist(), time_s.tolist()))
+        steps = [math.ldexp(dt_s, level) for level in range(LEVELS)]
+        self._c = np.array([[_weight(h, t) for _, t in pairs] for h in steps])
+        self._s = np.array([[_spread(h, s, t) for s, t in pairs] for h in steps])
+        width = len(pairs)
+        self._inner = IndexedNoise(seed, run, name, width)
+        # the knots, every 256th sample, are called for here and there: one to a block
+        knots = IndexedNoise(seed, run, f'{name}.knots', width, 1)
+        ends = knots.normal_block(0)[0], knots.normal_block(1 << (LEVELS - _BLOCK_LEVELS))[0]
+        walk = np.isinf(time_s)
+        span = math.ldexp(dt_s, LEVELS)
+        first = np.where(walk, 0.0, sigma * ends[0])
+        kept = np.array([_kept(span, t) for t in time_s.tolist()])
+        last = np.where(walk, sigma * math.sqrt(span),
+                        sigma * np.sqrt(1.0 - kept * kept)) * ends[1] + kept * first
+
+        @lru_cache(maxsize=256)
+        def far(b):
+            """Return the values (m,) at sample b * BLOCK, b a multiple of KNOTS."""
+            if b == 0 or b == 1 << (LEVELS - _BLOCK_LEVELS):
+                return last if b else first
+            d = b & -b
+            level = d.bit_length() - 1 + _BLOCK_LEVELS
+            return (self._c[level] * (far(b - d) + far(b + d))
+                    + self._s[level] * knots.normal_block(b)[0])
+
+        @lru_cache(maxsize=4)
+        def row(b):
+            """Return the values (KNOTS, m) of the knots from b on, b a multiple of KNOTS."""
+            return between(self._c[_BLOCK_LEVELS:], self._s[_BLOCK_LEVELS:],
+                           np.stack([far(b), far(b + KNOTS)]),
+                           knots.normal_blocks(b, KNOTS)[np.newaxis])[0]
+
+        self._far, self._row = far, row
+
+    def _ends(self, first, count):
+        """Return the values (count + 1, m) at the starts of blocks and behind the last."""
+        def rows(group, groups):
+            return np.concatenate([self._row(KNOTS * k) for k in range(group, group + groups)])
+
+        b = first + count
+        behind = self._row(b - b % KNOTS)[b % KNOTS] if b % KNOTS else self._far(b)
+        return np.concatenate([cut(rows, KNOTS, first, count), behind[np.newaxis]])
+
+    def block(self, b):
+        """Return the values at the samples b * BLOCK to b * BLOCK + BLOCK - 1, (BLOCK, m)."""
+        return self.blocks(b, 1)
+
+    def blocks(self, first, count):
+        """Return the values of blocks from first, (count * BLOCK, m)."""
+        return self.sums(first, count, self._c.shape[1])
+
+    def sums(self, first, count, every):
+        """
+        Return sums of the values of blocks from first, (count * BLOCK, every).
+
+        Column k is the sum of the processes k, k + every, k + 2 every and so on, in that order.
+        """
+        check_block(first)
+        found = np.empty((count * BLOCK, every))
+        key = self._inner.key
+        run(bisect, len(found), (self._c, self._s, self._ends(first, count), key[0], key[1], first,
+                                 count, self._c.shape[1], every), found, self._bisect_arrays)
+        return found
+
+    def _bisect_arrays(self, c, s, ends, _, __, first, count, width, every, out):
+        """Write what ``bisect`` writes, by operations on arrays."""
+        numbers = self._inner.normal_blocks(first, count).reshape(count, BLOCK, width)
+        values = between(c, s, ends, numbers).reshape(count * BLOCK, width)
+        total = values[:, 0:every]
+        for k in range(every, width, every):
+            total = total + values[:, k:k + every]
+        out[:] = total
+
+    def values(self, first, count):
+        """Return the values at the samples first to first + count - 1, (count, m)."""
+        return cut(self.blocks, BLOCK, first, count)
+
+
+def bisect(c, s, ends, k0, k1, first, count, width, every, out):
+    """
+    Write sums of the values of Processes between knots, rows of every, as of ``sums``.
+
+    c, s: of each level, rows of width; ends: rows of the knots at the starts of count blocks and
+    behind the last; k0, k1: key of the normal numbers.  Compiled only, as ``normals.fill`` is.
+    """
+    size = BLOCK * width
+    z, x = np.empty(whole_counters(size)), np.empty(size + width)
+    for b in range(count):
+        normals.fill(k0, k1, NORMAL, first + b, 1, len(z), z)
+        knots = ends[b * width:]
+        for m in range(width):
+            x[m], x[size + m] = knots[m], knots[width + m]
+        for step in range(_BLOCK_LEVELS):
+            level = _BLOCK_LEVELS - 1 - step
+            weight, spread = c[level * width:], s[level * width:]
+            d = width << level
+            for k in range(d, size, 2 * d):
+                left, at, right, own = x[k - d:], x[k:], x[k + d:], z[k:]
+                for m in range(width):
+                    at[m] = weight[m] * (left[m] + right[m]) + spread[m] * own[m]
+        for k in range(BLOCK):
+            row, sums = x[k * width:], out[(b * BLOCK + k) * every:]
+            for m in range(every):
+                total = row[m]
+                for j in range(m + every, width, every):
+                    total = total + row[j]
+                sums[m] = total
+
+
+def between(c, s, ends, numbers):
+    """
+    Return the values at knots and between them, (count, length, m), by bisection.
+
+    c, s: of each level, from that of neighbours on; ends (count + 1, m): of the knots; numbers:
+    the normal numbers (count, length, m), length a power of two.
+    """
+    count, length, width = numbers.shape
+    x = np.empty((count, length + 1, width))
+    x[:, 0], x[:, length] = ends[:-1], ends[1:]
+    for level in range(length.bit_length() - 2, -1, -1):
+        d = 1 << level
+        x[:, d::2 * d] = (c[level] * (x[:, 0:length:2 * d] + x[:, 2 * d::2 * d])
+                          + s[level] * numbers[:, d::2 * d])
+    return x[:, :length]
+
+
+def _weight(h, time_s):
+    """Return c of a half interval h, s; of a random walk exactly 1/2."""
+    if math.isinf(time_s):
+        return 0.5
+    kept = _kept(h, time_s)
+    return kept / (1.0 + kept * kept)
+
+
+def _kept(h, time_s):
+    """Return what is left of a process after h, s: exp(-h / T)."""
+    return elementary.exp(-h / time_s) if h < GONE * time_s else 0.0
+
+
+def _spread(h, sigma, time_s):
+    """Return s of a half interval h, s."""
+    if math.isinf(time_s):
+        return sigma * math.sqrt(0.5 * h)
+    return sigma * math.sqrt(elementary.tanh(h / time_s))
