@@ -42,11 +42,10 @@ class Processes:
 
     def __init__(self, seed, run, name, sigma, time_s, dt_s):
         sigma, time_s = np.asarray(sigma, dtype=float), np.asarray(time_s, dtype=float)
-        pairs = list(zip(sigma.tolist(), time_s.tolist()))
-        steps = [math.ldexp(dt_s, level) for level in range(LEVELS)]
-        self._c = np.array([[_weight(h, t) for _, t in pairs] for h in steps])
-        self._s = np.array([[_spread(h, s, t) for s, t in pairs] for h in steps])
-        width = len(pairs)
+        half = np.ldexp(dt_s, np.arange(LEVELS))[:, np.newaxis]
+        kept = _kept(half, time_s)
+        self._c, self._s = kept / (1.0 + kept * kept), _spread(half, sigma, time_s)
+        width = len(sigma)
         self._inner = IndexedNoise(seed, run, name, width)
         # the knots, every 256th sample, are called for here and there: one to a block
         knots = IndexedNoise(seed, run, f'{name}.knots', width, 1)
@@ -54,7 +53,7 @@ class Processes:
         walk = np.isinf(time_s)
         span = math.ldexp(dt_s, LEVELS)
         first = np.where(walk, 0.0, sigma * ends[0])
-        kept = np.array([_kept(span, t) for t in time_s.tolist()])
+        kept = _kept(span, time_s)
         last = np.where(walk, sigma * math.sqrt(span),
                         sigma * np.sqrt(1.0 - kept * kept)) * ends[1] + kept * first
 
@@ -169,21 +168,11 @@ def between(c, s, ends, numbers):
     return x[:, :length]
 
 
-def _weight(h, time_s):
-    """Return c of a half interval h, s; of a random walk exactly 1/2."""
-    if math.isinf(time_s):
-        return 0.5
-    kept = _kept(h, time_s)
-    return kept / (1.0 + kept * kept)
-
-
 def _kept(h, time_s):
-    """Return what is left of a process after h, s: exp(-h / T)."""
-    return elementary.exp(-h / time_s) if h < GONE * time_s else 0.0
+    """Return what is left of processes after h, s: exp(-h / T), 1 of random walks."""
+    return np.where(h < GONE * time_s, elementary.exp(-np.minimum(h / time_s, GONE)), 0.0)
 
 
 def _spread(h, sigma, time_s):
-    """Return s of a half interval h, s."""
-    if math.isinf(time_s):
-        return sigma * math.sqrt(0.5 * h)
-    return sigma * math.sqrt(elementary.tanh(h / time_s))
+    """Return s of half intervals h, s."""
+    return sigma * np.sqrt(np.where(np.isinf(time_s), 0.5 * h, elementary.tanh(h / time_s)))
