@@ -33,12 +33,15 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
     omega_in_b = quaternion.rotate_back(q, omega_in_n)
     omega_ib_b = tuple(a + b for a, b in zip(omega_in_b, omega_nb_b))
 
-    def stack(components):
-        return np.stack([np.broadcast_to(x, q[0].shape) for x in components], axis=-1)
+    def table(components):
+        found = np.empty((len(q[0]), len(components)))
+        for k, column in enumerate(components):
+            found[:, k] = column
+        return found
 
-    lat, lon, height = (np.broadcast_to(x, q[0].shape).copy() for x in place)
-    return Truth(t_ns=t_ns, lat=lat, lon=lon, height=height, v_n=stack(v_n), q_nb=stack(q),
-                 omega_ib_b=stack(omega_ib_b), f_ib_b=stack(quaternion.rotate_back(q, f_n)))
+    lat, lon, height = (np.full(len(q[0]), x) for x in place)
+    return Truth(t_ns=t_ns, lat=lat, lon=lon, height=height, v_n=table(v_n), q_nb=table(q),
+                 omega_ib_b=table(omega_ib_b), f_ib_b=table(quaternion.rotate_back(q, f_n)))
 
 
 def translation(lat, lon, height, earth_rotation):

@@ -87,9 +87,9 @@ class Triads:
                 mean[:, axis] = component
             u.append(np.empty((count, 3)))
             run(force_rows, count, (tuple(q_before[k]), q_mb[k], mean), u[-1], force_arrays)
-        omega, f = (np.stack([rows[k][:, axis] for axis, k in enumerate(picks)], axis=-1)
-                    for rows, picks in ((phi, self._gyro), (u, self._accel)))
-        return ImuSamples(t_ns, omega * self._per_dt, f)
+        omega = _picked(phi, self._gyro)
+        omega *= self._per_dt
+        return ImuSamples(t_ns, omega, _picked(u, self._accel))
 
     def instant(self, t_ns, omega, f):
         """Return omega, f, parity or None of rate and specific force at an instant."""
@@ -158,6 +158,15 @@ class Triads:
                      for i, k in enumerate(picks))
 
 
+def _picked(rows, picks):
+    """Return (n, 3), each axis from that of the rows (n, 3) which it picks; rows may change."""
+    found = rows[picks[0]]
+    for axis, k in enumerate(picks):
+        if k != picks[0]:
+            found[:, axis] = rows[k][:, axis]
+    return found
+
+
 class MotionImu:
     """
     The IMU fed by a motion that can be evaluated anywhere (closed form or recording).
@@ -196,15 +205,21 @@ class MotionImu:
 
     def _integrated(self, t_ns):
         triads, known = self._triads, {}
+        edges = np.concatenate([t_ns[:1] - triads.dt_ns, t_ns])
 
-        def truth(offset_ns):
-            if offset_ns not in known:
-                known[offset_ns] = self._motion.at(self._instants(t_ns + offset_ns))
-            return known[offset_ns]
+        def truth(offset_ns, delay_ns):
+            # A step begins where the one before ends.
+            begins, ends = offset_ns == -triads.dt_ns, offset_ns == 0
+            first = -delay_ns if begins or ends else offset_ns - delay_ns
+            instants = (edges if begins or ends else t_ns) + first
+            key = first, len(instants)
+            if key not in known:
+                known[key] = self._motion.at(self._instants(instants))
+            return known[key][:-1] if begins else known[key][1:] if ends else known[key]
 
-        rates = [[truth(o - d).omega_ib_b.T for o in self._offsets(triads.rate_nodes)]
+        rates = [[truth(o, d).omega_ib_b.T for o in self._offsets(triads.rate_nodes)]
                  for d in triads.gyro_delays]
-        forces = [[truth(o - d).f_ib_b.T for o in self._offsets(NODES)]
+        forces = [[truth(o, d).f_ib_b.T for o in self._offsets(NODES)]
                   for d in triads.accel_delays]
         # The run begins at first_ns, as on a stream, which knows nothing of before.
         return triads.integrals_block(t_ns, rates, forces, self._first_ns)
