@@ -21,6 +21,7 @@ def check(motion):
     lat, lon, q = motion.attitude_at(T_NS)
     assert (lat == truth.lat).all() and (lon == truth.lon).all()
     assert np.array_equal(q, truth.q_nb)
+    assert np.array_equal(motion.body_force_at(T_NS), truth.f_ib_b.T)
     lat, lon, f_n = motion.force_at(T_NS)
     assert (lat == truth.lat).all() and (lon == truth.lon).all()
     # The truth was turned into b, and here back again: two products of some ten roundings each.

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_angles
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary, taylor
@@ -74,6 +75,12 @@ class BenchMotion(Motion):
         if self._still is None:
             return super().force_at(t_ns)
         return *self._spot[:2], self._still[2]
+
+    def body_force_at(self, t_ns):
+        """Return the specific force in b, three arrays."""
+        if self._still is None:
+            return super().body_force_at(t_ns)
+        return quaternion.rotate_back(self.attitude_at(t_ns)[2].T, self._still[2])
 
 
 def _base(motion):

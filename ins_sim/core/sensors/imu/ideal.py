@@ -207,20 +207,28 @@ class MotionImu:
         triads, known = self._triads, {}
         edges = np.concatenate([t_ns[:1] - triads.dt_ns, t_ns])
 
-        def truth(offset_ns, delay_ns):
-            # A step begins where the one before ends.
-            begins, ends = offset_ns == -triads.dt_ns, offset_ns == 0
-            first = -delay_ns if begins or ends else offset_ns - delay_ns
-            instants = (edges if begins or ends else t_ns) + first
-            key = first, len(instants)
+        def truth(stamps, offset_ns):
+            key = len(stamps), offset_ns
             if key not in known:
-                known[key] = self._motion.at(self._instants(instants))
-            return known[key][:-1] if begins else known[key][1:] if ends else known[key]
+                known[key] = self._motion.at(self._instants(stamps + offset_ns))
+            return known[key]
 
-        rates = [[truth(o, d).omega_ib_b.T for o in self._offsets(triads.rate_nodes)]
+        def rate(offset_ns, delay_ns):
+            # A step begins where the one before ends.
+            if offset_ns == -triads.dt_ns:
+                return truth(edges, -delay_ns).omega_ib_b[:-1].T
+            if offset_ns == 0:
+                return truth(edges, -delay_ns).omega_ib_b[1:].T
+            return truth(t_ns, offset_ns - delay_ns).omega_ib_b.T
+
+        def force(offset_ns):
+            if (len(t_ns), offset_ns) in known:
+                return truth(t_ns, offset_ns).f_ib_b.T
+            return np.array(self._motion.body_force_at(self._instants(t_ns + offset_ns)))
+
+        rates = [[rate(o, d) for o in self._offsets(triads.rate_nodes)]
                  for d in triads.gyro_delays]
-        forces = [[truth(o, d).f_ib_b.T for o in self._offsets(NODES)]
-                  for d in triads.accel_delays]
+        forces = [[force(o - d) for o in self._offsets(NODES)] for d in triads.accel_delays]
         # The run begins at first_ns, as on a stream, which knows nothing of before.
         return triads.integrals_block(t_ns, rates, forces, self._first_ns)
 
