@@ -8,8 +8,11 @@ import warnings
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
                info, navigate, play, predict, record, simulate)
 from ins_sim import __version__
+from ins_sim.settings import shown
 
 ROS_ARGS = '--ros-args'
+# Of a sentence about an error; longer ones are cut.
+LONGEST = 2000
 # In the order of the printed list.
 VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'record': record, 'play': play,
          'predict': predict, 'navigate': navigate, 'demo': demo, 'dtg-study': dtg_study,
@@ -39,6 +42,10 @@ def main(arguments=None):
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
     cut = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
+    for stream in (sys.stdout, sys.stderr):
+        # A name that the terminal cannot show is shown by its codes.
+        if hasattr(stream, 'reconfigure'):
+            stream.reconfigure(errors='backslashreplace')
     top = parser()
     chosen, unknown = top.parse_known_args(words[:cut])
     if unknown:
@@ -53,7 +60,13 @@ def main(arguments=None):
     try:
         return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:
-        print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
+        sentence = shown.cut(' '.join(str(error).splitlines()), LONGEST)
+        print(f'ins_sim {chosen.verb}: {sentence}', file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        why = f' ({shown.cut(str(error))})' if str(error) else ''
+        print(f'ins_sim {chosen.verb}: there is not enough memory{why}; expected a smaller input',
+              file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print(f'ins_sim {chosen.verb}: interrupted; only what is named above was written',

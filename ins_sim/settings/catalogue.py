@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 import math
 
+from .shown import exact, shown
 from .suggest import nearest_name, unknown_key
 
 
@@ -65,7 +66,7 @@ def check_value(name, value, f):
         values = (value,)
     else:
         if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, '__iter__'):
-            raise ValueError(f'{name} is {value!r}; expected a list')
+            raise ValueError(f'{name} is {shown(value)}; expected a list')
         element = kind.__args__[0]
         value = values = tuple(_scalar(f'{name}[{k}]', v, element) for k, v in enumerate(value))
         size = f.metadata['size']
@@ -77,21 +78,26 @@ def check_value(name, value, f):
         if isinstance(v, float) and not math.isfinite(v) and v != high:
             raise ValueError(f'{name} is {v}; expected a finite number')
         if choices and v not in choices:
-            raise ValueError(f'{name} is {v!r}; expected one of {", ".join(choices)} (nearest: '
-                             f'{nearest_name(v, choices)})')
+            raise ValueError(f'{name} is {shown(v)}; expected one of {", ".join(choices)} '
+                             f'(nearest: {nearest_name(v, choices)})')
         if low is not None and not low <= v <= high:
-            raise ValueError(f'{name} is {v:g}{" " + unit if unit else ""}; expected {low:g} to '
-                             f'{high:g}{" " + unit if unit else ""}')
+            unit = ' ' + unit if unit else ''
+            raise ValueError(f'{name} is {exact(v)}{unit}; expected {exact(low)} to '
+                             f'{exact(high)}{unit}')
     return value
 
 
 def _scalar(name, value, kind):
     if isinstance(value, bool) != (kind is bool):
-        raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
+        raise ValueError(f'{name} is {shown(value)}; expected {_KINDS[kind]}')
     if kind is float and isinstance(value, (int, float)):
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise ValueError(f'{name} is {shown(value)}; expected a number of at most 308 '
+                             'digits') from None
     if not isinstance(value, kind):
-        raise ValueError(f'{name} is {value!r}; expected {_KINDS[kind]}')
+        raise ValueError(f'{name} is {shown(value)}; expected {_KINDS[kind]}')
     return value
 
 

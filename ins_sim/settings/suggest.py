@@ -1,13 +1,15 @@
 """The nearest known name to a misspelt one; imported only when there is an error to report."""
 
+from .shown import LONGEST, shown
+
 
 def nearest_name(name, known):
     """Return the known text that is most like name."""
     # Imported only when there is an error to report: nodes start faster without it.
     from difflib import get_close_matches
-    return get_close_matches(str(name), sorted(known), n=1, cutoff=0.0)[0]
+    return get_close_matches(str(name)[:LONGEST], sorted(known), n=1, cutoff=0.0)[0]
 
 
 def unknown_key(name, known):
     """Return the sentence about an unknown key, naming the nearest known one."""
-    return f'unknown parameter {name!r}; the nearest known one is {nearest_name(name, known)!r}'
+    return f'unknown parameter {shown(name)}; the nearest known one is {nearest_name(name, known)!r}'

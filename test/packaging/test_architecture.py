@@ -59,7 +59,7 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
         'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report'}
+                         'graph', 'studies', 'report', 'regular_file'}
 MAY_IMPORT = {
     'settings': set(),
     'core.numerics': set(),
@@ -80,12 +80,13 @@ MAY_IMPORT = {
                                 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
-    'bags': {'messages', 'settings.suggest'},
-    'io': CORE | {'bags', 'messages', 'settings'},
-    'parameter_files': {'settings'},
+    'bags': {'messages', 'settings.suggest', 'settings.shown', 'regular_file'},
+    'regular_file': set(),
+    'io': CORE | {'bags', 'messages', 'settings', 'regular_file'},
+    'parameter_files': {'settings', 'regular_file'},
     'resources': {'settings.suggest'},
     'graph': {'messages'},
-    'report': CORE | {'settings', 'studies', 'parameter_files'},
+    'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file'},
     'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS,
     'cli': FILES_AND_BAGS | {'ros', '__version__'},
