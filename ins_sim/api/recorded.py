@@ -11,7 +11,7 @@ import numpy as np
 from ins_sim import parameter_files
 from ins_sim.core.postprocessing import navigate as replay
 from ins_sim.core.postprocessing.imu_record import RecordedImu
-from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.timeseries.histories import NavStates
 from ins_sim.io import imu
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings

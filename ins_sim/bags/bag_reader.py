@@ -13,7 +13,7 @@ from . import metadata
 from .mcap_reader import McapReader
 from .piece import in_log_order
 from .sqlite_reader import SqliteReader
-from .storages import SUFFIXES
+from .storages import ROS_1, SUFFIXES
 
 READERS = {'mcap': McapReader, 'sqlite3': SqliteReader}
 
@@ -43,12 +43,13 @@ class BagReader:
 
     topics {name: Channel} as they are declared, in order; files: paths; storage: 'mcap' or
     'sqlite3'; compression: names of those of the chunks; cut: '' or a sentence that says why the
-    bag is not whole.  Names of topics that are given may leave out the first slash.
+    bag is not whole; odd_stamps {topic: how many stamps have nanosec of a second or more} of the
+    topics read.  Names of topics that are given may leave out the first slash.
     """
 
     def __init__(self, path):
         self.path = Path(path)
-        self.cut = ''
+        self.cut, self.odd_stamps = '', {}
         if self.path.is_dir():
             self.storage, self.files = self._find_files()
         else:
@@ -140,7 +141,7 @@ class BagReader:
 
         The arrays are those of ``arrays``, and so are the errors.
         """
-        tables, channels = {}, {}
+        tables, channels, odd = {}, {}, {}
         for name, fields in wanted.items():
             channel = self._readable(name, None)
             channels[channel.name] = channel
@@ -150,16 +151,24 @@ class BagReader:
             for number, piece in part.by_channel(_ids(part, channels)):
                 name = part.channels[number].name
                 out = tables[name].more(piece.log_ns)
-                self._checked(channels[name], columns.read_columns, piece, out)
+                odd[name] = odd.get(name, 0) + self._checked(channels[name],
+                                                             columns.read_columns, piece, out)
+        self.odd_stamps.update(odd)
         return {name: table.in_order() for name, table in zip(wanted, tables.values())}
 
     def frames(self, name):
         """Return the distinct strings (frame ids) of a topic's messages, a list of tuples."""
+        return list(self.frame_counts(name))
+
+    def frame_counts(self, name):
+        """Return {strings (frame ids): how many messages of a topic have them}."""
         channel = self._readable(name, None)
         columns.column_dtype(channel.type_name)
-        found = [texts for _, piece in self.pieces([channel.name])
-                 for texts in self._checked(channel, columns.read_strings, piece)]
-        return list(dict.fromkeys(found))
+        found = {}
+        for _, piece in self.pieces([channel.name]):
+            for texts, count in self._checked(channel, columns.count_strings, piece).items():
+                found[texts] = found.get(texts, 0) + count
+        return found
 
     def _readable(self, name, type_name):
         channel = self.topic(name)
@@ -245,6 +254,9 @@ def _ids(part, names):
 
 def _storage(path):
     storage = SUFFIXES.get(path.suffix)
+    if path.suffix == ROS_1 and path.exists():
+        raise ValueError(f'{path} is a bag of ROS 1; expected one of rosbag2 ("rosbags-convert" '
+                         'of the Python package rosbags makes it)')
     if storage is None:
         if path.suffix == '.zstd':
             raise ValueError(f'{path} is compressed as a file; expected one of '

@@ -24,8 +24,14 @@ def run(chosen):
     """Convert and say what was written; return the exit code."""
     from rich.console import Console
     from ins_sim.io.convert import convert_recording
-    settings = arguments.read_settings(chosen).motion_generator
-    written = convert_recording(chosen.source, chosen.target, settings, chosen.topic,
-                                chosen.storage, chosen.compression, chosen.force)
+    from ins_sim import parameter_files
+    from ins_sim.settings.by_node import ALL_NODES, NODES
+    from ins_sim.settings.recorded_imu import CONVERT
+    settings = parameter_files.read_nodes(
+        arguments.parameter_paths(chosen), chosen.param,
+        {'motion_generator': NODES['motion_generator'], **CONVERT}, {**ALL_NODES, **CONVERT})
+    written = convert_recording(chosen.source, chosen.target, settings['motion_generator'],
+                                chosen.topic, chosen.storage, chosen.compression, chosen.force,
+                                settings['convert'])
     Console().print(f'written: {written}', markup=False, highlight=False, soft_wrap=True)
     return 0

@@ -2,43 +2,103 @@
 
 import numpy as np
 
+from ins_sim.core.numerics.instants import seconds, unwrap_clock
 from ins_sim.core.postprocessing.imu_record import RecordedImu
+from ins_sim.settings.recorded_imu import ConvertSettings
+from ins_sim.settings.shown import listed
+from .csv_names import UNITS
+
+# An orientation that is not measured is often all zero; one of another length is no rotation.
+_UNIT = 0.01
 
 
-def read_imu_messages(bag, topic):
+def read_imu_messages(bag, topic, settings=None):
     """
     Return RecordedImu, frame id and notes (sentences) of a topic, in the order recorded.
 
-    Stamps that are all zero give way to the log times.  Raises ValueError where there is no
-    message, more than one frame, or no rate or acceleration (REP-145).
+    settings: those of a recorded IMU, NavigateSettings or ConvertSettings, the default. Stamps
+    that are all zero give way to the log times. Raises ValueError where there is no message, more
+    than one frame, or no rate or acceleration (REP-145), unless settings.accept says otherwise.
     """
-    name = f'{bag.path}: {topic}'
+    settings = settings or ConvertSettings()
+    name, accept = f'{bag.path}: {topic}', settings.accept
     table = bag.arrays(topic)
     if not len(table):
         raise ValueError(f'{name} is empty; expected messages')
-    if (table['angular_velocity_covariance'][:, 0] == -1.0).any() or (
-            table['linear_acceleration_covariance'][:, 0] == -1.0).any():
+    notes = []
+    _check_measured(name, table, accept, notes)
+    frame = _frame(name, bag.frame_counts(topic), accept, notes)
+    t_ns = _stamps(name, table, settings.stamps.source, bag.odd_stamps.get(topic, 0), notes)
+    omega, f = (table[field] * _factor(kind, unit) for field, kind, unit in (
+        ('angular_velocity', 'rate', settings.units.rate),
+        ('linear_acceleration', 'force', settings.units.force)))
+    return (RecordedImu(t_ns, omega, f, _orientation(name, table, accept, notes)),
+            frame.lstrip('/'), notes)
+
+
+def _factor(kind, unit):
+    return 1.0 if unit == 'auto' else UNITS[kind][unit]
+
+
+def _check_measured(name, table, accept, notes):
+    said = {field: int(np.count_nonzero(table[f'{field}_covariance'][:, 0] == -1.0))
+            for field in ('angular_velocity', 'linear_acceleration')}
+    if not any(said.values()):
+        return
+    there = [field for field, count in said.items() if count and table[field].any()]
+    what = ' and '.join(f'{count} messages have no {field}' for field, count in said.items()
+                        if count)
+    if not accept.unmeasured:
         raise ValueError(f'{name} says by a covariance of -1 that it has no rate or no '
-                         'acceleration (REP-145); expected both')
-    frames = [texts[0] for texts in bag.frames(topic)]
-    if len(frames) > 1:
-        raise ValueError(f'{name} has the frames {", ".join(map(repr, frames[:4]))}; expected one '
-                         'IMU on a topic')
-    t_ns, notes = table['stamp_ns'], []
-    if not t_ns.any():
-        t_ns = table['log_ns']
+                         f'acceleration (REP-145): {what}; expected both'
+                         + ('; there are numbers beside it, which accept.unmeasured:=true takes'
+                            if there else ''))
+    notes.append(f'{name}: by a covariance of -1 {what}: taken as measured')
+
+
+def _frame(name, frames, accept, notes):
+    """Return the frame id of the messages, the most frequent one where several are accepted."""
+    count = {texts[0]: n for texts, n in frames.items()}
+    usual = max(count, key=count.get)
+    if len(count) > 1:
+        said = listed((f'{frame!r} ({n} messages)' for frame, n in count.items()), 4)
+        if not accept.frames:
+            raise ValueError(f'{name} has the frames {said}; expected one IMU on a topic '
+                             '(accept.frames:=true takes them for one)')
+        notes.append(f'{name} has the frames {said}: all taken for {usual!r}')
+    return usual
+
+
+def _stamps(name, table, source, odd, notes):
+    """Return the stamps, (n,) int64 ns, of the source of settings."""
+    t_ns = table['stamp_ns'].copy()
+    if source == 'log':
+        notes.append(f'{name}: the times of logging are used')
+        return table['log_ns'].copy()
+    if source == 'auto' and not t_ns.any():
         notes.append('the stamps of the IMU are all zero: the times of logging are used')
-    # copies: the rest of the messages need not stay
-    imu = RecordedImu(t_ns.copy(), table['angular_velocity'].copy(),
-                      table['linear_acceleration'].copy(), _orientation(table))
-    return imu, frames[0].lstrip('/'), notes
+        return table['log_ns'].copy()
+    if odd:
+        notes.append(f'{name}: {odd} stamps have nanosec >= 1e9; it is added to their seconds')
+    t_ns, note = unwrap_clock(t_ns)
+    if note:
+        notes.append(f'{name}: {note}')
+    return t_ns
 
 
-def _orientation(table):
+def _orientation(name, table, accept, notes):
     """Return unit quaternions (n, 4), NaN where the message has none."""
     q = table['orientation'].copy()
     norm = np.linalg.norm(q, axis=1)
-    known = (table['orientation_covariance'][:, 0] != -1.0) & (np.abs(norm - 1.0) < 0.01)
+    there = (table['orientation_covariance'][:, 0] != -1.0) & np.isfinite(norm) & (norm > 1e-3)
+    odd = there & (np.abs(norm - 1.0) >= _UNIT)
+    if odd.any():
+        k = int(np.argmax(odd))
+        what = (f'{name}: {np.count_nonzero(odd)} orientations are no rotations, the first at '
+                f'{seconds(table["stamp_ns"][k])} has the length {norm[k]:.4g}: ')
+        notes.append(what + ('normalised' if accept.orientations else
+                             'not used (accept.orientations:=true normalises them)'))
+    known = there if accept.orientations else there & ~odd
     q[~known] = np.nan
     q[known] /= norm[known, None]
     return q

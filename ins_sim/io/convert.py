@@ -15,40 +15,44 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.messages import convert as blocks
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
-from . import bag_imu, csv_flight, csv_imu, csv_table, csv_writer
+from ins_sim.settings.catalogue import values_of
+from ins_sim.settings.recorded_imu import ConvertSettings
+from . import bag_imu, csv_flight, csv_imu, csv_writer
 from .bag_truth import read_poses
+from .csv_text import is_csv, SUFFIXES
 from .topic_choice import choose_topic, short_names
 
 WINDOW = 4096
 
 
 def convert_recording(source, target, settings, topic=None, storage='mcap', compression='none',
-                      force=False):
+                      force=False, imu=None):
     """
     Write target from source, a CSV file from a bag or a bag from a CSV file; return a sentence.
 
     settings: MotionGeneratorSettings, of which a flight takes motion.recording, datum, rate_hz and
-    time.epoch_s.  topic: of the bag; None for truth/odometry if there is one, else the only Imu.
+    time.epoch_s; imu: ConvertSettings, how an IMU is read.  topic: of the bag; None for
+    truth/odometry if there is one, else the only Imu.
     storage and compression: as of BagWriter; force: replace what is there.  Raises ValueError or
     OSError in one sentence where source, target or topic will not do.
     """
-    source, target = Path(source), Path(target)
+    source, target, imu = Path(source), Path(target), imu or ConvertSettings()
     if not source.exists():
         raise FileNotFoundError(f'{source} does not exist; expected a rosbag2 bag or a CSV file')
-    from_bag, to_csv = is_bag(source), target.name.endswith(csv_table.SUFFIXES)
-    if not from_bag and not source.name.endswith(csv_table.SUFFIXES):
+    from_bag, to_csv = is_bag(source), is_csv(target)
+    if not from_bag and not is_csv(source):
         raise ValueError(f'{source} is neither a bag nor named '
-                         f'{" or ".join(csv_table.SUFFIXES)}')
+                         f'{" or ".join(SUFFIXES)}')
     if from_bag != to_csv:
         raise ValueError(f'{source} and {target} are both {"bags" if from_bag else "CSV files"}; '
                          'expected a bag and a CSV file')
     if from_bag:
         _check_file(target, force)
-        return _to_csv(source, target, settings.datum, topic)
+        return _to_csv(source, target, settings.datum, topic, imu)
     check_target(target, storage, compression, force)
     how = dict(storage=storage, compression=compression, replace=force)
-    if csv_imu.IMU[0] in csv_table.read_header(source):
-        return _imu_to_bag(source, target, settings, topic, how)
+    if csv_imu.is_imu(source, imu.columns):
+        return _imu_to_bag(source, target, settings, topic, how, imu)
     if topic is not None:
         raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, of which the '
                          'topics are truth/*; expected none')
@@ -62,7 +66,7 @@ def _check_file(path, force):
         raise ValueError(f'{path} is no file; --force replaces only a file')
 
 
-def _to_csv(source, target, datum, topic):
+def _to_csv(source, target, datum, topic, chosen):
     with open_bag(source) as bag:
         types = [topics.ODOMETRY, topics.IMU]
         wanted = 'auto' if topic is None else topic
@@ -76,16 +80,16 @@ def _to_csv(source, target, datum, topic):
                                  f'{", ".join(sorted(bag.topics)) or "no topic"}')
             name = choose_topic(bag, types[1:], wanted, '--topic', needed=True)
         if bag.topics[name].type_name == topics.IMU:
-            imu, _, _ = bag_imu.read_imu_messages(bag, name)
+            imu, _, notes = bag_imu.read_imu_messages(bag, name, chosen)
             csv_writer.write_imu(target, imu)
-            return f'{target} with {len(imu)} samples of {name}'
+            return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes])
     poses = read_poses(source, name, datum, '--topic')
     csv_writer.write_flight(target, poses)
     return f'{target} with {len(poses.t_ns)} rows of {name}'
 
 
-def _imu_to_bag(source, target, settings, topic, how):
-    imu = csv_imu.read_imu(source)
+def _imu_to_bag(source, target, settings, topic, how, chosen):
+    imu, notes = csv_imu.read_imu(source, chosen.columns, chosen.units)
     stamps_ns = imu.t_ns + settings.time.epoch_s * SECOND
     _check_stamps(source, stamps_ns)
     written = topics.IMU_RAW if topic is None else replace(topics.IMU_RAW, name=topic)
@@ -93,22 +97,24 @@ def _imu_to_bag(source, target, settings, topic, how):
     counts = write_windows(target, {topics.IMU_RAW: written}, (
         {topics.IMU_RAW: (stamps_ns[k:k + WINDOW], values[k:k + WINDOW])}
         for k in range(0, len(imu), WINDOW)), **how)
-    return _told(target, counts)
+    return _told(target, counts, *notes)
 
 
 def _flight_to_bag(source, target, settings, how):
     """Write the four topics of the truth from the first row, 3 s before start_s, to the last."""
     recording = replace(settings.motion.recording, path=str(source))
-    motion = RecordedMotion(csv_flight.read_poses(source), recording, settings.earth)
+    motion = RecordedMotion(csv_flight.read_poses(source, values_of(recording.columns)), recording,
+                            settings.earth)
     frame = MapFrame(settings.datum, settings.earth.rotation)
     pad_ns, step_ns = round(PAD_S * SECOND), period_ns(settings.rate_hz)
-    t_ns = np.arange(-pad_ns, round(motion.end_s * SECOND) + pad_ns + 1, step_ns, dtype=np.int64)
+    count = (round(motion.end_s * SECOND) + 2 * pad_ns) // step_ns + 1
     offset_ns = motion.zero_ns + settings.time.epoch_s * SECOND
-    _check_stamps(source, t_ns + offset_ns)
+    _check_stamps(source, np.array([-pad_ns, (count - 1) * step_ns - pad_ns]) + offset_ns)
 
     def windows():
-        for k in range(0, len(t_ns), WINDOW):
-            truth = motion.at(t_ns[k:k + WINDOW])
+        for k in range(0, count, WINDOW):
+            # Window by window: a long flight at a high rate has more instants than memory.
+            truth = motion.at(step_ns * np.arange(k, min(k + WINDOW, count)) - pad_ns)
             yield {topic: (truth.t_ns + offset_ns, values)
                    for topic, values in blocks.truth_blocks(frame, truth).items()}
 

@@ -7,15 +7,19 @@ import numpy as np
 from ins_sim.core.attitude.angles import from_compass
 from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.motion.recorded.poses import RecordedPoses
-from .csv_table import LONGEST_STAMP_S, nanoseconds, Table
+from .csv_table import CsvTable
 
 # The splines are of latitude and longitude, which end at the poles; hence 89.9.  The heights keep
 # out sentinels (-9999) and feet above flight level 3280.
 USED = {'lat_deg': (-89.9, 89.9), 'lon_deg': (-180.0, 360.0), 'height_m': (-1000.0, 100000.0),
         'roll_deg': (-180.0, 180.0), 'pitch_deg': (-90.0, 90.0), 'heading_deg': (-180.0, 360.0)}
+# Angles that may have turned on: they are brought into the range above. Ten turns keep out
+# sentinels such as -9999.
+WRAPPED = ('roll_deg', 'pitch_deg', 'heading_deg')
+MOST_DEG = 3600.0
 UNUSED = ('vn_mps', 've_mps', 'vd_mps')
-REQUIRED = ('t_s', *USED, *UNUSED)
-OPTIONAL = ('att_gap',)
+REQUIRED = ('t_s', *USED)
+COLUMNS = (*REQUIRED, *UNUSED)
 
 
 @dataclass(frozen=True)
@@ -36,30 +40,54 @@ class RecordedRows:
     pitch_deg: np.ndarray
     heading_deg: np.ndarray
     resolution: tuple[float, float, float]
+    notes: tuple = ()
 
 
-def read_rows(path):
+def read_rows(path, columns=None, key='motion.recording.columns'):
     """
     Return the RecordedRows of a file.
+
+    columns: {name: header of its column}, empty texts where it is found by its name; key: what
+    they are the value of.
 
     Raises ValueError, one sentence with file, line, time, what was found and what was expected,
     on a file that cannot be read, is no such table, or holds a value that is no such quantity.
     """
     path = str(path)
-    table = Table(path, REQUIRED, OPTIONAL)
-    stamps = table.texts('t_s')
-    if not stamps:
+    table = CsvTable(path, REQUIRED, UNUSED, columns, key=key)
+    if not table.rows:
         raise ValueError(f'{path} has a header and no rows; expected a recorded flight')
-    t_s = table.numbers('t_s', (-LONGEST_STAMP_S, LONGEST_STAMP_S))
-    values = {name: table.numbers(name, bounds) for name, bounds in USED.items()}
+    notes, values = list(table.notes), {}
+    t_ns = table.stamps_ns()
+    for name, bounds in USED.items():
+        wide = (-MOST_DEG, MOST_DEG) if name in WRAPPED else bounds
+        values[name] = table.numbers(name, wide)
+        if name in WRAPPED:
+            values[name] = _wrapped(table, name, values[name], bounds, notes)
     for name in UNUSED:
-        table.numbers(name, (-1e5, 1e5), blank=True)
+        if name in table:
+            table.numbers(name, (-1e5, 1e5), blank=True)
     return RecordedRows(
-        path=path, t_ns=nanoseconds(stamps, t_s),
+        path=path, t_ns=t_ns,
         **{name: np.unwrap(x, period=360.0) if name == 'lon_deg' else x
            for name, x in values.items()},
-        resolution=tuple(_resolution(table.texts(name), values[name])
-                         for name in ('lat_deg', 'lon_deg', 'height_m')))
+        resolution=tuple(_resolution(table, name, values[name])
+                         for name in ('lat_deg', 'lon_deg', 'height_m')), notes=tuple(notes))
+
+
+def _wrapped(table, name, values, bounds, notes):
+    """Return angles, those beyond their bounds brought into them by whole turns, and note it."""
+    low, high = bounds
+    beyond = (values < low) | (values > high)
+    if not beyond.any():
+        return values
+    turned = np.where(beyond, (values + 180.0) % 360.0 - 180.0, values)
+    if not ((turned >= low) & (turned <= high)).all():
+        # A pitch of 100 degrees is none, however it is turned; the sentence names the row.
+        table.numbers(name, bounds)
+    notes.append(f'{table.path}: {np.count_nonzero(beyond)} values of {name} beyond {low:g}..'
+                 f'{high:g} are brought there by whole turns')
+    return turned
 
 
 def _decimals(text):
@@ -68,7 +96,7 @@ def _decimals(text):
     return len(mantissa.partition('.')[2]) - int(exponent or 0)
 
 
-def _resolution(texts, values):
+def _resolution(table, name, values):
     """
     Return the step to which a column is rounded; 0 for a constant one, which makes no noise.
 
@@ -77,7 +105,7 @@ def _resolution(texts, values):
     """
     if values.min() == values.max():
         return 0.0
-    step = 10.0 ** -max(map(_decimals, texts))
+    step = 10.0 ** -max(map(_decimals, table.texts(name))) * table.factor(name)
     single = values.astype(np.float32)
     spacing = float(np.spacing(np.abs(single).max()))
     if step < 0.25 * spacing and np.all(np.abs(single - values) <= 0.51 * step + 1e-15):
@@ -85,10 +113,10 @@ def _resolution(texts, values):
     return step
 
 
-def read_poses(path):
-    """Return the RecordedPoses of a CSV file; ValueError as ``read_rows``."""
-    rows = read_rows(path)
+def read_poses(path, columns=None, key='motion.recording.columns'):
+    """Return the RecordedPoses of a CSV file; arguments and ValueError as of ``read_rows``."""
+    rows = read_rows(path, columns, key)
     q_nb = from_compass(*(np.radians(a) for a in (rows.roll_deg, rows.pitch_deg,
                                                   rows.heading_deg)))
     return RecordedPoses(rows.path, rows.t_ns, rows.lat_deg, rows.lon_deg, rows.height_m,
-                         continuous_quaternions(q_nb), rows.resolution)
+                         continuous_quaternions(q_nb), rows.resolution, notes=rows.notes)

@@ -17,7 +17,7 @@ def write_flight(path, poses):
     east, north, up = poses.v_n.T
     values = (poses.lat_deg, lon, poses.height_m,
               *(np.degrees(a) for a in to_compass(poses.q_nb)), north, east, -up)
-    _write(path, poses.t_ns, csv_flight.REQUIRED[1:], values)
+    _write(path, poses.t_ns, csv_flight.COLUMNS[1:], values)
 
 
 def write_imu(path, imu):

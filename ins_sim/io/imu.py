@@ -7,12 +7,12 @@ import numpy as np
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.core.attitude.interpolation import continuous_quaternions
-from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.postprocessing.sources import NO_FIXES, Sources
 from ins_sim.core.postprocessing.reference import (keep_rising, OdometryReference, Reference,
                                                    SampledTrack)
 from ins_sim.messages import topics, transforms
-from . import bag_imu, csv_imu
-from .csv_table import SUFFIXES
+from . import bag_imu, csv_imu, positions
+from .csv_text import is_csv
 from .topic_choice import choose_topic
 
 TWIST = 'geometry_msgs/msg/TwistStamped'
@@ -30,8 +30,9 @@ def read_imu(path, settings):
     path = Path(path)
     if not path.exists():
         raise FileNotFoundError(f'{path} does not exist; expected a rosbag2 bag or a CSV file')
-    if path.name.endswith(SUFFIXES):
-        sources = Sources(path.name, csv_imu.read_imu(path), 'imu')
+    if is_csv(path):
+        imu, notes = csv_imu.read_imu(path, settings.columns, settings.units)
+        sources = Sources(path.name, imu, 'imu', notes=tuple(notes))
     else:
         sources = _bag(path, settings)
     return with_reference(sources, settings)
@@ -39,9 +40,12 @@ def read_imu(path, settings):
 
 def with_reference(sources, settings):
     """Return Sources with the reference of the file that NavigateSettings name, if any."""
-    if settings.reference.path:
-        sources = replace(sources, odometry=None,
-                          reference=csv_imu.read_reference(settings.reference.path))
+    wanted = settings.reference
+    if wanted.path:
+        reference, notes = csv_imu.read_reference(wanted.path, wanted.columns,
+                                                  settings.accept.zero_fixes)
+        sources = replace(sources, odometry=None, reference=reference,
+                          notes=(*sources.notes, *notes))
     return sources
 
 
@@ -53,28 +57,36 @@ def _bag(path, settings):
             choose_topic(bag, types, getattr(wanted, key), f'reference.{key}')
             for key, types in (('fix', [topics.FIX]), ('odometry', [topics.ODOMETRY]),
                                ('velocity', [TWIST, TWIST_WITH_COVARIANCE])))
-        imu, frame, notes = bag_imu.read_imu_messages(bag, topic)
-        return Sources(f'{path.name} {topic}', imu, frame, _reference(bag, fix, velocity),
-                       _odometry(bag, odometry), _static_transforms(bag), tuple(notes))
+        imu, frame, notes = bag_imu.read_imu_messages(bag, topic, settings)
+        reference, without = _reference(bag, fix, velocity, settings.accept.zero_fixes, notes)
+        return Sources(f'{path.name} {topic}', imu, frame, reference,
+                       _odometry(bag, odometry, notes), _static_transforms(bag), tuple(notes),
+                       without)
 
 
-def _reference(bag, fix, velocity):
-    position = None if fix is None else _fixes(bag, fix)
+def _reference(bag, fix, velocity, keep_zero, notes):
+    """Return the Reference or None, and why it has no position."""
+    position, without = (None, NO_FIXES) if fix is None else _fixes(bag, fix, keep_zero, notes)
     speed = None if velocity is None else _velocities(bag, velocity)
     if position is None and speed is None:
-        return None
+        return None, without
     return Reference(', '.join(name for name, track in ((fix, position), (velocity, speed))
-                               if track is not None), position, speed)
+                               if track is not None), position, speed), without
 
 
-def _fixes(bag, topic):
+def _fixes(bag, topic, keep_zero, notes):
+    """Return the SampledTrack of the fixes that are positions, or None and why there is none."""
     table = bag.arrays(topic, ('latitude', 'longitude', 'altitude', 'status'))
-    table = table[table['status'] >= 0]
-    position = _track(table['stamp_ns'], np.stack([
-        np.radians(table['latitude']), np.radians(table['longitude']), table['altitude']], -1))
-    if position is not None:
-        position.values[:, 1] = np.unwrap(position.values[:, 1])
-    return position
+    if not len(table):
+        return None, f'{topic} has no message'
+    lat, lon, height = table['latitude'], table['longitude'], table['altitude']
+    good, dropped = positions.usable(lat, lon, height, table['status'], keep_zero)
+    without = ''
+    if dropped:
+        without = positions.sentence(topic, 'fixes', len(table), dropped)
+        notes.append(without)
+    return _track(table['stamp_ns'][good], positions.track(lat[good], lon[good],
+                                                           height[good])), without
 
 
 def _velocities(bag, topic):
@@ -88,12 +100,17 @@ def _track(t_ns, values):
     return SampledTrack(t_ns, values) if len(t_ns) else None
 
 
-def _odometry(bag, topic):
+def _odometry(bag, topic, notes):
     if topic is None:
         return None
     table = bag.arrays(topic, ('position', 'orientation', 'linear'))
     norm = np.linalg.norm(table['orientation'], axis=1)
-    table = table[(norm > 0.99) & (norm < 1.01)]
+    good = (norm > 0.99) & (norm < 1.01)
+    if not good.all():
+        notes.append(f'{topic}: {np.count_nonzero(~good)} of {len(table)} poses dropped, whose '
+                     f'orientation is no rotation: the first has the length '
+                     f'{norm[np.argmin(good)]:.4g}')
+    table = table[good]
     track = _track(table['stamp_ns'], np.concatenate(
         [table['position'], table['orientation'], table['linear']], axis=1))
     if track is None:

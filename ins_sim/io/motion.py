@@ -3,6 +3,7 @@
 from ins_sim.bags.storages import is_bag
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import Motion
+from ins_sim.settings.catalogue import values_of
 
 
 def read_motion(settings) -> Motion:
@@ -28,4 +29,4 @@ def _read_poses(recording, datum):
     if recording.topic != 'auto':
         raise ValueError(f'motion.recording.topic is {recording.topic!r}, but {recording.path} is '
                          'no bag; expected auto')
-    return read_poses(recording.path)
+    return read_poses(recording.path, values_of(recording.columns))

@@ -91,10 +91,12 @@ def read_columns(type_name, data, starts, sizes, out):
     Read messages into an array of ``column_dtype``, but for its 'log_ns'.
 
     data: bytes as uint8; starts and sizes (n,) int64: where in data the messages are; out (n,).
-    Raises ValueError for a message that is too short or no little-endian CDR.
+    Return how many stamps have nanosec of a second or more. Raises ValueError for a message that
+    is too short or no little-endian CDR.
     """
+    odd = 0
     if not len(starts):
-        return
+        return odd
     for rows, lengths in _by_lengths(type_name, data, starts, sizes):
         whole = message_dtype(type_name, lengths)
         _check_sizes(type_name, sizes[rows], whole.itemsize)
@@ -102,19 +104,21 @@ def read_columns(type_name, data, starts, sizes, out):
         part = out[rows]
         head = messages.take(0, _HEAD.itemsize).view(_HEAD)
         part['stamp_ns'] = head['sec'].astype(np.int64) * SECOND + head['nanosec']
+        odd += int(np.count_nonzero(head['nanosec'] >= SECOND))
         for at, target, size in _runs(whole, out.dtype):
             part.view(target)['run'] = messages.look(at, size)
         if not isinstance(rows, slice):
             out[rows] = part
+    return odd
 
 
-def read_strings(type_name, data, starts, sizes):
-    """Return the distinct strings (frame ids) of messages: a list of tuples as they appear."""
+def count_strings(type_name, data, starts, sizes):
+    """Return {the strings (frame ids) of a message: how many have them}, as they appear."""
     found = {}
     if not len(starts):
-        return []
+        return {}
     if not LAYOUTS[type_name].strings:
-        return [()]
+        return {(): len(starts)}
     for rows, lengths in _by_lengths(type_name, data, starts, sizes):
         offset, parts = _HEAD.itemsize, []
         for length in lengths:
@@ -123,12 +127,17 @@ def read_strings(type_name, data, starts, sizes):
             offset += length
         texts = _Messages(data, starts[rows]).take(_HEAD.itemsize, offset - _HEAD.itemsize)
         numbers = np.arange(len(starts))[rows]
-        for k in np.unique(texts, return_index=True)[1].tolist():
+        _, first, counts = np.unique(texts, return_index=True, return_counts=True)
+        for k, count in zip(first.tolist(), counts.tolist()):
             number = int(numbers[k])
             found[number] = tuple(
                 data[starts[number] + a:starts[number] + a + n].tobytes().decode(errors='replace')
-                for a, n in parts)
-    return list(dict.fromkeys(found[k] for k in sorted(found)))
+                for a, n in parts), count
+    result = {}
+    for k in sorted(found):
+        strings, count = found[k]
+        result[strings] = result.get(strings, 0) + count
+    return result
 
 
 class _Messages:

@@ -14,6 +14,12 @@ def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
         'size': size})
 
 
+def column(what):
+    """Return a field for the header of the column of a CSV file that holds something."""
+    return setting('', f'header of the column with the {what}; its unit may stand in brackets '
+                   'behind it, as in "Time (s)" or "w_x [rad s^-1]"; empty: found by its name')
+
+
 def group(cls):
     """Return a field holding a nested group of settings."""
     return field(default_factory=cls)

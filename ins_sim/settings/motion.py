@@ -1,6 +1,6 @@
 """Settings of the motions and of the node motion_generator."""
 
-from .field import group, setting, settings_class, SettingsGroup
+from .field import column, group, setting, settings_class, SettingsGroup
 from .node import Pacing, Time, Topics
 from .place import Datum, Earth
 from .route import FlownRouteSettings
@@ -82,6 +82,22 @@ class Harmonics(SettingsGroup):
 
 
 @settings_class
+class FlightColumns(SettingsGroup):
+    """Headers of a CSV file of a flight, or of a reference."""
+
+    t_s: str = column('time')
+    lat_deg: str = column('latitude')
+    lon_deg: str = column('longitude')
+    height_m: str = column('height')
+    roll_deg: str = column('roll angle')
+    pitch_deg: str = column('pitch angle')
+    heading_deg: str = column('heading')
+    vn_mps: str = column('velocity to the North')
+    ve_mps: str = column('velocity to the East')
+    vd_mps: str = column('velocity downwards')
+
+
+@settings_class
 class Recording(SettingsGroup):
     """A recorded flight, or the truth of a bag."""
 
@@ -93,6 +109,7 @@ class Recording(SettingsGroup):
     on_gap: str = setting('refuse', 'what to do about a gap or jump in the recording: refuse '
                           'it, or cut the recording there and keep the part that holds start_s',
                           choices=('refuse', 'cut'))
+    columns: FlightColumns = group(FlightColumns)
 
 
 _FOLDER = 'ins_sim.core.motion'

@@ -1,7 +1,9 @@
 """Settings of the command ``navigate``: the strapdown over a recorded IMU."""
 
 from .field import group, setting, settings_class, SettingsGroup
+from .motion import FlightColumns
 from .place import Earth
+from .recorded_imu import AcceptSettings, ImuColumns, RecordUnits, StampSettings
 
 INPUTS = ('instant', 'integrated', 'rotation_vector')
 
@@ -17,6 +19,7 @@ class ReferenceSource(SettingsGroup):
                             'one, if there is one; none')
     path: str = setting('', 'CSV file of a reference (columns of a recorded flight, its t_s on '
                         'the clock of the IMU); topics then serve for nothing')
+    columns: FlightColumns = group(FlightColumns)
 
 
 @settings_class
@@ -83,6 +86,8 @@ class AlignmentSettings(SettingsGroup):
                                    10.0)
     rate_rad_s: float = setting(0.1, 'limit of a standstill, mean angular rate', 'rad/s', 0.0,
                                 10.0)
+    gravity_m_s2: float = setting(2.0, 'what the mean specific force at rest may differ from '
+                                  'gravity by; 1e3 navigates whatever it is', 'm/s^2', 0.0, 1e3)
     speed_m_s: float = setting(0.3, 'limit of a standstill, speed of the reference', 'm/s', 0.0,
                                100.0)
     heading_sigma_deg: float = setting(2.0, 'worst standard error with which gyrocompassing is '
@@ -112,6 +117,10 @@ class NavigateSettings(SettingsGroup):
     """The command navigate."""
 
     topic: str = setting('auto', 'topic of sensor_msgs/Imu; auto: the only one')
+    columns: ImuColumns = group(ImuColumns)
+    units: RecordUnits = group(RecordUnits)
+    stamps: StampSettings = group(StampSettings)
+    accept: AcceptSettings = group(AcceptSettings)
     earth: Earth = group(Earth)
     reference: ReferenceSource = group(ReferenceSource)
     mounting: MountingSettings = group(MountingSettings)

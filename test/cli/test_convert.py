@@ -15,7 +15,7 @@ from ins_sim.cli.main import main
 from ins_sim.io import csv_imu, csv_writer
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.motion.recorded.spline import RecordedMotion
-from ins_sim.io.csv_flight import read_poses, read_rows, REQUIRED
+from ins_sim.io.csv_flight import read_poses, read_rows, COLUMNS
 from ins_sim.core.motion.recorded.quality import rounding_noise
 from ins_sim.settings.place import Earth
 from ins_sim.settings.motion import Recording
@@ -55,7 +55,7 @@ def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     assert np.array_equal(rows.height_m, fix['altitude'])
     # over the date line; the file wraps, and reading unwraps
     assert np.abs(rows.lon_deg - np.degrees(truth.lon)).max() < 3e-14
-    poses = csv_imu.read_reference(flight)
+    poses = csv_imu.read_reference(flight)[0]
     q = poses.attitude.values
     q *= np.sign((q * attitude['quaternion']).sum(1))[:, None]
     assert np.abs(q - attitude['quaternion']).max() < 16.0 * 2.0 ** -53
@@ -127,7 +127,7 @@ def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
     assert convert(tmp_path / 'bag', tmp_path / f'back_{name}') == 0
     assert '5000 samples of /left/imu' in capsys.readouterr().out
     assert (tmp_path / f'back_{name}').read_bytes() == path.read_bytes()
-    back = csv_imu.read_imu(path)
+    back, _ = csv_imu.read_imu(path)
     assert np.array_equal(back.t_ns, imu.t_ns)
     assert np.array_equal(back.omega, imu.omega, equal_nan=True)
     assert np.array_equal(back.f, imu.f)
@@ -186,7 +186,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, capsys):
     assert convert(tmp_path / 'imu.csv', tmp_path / 'bag', '--force') == 0
     (tmp_path / 'imu.csv').write_text('old')
     assert convert(tmp_path / 'bag', tmp_path / 'imu.csv', '--force') == 0
-    assert len(csv_imu.read_imu(tmp_path / 'imu.csv')) == 10
+    assert len(csv_imu.read_imu(tmp_path / 'imu.csv')[0]) == 10
     (tmp_path / 'folder.csv').mkdir()
     assert convert(tmp_path / 'bag', tmp_path / 'folder.csv', '--force') == 2
     assert 'is no file; --force replaces only a file' in capsys.readouterr().err
@@ -209,7 +209,7 @@ def empty_bag(path, name='odom', type_name=topics.VECTOR):
 def early(path):
     """Write a flight that begins before zero."""
     t = np.arange(200) * 0.1 - 5.0
-    path.write_text('\n'.join([','.join(REQUIRED), *(
+    path.write_text('\n'.join([','.join(COLUMNS), *(
         f'{x:.1f},55,37,100,0,0,0,,,' for x in t)]) + '\n')
 
 
@@ -229,7 +229,7 @@ def early(path):
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT + '-1,0,0,0,0,0,9\n'), ['x.csv', 'y'],
      'x.csv begins at -1 s; expected 0 s or later in a bag (time.epoch_s is added)'),
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT + '1,0,0,zero,0,0,9\n'), ['x.csv', 'y'],
-     "x.csv, line 2: gz_rps is 'zero'"),
+     "x.csv, line 2 (t_s = '1'): gz_rps is 'zero'"),
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT + '3e9,0,0,0,0,0,9\n'), ['x.csv', 'y'],
      'which a ROS stamp can hold'),
     (lambda p: early(p / 'x.csv'), ['x.csv', 'y'], 'x.csv begins at -5 s'),

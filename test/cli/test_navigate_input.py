@@ -76,7 +76,8 @@ BAD = [
     ({('/imu', IMU): resting()}, ['inital.heading:=given'],
      "the nearest known one is 'initial.heading'"),
     ({('/imu', IMU): resting()}, ['reference.path:=absent.csv'], 'absent.csv'),
-    ({('/imu', IMU): resting() + resting(frame='other')}, [], "the frames 'imu_link', 'other'"),
+    ({('/imu', IMU): resting() + resting(frame='other')}, [],
+     "the frames 'imu_link' (1000 messages), 'other' (1000 messages)"),
 ]
 
 

@@ -132,8 +132,8 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
             ('fogmems_imu.csv.gz', folder / 'fogmems_fogins_reference.csv', 0.9),
             ('umn_thor_fl75_imu.csv.gz',
              shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz', 0.8)):
-        imu = csv_imu.read_imu(folder / imu)
-        track = csv_imu.read_reference(reference).attitude
+        imu, _ = csv_imu.read_imu(folder / imu)
+        track = csv_imu.read_reference(reference)[0].attitude
         assert imu.f[:, 2].mean() < -9.0
         flu = imu.turned((1.0, 0.0, 0.0, 0.0))
         inside = (track.t_ns > imu.t_ns[0]) & (track.t_ns < imu.t_ns[-1])
@@ -157,7 +157,7 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     (the reference is an on-board estimate that is corrected at 1 Hz).
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
-    track = csv_imu.read_reference(flight)
+    track = csv_imu.read_reference(flight)[0]
     start_ns = 200_019_999_000
     lat, lon, height = track.position.at([start_ns])[0]
     roll, pitch, heading = np.degrees(to_compass(np.array(track.attitude_at(start_ns))))

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.motion.recorded import quality, spline
 from ins_sim.core.numerics.instants import seconds
-from ins_sim.io.csv_flight import read_rows, REQUIRED
+from ins_sim.io.csv_flight import read_rows, COLUMNS
 from support.recorded_flights import load, recorder_angles, same, write
 
 FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.csv.gz': 'refuse',
@@ -118,7 +118,7 @@ def test_gzip_is_the_plain_file(tmp_path, flown):
 def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
     """A float of 1.7e9 s resolves 0.24 us; the text is read as decimal."""
     stamps = [f'17000000{k // 10:02d}.{k % 10}00000001' for k in range(101)]
-    lines = [','.join(REQUIRED)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
+    lines = [','.join(COLUMNS)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
     path = tmp_path / 'r.csv'
     path.write_text('\n'.join(lines))
     assert np.array_equal(np.diff(read_rows(path).t_ns), np.full(100, 10 ** 8))

@@ -11,9 +11,9 @@ import pytest
 from ins_sim.settings.place import Earth
 from ins_sim.settings.motion import Recording
 from ins_sim.core.motion.recorded.spline import RecordedMotion
-from ins_sim.io.csv_flight import read_poses, read_rows, REQUIRED, USED
+from ins_sim.io.csv_flight import COLUMNS, read_poses, read_rows, USED, WRAPPED
 
-HEADER = ','.join(REQUIRED)
+HEADER = ','.join(COLUMNS)
 
 
 def rows(n=101, interval_s=0.1):
@@ -117,17 +117,19 @@ def test_columns(folder):
     table = rows()
     sentence = refusal(save(path, table, HEADER.replace('lat_deg', 'lat_degs')))
     assert "line 1: unknown column 'lat_degs' (the nearest known is lat_deg)" in sentence
-    assert 'missing lat_deg;' in sentence
-    assert "unknown column 'wind'" in refusal(save(path, [r + ['1'] for r in table],
-                                                   HEADER + ',wind'))
-    assert 'missing vd_mps' in refusal(save(path, [r[:-1] for r in table], HEADER[:-7]))
+    assert 'it has no column lat_deg; expected' in sentence
+    spare = accepted(save(path, [r + ['1'] for r in table], HEADER + ',wind'))
+    assert '1 columns are not used: wind' in spare.warnings[0]
+    # velocities are not used, and need not be there
+    assert not accepted(save(path, [r[:-1] for r in table], HEADER[:-7])).warnings
+    assert not accepted(save(path, [r[:-3] for r in table], HEADER[:-21])).warnings
     assert 'column t_s stands 2 times' in refusal(save(path, [r + ['1'] for r in table],
                                                        HEADER + ',t_s'))
     assert 'is a single column' in refusal(save(path, table, HEADER.replace(',', ';')))
     assert 'found numbers where the column names belong' in refusal(
         save(path, table, ','.join(table[0])))
     accepted(save(path, [r + ['0'] for r in table], HEADER + ',att_gap'))
-    reverse = save(path, [r[::-1] for r in table], ','.join(REQUIRED[::-1]))
+    reverse = save(path, [r[::-1] for r in table], ','.join(COLUMNS[::-1]))
     assert np.array_equal(read_rows(reverse).lat_deg,
                           read_rows(save(folder / 'good.csv', table)).lat_deg)
 
@@ -143,30 +145,59 @@ def test_number_of_fields(folder, fields):
 # The values.
 
 @profile(max_examples=60, deadline=None)
-@given(row=st.integers(0, 100), name=st.sampled_from(REQUIRED),
+@given(row=st.integers(0, 100), name=st.sampled_from(COLUMNS),
        text=st.sampled_from(('x', 'nan', 'NaN', 'inf', '-Infinity', '1_0', '0x10', '--1', '1e999',
                              '1.0.0', '')))
 def test_what_is_no_finite_number_is_refused_with_its_place(folder, row, name, text):
     if not text and name.startswith('v'):
         return
     table = rows()
-    table[row][REQUIRED.index(name)] = text
+    table[row][COLUMNS.index(name)] = text
     sentence = refusal(save(folder / 'number.csv', table))
     assert f'line {row + 2} (t_s = ' in sentence and f'{name} is ' in sentence
     assert 'expected a number' in sentence
 
 
 @profile(max_examples=80, deadline=None)
-@given(row=st.integers(0, 100), name=st.sampled_from(sorted(USED)), above=st.booleans(),
-       beyond=st.floats(1e-6, 1e4))
+@given(row=st.integers(0, 100), name=st.sampled_from(sorted(set(USED) - set(WRAPPED))),
+       above=st.booleans(), beyond=st.floats(1e-6, 1e4))
 def test_angles_and_heights_out_of_range_are_refused(folder, row, name, above, beyond):
     low, high = USED[name]
     value = high + beyond if above else low - beyond
     table = rows()
-    table[row][REQUIRED.index(name)] = repr(value)
+    table[row][COLUMNS.index(name)] = repr(value)
     sentence = refusal(save(folder / 'range.csv', table))
     assert f"line {row + 2} (t_s = '{table[row][0]}'): {name} is {repr(value)!r}" in sentence
     assert f'expected a number {low:g}..{high:g}' in sentence
+
+
+@pytest.mark.parametrize('name, beyond', [('roll_deg', 1.0 + 360.0), ('heading_deg', 3.0 + 720.0),
+                                          ('heading_deg', 3.0 - 1080.0), ('pitch_deg', 362.0)])
+def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
+    """Whole turns are taken off, which is said; the flight is the same."""
+    table = rows()
+    plain = accepted(save(folder / 'plain.csv', table))
+    for row in table[20:30]:
+        row[COLUMNS.index(name)] = repr(beyond)
+    motion = accepted(save(folder / 'turned.csv', table))
+    assert f'10 values of {name} beyond' in motion.warnings[0]
+    assert np.abs(motion.at([0]).q_nb - plain.at([0]).q_nb).max() < 1e-12
+
+
+@pytest.mark.parametrize('name, text', [('roll_deg', '-9999'), ('heading_deg', '99999'),
+                                        ('pitch_deg', '100'), ('pitch_deg', '-9999')])
+def test_sentinels_and_pitches_beyond_the_vertical_are_refused(folder, name, text):
+    """-9999 is no angle, and no turn brings 100 degrees of pitch back."""
+    table = rows()
+    table[7][COLUMNS.index(name)] = text
+    assert f"line 9 (t_s = '0.700'): {name} is '{text}'" in refusal(
+        save(folder / 'sentinel.csv', table))
+
+
+def test_steps_of_years_are_refused_before_anything_is_made_of_them(folder):
+    """Rows 1e8 s apart at 100 Hz would take 440 GiB."""
+    table = [[f'{k}e8', *row[1:]] for k, row in enumerate(rows(21))]
+    assert 'holds a row every 1e+08 s over 2e+09 s' in refusal(save(folder / 'years.csv', table))
 
 
 # The stamps.
@@ -219,7 +250,7 @@ def test_missing_row_is_no_gap(folder):
 def test_position_jumps_are_refused_with_their_time(folder, row, metres, name):
     """At 10 Hz the limit is the larger of 20 m and 500 m/s^2 (0.1 s)^2 = 5 m."""
     scale = {'lat_deg': 111e3, 'lon_deg': 111e3 * math.cos(math.radians(55.0)), 'height_m': 1.0}
-    k = REQUIRED.index(name)
+    k = COLUMNS.index(name)
     table = rows()
     for later in table[row:]:
         later[k] = repr(float(later[k]) + min(metres, 9e4) / scale[name])

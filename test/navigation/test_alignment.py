@@ -16,7 +16,7 @@ from ins_sim.core.navigation import alignment
 from ins_sim.core.postprocessing import mounting
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.settings.catalogue import build
-from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.navigate import navigate
 from ins_sim.settings.navigate import AlignmentSettings, NavigateSettings

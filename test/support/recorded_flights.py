@@ -8,14 +8,14 @@ from scipy.spatial.transform import Rotation
 from ins_sim.settings.place import Earth
 from ins_sim.settings.motion import Recording
 from ins_sim.core.motion.recorded.spline import RecordedMotion
-from ins_sim.io.csv_flight import read_poses, REQUIRED
+from ins_sim.io.csv_flight import read_poses, COLUMNS
 
 
 def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, heading=0.0,
           digits='.17g'):
     """Write columns in the file's units; scalars are repeated; return the path as text."""
     columns = np.broadcast_arrays(t, lat, lon, height, roll, pitch, heading)
-    lines = [','.join(REQUIRED)]
+    lines = [','.join(COLUMNS)]
     lines += [','.join([*(format(x, digits) for x in row), '', '', '']) for row in zip(*columns)]
     path.write_text('\n'.join(lines) + '\n')
     return str(path)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.navigate import navigate
 from ins_sim.settings.navigate import NavigateSettings

@@ -1,4 +1,6 @@
-"""Instants in integer nanoseconds: the period of a rate, and an instant as text."""
+"""Instants in integer nanoseconds: of a rate, as text, and of a clock that begins again."""
+
+import numpy as np
 
 
 def period_ns(rate_hz):
@@ -11,3 +13,35 @@ def seconds(t_ns):
     sign, t_ns = ('-', -t_ns) if t_ns < 0 else ('', t_ns)
     whole, fraction = divmod(int(t_ns), 1_000_000_000)
     return f'{sign}{whole}.{fraction:09d} s'
+
+
+# 32-bit counters of ns, us and ms, by how many ns they go on before they begin again.
+_WRAPS_NS = {f'32 bits of {unit}': 2 ** 32 * ns
+             for unit, ns in (('ns', 1), ('us', 1_000), ('ms', 1_000_000))}
+# After a wrap the stamps go on within so many median steps.
+_MOST_STEPS = 50.0
+
+
+def unwrap_clock(t_ns):
+    """
+    Return stamps (n,) int64 of a clock that begins again unwrapped, and a sentence or ''.
+
+    Only where stamps jump back by what a 32-bit counter of ns, us or ms holds, and go on as
+    before: to a smaller part is to be taken for stamps out of order.
+    """
+    steps = np.diff(t_ns)
+    back = np.flatnonzero(steps < 0)
+    forward = steps[steps > 0]
+    if not len(back) or not len(forward):
+        return t_ns, ''
+    usual = float(np.median(forward))
+    for name, wrap in _WRAPS_NS.items():
+        missed = steps[back] + wrap
+        wrapped = back[(missed > 0) & (missed <= _MOST_STEPS * usual)]
+        if len(wrapped) and wrap > 100.0 * usual:
+            count = np.zeros(len(t_ns), dtype=np.int64)
+            count[wrapped + 1] = 1
+            return t_ns + np.cumsum(count) * wrap, (
+                f'the clock ({name}) begins again {len(wrapped)} times, first after '
+                f'{seconds(t_ns[wrapped[0]])}: unwrapped')
+    return t_ns, ''

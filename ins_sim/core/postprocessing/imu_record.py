@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import History
 
 
@@ -43,10 +44,17 @@ class RecordedImu(History):
 
 @dataclass(frozen=True)
 class Losses:
-    """How many samples were dropped: not finite; with a stamp repeated or out of order."""
+    """
+    How many samples were dropped.
+
+    not_finite; repeated: with the stamp of the one before; out_of_order; first_back: a text about
+    the first stamp that goes back, or ''.
+    """
 
     not_finite: int
     out_of_order: int
+    repeated: int = 0
+    first_back: str = ''
 
 
 def ordered_samples(imu):
@@ -60,14 +68,25 @@ def ordered_samples(imu):
     """
     finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
     good = imu[finite]
-    kept = good
-    if len(good) and (np.diff(good.t_ns) <= 0).any():
+    steps = np.diff(good.t_ns)
+    kept, back = good, ''
+    if len(good) and (steps <= 0).any():
         kept = good[_rising(good.t_ns.tolist())]
-    losses = Losses(int(np.count_nonzero(~finite)), len(good) - len(kept))
+    if (steps < 0).any():
+        k = int(np.argmax(steps < 0))
+        back = f' (the first by {-int(steps[k]) * 1e-9:.9g} s after {seconds(good.t_ns[k])})'
+    dropped = len(good) - len(kept)
+    repeated = min(dropped, int(np.count_nonzero(steps == 0)))
+    losses = Losses(int(np.count_nonzero(~finite)), dropped - repeated, repeated, back)
     if len(kept) < 2:
+        more = '' if not repeated else (
+            f', and {repeated} with the stamp of the one before, {seconds(good.t_ns[0])}')
+        way = '' if not repeated else (
+            '; stamps.source log uses the times of logging of a bag, and even with stamps.rate_hz '
+            'those of a known rate')
         raise ValueError(f'the IMU has {len(imu)} samples, {losses.not_finite} of them not finite '
-                         f'and {losses.out_of_order} out of order; expected at least two good '
-                         'ones')
+                         f'and {losses.out_of_order} out of order{more}; expected at least two '
+                         f'good ones{way}')
     return kept, losses
 
 

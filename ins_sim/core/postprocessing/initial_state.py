@@ -15,29 +15,11 @@ from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 from .course import find_course, navigated_headings
+from .gravity_check import check_gravity, LEAST_FORCE
 from .reference import LONGEST_STEP_S
 
 # a vehicle that stands is not tilted by more, deg
 UPRIGHT_DEG = 45.0
-
-
-@dataclass(frozen=True)
-class Sources:
-    """
-    What was recorded.
-
-    name; imu: RecordedImu in the frame of the sensor; frame: its name; reference: Reference or
-    None; odometry: Odometry or None; transforms: {(parent, child): q} of /tf_static; notes: what
-    the reading found, in sentences.
-    """
-
-    name: str
-    imu: object
-    frame: str
-    reference: object = None
-    odometry: object = None
-    transforms: object = None
-    notes: tuple = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +56,7 @@ class _Search:
     def __init__(self, settings, sources, imu, broken):
         self._s, self._imu, self._broken = settings, imu, broken
         self._reference, self._odometry = sources.reference, sources.odometry
+        self._without_position = sources.without_position
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
 
     def start(self, first, last, again):
@@ -110,6 +93,7 @@ class _Search:
                 reason = reason or str(error)
         else:
             raise ValueError(reason)
+        self._judge_gravity(first, last)
         notes = [f'start at {seconds(self._imu.t_ns[k])}, attitude: {source}']
         figures, bias, still = {}, None, None
         if self._s.alignment.gyro_bias == 'subtract':
@@ -122,6 +106,15 @@ class _Search:
             q_still = q_still or alignment.level_attitude(still.force, 0.0)
             bias = self._bias(still, q_still, where[0], notes, figures)
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
+
+    def _judge_gravity(self, first, last):
+        """Refuse a specific force that is not that of rest, where the IMU is at rest at all."""
+        try:
+            still = alignment.find_standstill(self._imu[first:last], self._s.alignment,
+                                              self._speed_at)
+        except ValueError:
+            return
+        check_gravity(still, self._s.alignment.gravity_m_s2)
 
     def _standstill(self, first, last, expected, longest=False):
         try:
@@ -160,9 +153,9 @@ class _Search:
                     given.height_m)
         track = None if self._reference is None else self._reference.position
         if track is None:
-            raise ValueError('the latitude is unknown, for there is no NavSatFix and no '
-                             'reference.path; expected initial.position given with '
-                             'initial.latitude_deg, longitude_deg and height_m')
+            raise ValueError(f'the latitude is unknown, for {self._without_position}; expected '
+                             'initial.position given with initial.latitude_deg, longitude_deg '
+                             'and height_m')
         p = track.at([t_ns])[0]
         if np.isnan(p).any() and near:
             j = int(np.argmin(np.abs(track.t_ns - t_ns)))
@@ -195,6 +188,10 @@ class _Search:
                                  'initial.attitude given, reference or imu')
         k = first + still.last - 1
         notes = [_described(still)]
+        check_gravity(still, limits.gravity_m_s2)
+        if length(still.force) < LEAST_FORCE:
+            raise ValueError('the mean specific force at rest is zero, so that it does not show '
+                             'up; expected initial.attitude given, reference or imu')
         try:
             where = self._position(k, again, near=True)
             lat = where[0]
@@ -215,8 +212,9 @@ class _Search:
         notes.append(f'start at {seconds(still.end_ns)}: roll {roll:.3f}, pitch {pitch:.3f}, '
                      f'heading {heading:.3f} deg')
         if max(abs(roll), abs(pitch)) > UPRIGHT_DEG:
-            notes.append('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or '
-                         'mounting.source level)')
+            notes.append('no vehicle stands so: is the IMU mounted turned (mounting.rpy_deg, or '
+                         'mounting.source level), or does it measure gravity instead of specific '
+                         'force, which points up at rest?')
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):

@@ -6,6 +6,9 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.settings.suggest import nearest_name
 
+# Shorter quaternions show no rotation; longer ones than the rounding of seven digits are said.
+_LEAST, _UNIT = 1e-3, 1e-6
+
 
 def levelled_mounting(force, yaw):
     """Return q_bs: the shortest turn that brings a force (3,) up, then one by yaw about up."""
@@ -18,32 +21,52 @@ def levelled_mounting(force, yaw):
                                quaternion.exponential(tuple(scale * a for a in axis)))
 
 
-def chained_mounting(transforms, base, frame):
+def chained_mounting(transforms, base, frame, notes=None):
     """
     Return q_bs from static transforms, or None where there are none at all.
 
-    transforms: {(parent, child): q} where q maps child to parent, as TF has it; base, frame:
-    names.  Raises ValueError, naming the nearest known frame, where one of both is not among
-    them or they hang on different trees.
+    transforms: {(parent, child): q} where q maps child to parent, as TF has it, of any length;
+    base, frame: names; notes: list that takes what was done to the transforms.  Raises
+    ValueError, naming the nearest known frame, where one of both is not among them or they hang
+    on different trees, and where a transform between them is no rotation.
     """
     if not transforms:
         return None
     links = {}
-    for (parent, child), q in transforms.items():
-        links.setdefault(parent, []).append((child, q))
-        links.setdefault(child, []).append((parent, quaternion.conjugate(q)))
+    for parent, child in transforms:
+        links.setdefault(parent, []).append((child, (parent, child)))
+        links.setdefault(child, []).append((parent, (parent, child)))
     for name in (base, frame):
         if name not in links:
             raise ValueError(f'/tf_static has no frame {name!r}; the nearest is '
                              f'{nearest_name(name, links)!r}; expected it, or mounting.source '
                              'given')
-    known, queue = {base: quaternion.IDENTITY}, [base]
+    ways, queue = {base: []}, [base]
     for name in queue:
-        for other, q in links[name]:
-            if other not in known:
-                known[other] = quaternion.multiply(known[name], q)
+        for other, link in links[name]:
+            if other not in ways:
+                ways[other] = [*ways[name], link]
                 queue.append(other)
-    if frame not in known:
+    if frame not in ways:
         raise ValueError(f'/tf_static does not connect {base!r} with {frame!r}; expected a chain '
                          'of transforms, or mounting.source given')
-    return known[frame]
+    q_bs, at, notes = quaternion.IDENTITY, base, [] if notes is None else notes
+    for parent, child in ways[frame]:
+        q = _rotation(transforms[parent, child], f'{parent} to {child}', notes)
+        forwards = at == parent
+        q_bs = quaternion.multiply(q_bs, q if forwards else quaternion.conjugate(q))
+        at = child if forwards else parent
+    return q_bs
+
+
+def _rotation(q, name, notes):
+    """Return the unit quaternion of a transform; note what it was, or refuse it by name."""
+    size = math.sqrt(sum(x * x for x in q))
+    if not (math.isfinite(size) and size > _LEAST):
+        raise ValueError(f'/tf_static from {name} has the rotation '
+                         f'({", ".join(f"{x:g}" for x in q)}), which is none; expected a unit '
+                         'quaternion, or mounting.source given with mounting.rpy_deg')
+    if abs(size - 1.0) <= _UNIT:
+        return q
+    notes.append(f'/tf_static from {name} has a quaternion of length {size:.9g}: normalised')
+    return tuple(x / size for x in q)

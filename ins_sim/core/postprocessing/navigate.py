@@ -15,8 +15,10 @@ from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
 from . import mounting
 from .comparison import compare_with_reference
+from .gravity_check import check_gravity
 from .imu_record import find_gaps, gap_limit_ns, ordered_samples
 from .initial_state import choose_start
+from .sample_checks import checked_samples
 
 # A solution of one step shows nothing.
 FEWEST = 10
@@ -44,14 +46,30 @@ def navigate(settings, sources, progress=None):
     progress: called with the fraction done.  Raises ValueError in one sentence where there is
     nothing to begin with.
     """
-    imu, losses = ordered_samples(sources.imu)
+    notes = []
+    try:
+        return _navigate(settings, sources, progress, notes)
+    except ValueError as error:
+        if not notes:
+            raise
+        raise ValueError(f'{error}. Found on the way: {"; ".join(notes)}') from None
+
+
+def _navigate(settings, sources, progress, notes):
+    """Do what ``navigate`` does; what is found is put into notes as it is found."""
+    imu, remarks = checked_samples(sources.imu, settings.stamps, settings.accept.zero_readings)
+    notes += [*sources.notes, *remarks]
+    imu, losses = ordered_samples(imu)
     step_ns = imu.step_ns
     broken = find_gaps(imu.t_ns, settings.gap_factor)
-    notes = [f'{len(imu)} samples of {sources.name} in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.3f} '
-             f's, median step {step_ns * 1e-6:.6g} ms; dropped: {losses.not_finite} not finite, '
-             f'{losses.out_of_order} out of order; {len(broken)} gaps', *sources.notes]
+    notes.insert(0, f'{len(imu)} samples of {sources.name} in '
+                 f'{(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.3f} s, median step {step_ns * 1e-6:.6g} '
+                 f'ms; dropped: {losses.not_finite} not finite, {losses.repeated} with a repeated '
+                 f'stamp, {losses.out_of_order} out of order{losses.first_back}; {len(broken)} '
+                 'gaps')
     figures = {'samples': len(imu), 'step_ms': step_ns * 1e-6, 'not_finite': losses.not_finite,
-               'out_of_order': losses.out_of_order, 'gaps': len(broken)}
+               'out_of_order': losses.out_of_order, 'repeated': losses.repeated,
+               'gaps': len(broken)}
     first, last = _span(settings, imu)
     q_bs = _mounting(settings, sources, imu, first, notes)
     figures['mounting_xyzw'] = list(q_bs)
@@ -102,13 +120,14 @@ def _mounting(settings, sources, imu, first, notes):
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
         still = alignment.find_standstill(imu[first:], settings.alignment)
+        check_gravity(still, settings.alignment.gravity_m_s2)
         notes.append('mounting: levelled by the specific force of the standstill')
         return mounting.levelled_mounting(still.force, yaw)
     if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):
         base, frame = wanted.base_frame, sources.frame
         q_bs = None
         if frame != base:
-            q_bs = mounting.chained_mounting(sources.transforms, base, frame)
+            q_bs = mounting.chained_mounting(sources.transforms, base, frame, notes)
         if q_bs is not None:
             notes.append(f'mounting: /tf_static from {base} to {frame}')
             return q_bs

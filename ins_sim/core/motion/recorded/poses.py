@@ -17,7 +17,8 @@ class RecordedPoses:
     path: where they are from; t_ns int64, the recorder's own stamps; lat_deg, lon_deg (unwrapped),
     height_m; q_nb (n, 4), signs continuous; resolution: the rounding step of lat_deg, lon_deg,
     height_m in their units, 0 where there is none; v_n (n, 3) m/s and omega_nb_b (n, 3) rad/s, the
-    rate of b relative to n, or None where they were not recorded.
+    rate of b relative to n, or None where they were not recorded; notes: what was left out or
+    changed on reading, in sentences.
     """
 
     path: str
@@ -29,6 +30,7 @@ class RecordedPoses:
     resolution: tuple[float, float, float] = (0.0, 0.0, 0.0)
     v_n: np.ndarray | None = None
     omega_nb_b: np.ndarray | None = None
+    notes: tuple = ()
 
 
 def poses_of_truth(path, t_ns, lat_deg, lon_deg, height_m, q_nb, v_b, omega_eb_b):

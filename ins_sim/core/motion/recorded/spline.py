@@ -28,6 +28,8 @@ from .faults import median_interval, unbroken_part
 PAD_S = 3.0
 DEGREE = 5
 FEWEST_ROWS = 8
+# Between rows further apart nothing is known of a flight; the longest run that can be set.
+LONGEST_INTERVAL_S, LONGEST_S = 600.0, 1e7
 
 # -3 dB of a boxcar of T seconds: sin(x)/x = 1/sqrt(2) at x = pi f T, so f T = 0.4429.
 BOXCAR_3DB = 0.4429
@@ -72,6 +74,7 @@ class RecordedMotion(Motion):
         rows = poses
         q, rate = rows.q_nb, rows.omega_nb_b
         part, self.warnings = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
+        self.warnings = [*rows.notes, *self.warnings]
         self.zero_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
         self._knots = rows.t_ns[part] - self.zero_ns
         self._check_extent(recording, int(rows.t_ns[0]))
@@ -113,6 +116,11 @@ class RecordedMotion(Motion):
                              f'{" in the part kept" if recording.on_gap == "cut" else ""}; '
                              f'expected at least {FEWEST_ROWS} rows over more than '
                              f'{2.0 * PAD_S:g} s, {PAD_S:g} s of which at each end are the pad')
+        interval_s = median_interval(np.diff(knots) * 1e-9)
+        if interval_s > LONGEST_INTERVAL_S or length_s > LONGEST_S:
+            raise ValueError(f'{recording.path} holds a row every {interval_s:g} s over '
+                             f'{length_s:g} s; expected a row every {LONGEST_INTERVAL_S:g} s or '
+                             f'more often, over {LONGEST_S:g} s at most')
         if knots[0] > -PAD_S * 1e9 or knots[-1] <= PAD_S * 1e9:
             first = recording.start_s + knots[0] * 1e-9
             raise ValueError(f'motion.recording.start_s is {recording.start_s:g} s; expected '

@@ -1,0 +1,90 @@
+"""What is odd about the samples of a recorded IMU, and what is done about it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ins_sim.core.numerics.instants import seconds
+
+# No IMU measures more (shock sensors end at 1e6 m/s^2): bits that fell, or another unit.
+MOST_FORCE, MOST_RATE = 1e6, 1e4
+# Forces that are exactly zero in a part of the samples between these are sent in turns with the
+# rates; a part of zeros on all three axes does not come of rounding.
+_PART = 0.05
+
+
+def checked_samples(imu, stamps, zero_readings):
+    """
+    Return a RecordedImu without readings that are none, with the stamps wanted, and notes.
+
+    imu: RecordedImu; stamps: StampSettings; zero_readings: 'refuse', 'fill' or 'keep'. Raises
+    ValueError where readings are zero in turns and that is to be refused.
+    """
+    notes = []
+    if stamps.source == 'even' and len(imu):
+        t_ns = imu.t_ns[0] + np.round(np.arange(len(imu)) * (1e9 / stamps.rate_hz)).astype(
+            np.int64)
+        imu = replace(imu, t_ns=t_ns)
+        notes.append(f'the stamps are the first one and then {stamps.rate_hz:g} Hz')
+    if stamps.on_repeat == 'spread':
+        imu = _spread(imu, notes)
+    imu = _without_spikes(imu, notes)
+    return _without_zeros(imu, zero_readings, notes), notes
+
+
+def _spread(imu, notes):
+    """Return the samples, those of one stamp spread up to the next stamp."""
+    t_ns = imu.t_ns
+    first = np.flatnonzero(np.append(True, np.diff(t_ns) != 0))
+    count = np.diff(np.append(first, len(t_ns)))
+    if len(first) < 2 or count.max() < 2:
+        return imu
+    until = np.append(t_ns[first[1:]], t_ns[first[-1]] + int(np.median(np.diff(t_ns[first]))))
+    step = np.maximum(until - t_ns[first], 0) / count
+    inside = np.arange(len(t_ns)) - np.repeat(first, count)
+    notes.append(f'{len(t_ns) - len(first)} repeated stamps are spread up to the next one')
+    return replace(imu, t_ns=t_ns + (inside * np.repeat(step, count)).astype(np.int64))
+
+
+def _without_spikes(imu, notes):
+    for name, values, most, unit in (('specific force', imu.f, MOST_FORCE, 'm/s^2'),
+                                     ('angular rate', imu.omega, MOST_RATE, 'rad/s')):
+        # Comparisons with NaN are false; what is not finite is counted elsewhere.
+        size = np.abs(values).max(axis=1, initial=0.0)
+        bad = (size > most) & np.isfinite(size)
+        if bad.any():
+            k = int(np.argmax(bad))
+            notes.append(f'{np.count_nonzero(bad)} readings of the {name} beyond {most:g} {unit} '
+                         f'dropped, the first at {seconds(imu.t_ns[k])}: {size[k]:.6g} {unit}')
+    keep = (np.abs(imu.f).max(axis=1, initial=0.0) <= MOST_FORCE) & (
+        np.abs(imu.omega).max(axis=1, initial=0.0) <= MOST_RATE)
+    infinite = ~(np.isfinite(imu.f).all(axis=1) & np.isfinite(imu.omega).all(axis=1))
+    return imu[keep | infinite]
+
+
+def _without_zeros(imu, zero_readings, notes):
+    """Return the samples where rates and forces are not zero in turns."""
+    count = len(imu)
+    no_force, no_rate = ((values == 0.0).all(axis=1) for values in (imu.f, imu.omega))
+    part = np.count_nonzero(no_force) / max(count, 1)
+    if zero_readings == 'keep' or not _PART <= part <= 1.0 - _PART:
+        return imu
+    # A gyro at rest may read zero now and then; one that reads it whenever the force does not is
+    # not asked then.
+    in_turns = np.count_nonzero(no_rate & ~no_force) > 0.9 * np.count_nonzero(~no_force)
+    what = (f'the specific force is exactly zero in {np.count_nonzero(no_force)} of {count} '
+            'samples' + (f' and the angular rate in {np.count_nonzero(no_rate)} others'
+                         if in_turns else ''))
+    if zero_readings == 'refuse':
+        raise ValueError(f'{what}: the driver seems to send them in turns; expected both in each '
+                         'sample (accept.zero_readings:=fill draws them between their '
+                         'neighbours, keep takes them as they are)')
+    notes.append(f'{what}: drawn straight between their neighbours')
+    omega = _filled(imu.t_ns, imu.omega, no_rate & ~no_force) if in_turns else imu.omega
+    return replace(imu, f=_filled(imu.t_ns, imu.f, no_force), omega=omega)
+
+
+def _filled(t_ns, values, missing):
+    t_s = (t_ns - t_ns[0]) * 1e-9
+    return np.stack([np.interp(t_s, t_s[~missing], column[~missing]) for column in values.T],
+                    axis=-1)

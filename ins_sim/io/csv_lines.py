@@ -1,0 +1,134 @@
+"""
+The lines of a CSV file, whoever wrote it: its separator, its header, and its rows as texts.
+
+Fields are separated by commas, semicolons or tabs; where it is not commas, a comma may be the
+decimal point. Lines that begin with # or % are comments, but the last one before the numbers is
+the header if it has as many fields as they (ROS 1: ``%time,field...``; EuRoC: ``#timestamp
+[ns],...``). A header that is repeated amid the rows, as where files were put together, is left
+out.
+"""
+
+import csv
+from dataclasses import dataclass
+import io
+from itertools import islice
+
+from .csv_text import read_text
+
+DELIMITERS = {',': 'commas', ';': 'semicolons', '\t': 'tabs'}
+_COMMENTS = ('#', '%')
+# So many lines show what a file is.
+_LOOKED_AT = 500
+
+
+@dataclass(frozen=True)
+class CsvLines:
+    """
+    A table of texts.
+
+    header: names of the columns; header_line: the line it stands in; lines: that of each row;
+    rows: lists of texts, not yet known to be as long as the header; notes: what was left out or
+    taken for something else, in sentences.
+    """
+
+    header: list
+    header_line: int
+    lines: list
+    rows: list
+    notes: tuple
+
+
+def read_lines(path):
+    """Return the CsvLines of a file; ValueError, in one sentence, where there is no table."""
+    text = read_text(str(path))
+    delimiter, commented = _layout(text)
+    source = _Numbered(text, commented)
+    reader = csv.reader(source, delimiter=delimiter, skipinitialspace=True)
+    lines, rows = [], []
+    try:
+        for row in reader:
+            if len(row) > 1 or any(field.strip() for field in row):
+                lines.append(source.line)
+                rows.append(row)
+    except csv.Error as error:
+        raise ValueError(f'{path}, line {source.line}: not a line of CSV ({error}); expected '
+                         f'fields separated by {DELIMITERS[delimiter]}') from error
+    if not rows:
+        raise ValueError(f'{path} holds comments only; expected a header line and rows')
+    header = [name.strip() for name in rows[0]]
+    notes = [] if not source.comments else [f'{path}: {source.comments} lines of comment left out']
+    repeated = [k for k, row in enumerate(rows) if k and row[0] == rows[0][0] and row == rows[0]
+                and not is_number(row[0])]
+    if repeated:
+        notes.append(f'{path}: the header stands in {len(repeated)} more lines, the first of them '
+                     f'line {lines[repeated[0]]}: left out')
+        for k in reversed(repeated):
+            del rows[k], lines[k]
+    if delimiter != ',' and any(',' in field for row in rows[1:3] for field in row):
+        notes.append(f'{path}: fields are separated by {DELIMITERS[delimiter]}, so a comma is '
+                     'taken for the decimal point')
+        rows = [[field.replace(',', '.') for field in row] for row in rows]
+    return CsvLines(header, lines[0], lines[1:], rows[1:], tuple(notes))
+
+
+class _Numbered:
+    """The lines that are no comments, and the number of the one given last."""
+
+    def __init__(self, text, kept):
+        self._lines, self._kept = io.StringIO(text, newline=''), kept
+        self.line, self.comments = 0, 0
+
+    def __iter__(self):
+        for line in self._lines:
+            self.line += 1
+            if _is_comment(line) and self.line != self._kept:
+                self.comments += 1
+            else:
+                yield line
+
+
+def _layout(text):
+    """Return the separator, and the number of the comment line that is the header, or 0."""
+    comment, number, seen = '', 0, []
+    for k, line in enumerate(islice(io.StringIO(text, newline=''), _LOOKED_AT), 1):
+        if _is_comment(line):
+            if not seen:
+                comment, number = line, k
+        elif line.strip():
+            seen.append(line)
+    first = seen[0] if seen else comment
+    second = seen[1] if len(seen) > 1 else first
+    for delimiter in DELIMITERS:
+        count = len(_fields(first, delimiter))
+        if count > 1 and count == len(_fields(second, delimiter)):
+            headed = comment and is_number(_fields(first, delimiter)[0]) and (
+                len(_fields(comment, delimiter)) == count)
+            return delimiter, number if headed else 0
+    return ',', 0
+
+
+def _is_comment(line):
+    return line.lstrip().startswith(_COMMENTS)
+
+
+def _fields(line, delimiter):
+    try:
+        return next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error:
+        return []
+
+
+def number(text):
+    """Return the float of a text; Python's 1_000 is no number of a CSV file."""
+    if '_' in text:
+        raise ValueError(text)
+    return float(text)
+
+
+def is_number(text):
+    """Return whether a text is a number."""
+    try:
+        number(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,89 @@
+"""The text of a CSV file, plain or gzip, with a bound on its size before it is read."""
+
+import gzip
+from pathlib import Path
+import zlib
+
+from ins_sim.regular_file import check_regular
+
+# What a file is named where bags may be meant too, in small or capital letters.
+SUFFIXES = ('.csv', '.csv.gz')
+# A day of an IMU at 100 Hz has some 1 GB.
+LARGEST = 2 << 30
+# Numbers in decimal text shrink to a half or a tenth; what shrinks by more is no record.
+_FREE, _RATIO = 64 << 20, 100
+_BLOCK = 1 << 20
+GZIP = b'\x1f\x8b'
+
+
+def is_csv(path):
+    """Return whether a path is named as a CSV file: .csv or .csv.gz, in any letters."""
+    return Path(path).name.lower().endswith(SUFFIXES)
+
+
+def read_text(path):
+    """
+    Return the decoded content of a plain or gzip file, told apart by their first bytes.
+
+    Raises ValueError or FileNotFoundError in one sentence.
+    """
+    if not path:
+        raise ValueError("motion.recording.path is ''; expected the path of a CSV file")
+    try:
+        check_regular(path, 'a CSV file, plain or gzip')
+        size = Path(path).stat().st_size
+        if size > LARGEST:
+            raise ValueError(f'it has {size} bytes; expected at most {LARGEST}')
+        with open(path, 'rb') as file:
+            data = file.read(LARGEST)
+    except FileNotFoundError as error:
+        raise FileNotFoundError(f'{path} does not exist; expected a CSV file, plain or '
+                                'gzip') from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, 'strerror', None) or str(error)
+        if reason.startswith(str(path)):
+            raise
+        raise ValueError(f'cannot read the recording {path}: {reason}; expected a CSV file, '
+                         'plain or gzip') from error
+    if data[:2] == GZIP:
+        data = _unpacked(path, size)
+    elif path.lower().endswith('.gz') and data:
+        raise ValueError(f'{path} is named .gz and begins with {data[:2]!r}; expected a gzip '
+                         'file, which begins with 1f 8b')
+    return _decoded(path, data)
+
+
+def _unpacked(path, size):
+    """Return the bytes in a gzip file, but not those of one that is made to fill the memory."""
+    most = min(LARGEST, max(_FREE, _RATIO * size))
+    blocks, count = [], 0
+    try:
+        with gzip.open(path) as file:
+            while block := file.read(_BLOCK):
+                blocks.append(block)
+                count += len(block)
+                if count > most:
+                    raise ValueError(f'{path} has {size} bytes and unpacks to more than {most}; '
+                                     'expected a CSV file that shrank to a hundredth at most, '
+                                     f'and has at most {LARGEST} bytes')
+    except (OSError, EOFError, zlib.error) as error:
+        raise ValueError(f'{path} is a broken gzip file ({error}); expected a whole '
+                         'one') from error
+    return b''.join(blocks)
+
+
+def _decoded(path, data):
+    zero = data.find(b'\0')
+    try:
+        text = data.decode('utf-8-sig') if zero < 0 else data[:zero + 1].decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        line = data.count(b'\n', 0, error.start) + 1
+        raise ValueError(f'{path}, line {line}: byte {data[error.start]:#04x} is not UTF-8; '
+                         'expected UTF-8 text') from error
+    if zero >= 0:
+        line = data.count(b'\n', 0, zero) + 1
+        raise ValueError(f'{path}, line {line}: found a zero byte, so this is a binary or UTF-16 '
+                         'file; expected UTF-8 text')
+    if not text or text.isspace():
+        raise ValueError(f'{path} is empty; expected a header line and rows')
+    return text
