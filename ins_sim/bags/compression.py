@@ -8,9 +8,12 @@ NAMES = ('none', 'lz4', 'zstd')
 # zstandard is the library that Debian and Ubuntu package.
 MODULES = {'lz4': ('lz4.frame',), 'zstd': ('compression.zstd', 'backports.zstd', 'zstandard')}
 APT_PACKAGES = {'lz4': 'python3-lz4', 'zstd': 'python3-zstandard'}
-# what the formats can gain at most
+# what the format can gain at most
 _LZ4_RATIO = 256
+# A chunk of a bag has about 1 MB, and messages shrink to a tenth; what gains more than a hundred
+# times is made to fill the memory.
 LARGEST = 1 << 30
+_FREE, _RATIO = 1 << 26, 100
 
 
 @lru_cache(maxsize=None)
@@ -43,8 +46,10 @@ def decompress(data, name, size):
 
     Raises ValueError if the compression is unknown, the data corrupt or of another size.
     """
-    if size > LARGEST:
-        raise ValueError(f'it says it has {size} bytes; expected at most {LARGEST}')
+    most = min(LARGEST, max(_FREE, _RATIO * len(data))) if name else LARGEST
+    if size > most:
+        raise ValueError(f'it says it has {size} bytes; expected at most {most}, from '
+                         f'{len(data)} bytes')
     if name == '':
         raw = data
     elif name == 'lz4':

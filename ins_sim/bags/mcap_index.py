@@ -10,6 +10,7 @@ import mmap
 from pathlib import Path
 from zlib import crc32
 
+from ins_sim.regular_file import check_regular
 from . import mcap_format as form
 from .mcap_format import Fields
 from .piece import Channel
@@ -46,6 +47,7 @@ class McapIndex:
 
     def __init__(self, path):
         self.path = Path(path)
+        check_regular(self.path, 'an MCAP file')
         with open(self.path, 'rb') as stream:
             self._size = stream.seek(0, 2)
             if not self._size:

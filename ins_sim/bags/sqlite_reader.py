@@ -5,6 +5,7 @@ import sqlite3
 
 import numpy as np
 
+from ins_sim.regular_file import check_regular
 from .piece import BagPiece, Channel, split_by_channel
 
 ROWS = 1000
@@ -25,6 +26,7 @@ class SqliteReader:
 
     def __init__(self, path):
         self.path = Path(path)
+        check_regular(self.path, 'an SQLite file')
         size = self.path.stat().st_size
         log = self.path.with_name(self.path.name + '-wal')
         logged = log.stat().st_size if log.exists() else 0

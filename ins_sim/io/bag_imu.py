@@ -83,6 +83,10 @@ def _stamps(name, table, source, odd, notes):
     t_ns, note = unwrap_clock(t_ns)
     if note:
         notes.append(f'{name}: {note}')
+    back = int(np.count_nonzero(np.diff(t_ns) < 0))
+    if back:
+        notes.append(f'{name}: the stamps go back {back} times; stamps.source:=log uses the times '
+                     'of logging')
     return t_ns
 
 

@@ -1,13 +1,13 @@
 """A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
 
 from contextlib import contextmanager
-from dataclasses import asdict, fields
+from dataclasses import asdict
 import json
 import os
 from pathlib import Path
 import shutil
 import tempfile
-from zipfile import BadZipFile, ZipFile
+from zipfile import ZipFile
 
 import numpy as np
 from numpy.lib import format as npy_format
@@ -16,11 +16,14 @@ from ins_sim import parameter_files
 from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
 from . import figure
 from .manifest import manifest
+from .stored_arrays import read_arrays
 
 MARK = 'summary.json'
 ARRAYS = 'run.npz'
 PARAMETERS = 'parameters.yaml'
 MANIFEST = 'manifest.yaml'
+_IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f', (None, 3)),
+        'imu_parity': ('f', (None,))}
 
 
 def check_free(folder, force, mark=MARK, option='--force'):
@@ -133,11 +136,9 @@ def read_imu(folder):
     """
     path = Path(folder) / ARRAYS
     try:
-        with np.load(path) as run:
-            # the parity is there of tuned gyros alone
-            names = [f.name for f in fields(ImuSamples)
-                     if f.name != 'parity' or 'imu_parity' in run]
-            return ImuSamples(**{name: run[f'imu_{name}'] for name in names})
-    except (BadZipFile, EOFError, KeyError, ValueError) as error:
+        # the parity is there of tuned gyros alone
+        arrays = read_arrays(path, _IMU, optional=('imu_parity',))
+    except ValueError as error:
         raise ValueError(f'{path} holds no IMU record ({error}); expected the arrays of '
                          '"ins_sim simulate"') from None
+    return ImuSamples(**{name.removeprefix('imu_'): array for name, array in arrays.items()})

@@ -6,10 +6,9 @@ from ins_sim.core.numerics.units import STANDARD_GRAVITY
 # A mean that is shorter shows no direction, m/s^2.
 LEAST_FORCE = 1e-3
 # What was done to a force of this size, as a part of it, and how one goes on.
-_GUESSES = ((1.0, 'is it in g? (units.force:=g)'),
-            (1000.0, 'is it in mg? (units.force:=mg)'),
-            (STANDARD_GRAVITY ** 2, 'was it multiplied by g twice?'),
-            (STANDARD_GRAVITY * 1e-3, 'is it in km/s^2?'))
+_GUESSES = ((1.0, 'is it in g?', 'units.force:=g reads it so; '),
+            (1000.0, 'is it in mg?', 'units.force:=mg reads it so; '),
+            (STANDARD_GRAVITY ** 2, 'was it multiplied by g twice?', ''))
 _PART = 0.15
 
 
@@ -22,9 +21,8 @@ def check_gravity(still, limit):
     force = length(still.force)
     if abs(force - STANDARD_GRAVITY) <= limit:
         return
-    what = next((text for size, text in _GUESSES if abs(force - size) <= _PART * size), '')
-    if not what and force < 0.5 * STANDARD_GRAVITY:
-        what = 'was gravity taken off it?'
+    what, way = next((guess for size, *guess in _GUESSES if abs(force - size) <= _PART * size),
+                     ('was gravity taken off it?' if force < 0.5 * STANDARD_GRAVITY else '', ''))
     raise ValueError(f'mean specific force at rest is {force:.1f} m/s^2; expected 9.8'
                      + (f': {what}' if what else '')
-                     + f'; alignment.gravity_m_s2, {limit:g}, is what it may differ by')
+                     + f' ({way}it may differ by alignment.gravity_m_s2, {limit:g})')

@@ -1,0 +1,71 @@
+"""Arrays in a run.npz that somebody hands over: nothing is allocated that the file cannot hold."""
+
+import math
+from zipfile import BadZipFile, ZipFile
+import zlib
+
+import numpy as np
+from numpy.lib import format as npy_format
+
+from ins_sim.regular_file import check_regular
+from ins_sim.settings.shown import shown
+
+# Arrays of a run are not compressed; what gains more than a hundred times fills the memory.
+_FREE, _RATIO = 1 << 26, 100
+
+
+def read_arrays(path, shapes, optional=()):
+    """
+    Return {name: array} of a file of arrays.
+
+    Parameters
+    ----------
+    path : of the .npz file
+    shapes : {name: (kinds of dtype, shape)}, a shape with None where any length will do, the same
+        for all arrays
+    optional : names that may be missing
+
+    Raises
+    ------
+    ValueError : in one sentence, where the file is no such file, or an array is missing or of
+        another kind
+    """
+    check_regular(path, 'the arrays of a run')
+    arrays, length = {}, None
+    try:
+        with ZipFile(path) as archive:
+            for name, (kinds, shape) in shapes.items():
+                if name in optional and f'{name}.npy' not in archive.namelist():
+                    continue
+                array = arrays[name] = _member(archive, f'{name}.npy')
+                wanted = tuple(length if n is None and length is not None else n for n in shape)
+                if array.dtype.kind not in kinds or len(array.shape) != len(shape) or any(
+                        n not in (None, m) for n, m in zip(wanted, array.shape)):
+                    raise ValueError(f'{name} has the type {array.dtype} and the shape '
+                                     f'{shown(array.shape)}')
+                length = len(array)
+    except (BadZipFile, EOFError, KeyError, OSError, NotImplementedError, RuntimeError,
+            zlib.error) as error:
+        raise ValueError(' '.join(str(error).split())) from None
+    return arrays
+
+
+def _member(archive, name):
+    info = archive.getinfo(name)
+    if info.file_size > max(_FREE, _RATIO * info.compress_size):
+        raise ValueError(f'{name} has {info.compress_size} bytes and unpacks to '
+                         f'{info.file_size}')
+    with archive.open(info) as stream:
+        version = npy_format.read_magic(stream)
+        if version not in ((1, 0), (2, 0)):
+            raise ValueError(f'{name} has the format {version}')
+        read = (npy_format.read_array_header_1_0 if version == (1, 0)
+                else npy_format.read_array_header_2_0)
+        shape, fortran, dtype = read(stream)
+        size = math.prod(shape) * dtype.itemsize
+        if dtype.hasobject or min(shape, default=0) < 0 or size > info.file_size:
+            raise ValueError(f'{name} says it has {shown(shape)} of {dtype}, more than there is')
+        data = stream.read(size)
+    if len(data) != size:
+        raise ValueError(f'{name} ends too early')
+    return np.frombuffer(bytearray(data), dtype).reshape(shape, order='F' if fortran else 'C')
