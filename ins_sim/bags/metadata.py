@@ -59,7 +59,8 @@ def read_metadata(folder):
         raise ValueError(f'{path} has the storage {shown(storage)}; expected mcap or sqlite3')
     files = info.get('relative_file_paths')
     if not isinstance(files, list) or not files or not all(isinstance(f, str) for f in files):
-        raise ValueError(f'{path} has the relative_file_paths {shown(files)}; expected names of files')
+        raise ValueError(f'{path} has the relative_file_paths {shown(files)}; expected names of '
+                         'files')
     # rosbag2 once wrote paths from where it was started; the files are beside their metadata
     return Metadata(storage, tuple(PurePosixPath(f).name for f in files))
 

@@ -73,10 +73,14 @@ def read_reference(path, columns=None, keep_zero=False):
     tracks = {'position': _track(t_ns[good], positions.track(lat[good], lon[good],
                                                              height[good]))}
     if all(name in table for name in VELOCITY):
-        east, north, down = (table.floats(name) for name in VELOCITY)
+        east, north, down = (positions.plausible(f'{path}: {name}', table.floats(name),
+                                                 positions.MOST_M_S, 'm/s', notes)
+                             for name in VELOCITY)
         tracks['velocity'] = _track(t_ns, np.stack([east, north, -down], axis=-1))
     if all(name in table for name in ATTITUDE):
-        angles = (np.radians(table.floats(name)) for name in ATTITUDE)
+        angles = [np.radians(positions.plausible(f'{path}: {name}', table.floats(name),
+                                                 positions.MOST_DEG, 'deg', notes))
+                  for name in ATTITUDE]
         track = _track(t_ns, from_compass(*angles))
         tracks['attitude'] = track and SampledTrack(track.t_ns,
                                                     continuous_quaternions(track.values))

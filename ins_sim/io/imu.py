@@ -67,7 +67,7 @@ def _bag(path, settings):
 def _reference(bag, fix, velocity, keep_zero, notes):
     """Return the Reference or None, and why it has no position."""
     position, without = (None, NO_FIXES) if fix is None else _fixes(bag, fix, keep_zero, notes)
-    speed = None if velocity is None else _velocities(bag, velocity)
+    speed = None if velocity is None else _velocities(bag, velocity, notes)
     if position is None and speed is None:
         return None, without
     return Reference(', '.join(name for name, track in ((fix, position), (velocity, speed))
@@ -89,9 +89,10 @@ def _fixes(bag, topic, keep_zero, notes):
                                                            height[good])), without
 
 
-def _velocities(bag, topic):
+def _velocities(bag, topic, notes):
     table = bag.arrays(topic, ('linear',))
-    return _track(table['stamp_ns'], table['linear'])
+    return _track(table['stamp_ns'], positions.plausible(topic, table['linear'],
+                                                         positions.MOST_M_S, 'm/s', notes))
 
 
 def _track(t_ns, values):
@@ -104,15 +105,18 @@ def _odometry(bag, topic, notes):
     if topic is None:
         return None
     table = bag.arrays(topic, ('position', 'orientation', 'linear'))
-    norm = np.linalg.norm(table['orientation'], axis=1)
+    with np.errstate(over='ignore'):
+        norm = np.linalg.norm(table['orientation'], axis=1)
     good = (norm > 0.99) & (norm < 1.01)
     if not good.all():
         notes.append(f'{topic}: {np.count_nonzero(~good)} of {len(table)} poses dropped, whose '
                      f'orientation is no rotation: the first has the length '
                      f'{norm[np.argmin(good)]:.4g}')
     table = table[good]
-    track = _track(table['stamp_ns'], np.concatenate(
-        [table['position'], table['orientation'], table['linear']], axis=1))
+    r, v_b = (positions.plausible(f'{topic} {field}', table[field], most, unit, notes)
+              for field, most, unit in (('position', positions.MOST_M, 'm'),
+                                        ('linear', positions.MOST_M_S, 'm/s')))
+    track = _track(table['stamp_ns'], np.concatenate([r, table['orientation'], v_b], axis=1))
     if track is None:
         return None
     v, frame = track.values, bag.frames(topic)[-1][0]

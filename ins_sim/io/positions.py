@@ -4,7 +4,9 @@ import numpy as np
 
 # What receivers and drivers put where they have no position (sensor_msgs/NavSatStatus: -1 no fix,
 # -2 unknown).
-NO_FIX, UNKNOWN_STATUS = -1, -2
+UNKNOWN_STATUS = -2
+# Beyond any vehicle and any frame of odometry: bits that fell, or another unit.
+MOST_M_S, MOST_DEG, MOST_M = 1e5, 1e6, 1e9
 
 
 def usable(lat_deg, lon_deg, height_m, status=None, keep_zero=False):
@@ -34,6 +36,18 @@ def usable(lat_deg, lon_deg, height_m, status=None, keep_zero=False):
         drop((lat_deg == 0.0) & (lon_deg == 0.0),
              'at latitude 0, longitude 0 (accept.zero_fixes keeps them)')
     return good, dropped
+
+
+def plausible(name, values, most, unit, notes):
+    """Return values (n,) or (n, k) with NaN for the rows beyond a bound, which are noted."""
+    size = np.abs(values).reshape(len(values), -1).max(axis=1, initial=0.0)
+    # Comparisons with NaN are false.
+    bad = size > most
+    if bad.any():
+        notes.append(f'{name}: {np.count_nonzero(bad)} of {len(values)} dropped that are beyond '
+                     f'{most:g} {unit}, the first is {size[np.argmax(bad)]:.6g} {unit}')
+        values = np.where(bad if values.ndim == 1 else bad[:, None], np.nan, values)
+    return values
 
 
 def sentence(name, what, count, dropped):

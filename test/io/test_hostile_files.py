@@ -1,0 +1,33 @@
+"""Whatever is in a file: a result without anything that is not finite, or one sentence."""
+
+from contextlib import redirect_stderr, redirect_stdout
+import io
+import time
+import warnings
+
+from support.hostile_files import Hostile, KINDS
+
+COUNT = 600
+# CPU time of one file that only a reader which goes round in circles takes.
+GUARD_S = 60.0
+
+
+def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
+    """Five thousand of every format that is read; the seed names the file."""
+    hostile, failures = Hostile(tmp_path), []
+    with warnings.catch_warnings():
+        # A warning of NumPy would be printed to a user.
+        warnings.simplefilter('error', RuntimeWarning)
+        for seed in range(COUNT):
+            start = time.process_time()
+            try:
+                with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+                    hostile.attempt(seed)
+            except Exception as error:
+                failures.append(f'{seed} {KINDS[seed % len(KINDS)]}: {error!r}'[:400])
+            assert time.process_time() - start < GUARD_S, seed
+    with capsys.disabled():
+        print(f'\n{COUNT} hostile files: ' + ', '.join(
+            f'{kind} {n["result"]} results and {n["sentence"]} sentences'
+            for kind, n in hostile.counts.items()))
+    assert not failures, '\n'.join(failures[:20])
