@@ -35,7 +35,7 @@ def read_text(path):
         if size > LARGEST:
             raise ValueError(f'it has {size} bytes; expected at most {LARGEST}')
         with open(path, 'rb') as file:
-            data = file.read(LARGEST)
+            data = file.read()
     except FileNotFoundError as error:
         raise FileNotFoundError(f'{path} does not exist; expected a CSV file, plain or '
                                 'gzip') from error

@@ -7,7 +7,7 @@ import warnings
 
 from support.hostile_files import Hostile, KINDS
 
-COUNT = 600
+COUNT = 5000
 # CPU time of one file that only a reader which goes round in circles takes.
 GUARD_S = 60.0
 
