@@ -139,6 +139,8 @@ class NavigateSettings(SettingsGroup):
                           'or from a stationary interval behind the gap; bridge: rate and '
                           'force are drawn straight across the gap',
                           choices=('stop', 'restart', 'bridge'))
+    longest_bridge_s: float = setting(600.0, 'the longest gap that is bridged; the solution ends '
+                                      'at a longer one', 's', 0.0, 1e5)
 
     def check(self):
         """

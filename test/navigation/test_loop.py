@@ -104,9 +104,9 @@ def test_a_fault_of_the_navigator_is_a_fault_of_the_loop():
 def test_recorded_loop_ends_at_a_gap_or_bridges_it():
     """Steps of any length up to the limit follow; the gap is told by its length and start."""
     samples = stamps(0, 1, 3, 4, 9, 10)
-    loop = RecordedLoop(Steps, float(DT_NS), 2.5 * DT_NS, bridges=False)
+    loop = RecordedLoop(Steps, float(DT_NS), 2.5 * DT_NS, bridges_ns=0)
     assert [k for k, _, _ in loop.run(samples)] == [1, 2, 3]
     assert (loop.gap, loop.bridged) == ('gap of 0.05 s from 0.040000000 s', 0)
-    loop = RecordedLoop(Steps, float(DT_NS), 2.5 * DT_NS, bridges=True)
+    loop = RecordedLoop(Steps, float(DT_NS), 2.5 * DT_NS, bridges_ns=1e12)
     assert [o for _, o, _ in loop.run(samples)] == [2, 3, 4, 1005, 1006]
     assert (loop.gap, loop.bridged) == (None, 1)

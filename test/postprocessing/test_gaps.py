@@ -104,6 +104,17 @@ def test_a_gap_is_bridged_by_straight_lines(capsys):
     assert any('1 gaps bridged' in n for n in bridged.notes)
 
 
+def test_a_gap_of_decades_is_not_bridged():
+    """One stamp of another epoch at the end would take millions of steps."""
+    t_ns = np.append(stamps(100.0), 1_700_000_000 * SECOND)
+    imu, reference = recorded(t_ns[:-1])
+    rows = np.append(np.arange(len(imu)), len(imu) - 1)
+    got = run(replace(imu[rows], t_ns=t_ns), reference, on_gap='bridge')
+    assert got.states[-1].t_ns[-1] == t_ns[-2]
+    assert any('the solution ends there (on_gap bridge, longest_bridge_s 600)' in note
+               for note in got.notes)
+
+
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.integers(0, 30), min_size=2, max_size=25))
 def test_as_few_stamps_as_possible_are_dropped(values):

@@ -68,24 +68,26 @@ class RecordedLoop(NavigationLoop):
     """
     Steps a RecordedNavigator as far as a gap, or over all gaps by straight lines.
 
-    step_ns: typical step of the stamps; limit_ns: the longest one that is no gap; bridges: whether
-    gaps are bridged.  gap: the gap at which it has ended, or None; bridged: how many were bridged.
+    step_ns: typical step of the stamps; limit_ns: the longest one that is no gap; bridges_ns: the
+    longest gap that is bridged, 0 for none.  gap: the gap at which it has ended, or None; bridged:
+    how many were bridged.
     """
 
-    def __init__(self, make_navigator, step_ns, limit_ns, bridges):
+    def __init__(self, make_navigator, step_ns, limit_ns, bridges_ns):
         super().__init__(make_navigator, step_ns)
-        self._limit_ns, self._bridges = limit_ns, bridges
+        self._limit_ns, self._bridges_ns, self._gap_ns = limit_ns, bridges_ns, 0
         self.gap, self.bridged = None, 0
 
     def check(self, t_ns, last_ns):
         """Raise StreamFault for a gap; other steps may be of any length."""
         if t_ns - last_ns > self._limit_ns:
+            self._gap_ns = t_ns - last_ns
             raise StreamFault(f'gap of {(t_ns - last_ns) * 1e-9:.6g} s from {seconds(last_ns)}',
                               restart=True)
 
     def recover(self, fault):
         """Bridge the gap, or end; return whether the loop goes on."""
-        if not self._bridges:
+        if self._gap_ns > self._bridges_ns:
             self.gap = str(fault)
             return False
         self.navigator.bridge_next(self.dt_ns)

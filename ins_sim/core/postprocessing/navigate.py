@@ -147,6 +147,9 @@ class _Replay:
         self._gap_limit_ns = gap_limit_ns(imu.t_ns, settings.gap_factor)
         self._progress = progress
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
+        self._longest_bridge_ns = 0.0
+        if settings.on_gap == 'bridge':
+            self._longest_bridge_ns = settings.longest_bridge_s * 1e9
         self._damped = settings.vertical.channel == 'damped'
         self._heights = np.full(len(imu), np.nan)
         if self._damped:
@@ -165,15 +168,18 @@ class _Replay:
         states, bridged = [], 0
         while True:
             loop = RecordedLoop(self._navigator(begin), self._step_ns, self._gap_limit_ns,
-                                self._s.on_gap == 'bridge')
+                                self._longest_bridge_ns)
             part = self._segment(loop, begin, last)
             if len(part.t_ns) >= FEWEST:
                 states.append(part)
             bridged += loop.bridged
             if loop.gap is None:
                 break
-            if self._s.on_gap == 'stop':
-                self._notes.append(f'{loop.gap}: the solution ends there (on_gap stop)')
+            if self._s.on_gap != 'restart':
+                why = '' if self._s.on_gap == 'stop' else (
+                    f', longest_bridge_s {self._s.longest_bridge_s:g}')
+                self._notes.append(f'{loop.gap}: the solution ends there (on_gap {self._s.on_gap}'
+                                   f'{why})')
                 break
             try:
                 begin = restart(begin.index + len(part.t_ns), last, again=True)
