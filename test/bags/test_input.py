@@ -12,7 +12,7 @@ from ins_sim.cli.main import main
 from ins_sim.messages import topics
 import numpy as np
 import pytest
-from support.damaged import refused, write
+from support.hostile.damaged import refused, write
 
 N = 20_000
 STAMPS = np.arange(N) * 10**7

@@ -5,7 +5,7 @@ import io
 import time
 import warnings
 
-from support.hostile_files import Hostile, KINDS
+from support.hostile.files import Hostile, KINDS
 
 COUNT = 5000
 # CPU time of one file that only a reader which goes round in circles takes.

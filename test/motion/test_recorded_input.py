@@ -8,36 +8,8 @@ from hypothesis import given, settings as profile, strategies as st
 import numpy as np
 import pytest
 
-from ins_sim.settings.place import Earth
-from ins_sim.settings.motion import Recording
-from ins_sim.core.motion.recorded.spline import RecordedMotion
-from ins_sim.io.csv_flight import COLUMNS, read_poses, read_rows, USED, WRAPPED
-
-HEADER = ','.join(COLUMNS)
-
-
-def rows(n=101, interval_s=0.1):
-    """Return the fields of a level flight north at 40 m/s, as lists of text."""
-    return [[f'{k * interval_s:.3f}', f'{55.0 + k * interval_s * 40.0 / 111e3:.9f}', '37.0',
-             '100.0', '1.0', '2.0', '3.0', '', '', ''] for k in range(n)]
-
-
-def save(path, table, header=HEADER):
-    path.write_text('\n'.join([header, *(','.join(row) for row in table)]) + '\n')
-    return path
-
-
-def refusal(path, **keys):
-    """Return the sentence with which the file is refused."""
-    with pytest.raises((ValueError, FileNotFoundError)) as caught:
-        RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
-    sentence = str(caught.value)
-    assert '\n' not in sentence and len(sentence) < 900
-    return sentence
-
-
-def accepted(path, **keys):
-    return RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
+from ins_sim.io.csv_flight import COLUMNS, read_rows, USED, WRAPPED
+from support.recorded_flights import accepted, HEADER, refusal, rows, save
 
 
 @pytest.fixture(scope='module')
@@ -169,35 +141,6 @@ def test_angles_and_heights_out_of_range_are_refused(folder, row, name, above, b
     sentence = refusal(save(folder / 'range.csv', table))
     assert f"line {row + 2} (t_s = '{table[row][0]}'): {name} is {repr(value)!r}" in sentence
     assert f'expected a number {low:g}..{high:g}' in sentence
-
-
-@pytest.mark.parametrize('name, beyond', [('roll_deg', 1.0 + 360.0), ('heading_deg', 3.0 + 720.0),
-                                          ('heading_deg', 3.0 - 1080.0), ('pitch_deg', 362.0)])
-def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
-    """Whole turns are taken off, which is said; the flight is the same."""
-    table = rows()
-    plain = accepted(save(folder / 'plain.csv', table))
-    for row in table[20:30]:
-        row[COLUMNS.index(name)] = repr(beyond)
-    motion = accepted(save(folder / 'turned.csv', table))
-    assert f'10 values of {name} beyond' in motion.warnings[0]
-    assert np.abs(motion.at([0]).q_nb - plain.at([0]).q_nb).max() < 1e-12
-
-
-@pytest.mark.parametrize('name, text', [('roll_deg', '-9999'), ('heading_deg', '99999'),
-                                        ('pitch_deg', '100'), ('pitch_deg', '-9999')])
-def test_sentinels_and_pitches_beyond_the_vertical_are_refused(folder, name, text):
-    """-9999 is no angle, and no turn brings 100 degrees of pitch back."""
-    table = rows()
-    table[7][COLUMNS.index(name)] = text
-    assert f"line 9 (t_s = '0.700'): {name} is '{text}'" in refusal(
-        save(folder / 'sentinel.csv', table))
-
-
-def test_steps_of_years_are_refused_before_anything_is_made_of_them(folder):
-    """Rows 1e8 s apart at 100 Hz would take 440 GiB."""
-    table = [[f'{k}e8', *row[1:]] for k, row in enumerate(rows(21))]
-    assert 'holds a row every 1e+08 s over 2e+09 s' in refusal(save(folder / 'years.csv', table))
 
 
 # The stamps.

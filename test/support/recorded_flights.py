@@ -3,6 +3,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from ins_sim.settings.place import Earth
@@ -10,6 +11,7 @@ from ins_sim.settings.motion import Recording
 from ins_sim.core.motion.recorded.spline import RecordedMotion
 from ins_sim.io.csv_flight import read_poses, COLUMNS
 
+HEADER = ','.join(COLUMNS)
 
 def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, heading=0.0,
           digits='.17g'):
@@ -45,3 +47,27 @@ def record(path, motion, rate_hz, duration_s):
 def same(a, b):
     return all(np.array_equal(getattr(a, f.name), getattr(b, f.name))
                for f in dataclasses.fields(a))
+
+
+def rows(n=101, interval_s=0.1):
+    """Return the fields of a level flight north at 40 m/s, as lists of text."""
+    return [[f'{k * interval_s:.3f}', f'{55.0 + k * interval_s * 40.0 / 111e3:.9f}', '37.0',
+             '100.0', '1.0', '2.0', '3.0', '', '', ''] for k in range(n)]
+
+
+def save(path, table, header=HEADER):
+    path.write_text('\n'.join([header, *(','.join(row) for row in table)]) + '\n')
+    return path
+
+
+def refusal(path, **keys):
+    """Return the sentence with which the file is refused."""
+    with pytest.raises((ValueError, FileNotFoundError)) as caught:
+        RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
+    sentence = str(caught.value)
+    assert '\n' not in sentence and len(sentence) < 900
+    return sentence
+
+
+def accepted(path, **keys):
+    return RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())

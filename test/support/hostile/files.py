@@ -13,7 +13,6 @@ import io
 import math
 from pathlib import Path
 import random
-import re
 import shutil
 import struct
 
@@ -36,15 +35,11 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.motion import MotionGeneratorSettings, Recording
 from ins_sim.settings.navigate import NavigateSettings
 from ins_sim.settings.place import Earth
+from .mutations import BYTES, flip_bytes, TEXT
 
 KINDS = ('flight.csv', 'imu.csv', 'imu.csv.gz', 'imu_to_bag.csv', 'reference.csv', 'bag.mcap',
          'bag.db3', 'messages', 'metadata.yaml', 'parameters.yaml', 'run.npz', 'record')
 LONGEST_SENTENCE = 6000
-_NUMBER = re.compile(rb'-?\d+(?:\.\d*)?(?:e[-+]?\d+)?')
-_VALUES = [b'nan', b'inf', b'-inf', b'1e300', b'-1e300', b'1e-320', b'9' * 400, b'-' + b'9' * 400,
-           b'', b' ', b'0', b'-0', b'1', b'-1', b'1e18', b'9223372036854775807', b'1e9', b'1e6',
-           b'9300000000', b'2147483648', b'0x10', b'1_0', b'true', b'"', b'x', b'[', b'{', b'~',
-           b'&a [*a]', b'2020-01-01', b'1:30', b'\xff\xfe', b'\0', b'\xf0\x9f\x98\x80']
 _DOUBLES = [math.nan, math.inf, -math.inf, 1e300, -1e300, 5e-324, 0.0, 1e18, -1.0, 90.0, 180.0,
             1e7, 9.8, 1e6]
 START = {'initial.position': 'given', 'initial.latitude_deg': 55.0, 'initial.heading': 'given',
@@ -148,11 +143,11 @@ class Hostile:
         data = self._base[kind]
         text = kind.endswith(('.csv', '.gz', '.yaml'))
         for _ in range(rng.choice((1, 1, 1, 2, 4))):
-            data = rng.choice(_TEXT if text and rng.random() < 0.8 else _BYTES)(rng, data)
+            data = rng.choice(TEXT if text and rng.random() < 0.8 else BYTES)(rng, data)
         if kind.endswith('.gz'):
             data = gzip.compress(data, 1)
             if rng.random() < 0.3:
-                data = rng.choice(_BYTES)(rng, data)
+                data = rng.choice(BYTES)(rng, data)
         return kind, data
 
     @staticmethod
@@ -174,7 +169,7 @@ class Hostile:
         elif how < 0.8:
             log_ns = rng.choice((0, 2 ** 62, log_ns + 10 ** 9))
         elif how < 0.82:
-            data = _flip(rng, bytes(data))
+            data = flip_bytes(rng, bytes(data))
         return name, type_name, log_ns, bytes(data)
 
     def _other_arrays(self, rng):
@@ -271,97 +266,3 @@ class Hostile:
 def _finite(arrays):
     for name, array in arrays.items():
         assert np.isfinite(array).all(), f'{name} is not finite'
-
-
-def _flip(rng, data):
-    data = bytearray(data)
-    for _ in range(rng.choice((1, 1, 2, 8))):
-        if data:
-            data[rng.randrange(len(data))] = rng.choice((0, 255, 10, 44, rng.randrange(256)))
-    return bytes(data)
-
-
-def _cut(rng, data):
-    return data[:rng.randrange(len(data) + 1)]
-
-
-def _insert(rng, data):
-    place = rng.randrange(len(data) + 1)
-    return data[:place] + rng.randbytes(rng.choice((1, 3, 40))) + data[place:]
-
-
-def _remove(rng, data):
-    place = rng.randrange(len(data) + 1)
-    return data[:place] + data[place + rng.choice((1, 4, 100)):]
-
-
-def _repeat(rng, data):
-    place = rng.randrange(len(data) + 1)
-    part = data[place:place + rng.choice((1, 8, 300))]
-    return data[:place] + part * rng.choice((2, 3, 20)) + data[place:]
-
-
-def _value(rng, data):
-    numbers = list(_NUMBER.finditer(data))
-    if not numbers:
-        return data
-    for found in sorted(rng.sample(numbers, min(len(numbers), rng.choice((1, 1, 3)))),
-                        key=lambda match: -match.start()):
-        data = data[:found.start()] + rng.choice(_VALUES) + data[found.end():]
-    return data
-
-
-def _line(rng, data):
-    lines = data.split(b'\n')
-    k = rng.randrange(len(lines))
-    how = rng.randrange(6)
-    if how == 0:
-        del lines[k]
-    elif how == 1:
-        lines.insert(k, lines[rng.randrange(len(lines))])
-    elif how == 2:
-        lines[k] = b' ' * rng.choice((1, 2, 300)) + lines[k]
-    elif how == 3:
-        lines.insert(k, rng.choice((b'# comment', b'% x', b'', b'"', b'\t', b'-' * 80, b'---')))
-    elif how == 4:
-        lines[k] = lines[k] * rng.choice((2, 50))
-    else:
-        lines[k:k + 10] = lines[k:k + 10][::-1]
-    return b'\n'.join(lines)
-
-
-def _field(rng, data):
-    lines = data.split(b'\n')
-    k = rng.randrange(len(lines))
-    mark = rng.choice((b',', b': '))
-    fields = lines[k].split(mark)
-    j = rng.randrange(len(fields))
-    how = rng.randrange(4)
-    if how == 0:
-        del fields[j]
-    elif how == 1:
-        fields.insert(j, fields[rng.randrange(len(fields))])
-    elif how == 2:
-        fields[j] = rng.choice(_VALUES)
-    else:
-        fields[j] = fields[j] * rng.choice((2, 1000))
-    lines[k] = mark.join(fields)
-    return b'\n'.join(lines)
-
-
-def _header(rng, data):
-    head, _, rest = data.partition(b'\n')
-    how = rng.randrange(5)
-    if how == 0:
-        return rest
-    if how == 1:
-        return head.replace(b',', rng.choice((b';', b'\t', b' ', b'"'))) + b'\n' + rest
-    if how == 2:
-        return rng.choice((b'#', b'%', b'\xef\xbb\xbf', b'"')) + head + b'\n' + rest
-    if how == 3:
-        return _field(rng, head) + b'\n' + rest
-    return data.replace(b',', rng.choice((b';', b'\t', b', ')))
-
-
-_BYTES = (_flip, _cut, _insert, _remove, _repeat)
-_TEXT = (_value, _value, _line, _field, _header)
