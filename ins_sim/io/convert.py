@@ -12,6 +12,7 @@ from ins_sim.bags.windows import write_windows
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.postprocessing.sample_checks import stamped_samples
 from ins_sim.messages import convert as blocks
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -81,8 +82,9 @@ def _to_csv(source, target, datum, topic, chosen):
             name = choose_topic(bag, types[1:], wanted, '--topic', needed=True)
         if bag.topics[name].type_name == topics.IMU:
             imu, _, notes = bag_imu.read_imu_messages(bag, name, chosen)
+            imu, more = stamped_samples(imu, chosen.stamps)
             csv_writer.write_imu(target, imu)
-            return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes])
+            return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes, *more])
     poses = read_poses(source, name, datum, '--topic')
     csv_writer.write_flight(target, poses)
     return f'{target} with {len(poses.t_ns)} rows of {name}'
@@ -90,6 +92,7 @@ def _to_csv(source, target, datum, topic, chosen):
 
 def _imu_to_bag(source, target, settings, topic, how, chosen):
     imu, notes = csv_imu.read_imu(source, chosen.columns, chosen.units)
+    imu, more = stamped_samples(imu, chosen.stamps)
     stamps_ns = imu.t_ns + settings.time.epoch_s * SECOND
     _check_stamps(source, stamps_ns)
     written = topics.IMU_RAW if topic is None else replace(topics.IMU_RAW, name=topic)
@@ -97,7 +100,7 @@ def _imu_to_bag(source, target, settings, topic, how, chosen):
     counts = write_windows(target, {topics.IMU_RAW: written}, (
         {topics.IMU_RAW: (stamps_ns[k:k + WINDOW], values[k:k + WINDOW])}
         for k in range(0, len(imu), WINDOW)), **how)
-    return _told(target, counts, *notes)
+    return _told(target, counts, *notes, *more)
 
 
 def _flight_to_bag(source, target, settings, how):

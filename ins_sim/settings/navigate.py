@@ -3,7 +3,7 @@
 from .field import group, setting, settings_class, SettingsGroup
 from .motion import FlightColumns
 from .place import Earth
-from .recorded_imu import AcceptSettings, ImuColumns, RecordUnits, StampSettings
+from .recorded_imu import AcceptNavigated, ImuColumns, RecordUnits, StampSettings
 
 INPUTS = ('instant', 'integrated', 'rotation_vector')
 
@@ -120,7 +120,7 @@ class NavigateSettings(SettingsGroup):
     columns: ImuColumns = group(ImuColumns)
     units: RecordUnits = group(RecordUnits)
     stamps: StampSettings = group(StampSettings)
-    accept: AcceptSettings = group(AcceptSettings)
+    accept: AcceptNavigated = group(AcceptNavigated)
     earth: Earth = group(Earth)
     reference: ReferenceSource = group(ReferenceSource)
     mounting: MountingSettings = group(MountingSettings)

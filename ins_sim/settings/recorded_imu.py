@@ -57,6 +57,12 @@ class AcceptSettings(SettingsGroup):
     frames: bool = setting(False, 'take a topic whose messages have several frame_ids; the most '
                            'frequent one counts')
     orientations: bool = setting(False, 'take orientations of any length but zero, normalised')
+
+
+@settings_class
+class AcceptNavigated(AcceptSettings):
+    """The same, and of what is navigated."""
+
     zero_fixes: bool = setting(False, 'take fixes at latitude 0, longitude 0')
     zero_readings: str = setting('refuse', 'rates and forces that are exactly zero in turns, as '
                                  'of drivers that send one of both with each message. refuse; '

@@ -13,6 +13,7 @@ from ins_sim.io.csv_flight import read_poses, COLUMNS
 
 HEADER = ','.join(COLUMNS)
 
+
 def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, heading=0.0,
           digits='.17g'):
     """Write columns in the file's units; scalars are repeated; return the path as text."""

@@ -20,6 +20,13 @@ def checked_samples(imu, stamps, zero_readings):
     imu: RecordedImu; stamps: StampSettings; zero_readings: 'refuse', 'fill' or 'keep'. Raises
     ValueError where readings are zero in turns and that is to be refused.
     """
+    imu, notes = stamped_samples(imu, stamps)
+    imu = _without_spikes(imu, notes)
+    return _without_zeros(imu, zero_readings, notes), notes
+
+
+def stamped_samples(imu, stamps):
+    """Return a RecordedImu with the stamps that StampSettings want, and notes."""
     notes = []
     if stamps.source == 'even' and len(imu):
         t_ns = imu.t_ns[0] + np.round(np.arange(len(imu)) * (1e9 / stamps.rate_hz)).astype(
@@ -28,8 +35,7 @@ def checked_samples(imu, stamps, zero_readings):
         notes.append(f'the stamps are the first one and then {stamps.rate_hz:g} Hz')
     if stamps.on_repeat == 'spread':
         imu = _spread(imu, notes)
-    imu = _without_spikes(imu, notes)
-    return _without_zeros(imu, zero_readings, notes), notes
+    return imu, notes
 
 
 def _spread(imu, notes):
