@@ -8,6 +8,7 @@ from ins_sim.core.numerics.garbage_collection import collector_paused
 
 with collector_paused:
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 DPI = 110
 # More points of a curve than this cannot be told apart.
@@ -42,6 +43,15 @@ def finish_panel(axes, label):
 
 
 def save_png(figure, path):
-    """Save a figure as PNG, quickly rather than as small as can be."""
+    """
+    Save a figure as PNG, quickly rather than as small as can be.
+
+    Names of files are drawn as they are, though they hold a dollar or are no UTF-8.
+    """
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+        shown = text.get_text().encode('utf-8', 'backslashreplace').decode()
+        if shown != text.get_text():
+            text.set_text(shown)
     with collector_paused:
         figure.savefig(path, dpi=DPI, pil_kwargs={'compress_level': 2})

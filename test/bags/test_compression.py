@@ -118,3 +118,13 @@ def test_a_cut_bag_loses_no_chunk_to_a_missing_library(only, tmp_path):
     only('zstd')
     with pytest.raises(ValueError, match='python3-zstandard'):
         open_bag(path)
+
+
+@pytest.mark.parametrize('name', ['lz4', 'zstd'])
+def test_a_chunk_that_gains_more_than_messages_do_is_refused_before_it_is_unpacked(name):
+    """Sixty-four megabytes are unpacked whatever the gain; a gigabyte of zeros is not."""
+    data = compression.compress(bytes(1 << 20), name)
+    assert compression.decompress(data, name, 1 << 20) == bytes(1 << 20)
+    with pytest.raises(ValueError, match='it says it has 1073741824 bytes; expected at most '
+                                         '67108864, from'):
+        compression.decompress(data, name, 1 << 30)

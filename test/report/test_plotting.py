@@ -40,3 +40,14 @@ def test_the_backend_of_the_program_stays():
             'print(matplotlib.get_backend())\n')
     run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == 'svg'
+
+
+@pytest.mark.parametrize('title', ['d\udce9sk.csv', 'a$b_\\frac$c', '$x^$'])
+def test_a_name_of_any_bytes_is_drawn(title, tmp_path):
+    """Names that are no UTF-8 or hold a dollar; before, the figure failed after everything."""
+    figure = plotting.new_figure(3, 2)
+    figure.suptitle(title)
+    figure.add_subplot().plot([0, 1], label=title)
+    figure.axes[0].legend()
+    plotting.save_png(figure, tmp_path / 'figure.png')
+    assert (tmp_path / 'figure.png').read_bytes()[:4] == b'\x89PNG'
