@@ -18,6 +18,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.catalogue import values_of
 from ins_sim.settings.recorded_imu import ConvertSettings
+from ins_sim.settings.shown import listed
 from . import bag_imu, csv_flight, csv_imu, csv_writer
 from .bag_truth import read_poses
 from .csv_text import is_csv, SUFFIXES
@@ -78,7 +79,7 @@ def _to_csv(source, target, datum, topic, chosen):
                 raise ValueError(f'{source} has neither a {short_names(types[:1])} whose name '
                                  f'ends in {topics.TRUTH_ODOMETRY.name} nor a '
                                  f'{short_names(types[1:])}; it has '
-                                 f'{", ".join(sorted(bag.topics)) or "no topic"}')
+                                 f'{listed(sorted(bag.topics)) or "no topic"}')
             name = choose_topic(bag, types[1:], wanted, '--topic', needed=True)
         if bag.topics[name].type_name == topics.IMU:
             imu, _, notes = bag_imu.read_imu_messages(bag, name, chosen)

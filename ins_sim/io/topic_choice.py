@@ -1,5 +1,6 @@
 """Which topic of a bag is meant, said in one sentence where there is none or more than one."""
 
+from ins_sim.settings.shown import listed, shown
 from ins_sim.settings.suggest import nearest_name
 
 
@@ -19,17 +20,17 @@ def choose_topic(bag, types, wanted, key, ending='', needed=False):
         known = [name for name in known if f'/{name}'.endswith(f'/{ending}' if ending else '')]
         if len(known) > 1:
             raise ValueError(f'{bag.path} has {len(known)} topics of {short_names(types)}: '
-                             f'{", ".join(known)}; expected {key} to name one'
+                             f'{listed(known)}; expected {key} to name one'
                              + ('' if needed else ', or none'))
         if needed and not known:
             where = f' whose name ends in {ending}' if ending else ''
             raise ValueError(f'{bag.path} has no {short_names(types)}{where}; it has '
-                             f'{", ".join(sorted(bag.topics)) or "no topic"}')
+                             f'{listed(sorted(bag.topics)) or "no topic"}')
         return known[0] if known else None
     name = wanted if wanted in bag.topics else '/' + wanted.lstrip('/')
     if name not in bag.topics:
         what = f'; the nearest is {nearest_name(name, known)!r}' if known else ''
-        raise ValueError(f'{bag.path} has no topic {wanted!r}, which is {key}{what}')
+        raise ValueError(f'{bag.path} has no topic {shown(wanted)}, which is {key}{what}')
     type_name = bag.topics[name].type_name
     if type_name not in types:
         raise ValueError(f'{bag.path}: {name}, which is {key}, has type '
