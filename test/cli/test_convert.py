@@ -270,38 +270,3 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
     with pytest.raises(TypeError):
         csv_writer.write_imu(path, imu_of(20))
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
-
-
-def test_an_imu_of_others_by_a_map_of_its_columns(tmp_path, capsys):
-    """columns, units and stamps are those of navigate."""
-    rows = '\n'.join(f'{k} {k},{0.1 * k:g},1,2,4,5,9.8'.replace(' ', ',') for k in range(20))
-    (tmp_path / 'x.csv').write_text('n,tick,p,q,r,fx,fy,fz,note\n' + rows.replace('\n', ',a\n')
-                                    + ',a\n')
-    names = dict(zip(('t_s', *csv_imu.IMU), ('tick', 'p', 'q', 'r', 'fx', 'fy', 'fz')))
-    words = [word for key, name in names.items() for word in ('-p', f'columns.{key}:={name}')]
-    words += ['-p', 'units.time:=ms', '-p', 'units.rate:=deg/s', '-p', 'units.force:=g']
-    assert convert(tmp_path / 'x.csv', tmp_path / 'bag', *words) == 0
-    said = capsys.readouterr().out
-    assert '2 columns are not used: n, note' in said and 'times 9.80665' in said
-    with open_bag(tmp_path / 'bag') as bag:
-        table = bag.arrays('imu/data_raw')
-    assert table['stamp_ns'].tolist() == [k * 10 ** 6 for k in range(20)]
-    assert np.allclose(table['linear_acceleration'][3], np.array([4.0, 5.0, 9.8]) * 9.80665)
-    assert np.allclose(table['angular_velocity'][4, :1], np.radians(0.4))
-
-
-def test_a_flight_of_others_by_a_map_of_its_columns(tmp_path):
-    """motion.recording.columns, with units in brackets, and without velocities."""
-    header = 'clock [us],Lat,Long [deg],Alt [ft],R [rad],P [rad],Course [deg],sats'
-    rows = [f'{100_000 * k},{55.0 + 3.6e-5 * k:.7f},37.0,{1000.0},0.01,0.02,3.0,9'
-            for k in range(101)]
-    (tmp_path / 'x.csv').write_text('\n'.join([header, *rows]))
-    names = {'t_s': 'clock', 'lat_deg': 'Lat', 'lon_deg': 'Long', 'height_m': 'Alt',
-             'roll_deg': 'R', 'pitch_deg': 'P', 'heading_deg': 'Course'}
-    words = [word for key, name in names.items()
-             for word in ('-p', f'motion.recording.columns.{key}:={name}')]
-    assert convert(tmp_path / 'x.csv', tmp_path / 'bag', *words) == 0
-    with open_bag(tmp_path / 'bag') as bag:
-        fix = bag.arrays('truth/fix')
-    assert np.allclose(fix['altitude'], 304.8, atol=1e-6)
-    assert np.allclose(fix['latitude'][[0, -1]], [55.0, 55.0036], atol=1e-9)

@@ -8,7 +8,7 @@ LEAST_FORCE = 1e-3
 # What was done to a force of this size, as a part of it, and how one goes on.
 _GUESSES = ((1.0, 'is it in g?', 'units.force:=g reads it so; '),
             (1000.0, 'is it in mg?', 'units.force:=mg reads it so; '),
-            (STANDARD_GRAVITY ** 2, 'was it multiplied by g twice?', ''))
+            (STANDARD_GRAVITY * STANDARD_GRAVITY, 'was it multiplied by g twice?', ''))
 _PART = 0.15
 
 

@@ -212,8 +212,8 @@ class _Search:
         notes.append(f'start at {seconds(still.end_ns)}: roll {roll:.3f}, pitch {pitch:.3f}, '
                      f'heading {heading:.3f} deg')
         if max(abs(roll), abs(pitch)) > UPRIGHT_DEG:
-            notes.append('no vehicle stands so: is the IMU mounted turned (mounting.rpy_deg, or '
-                         'mounting.source level), or does it measure gravity instead of specific '
+            notes.append('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or '
+                         'mounting.source level) Or does it measure gravity instead of specific '
                          'force, which points up at rest?')
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 

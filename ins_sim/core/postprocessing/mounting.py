@@ -61,12 +61,13 @@ def chained_mounting(transforms, base, frame, notes=None):
 
 def _rotation(q, name, notes):
     """Return the unit quaternion of a transform; note what it was, or refuse it by name."""
-    size = math.sqrt(sum(x * x for x in q))
+    x, y, z, w = q
+    size = math.sqrt(x * x + y * y + z * z + w * w)
     if not (math.isfinite(size) and size > _LEAST):
         raise ValueError(f'/tf_static from {name} has the rotation '
-                         f'({", ".join(f"{x:g}" for x in q)}), which is none; expected a unit '
+                         f'({x:g}, {y:g}, {z:g}, {w:g}), which is none; expected a unit '
                          'quaternion, or mounting.source given with mounting.rpy_deg')
     if abs(size - 1.0) <= _UNIT:
         return q
     notes.append(f'/tf_static from {name} has a quaternion of length {size:.9g}: normalised')
-    return tuple(x / size for x in q)
+    return x / size, y / size, z / size, w / size
