@@ -93,7 +93,7 @@ def _stamps(name, table, source, odd, notes):
 def _orientation(name, table, accept, notes):
     """Return unit quaternions (n, 4), NaN where the message has none."""
     q = table['orientation'].copy()
-    with np.errstate(over='ignore'):
+    with np.errstate(over='ignore', invalid='ignore'):
         norm = np.linalg.norm(q, axis=1)
     there = (table['orientation_covariance'][:, 0] != -1.0) & np.isfinite(norm) & (norm > 1e-3)
     odd = there & (np.abs(norm - 1.0) >= _UNIT)

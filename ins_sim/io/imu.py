@@ -105,7 +105,7 @@ def _odometry(bag, topic, notes):
     if topic is None:
         return None
     table = bag.arrays(topic, ('position', 'orientation', 'linear'))
-    with np.errstate(over='ignore'):
+    with np.errstate(over='ignore', invalid='ignore'):
         norm = np.linalg.norm(table['orientation'], axis=1)
     good = (norm > 0.99) & (norm < 1.01)
     if not good.all():

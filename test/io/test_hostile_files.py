@@ -8,6 +8,8 @@ import warnings
 from support.hostile.files import Hostile, KINDS
 
 COUNT = 5000
+# What tools/fuzz_files.py found: a gap of decades bridged step by step, a signalling NaN.
+FOUND = (7879, 17899, 40759)
 # CPU time of one file that only a reader which goes round in circles takes.
 GUARD_S = 60.0
 
@@ -18,7 +20,7 @@ def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
     with warnings.catch_warnings():
         # A warning of NumPy would be printed to a user.
         warnings.simplefilter('error', RuntimeWarning)
-        for seed in range(COUNT):
+        for seed in (*FOUND, *range(COUNT)):
             start = time.process_time()
             try:
                 with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
