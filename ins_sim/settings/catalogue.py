@@ -58,6 +58,17 @@ def _assemble(cls, values, prefix):
     return cls(**arguments)
 
 
+def from_ros(value, f):
+    """Return a value of a ROS parameter as its field f takes it."""
+    if value is None and f.default == ():
+        # what ROS makes of an empty list
+        return ()
+    if value is True and 'y' in f.metadata['choices']:
+        # ROS takes a plain y for yes
+        return 'y'
+    return value.tolist() if hasattr(value, 'tolist') else value
+
+
 def check_value(name, value, f):
     """Return the value in the type of its field f; raise ValueError on anything unfit."""
     kind, unit = f.type, f.metadata['unit']

@@ -52,9 +52,9 @@ def test_an_overlay_wins_over_the_default(name):
 @pytest.mark.parametrize('name', CONFIG)
 def test_every_shipped_file_runs(name, shared_flight):
     """Each overlay over the default runs for two seconds offline."""
-    assignments = ['duration_s:=2.0']
+    assignments = ['motion_generator:duration_s:=2.0']
     if name == 'recorded_flight':
-        assignments.append(f'motion.recording.path:="{shared_flight}"')
+        assignments.append(f'motion_generator:motion.recording.path:="{shared_flight}"')
     settings = parameter_files.read([resources.config('default'), resources.config(name)],
                                     assignments)
     assert len(run_offline(settings).errors) == 201
@@ -100,7 +100,10 @@ BAD_ASSIGNMENTS = [
     ('topics.depth:=100', 'pacing.window is 200; expected at most topics.depth, 100'),
     ('motion.kind:=recording', 'motion.recording.path is empty'),
     ('rate_hz=5', "-p 'rate_hz=5' has no \":=\"; expected NAME:=VALUE"),
-    ('rate_hz:=[', 'is not YAML'),
+    ('rate_hz:=[', '-p rate_hz:=[ is not YAML: line '),
+    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is no single value and no '),
+    ('rate_hz:=*a', 'is no single value and no list'),
+    ('rate_hz:=' + '9' * 400, "'999"), ('rate_hz:=1:30', "rate_hz is '1:30'; expected a number"),
 ]
 
 
@@ -114,9 +117,20 @@ def test_bad_assignments(assignment, sentence):
 
 
 BAD_FILES = [
-    (b'', 'holds no parameters'), (b'[]', 'holds no parameters'), (b'a: [', 'is not YAML'),
-    (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
-    (b'strapdown:\n  rate_hz: 1.0', 'expects exactly one mapping, "ros__parameters"'),
+    (b'', 'holds no parameters'), (b'[]', 'has a list for a key at line 1; expected a name'),
+    (b'/**: {ros__parameters: {a: [', 'is not YAML: line '),
+    (b'strapdown:\n  rate_hz: 1.0', 'has \'1.0\' before "ros__parameters" at line 2; expected '
+     'sections such as "/**: ros__parameters: ..."'),
+    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS takes none'),
+    (b'/**:\n  ros__parameters: {rate_hz: [1.0, 2]}', "has '2' in a list of numbers with a point "
+     "at line 2, 'rate_hz'; ROS expects values of one type, such as [1.0, 0.0, 0.0]"),
+    (b'/**:\n  ros__parameters: {rate_hz: }', 'has no value at line 2; expected one'),
+    (b'/**: {ros__parameters: {a: ' + b'[' * 100, 'is nested deeper than 64 at line 1'),
+    (b'gnss:\n  ros__parameters: {seed: -1}', 'bad.yaml: gnss: seed is -1; expected 0 to'),
+    (b'/**/gnss:\n  ros__parameters: {sed: 1}', "bad.yaml: unknown parameter 'sed'; the nearest "
+     "known one is 'seed'"),
+    (b'/a/gnss: {ros__parameters: {seed: 1}}\n/b/gnss: {ros__parameters: {seed: 2}}',
+     'the sections are of 2 namespaces, /a, /b; expected one vehicle'),
     (b'strapdown:\n  ros__parameters: {gyro: {delay_us: {x: 1.0}}}',
      "unknown parameter 'gyro.delay_us.x'"),
     (b'strapdown:\n  ros__parameters: {rate_hz: .inf}', 'rate_hz is inf; expected a finite'),
@@ -196,5 +210,6 @@ def test_an_assignment_may_name_its_node():
     settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
     assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
     assert settings.simulation.imu_sensor.seed == 0
-    with pytest.raises(ValueError, match="unknown parameter 'meter:seed'"):
+    with pytest.raises(ValueError, match="-p meter:seed:=7: 'meter' is no node of ins_sim; the "
+                       "nearest is 'velocity_meter'"):
         parameter_files.read_aided([], ['meter:seed:=7'])
