@@ -126,10 +126,14 @@ def _node_of(section, known):
 
 
 def _tell_foreign(path, sections, known):
-    """Say which sections of a file are of none of the known nodes."""
+    """Say which sections of a file are of no known node; refuse a file without others."""
     foreign = [section for section in sections if _node_of(section, known) is None]
     if not foreign:
         return
+    if len(foreign) == len(sections):
+        near = nearest_name(foreign[0].rpartition('/')[2], [ANY_NODE, *known])
+        raise ValueError(f'{path}: unknown section {shown(foreign[0])}; the nearest known one is '
+                         f'{near!r}')
     told = []
     for section in foreign[:MOST_TOLD]:
         near = similar_name(section.rpartition('/')[2], known)

@@ -107,7 +107,7 @@ def absolute(section):
 
 
 def applies(section, node):
-    """Return whether a section, by its full name, is of a node: ``/*`` is one name, ``/**`` any."""
+    """Return whether a section is of a node, by full names: ``/*`` is one name, ``/**`` any."""
     pattern = section.replace('/*', r'(/\w+)')
     return re.fullmatch(pattern, node, re.ASCII) is not None
 

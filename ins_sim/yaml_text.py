@@ -157,7 +157,7 @@ def load(content):
 
 
 class _Tree:
-    """Values of the events of one document; each comes with its count of values and its height."""
+    """Values of the events of one document, each with its count of values and its height."""
 
     def __init__(self, stream):
         self._stream = stream

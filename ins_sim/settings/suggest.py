@@ -23,4 +23,5 @@ def _matches(name, known, cutoff):
 
 def unknown_key(name, known):
     """Return the sentence about an unknown key, naming the nearest known one."""
-    return f'unknown parameter {shown(name)}; the nearest known one is {nearest_name(name, known)!r}'
+    near = nearest_name(name, known)
+    return f'unknown parameter {shown(name)}; the nearest known one is {near!r}'

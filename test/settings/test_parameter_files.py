@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import runpy
+import warnings
 
 from hypothesis import given, strategies as st
 import pytest
@@ -119,6 +120,7 @@ def test_bad_assignments(assignment, sentence):
 BAD_FILES = [
     (b'', 'holds no parameters'), (b'[]', 'has a list for a key at line 1; expected a name'),
     (b'/**: {ros__parameters: {a: [', 'is not YAML: line '),
+    (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
     (b'strapdown:\n  rate_hz: 1.0', 'has \'1.0\' before "ros__parameters" at line 2; expected '
      'sections such as "/**: ros__parameters: ..."'),
     (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS takes none'),
@@ -213,3 +215,67 @@ def test_an_assignment_may_name_its_node():
     with pytest.raises(ValueError, match="-p meter:seed:=7: 'meter' is no node of ins_sim; the "
                        "nearest is 'velocity_meter'"):
         parameter_files.read_aided([], ['meter:seed:=7'])
+
+
+def told(paths, assignments=()):
+    """Return the settings, and what is said beside."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter('always')
+        settings = parameter_files.read(paths, assignments)
+    return settings, [str(one.message) for one in said]
+
+
+def test_sections_of_other_nodes_are_ignored_with_a_word(tmp_path):
+    """A file may serve a camera too; a name near one of ours is said."""
+    path = tmp_path / 'p.yaml'
+    path.write_text('/**/motion_generator: {ros__parameters: {duration_s: 2.0}}\n'
+                    '/my_camera: {ros__parameters: {fps: 30}}\n'
+                    'strapdwn: {ros__parameters: {rate_hz: 30.0}}\n'
+                    + ''.join(f'c{k}: {{ros__parameters: {{a: 1}}}}\n' for k in range(9)))
+    settings, said = told([path])
+    assert settings.motion_generator.duration_s == 2.0 and settings.strapdown.rate_hz == 100.0
+    assert said == [f'{path}: ignored, because no node of that name reads its parameters here: '
+                    '/my_camera, /strapdwn (did you mean strapdown?), /c0 and 8 more']
+
+
+@pytest.mark.parametrize('text, namespace', [
+    ('/**: {motion_generator: {ros__parameters: {duration_s: 2.0}}}', ''),
+    ('imu1: {motion_generator: {ros__parameters: {duration_s: 2.0}}}', '/imu1'),
+    ('/imu1/*: {ros__parameters: {duration_s: 2.0}}', '/imu1'),
+    ('/*: {ros__parameters: {duration_s: 2.0}}', '')])
+def test_sections_within_sections(tmp_path, text, namespace):
+    """Names of nodes and of namespaces may be nested; one namespace is that of all nodes."""
+    path = tmp_path / 'p.yaml'
+    path.write_text(text)
+    settings, said = told([path])
+    assert settings.motion_generator.duration_s == 2.0 and said == []
+    path.write_text(f'{text}\n/imu2/strapdown: {{ros__parameters: {{output_every: 7}}}}\n'
+                    '/strapdown: {ros__parameters: {output_every: 8}}')
+    settings, said = told([path])
+    assert settings.strapdown.output_every == 8
+    assert len(said) == 1 and "stand in the namespace '/': " in said[0]
+    assert '/imu2/strapdown' in said[0] and (namespace in said[0])
+
+
+def test_an_assignment_that_ros_overrules_is_said(tmp_path):
+    """A section behind /** wins over -p, as in a node; with the name of the node -p wins."""
+    path = tmp_path / 'prec.yaml'
+    path.write_text('/**: {ros__parameters: {rate_hz: 100.0}}\n'
+                    '/**/motion_generator: {ros__parameters: {duration_s: 0.2}}')
+    settings, said = told([path], ['duration_s:=1.0', 'rate_hz:=50.0'])
+    assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 50.0)
+    assert said == [f'-p duration_s:=1.0 has no effect on motion_generator: as in ROS 2, {path} '
+                    'says 0.2 in a section that comes later, or with another type; write -p '
+                    'motion_generator:duration_s:=1.0']
+    settings, said = told([path], ['motion_generator:duration_s:=1.0'])
+    assert settings.motion_generator.duration_s == 1.0 and said == []
+    assert parameter_files.read([path], {'duration_s': 1.0}).motion_generator.duration_s == 1.0
+
+
+def test_texts_that_ros_takes_for_something_else(tmp_path):
+    """A plain y is the axis, and what is dumped is read again as the text it was."""
+    settings = parameter_files.read([], ['motion.coning.axis:=y', 'motion.recording.path:="1e5"'])
+    assert settings.motion_generator.motion.coning.axis == 'y'
+    path = tmp_path / 'p.yaml'
+    path.write_text(parameter_files.dump(settings))
+    assert "axis: 'y'" in path.read_text() and parameter_files.read([path]) == settings

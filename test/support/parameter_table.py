@@ -16,7 +16,8 @@ SCALARS = (
 
 # a scalar is tried alone, within a list, within a group, and as an assignment
 PLACES = ('/**:\n  ros__parameters:\n    k: {}\n    z: 1\n',
-          '/**:\n  ros__parameters:\n    k: [{}]\n', '/**:\n  ros__parameters:\n    g: {{k: {}}}\n')
+          '/**:\n  ros__parameters:\n    k: [{}]\n',
+          '/**:\n  ros__parameters:\n    g: {{k: {}}}\n')
 
 _P = '{ros__parameters: {a: 1}}'
 FILES = (
