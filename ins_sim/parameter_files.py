@@ -12,13 +12,13 @@ import yaml
 
 from ins_sim.ros_parameters import applies, Parameters
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
-from ins_sim.settings.catalogue import build, check_value, flatten, from_ros, values_of
+from ins_sim.settings.catalogue import (build, check_value, flatten, from_ros, is_of_ros,
+                                        values_of)
 from ins_sim.settings.shown import cut, listed, shown
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.settings.suggest import nearest_name, similar_name, unknown_key
 from ins_sim.yaml_text import Dumper, read_bytes
 
-ROS_OWN = ('use_sim_time', 'start_type_description_service')
 ANY_NODE = '/**'
 # so many names are told of what is ignored
 MOST_TOLD = 3
@@ -110,13 +110,9 @@ def _takers(node, name, fields, where):
     """Return the nodes that know a name, of one node or of all; refuse a name that none knows."""
     asked = {node: fields[node]} if node else fields
     takers = [taker for taker, names in asked.items() if name in names]
-    if not takers and not _is_of_ros(name):
+    if not takers and not is_of_ros(name):
         raise ValueError(f'{where}: {unknown_key(name, set().union(*asked.values()))}')
     return takers
-
-
-def _is_of_ros(name):
-    return name in ROS_OWN or name.startswith('qos_overrides.')
 
 
 def _node_of(section, known):

@@ -201,8 +201,8 @@ class _Tree:
         if isinstance(event, yaml.MappingStartEvent):
             keys = values[::2]
             if any(isinstance(key, (dict, list)) for key in keys):
-                raise ValueError(f'has a list or a mapping for a key at {line_of(event)}; expected '
-                                 'a text')
+                raise ValueError(f'has a list or a mapping for a key at {line_of(event)}; '
+                                 'expected a text')
             values = dict(zip(keys, values[1::2]))
         return values, self._count - before, height
 

@@ -2,10 +2,8 @@
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 
-from ins_sim.settings.catalogue import build, flatten, from_ros, values_of
+from ins_sim.settings.catalogue import build, flatten, from_ros, is_of_ros, values_of
 from ins_sim.settings.suggest import unknown_key
-
-OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
 
 
 def declare_settings(node, cls):
@@ -18,7 +16,7 @@ def declare_settings(node, cls):
     """
     fields = flatten(cls)
     given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
-    strange = [name for name in given if name not in fields and not name.startswith(OF_ROS)]
+    strange = [name for name in given if name not in fields and not is_of_ros(name)]
     if strange:
         # a parameter file may serve all nodes: a key of another node is not a mistake
         from ins_sim.settings.by_node import ALL_NAMES
