@@ -63,7 +63,7 @@ def read_nodes(paths, assignments, nodes, known=None):
     _check_sections(given, nodes, known)
     namespace = _namespace(given, known)
     values = {node: given.of(f'{namespace}/{node}') for node in known}
-    _tell_overruled(said, values)
+    _tell_overruled(said, {node: values[node] for node in nodes})
     fields = {node: flatten(cls) for node, cls in known.items()}
     built = {node: {name: from_ros(one.value, fields[node][name])
                     for name, one in values[node].items() if name in fields[node]}
@@ -183,19 +183,19 @@ def _namespace(given, known):
 
 
 def _tell_overruled(said, values):
-    """Say which assignments have no effect on a node, as it is with ROS."""
+    """Say which assignments have no effect on which nodes, as it is with ROS."""
     for where, node, name in said:
-        for taker in [node] if node else values:
-            one = values[taker].get(name)
-            if one is None:
-                if node:
-                    warnings.warn(f'{where} has no effect: {node} stands in a namespace',
-                                  stacklevel=4)
-            elif not one.where.startswith('-p '):
-                advice = '' if node else f'; write -p {taker}:{where[3:]}'
-                warnings.warn(f'{where} has no effect on {taker}: as in ROS 2, {one.where} says '
-                              f'{shown(one.value)} in a section that comes later, or with another '
-                              f'type{advice}', stacklevel=4)
+        given = {taker: values[taker].get(name) for taker in values if taker == (node or taker)}
+        overruled = {taker: one for taker, one in given.items()
+                     if one is not None and not one.where.startswith('-p ')}
+        if node and node in given and given[node] is None:
+            warnings.warn(f'{where} has no effect: {node} stands in a namespace', stacklevel=4)
+        if overruled:
+            taker, one = next(iter(overruled.items()))
+            advice = '' if node else f'; write -p {taker}:{where[3:]}'
+            warnings.warn(f'{where} has no effect on {", ".join(overruled)}: as in ROS 2, '
+                          f'{one.where} says {shown(one.value)} in a section that comes later, or '
+                          f'with another type{advice}', stacklevel=4)
 
 
 def dump(settings):
