@@ -51,19 +51,21 @@ def read_nodes(paths, assignments, nodes, known=None):
     named, by default nodes; what is given for them is checked value by value.
     """
     known = nodes if known is None else known
-    given = Parameters()
+    given, named = Parameters(), []
     for path in paths:
         sections = given.add_file(read_bytes(path), str(path))
         if not sections:
             raise ValueError(f'{path} holds no parameters; expected sections such as '
                              '"/**: ros__parameters: ..."')
         _tell_foreign(path, sections, known)
+        named += sections
     by_value = isinstance(assignments, Mapping)
     said = [] if by_value else [_add_assignment(given, text, known) for text in assignments]
     _check_sections(given, nodes, known)
-    namespace = _namespace(given, known)
+    namespace = _namespace(named, given, known)
     values = {node: given.of(f'{namespace}/{node}') for node in known}
-    _tell_overruled(said, {node: values[node] for node in nodes})
+    _tell_overruled(given, {node: values[node] for node in nodes}, namespace,
+                    [*map(str, paths), *said])
     fields = {node: flatten(cls) for node, cls in known.items()}
     built = {node: {name: from_ros(one.value, fields[node][name])
                     for name, one in values[node].items() if name in fields[node]}
@@ -84,7 +86,7 @@ def _built(node, cls, values):
 
 
 def _add_assignment(given, text, known):
-    """Add a text NAME:=VALUE or NODE:NAME:=VALUE; return (how it was given, node, name)."""
+    """Add a text NAME:=VALUE or NODE:NAME:=VALUE; return how it was given."""
     name, separator, value = text.partition(':=')
     if not separator:
         raise ValueError(f'-p {shown(text)} has no ":="; expected NAME:=VALUE')
@@ -92,7 +94,7 @@ def _add_assignment(given, text, known):
     node, name = _addressed(name, where, known)
     _takers(node, name, {n: flatten(cls) for n, cls in known.items()}, '-p')
     given.add_value(node or ANY_NODE, name, value, where)
-    return where, node, name
+    return where
 
 
 def _addressed(name, where, known):
@@ -145,27 +147,26 @@ def _check_sections(given, nodes, known):
     The values for a node that is not built are checked one by one.
     """
     fields = {node: flatten(cls) for node, cls in known.items()}
-    for section, parameters in given.sections():
+    for section, name, one, _ in given.given():
         node = _node_of(section, known)
         if node is None:
             continue
-        for name, one in parameters.items():
-            where = '-p' if one.where.startswith('-p ') else one.where
-            _takers(None if node == ANY_NODE else node, name, fields, where)
-            if node in known and node not in nodes and name in fields[node]:
-                try:
-                    check_value(name, from_ros(one.value, fields[node][name]), fields[node][name])
-                except ValueError as error:
-                    raise ValueError(f'{where}: {node}: {error}') from None
+        where = '-p' if one.where.startswith('-p ') else one.where
+        _takers(None if node == ANY_NODE else node, name, fields, where)
+        if node in known and node not in nodes and name in fields[node]:
+            try:
+                check_value(name, from_ros(one.value, fields[node][name]), fields[node][name])
+            except ValueError as error:
+                raise ValueError(f'{where}: {node}: {error}') from None
 
 
-def _namespace(given, known):
+def _namespace(named, given, known):
     """
-    Return the namespace that the sections of known nodes name, '' for none.
+    Return the namespace that the sections of files, named, have for known nodes, '' for none.
 
     Sections of other namespaces are said to be ignored; without a namespace, two are refused.
     """
-    ours = [section for section, _ in given.sections() if _node_of(section, known)]
+    ours = [section for section in named if _node_of(section, known)]
     found = {section.partition('/*')[0] if '*' in section else section.rpartition('/')[0]
              for section in ours}
     plain = any('*' not in section and section.count('/') == 1 for section in ours)
@@ -174,28 +175,38 @@ def _namespace(given, known):
         raise ValueError(f'the sections are of {len(named)} namespaces, '
                          f'{listed(named, MOST_TOLD)}; expected one vehicle')
     namespace = named[0] if named and not plain else ''
-    strange = [section for section in ours
-               if not any(applies(section, f'{namespace}/{node}') for node in known)]
+    every = dict.fromkeys([*ours, *(section for section, *_ in given.given())])
+    strange = [section for section in every if _node_of(section, known)
+               and not any(applies(section, f'{namespace}/{node}') for node in known)]
     if strange:
         warnings.warn(f'ignored, because the nodes stand in the namespace {namespace or "/"!r}: '
                       f'{listed(strange, MOST_TOLD)}', stacklevel=4)
     return namespace
 
 
-def _tell_overruled(said, values):
-    """Say which assignments have no effect on which nodes, as it is with ROS."""
-    for where, node, name in said:
-        given = {taker: values[taker].get(name) for taker in values if taker == (node or taker)}
-        overruled = {taker: one for taker, one in given.items()
-                     if one is not None and not one.where.startswith('-p ')}
-        if node and node in given and given[node] is None:
-            warnings.warn(f'{where} has no effect: {node} stands in a namespace', stacklevel=4)
-        if overruled:
-            taker, one = next(iter(overruled.items()))
-            advice = '' if node else f'; write -p {taker}:{where[3:]}'
-            warnings.warn(f'{where} has no effect on {", ".join(overruled)}: as in ROS 2, '
-                          f'{one.where} says {shown(one.value)} in a section that comes later, or '
-                          f'with another type{advice}', stacklevel=4)
+def _tell_overruled(given, values, namespace, order):
+    """
+    Say which files and assignments have no effect on some nodes, as it is with ROS.
+
+    values: {node: {name: Given}}; order: files and assignments as they were given.
+    """
+    lost = {}
+    for section, name, one, last in given.given():
+        for node, winners in values.items():
+            if not applies(section, f'{namespace}/{node}'):
+                continue
+            winner = winners[name]
+            if order.index(last) > order.index(winner.where) and (
+                    one.where != last or one.value != winner.value):
+                lost.setdefault((last, winner.where), {}).setdefault(name, []).append(node)
+    for (where, winner), names in lost.items():
+        nodes = list(dict.fromkeys(node for some in names.values() for node in some))
+        what = '' if where.startswith('-p ') else f': {listed(names, MOST_TOLD)}'
+        advice = f'; write -p {nodes[0]}:{where[3:]}' if (
+            where.startswith('-p ') and ':' not in where.partition(':=')[0]) else ''
+        warnings.warn(f'{where}{what}: no effect on {", ".join(nodes)}, because, as in ROS 2, '
+                      f'{winner} says otherwise in a section that comes later, or with another '
+                      f'type{advice}', stacklevel=4)
 
 
 def dump(settings):

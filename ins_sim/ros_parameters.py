@@ -57,6 +57,7 @@ class Parameters:
             reader = _Values(where)
             entries = self._sections.setdefault(section, [])
             entry = entries[_find(entries, name)]
+            entry.where = where
             for event in events(text):
                 if isinstance(event, yaml.ScalarEvent):
                     reader.value(event, entry)
@@ -69,15 +70,19 @@ class Parameters:
         except ValueError as error:
             raise ValueError(f'{where} {error}') from None
 
-    def sections(self):
-        """Yield the full names of the sections and their Parameters by name, in order."""
+    def given(self):
+        """
+        Yield full name of section, name, Given and who gave it last, in order.
+
+        A name may come more than once in a section; then the last one counts.
+        """
         for section, entries in self._sections.items():
-            yield absolute(section), {e.name: e.winner() for e in entries}
+            for entry in entries:
+                yield absolute(section), entry.name, entry.winner(), entry.where
 
     def of(self, node):
         """Return {name: Given} of a node by its full name, such as '/imu1/strapdown'."""
-        return {name: value for section, parameters in self.sections()
-                if applies(section, node) for name, value in parameters.items()}
+        return {name: one for section, name, one, _ in self.given() if applies(section, node)}
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def is_of_ros(name):
 
 def from_ros(value, f):
     """Return a value of a ROS parameter as its field f takes it."""
-    if value is None and f.default == ():
+    if value is None and f.type not in _KINDS:
         # what ROS makes of an empty list
         return ()
     if value is True and 'y' in f.metadata['choices']:

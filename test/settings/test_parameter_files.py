@@ -264,11 +264,21 @@ def test_an_assignment_that_ros_overrules_is_said(tmp_path):
                     '/**/motion_generator: {ros__parameters: {duration_s: 0.2}}')
     settings, said = told([path], ['duration_s:=1.0', 'rate_hz:=50.0'])
     assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 50.0)
-    assert said == [f'-p duration_s:=1.0 has no effect on motion_generator: as in ROS 2, {path} '
-                    'says 0.2 in a section that comes later, or with another type; write -p '
-                    'motion_generator:duration_s:=1.0']
+    assert said == ['-p duration_s:=1.0: no effect on motion_generator, because, as in ROS 2, '
+                    f'{path} says otherwise in a section that comes later, or with another type; '
+                    'write -p motion_generator:duration_s:=1.0']
+    other = tmp_path / 'other.yaml'
+    other.write_text('/**: {ros__parameters: {duration_s: 7.0, rate_hz: 100}}')
+    settings, said = told([path, other])
+    assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 100.0)
+    assert said == [f'{other}: duration_s: no effect on motion_generator, because, as in ROS 2, '
+                    f'{path} says otherwise in a section that comes later, or with another type']
     settings, said = told([path], ['motion_generator:duration_s:=1.0'])
     assert settings.motion_generator.duration_s == 1.0 and said == []
+    path.write_text('imu1: {motion_generator: {ros__parameters: {duration_s: 0.2}}}')
+    settings, said = told([path], ['motion_generator:duration_s:=1.0', 'duration_s:=3.0'])
+    assert settings.motion_generator.duration_s == 3.0
+    assert said == ["ignored, because the nodes stand in the namespace '/imu1': /motion_generator"]
     assert parameter_files.read([path], {'duration_s': 1.0}).motion_generator.duration_s == 1.0
 
 
