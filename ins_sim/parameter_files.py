@@ -64,9 +64,9 @@ def read_nodes(paths, assignments, nodes, known=None):
     _check_sections(given, nodes, known)
     namespace = _namespace(named, given, known)
     values = {node: given.of(f'{namespace}/{node}') for node in known}
-    _tell_overruled(given, {node: values[node] for node in nodes}, namespace,
-                    [*map(str, paths), *said])
     fields = {node: flatten(cls) for node, cls in known.items()}
+    _tell_overruled(given, {node: values[node] for node in nodes}, fields, namespace,
+                    [*map(str, paths), *said])
     built = {node: {name: from_ros(one.value, fields[node][name])
                     for name, one in values[node].items() if name in fields[node]}
              for node in known}
@@ -184,16 +184,16 @@ def _namespace(named, given, known):
     return namespace
 
 
-def _tell_overruled(given, values, namespace, order):
+def _tell_overruled(given, values, known, namespace, order):
     """
     Say which files and assignments have no effect on some nodes, as it is with ROS.
 
-    values: {node: {name: Given}}; order: files and assignments as they were given.
+    values: {node: {name: Given}}; known: {node: names}; order: files and assignments as they were given.
     """
     lost = {}
     for section, name, one, last in given.given():
         for node, winners in values.items():
-            if not applies(section, f'{namespace}/{node}'):
+            if name not in known[node] or not applies(section, f'{namespace}/{node}'):
                 continue
             winner = winners[name]
             if order.index(last) > order.index(winner.where) and (
