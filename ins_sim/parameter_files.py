@@ -188,7 +188,7 @@ def _tell_overruled(given, values, known, namespace, order):
     """
     Say which files and assignments have no effect on some nodes, as it is with ROS.
 
-    values: {node: {name: Given}}; known: {node: names}; order: files and assignments as they were given.
+    values: {node: {name: Given}}; known: {node: names}; order: files and assignments, as given.
     """
     lost = {}
     for section, name, one, last in given.given():
