@@ -59,7 +59,8 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
         'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report', 'regular_file'}
+                         'graph', 'studies', 'report', 'regular_file',
+                         'ros_parameters', 'yaml_text'}
 MAY_IMPORT = {
     'settings': set(),
     'core.numerics': set(),
