@@ -106,9 +106,10 @@ def _steady(imu, notes):
     cuts, late = _losses(t_s, step)
     if len(cuts):
         lost, jumps = int(np.round(late[late > 0.0]).sum()), int(np.count_nonzero(late < 0.0))
-        what = [_told(lost, 'reading is lost', 'readings are lost')] * bool(lost)
-        what += [f'the stamps fall behind at {_told(jumps, "place", "places")}'] * bool(jumps)
-        notes.append(f'{" and ".join(what)}, the first at {t_s[cuts[0] - 1]:.6g} s')
+        back = f'the stamps fall behind at {_told(jumps, "place", "places")}'
+        what = (f'{back} and jump forward by {lost} intervals in all' if jumps and lost else
+                back if jumps else _told(lost, 'reading is lost', 'readings are lost'))
+        notes.append(f'{what}, the first at {t_s[cuts[0] - 1]:.6g} s')
         imu = _longest(imu, cuts, np.full(len(imu), True), notes)
     imu = _at_one_rate(imu, notes)
     if len(imu) < LEAST:

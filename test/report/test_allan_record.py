@@ -57,6 +57,10 @@ CASES = {
     'two in the wrong order': (EVEN[np.r_[:500, 501, 500, 502:COUNT]], COUNT, ('evened out',)),
     'a step back': (np.where(NUMBER >= 3000, EVEN - 1_000_000_000, EVEN), 17_000, (
         'the stamps fall behind at 1 place, the first at 29.99 s', '17000 of 20000 readings')),
+    'a second late for half a minute': (
+        np.where((NUMBER >= 3000) & (NUMBER < 6000), EVEN + 10**9, EVEN), 14_000, (
+            'the stamps fall behind at 1 place and jump forward by 100 intervals in all, the '
+            'first at 29.99 s', '14000 of 20000 readings')),
     'bursts': (TENS, COUNT, ('19999 of 19999 intervals differ from 0.01 s by more than half of '
                              'it: the stamps are evened out, by at most 0.04',)),
     'bursts of one stamp': (EVEN[NUMBER // 10 * 10], COUNT, ('evened out, by at most 0.045 s',)),
