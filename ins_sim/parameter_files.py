@@ -1,21 +1,27 @@
 """
 ROS parameter files (YAML) as the settings of the nodes, or of a study, without ROS.
 
-The offline command line reads the same files as ``ros2 run --ros-args --params-file``: sections
-``/**`` and node names, each with ``ros__parameters``; later files and assignments win.
+The offline command line reads the same files as ``ros2 run --ros-args --params-file``, with the
+rules of ``ros_parameters``. The assignments of ``-p`` stand behind the files.
 """
 
 from collections.abc import Mapping
-import re
+import warnings
 
 import yaml
 
+from ins_sim.ros_parameters import applies, Parameters
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
-from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.catalogue import (build, check_value, flatten, from_ros, is_of_ros,
+                                        values_of)
+from ins_sim.settings.shown import cut, listed, shown
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
-from ins_sim.settings.suggest import nearest_name, unknown_key
+from ins_sim.settings.suggest import nearest_name, similar_name, unknown_key
+from ins_sim.yaml_text import Dumper, read_bytes
 
-ROS_OWN = ('use_sim_time', 'start_type_description_service')
+ANY_NODE = '/**'
+# so many names are told of what is ignored
+MOST_TOLD = 3
 
 
 def read(paths, assignments=()) -> SimulationSettings:
@@ -42,107 +48,165 @@ def read_nodes(paths, assignments, nodes, known=None):
     Return {node: its settings} as ``read`` does, for any nodes {name: settings class}.
 
     A node is here whatever has a section of its own in the files.  known: nodes that may be
-    named, by default nodes.
+    named, by default nodes; what is given for them is checked value by value.
     """
     known = nodes if known is None else known
-    values = {node: {} for node in known}
+    given, named = Parameters(), []
     for path in paths:
-        for section, parameters in _sections(path, known):
-            for name, value in _flat(parameters).items():
-                _assign(values, known, section, name, value, path)
-    for name, value, where in _assigned(assignments):
-        # NODE:NAME as ROS writes it, for one node
-        node, separator, own = name.partition(':')
-        section, name = (node, own) if separator and node in known else ('/**', name)
-        _assign(values, known, section, name, value, where)
-    built = {}
-    for node, cls in nodes.items():
-        try:
-            built[node] = build(cls, values[node])
-        except ValueError as error:
-            raise ValueError(f'{node}: {error}') from None
-    return built
+        sections = given.add_file(read_bytes(path), str(path))
+        if not sections:
+            raise ValueError(f'{path} holds no parameters; expected sections such as '
+                             '"/**: ros__parameters: ..."')
+        _tell_foreign(path, sections, known)
+        named += sections
+    by_value = isinstance(assignments, Mapping)
+    said = [] if by_value else [_add_assignment(given, text, known) for text in assignments]
+    _check_sections(given, nodes, known)
+    namespace = _namespace(named, given, known)
+    values = {node: given.of(f'{namespace}/{node}') for node in known}
+    fields = {node: flatten(cls) for node, cls in known.items()}
+    _tell_overruled(given, {node: values[node] for node in nodes}, fields, namespace,
+                    [*map(str, paths), *said])
+    built = {node: {name: from_ros(one.value, fields[node][name])
+                    for name, one in values[node].items() if name in fields[node]}
+             for node in known}
+    if by_value:
+        for name, value in assignments.items():
+            node, name = _addressed(name, 'values', known)
+            takers = _takers(node, name, fields, 'values')
+            built.update({taker: {**built[taker], name: value} for taker in takers})
+    return {node: _built(node, cls, built[node]) for node, cls in nodes.items()}
 
 
-def _assigned(assignments):
-    """Yield (name, value, where it is said) of texts NAME:=VALUE or of {name: value}."""
-    if isinstance(assignments, Mapping):
-        yield from ((name, value, 'values') for name, value in assignments.items())
+def _built(node, cls, values):
+    try:
+        return build(cls, values)
+    except ValueError as error:
+        raise ValueError(f'{node}: {error}') from None
+
+
+def _add_assignment(given, text, known):
+    """Add a text NAME:=VALUE or NODE:NAME:=VALUE; return how it was given."""
+    name, separator, value = text.partition(':=')
+    if not separator:
+        raise ValueError(f'-p {shown(text)} has no ":="; expected NAME:=VALUE')
+    where = f'-p {cut(text)}'
+    node, name = _addressed(name, where, known)
+    _takers(node, name, {n: flatten(cls) for n, cls in known.items()}, '-p')
+    given.add_value(node or ANY_NODE, name, value, where)
+    return where
+
+
+def _addressed(name, where, known):
+    """Return the node, or None for all, and the name of NAME or NODE:NAME."""
+    node, separator, own = name.partition(':')
+    if not separator:
+        return None, name
+    if node not in known:
+        raise ValueError(f'{where}: {shown(node)} is no node of ins_sim; the nearest is '
+                         f'{nearest_name(node, known)!r}')
+    return node, own
+
+
+def _takers(node, name, fields, where):
+    """Return the nodes that know a name, of one node or of all; refuse a name that none knows."""
+    asked = {node: fields[node]} if node else fields
+    takers = [taker for taker, names in asked.items() if name in names]
+    if not takers and not is_of_ros(name):
+        raise ValueError(f'{where}: {unknown_key(name, set().union(*asked.values()))}')
+    return takers
+
+
+def _node_of(section, known):
+    """Return the node of a section: one of known, ANY_NODE behind a wildcard, None elsewhere."""
+    node = section.rpartition('/')[2]
+    return ANY_NODE if node in ('*', '**') else node if node in known else None
+
+
+def _tell_foreign(path, sections, known):
+    """Say which sections of a file are of no known node; refuse a file without others."""
+    foreign = [section for section in sections if _node_of(section, known) is None]
+    if not foreign:
         return
-    for assignment in assignments:
-        name, separator, text = assignment.partition(':=')
-        if not separator:
-            raise ValueError(f'-p {assignment!r} has no ":="; expected NAME:=VALUE')
-        yield name, _parse(text, f'-p {assignment}'), '-p'
+    if len(foreign) == len(sections):
+        near = nearest_name(foreign[0].rpartition('/')[2], [ANY_NODE, *known])
+        raise ValueError(f'{path}: unknown section {shown(foreign[0])}; the nearest known one is '
+                         f'{near!r}')
+    told = []
+    for section in foreign[:MOST_TOLD]:
+        near = similar_name(section.rpartition('/')[2], known)
+        told.append(cut(section) + (f' (did you mean {near}?)' if near else ''))
+    warnings.warn(f'{path}: ignored, because no node of that name reads its parameters here: '
+                  f'{listed([*told, *foreign[MOST_TOLD:]], MOST_TOLD)}', stacklevel=4)
 
 
-def _parse(text, where):
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        problem = str(error).replace('\n', ' ')
-        raise ValueError(f'{where} is not YAML: {problem}') from None
+def _check_sections(given, nodes, known):
+    """
+    Refuse a name that no node of its section knows.
 
-
-def _sections(path, nodes):
-    try:
-        with open(path, encoding='utf-8') as stream:
-            text = stream.read()
-    except UnicodeDecodeError as error:
-        raise ValueError(f'{path} is not UTF-8 text: {error}') from None
-    document = _parse(text, path)
-    if not isinstance(document, Mapping) or not document:
-        raise ValueError(f'{path} holds no parameters; expected sections such as '
-                         '"/**: ros__parameters: ..."')
-    for section, body in document.items():
-        node = _node_of(section, nodes)
+    The values for a node that is not built are checked one by one.
+    """
+    fields = {node: flatten(cls) for node, cls in known.items()}
+    for section, name, one, _ in given.given():
+        node = _node_of(section, known)
         if node is None:
-            raise ValueError(f'{path}: unknown section {section!r}; the nearest known one is '
-                             f'{nearest_name(section, ["/**", *nodes])!r}')
-        if not isinstance(body, Mapping) or list(body) != ['ros__parameters'] or not isinstance(
-                body['ros__parameters'], Mapping):
-            raise ValueError(f'{path}: section {section!r} expects exactly one mapping, '
-                             '"ros__parameters"')
-        yield node, body['ros__parameters']
+            continue
+        where = '-p' if one.where.startswith('-p ') else one.where
+        _takers(None if node == ANY_NODE else node, name, fields, where)
+        if node in known and node not in nodes and name in fields[node]:
+            try:
+                check_value(name, from_ros(one.value, fields[node][name]), fields[node][name])
+            except ValueError as error:
+                raise ValueError(f'{where}: {node}: {error}') from None
 
 
-def _node_of(section, nodes):
-    """Return the node of a section name ('strapdown', '/ns/strapdown', '/**'), or None."""
-    text = str(section)
-    if text == '/**':
-        return text
-    node = text.rsplit('/', 1)[-1]
-    return node if node in nodes else None
+def _namespace(named, given, known):
+    """
+    Return the namespace that the sections of files, named, have for known nodes, '' for none.
+
+    Sections of other namespaces are said to be ignored; without a namespace, two are refused.
+    """
+    ours = [section for section in named if _node_of(section, known)]
+    found = {section.partition('/*')[0] if '*' in section else section.rpartition('/')[0]
+             for section in ours}
+    plain = any('*' not in section and section.count('/') == 1 for section in ours)
+    named = sorted(found - {''})
+    if len(named) > 1 and not plain:
+        raise ValueError(f'the sections are of {len(named)} namespaces, '
+                         f'{listed(named, MOST_TOLD)}; expected one vehicle')
+    namespace = named[0] if named and not plain else ''
+    every = dict.fromkeys([*ours, *(section for section, *_ in given.given())])
+    strange = [section for section in every if _node_of(section, known)
+               and not any(applies(section, f'{namespace}/{node}') for node in known)]
+    if strange:
+        warnings.warn(f'ignored, because the nodes stand in the namespace {namespace or "/"!r}: '
+                      f'{listed(strange, MOST_TOLD)}', stacklevel=4)
+    return namespace
 
 
-def _flat(parameters, prefix=''):
-    values = {}
-    for key, value in parameters.items():
-        name = f'{prefix}{key}'
-        if isinstance(value, Mapping):
-            values.update(_flat(value, name + '.'))
-        else:
-            values[name] = value
-    return values
+def _tell_overruled(given, values, known, namespace, order):
+    """
+    Say which files and assignments have no effect on some nodes, as it is with ROS.
 
-
-def _assign(values, nodes, section, name, value, where):
-    if name in ROS_OWN or name.startswith('qos_overrides.'):
-        return
-    known = {node: flatten(cls) for node, cls in nodes.items() if section in ('/**', node)}
-    takers = [node for node, names in known.items() if name in names]
-    if not takers:
-        raise ValueError(f'{where}: {unknown_key(name, set().union(*known.values()))}')
-    for node in takers:
-        kind = known[node][name].type
-        values[node][name] = _number(value) if kind is float else value
-
-
-def _number(value):
-    """Return 1e-3 as the number it is: YAML 1.1, and so PyYAML, takes it for a text."""
-    if isinstance(value, str) and re.fullmatch(r'[-+]?\d+e[-+]?\d+', value, re.IGNORECASE):
-        return float(value)
-    return value
+    values: {node: {name: Given}}; known: {node: names}; order: files and assignments, as given.
+    """
+    lost = {}
+    for section, name, one, last in given.given():
+        for node, winners in values.items():
+            if name not in known[node] or not applies(section, f'{namespace}/{node}'):
+                continue
+            winner = winners[name]
+            if order.index(last) > order.index(winner.where) and (
+                    one.where != last or one.value != winner.value):
+                lost.setdefault((last, winner.where), {}).setdefault(name, []).append(node)
+    for (where, winner), names in lost.items():
+        nodes = list(dict.fromkeys(node for some in names.values() for node in some))
+        what = '' if where.startswith('-p ') else f': {listed(names, MOST_TOLD)}'
+        advice = f'; write -p {nodes[0]}:{where[3:]}' if (
+            where.startswith('-p ') and ':' not in where.partition(':=')[0]) else ''
+        warnings.warn(f'{where}{what}: no effect on {", ".join(nodes)}, because, as in ROS 2, '
+                      f'{winner} says otherwise in a section that comes later, or with another '
+                      f'type{advice}', stacklevel=4)
 
 
 def dump(settings):
@@ -169,4 +233,4 @@ def dump_nodes(built):
             branch[leaf] = list(value) if isinstance(value, tuple) else value
         # Wildcard: a bare name would miss a node in a namespace.
         document[f'/**/{node}'] = {'ros__parameters': tree}
-    return yaml.safe_dump(document, sort_keys=False)
+    return yaml.dump(document, Dumper=Dumper, sort_keys=False)

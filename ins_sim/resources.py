@@ -37,7 +37,8 @@ def parameter_file(name):
     Raises FileNotFoundError where there is none.
     """
     path = Path(name)
-    if path.is_file():
+    if path.exists() and not path.is_dir():
+        # what is no regular file is refused by name where it is read
         return path
     if path.suffix or path.parent != Path('.'):
         raise FileNotFoundError(f'the parameter file {name} does not exist')

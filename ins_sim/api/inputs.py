@@ -42,8 +42,8 @@ def read_settings(names: Names, values: Values | None = None,
     Parameters
     ----------
     names : str, path, or a list of these
-        Parameter files, later ones win: names of shipped files, such as ``'motion_2'``, or paths.
-        An empty list gives the defaults.
+        Parameter files, of which the same section of a later one wins: names of shipped files,
+        such as ``'motion_2'``, or paths. An empty list gives the defaults.
     values : mapping, optional
         Values by the name of the parameter; they win over the files. ``'gyro.delay_us.y'`` goes
         to every node that has such a parameter, ``'strapdown:output_every'`` to one node.

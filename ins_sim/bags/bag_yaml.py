@@ -1,14 +1,11 @@
-"""YAML as rosbag2 writes it, and reading it from files that nobody vouches for."""
+"""YAML as rosbag2 writes it."""
 
 import json
 import re
 
-import yaml
-
 # what needs no quotes in YAML 1.1, and is no number, truth value or nothing
 _PLAIN = re.compile(r'(?!(?:true|false|yes|no|on|off|y|n|null)$)[A-Za-z_/][\w/.\-]*', re.ASCII
                     | re.IGNORECASE)
-_DEEPEST = 50
 
 
 def dump_yaml(tree):
@@ -38,22 +35,3 @@ def _scalar(value):
         # a text of JSON is one of YAML
         return value if _PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)
     return json.dumps(value)
-
-
-def load_yaml(text):
-    """Return the tree of a YAML text; ValueError if it is none."""
-    try:
-        return yaml.load(text, _loader(text))
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise ValueError(' '.join(str(error).split())) from None
-
-
-def _loader(text):
-    """Return the loader in C, ten times faster, but not for what might exhaust its stack."""
-    depth = deepest = 0
-    for bracket in re.findall(r'[][{}]', text):
-        depth += 1 if bracket in '[{' else -1
-        deepest = max(depth, deepest)
-    if deepest > _DEEPEST or re.search(r'^ {200}|(?:- ){50}', text, re.MULTILINE):
-        return yaml.SafeLoader
-    return getattr(yaml, 'CSafeLoader', yaml.SafeLoader)

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from .bag_yaml import dump_yaml, load_yaml
+from ins_sim.settings.shown import cut, shown
+from ins_sim.yaml_text import load, read_bytes
+from .bag_yaml import dump_yaml
 from .qos import read_profiles
 
 NAME = 'metadata.yaml'
@@ -27,31 +29,31 @@ def read_metadata(folder):
     """
     path = Path(folder) / NAME
     try:
-        content = path.read_text(encoding='utf-8')
+        content = read_bytes(path)
     except FileNotFoundError:
         return None
-    except UnicodeDecodeError:
-        raise ValueError(f'{path} is no UTF-8') from None
     try:
-        tree = load_yaml(content)
+        tree = load(content)
     except ValueError as error:
-        raise ValueError(f'{path} is no YAML: {error}') from None
+        raise ValueError(f'{path} {error}') from None
     info = tree.get(TOP) if isinstance(tree, dict) else None
     if not isinstance(info, dict):
         raise ValueError(f'{path} has no {TOP}; expected the metadata of a rosbag2 bag')
     version, storage = info.get('version'), info.get('storage_identifier')
     if not isinstance(version, int) or version > NEWEST:
-        raise ValueError(f'{path} has the version {version!r}; expected at most {NEWEST}')
+        raise ValueError(f'{path} has the version {shown(version)}; expected at most {NEWEST}')
     mode = str(info.get('compression_mode') or 'none').lower()
     if mode != 'none':
-        raise ValueError(f'{folder} is compressed by {mode} ({info.get("compression_format")}); '
-                         'expected a bag without it, or with compressed MCAP chunks '
+        codec = cut(str(info.get('compression_format')))
+        raise ValueError(f'{folder} is compressed by {cut(mode)} ({codec}); expected a bag '
+                         'without it, or with compressed MCAP chunks '
                          '("ros2 bag convert" makes one)')
     if storage not in ('mcap', 'sqlite3'):
-        raise ValueError(f'{path} has the storage {storage!r}; expected mcap or sqlite3')
+        raise ValueError(f'{path} has the storage {shown(storage)}; expected mcap or sqlite3')
     files = info.get('relative_file_paths')
     if not isinstance(files, list) or not files or not all(isinstance(f, str) for f in files):
-        raise ValueError(f'{path} has the relative_file_paths {files!r}; expected names of files')
+        raise ValueError(f'{path} has the relative_file_paths {shown(files)}; expected names of '
+                         'files')
     # rosbag2 once wrote paths from where it was started; the files are beside their metadata
     return Metadata(storage, tuple(PurePosixPath(f).name for f in files))
 

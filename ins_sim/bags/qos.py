@@ -2,7 +2,9 @@
 
 from functools import lru_cache
 
-from .bag_yaml import dump_yaml, load_yaml
+from ins_sim.settings.shown import shown
+from ins_sim.yaml_text import load
+from .bag_yaml import dump_yaml
 
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
@@ -23,9 +25,9 @@ LATCHED = profile_yaml('transient_local')
 def read_profiles(text):
     """Return the profiles of a YAML list; ValueError if it is none."""
     try:
-        tree = load_yaml(text) or []
+        tree = load(text) or []
     except ValueError as error:
-        raise ValueError(f'{text!r} is no YAML: {error}') from None
+        raise ValueError(f'{shown(text)} {error}') from None
     if not isinstance(tree, list) or not all(isinstance(p, dict) for p in tree):
-        raise ValueError(f'{text!r} is no list of quality of service profiles')
+        raise ValueError(f'{shown(text)} is no list of quality of service profiles')
     return tree

@@ -31,11 +31,17 @@ def run(chosen):
     """Read or simulate, show and save; return the exit code."""
     from rich.console import Console
     from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
-    from ins_sim.report import allan, allan_figure, noise_terms, storage
+    from ins_sim.report import allan_figure, allan_record, noise_terms, storage
     storage.check_free(chosen.output, chosen.force, MARK)
     console = Console()
     imu, settings, title = _record(chosen, console)
-    rate_hz = allan.rate_of(imu.t_ns)
+    try:
+        record = allan_record.regular_record(imu, _given_rate(chosen, settings))
+    except ValueError as error:
+        raise ValueError(f'{title}: {error}') from None
+    imu, rate_hz = record.imu, record.rate_hz
+    for note in record.notes:
+        console.print(f'{title}: {note}', soft_wrap=True)
     found = []
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
@@ -60,6 +66,13 @@ def run(chosen):
         noise_terms.show_noise(noise, title, console)
         console.print(f'figure: {Path(chosen.output) / noise.triad}.png', soft_wrap=True)
     return 0
+
+
+def _given_rate(chosen, settings):
+    """Return the rate that -p gives the readings of SOURCE, Hz, or None."""
+    given = chosen.source is not None and any(
+        text.partition(':=')[0] in ('rate_hz', 'imu_sensor:rate_hz') for text in chosen.param)
+    return settings.imu_sensor.rate_hz if given else None
 
 
 def _record(chosen, console):

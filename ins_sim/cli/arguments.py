@@ -5,10 +5,12 @@ def add_settings(parser, default=''):
     """Add --params-file and -p; default: the files that are read if none is given."""
     parser.add_argument('--params-file', action='append', default=[], metavar='FILE',
                         help='ROS parameter file, or the name of a shipped one such as motion_2; '
-                        'may be repeated, later ones win'
+                        'may be repeated; the same section of a later one wins'
                         + (f' (default: {default})' if default else ''))
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
-                        help='one parameter, for every node that knows it')
+                        help='one parameter, for every node that knows it; as in ROS 2 the '
+                        'section of a node in a file may win over it, but not over '
+                        'NODE:NAME:=VALUE')
 
 
 def add_output(parser, default, content):

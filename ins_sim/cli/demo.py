@@ -43,8 +43,8 @@ def run(chosen):
     else:
         parts.append(('recorded_flight', _settings(
             'recorded_flight', chosen.duration,
-            [f'motion.recording.path:="{Path(chosen.recording).resolve()}"',
-             f'motion.recording.start_s:={chosen.start}'])))
+            [f'motion_generator:motion.recording.path:="{Path(chosen.recording).resolve()}"',
+             f'motion_generator:motion.recording.start_s:={chosen.start}'])))
     for name, settings in parts:
         try:
             _part(name, settings, folder / name, console)
@@ -61,7 +61,8 @@ def _settings(name, duration_s, assignments=()):
     from ins_sim.settings.node import Pacing
     settings = parameter_files.read(
         [resources.config('default'), resources.config(name)],
-        [*assignments, f'output_every:={EVERY}', f'duration_s:={duration_s}'])
+        [*assignments, f'strapdown:output_every:={EVERY}',
+         f'motion_generator:duration_s:={duration_s}'])
     generator = settings.motion_generator
     if generator.motion.kind == 'recording':
         motion = read_motion(generator)

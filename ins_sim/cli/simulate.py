@@ -97,7 +97,8 @@ def _bag_writer(chosen, settings):
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):
-            console.print(f'SHA-256 of {file.name}: {digest.file_digest(file)}', soft_wrap=True)
+            console.print(f'SHA-256 of {file.name}, which holds this name: '
+                          f'{digest.file_digest(file)}', soft_wrap=True)
         console.print(f'SHA-256 of the messages: {digest.payload_digest(chosen.bag)}',
                       soft_wrap=True)
 

@@ -21,11 +21,6 @@ PER_DECADE = 8
 # The longest tau leaves this many intervals in the record.
 FEWEST = 4
 LEAST = 10 * FEWEST
-# An interval between stamps is regular within this part of the mean one, so that a jitter of 5 %
-# passes in a record of any length and a lost sample does not.
-JITTER = 0.5
-# The mean interval of each of so many parts of a record is that of the whole within STEADY.
-PARTS, STEADY = 100, 0.02
 # A coefficient is seen where its part of the Allan variance at some tau is at least SEEN, and so
 # many standard deviations of that variance.
 SEEN, SIGMAS = 0.05, 2.0
@@ -73,33 +68,6 @@ class Coefficients:
         doubt = np.sqrt(allan.tau_s / (allan.length_s * allan.deviation.shape[-1]))
         least = np.maximum(SEEN, SIGMAS * doubt)[:, None] * squares.sum(axis=-1, keepdims=True)
         return ((squares >= least) & (squares > 0.0)).any(axis=0)
-
-
-def rate_of(t_ns):
-    """
-    Return the rate, Hz, of stamps t_ns (n,) that are regular but for a small jitter.
-
-    Raises ValueError, in one sentence that says where, on a gap, a step back or another rate.
-    """
-    if len(t_ns) < 2:
-        raise ValueError(f'the record has {len(t_ns)} samples; expected at least {LEAST}')
-    steps = np.diff(t_ns) * 1e-9
-    usual = float(np.median(steps))
-    odd = np.abs(steps - usual) > JITTER * abs(usual)
-    if usual <= 0.0 or odd.any():
-        k = int(odd.argmax()) if odd.any() else 0
-        raise ValueError(f'the record is not regular: {steps[k]:.6g} s from sample {k} to '
-                         f'{k + 1}, {(t_ns[k] - t_ns[0]) * 1e-9:.6g} s after its start; expected '
-                         f'the usual {usual:.6g} s, so cut the record there')
-    mean = float(steps.mean())
-    starts = np.linspace(0, len(steps), min(PARTS, len(steps) // 20 + 1) + 1).astype(int)
-    for start, end in zip(starts, starts[1:]):
-        here = float(steps[start:end].mean())
-        if abs(here - mean) > STEADY * mean:
-            raise ValueError(f'the rate of the record changes: {1.0 / here:.6g} Hz from sample '
-                             f'{start} to {end}, {(t_ns[start] - t_ns[0]) * 1e-9:.6g} s after '
-                             f'its start; expected the mean of {1.0 / mean:.6g} Hz throughout')
-    return 1.0 / mean
 
 
 def _terms(tau):

@@ -122,7 +122,8 @@ def analyse_noise(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0))
     ``expected_coefficients``.
     """
     size = np.abs(samples).max()
-    noisy = [k for k in range(3) if np.ptp(samples[:, k]) > ROUNDING * size]
+    # what is no number is not constant either
+    noisy = [k for k in range(3) if not np.ptp(samples[:, k]) <= ROUNDING * size]
     if not noisy:
         return None
     found = allan.estimate_deviation(samples[:, noisy], rate_hz)

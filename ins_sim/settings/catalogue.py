@@ -7,6 +7,8 @@ import math
 from .shown import exact, shown
 from .suggest import nearest_name, unknown_key
 
+OF_ROS = ('use_sim_time', 'start_type_description_service')
+
 
 def flatten(cls, prefix=''):
     """Return {dotted name: dataclass field} of a settings class, in the order of declaration."""
@@ -56,6 +58,22 @@ def _assemble(cls, values, prefix):
         elif name in values:
             arguments[f.name] = values[name]
     return cls(**arguments)
+
+
+def is_of_ros(name):
+    """Return whether a parameter is one that ROS gives to every node."""
+    return name in OF_ROS or name.startswith('qos_overrides.')
+
+
+def from_ros(value, f):
+    """Return a value of a ROS parameter as its field f takes it."""
+    if value is None and f.type not in _KINDS:
+        # what ROS makes of an empty list
+        return ()
+    if value is True and 'y' in f.metadata['choices']:
+        # ROS takes a plain y for yes
+        return 'y'
+    return value.tolist() if hasattr(value, 'tolist') else value
 
 
 def check_value(name, value, f):

@@ -75,7 +75,7 @@ def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch, figur
 def consistency_of(assignments):
     """Return the NIS of the fixes of ten minutes of the study flight, and their lateral sigma."""
     settings = parameter_files.read_aided(
-        [resources.config(name) for name in ('default', 'route_flight')],
+        [resources.config(name) for name in ('route_flight',)],
         ['duration_s:=600.0', *IMU, *assignments])
     flown, = fly_filters(settings, [FilterCase('eskf', 1000)], 3)
     return flown.nis, 8.7 / np.sqrt(1000.0)
@@ -89,7 +89,7 @@ def by_time(entry):
 def consistency(assignments, run):
     """Return NEES (n,) every minute of ten, and the NIS and its freedom of every fix, of a run."""
     settings = parameter_files.read_aided(
-        [resources.config(name) for name in ('default', 'gnss_outage_flight')],
+        [resources.config(name) for name in ('gnss_outage_flight',)],
         ['duration_s:=600.0', *IMU, *assignments])
     settings = run_settings(settings, run)
     generator = settings.simulation.motion_generator

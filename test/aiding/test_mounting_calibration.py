@@ -26,7 +26,7 @@ K_Z = 0.05
 def flight():
     """Return the settings, blocks and truth of the ten minutes with two turns of 60 deg."""
     settings = parameter_files.read_aided(
-        [resources.config(name) for name in ('default', 'gnss_outage_flight', 'grade_mid')],
+        [resources.config(name) for name in ('gnss_outage_flight', 'grade_mid')],
         ['duration_s:=600.0', 'gnss_model.use:=true', f'antennas.mounting_yaw_arcmin:={MOUNTING}',
          f'surrogate.k_z:={K_Z}', 'meter_model.mounting_sigma_arcmin:=30.0',
          'meter_model.scale_z_sigma:=0.1'])

@@ -38,9 +38,21 @@ def test_what_is_no_bag(tmp_path, capsys):
     refused(tmp_path, 'is no bag', capsys)
 
 
+# ten times ten times ... ten texts, in nine lines
+BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n' + ''.join(
+    f'a{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 10)}]\n' for k in range(1, 9))
+
+
 @pytest.mark.parametrize('text, sentence', [
     ('', 'has no rosbag2_bagfile_information'), ('[1, 2]', 'has no rosbag2_bagfile_information'),
-    ('a: [', 'is no YAML'), ('\x00', 'is no YAML'), ('[' * 3000, 'is no YAML'),
+    ('a: [', 'is not YAML: line '), ('\x00', 'is not UTF-8 text that YAML allows'),
+    ('[' * 3000, 'exceeded maximum nesting depth'), ('- ' * 3000, 'is nested deeper than 64 at'),
+    ('a: &a [*a]', 'has the alias *a for itself at line 1'),
+    (BOMB, 'holds more than 1000000 values, each alias counted as what it stands for, at line 6'),
+    ('rosbag2_bagfile_information: {version: ' + '9' * 400 + '}', "has the version '999"),
+    ('rosbag2_bagfile_information: {version: !!timestamp x}', "has the version 'x'"),
+    ('rosbag2_bagfile_information: {version: 9, storage_identifier: mcap, relative_file_paths: '
+     '[' + 'a.mcap, ' * 9999 + '1]}', 'characters); expected names of files'),
     ('rosbag2_bagfile_information: {version: 10}', 'has the version 10; expected at most 9'),
     ('rosbag2_bagfile_information: {version: 9, storage_identifier: rocks}', "storage 'rocks'"),
     ('rosbag2_bagfile_information: {version: 9, storage_identifier: mcap}',
@@ -60,7 +72,7 @@ def test_metadata_that_does_not_do(text, sentence, tmp_path, capsys):
 def test_metadata_that_is_no_text(tmp_path, capsys):
     """Neither UTF-8 nor a file that stands for another outside of the bag."""
     (tmp_path / 'metadata.yaml').write_bytes(b'\xff\xfe\x00')
-    refused(tmp_path, 'is no UTF-8', capsys)
+    refused(tmp_path, 'is not UTF-8 text', capsys)
     write(tmp_path / 'bag')
     text = (tmp_path / 'bag' / 'metadata.yaml').read_text()
     (tmp_path / 'bag' / 'metadata.yaml').write_text(

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from ins_sim import parameter_files, resources
+from ins_sim import parameter_files
 from ins_sim.cli.main import main
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from ins_sim.core.timeseries.histories import ImuSamples
@@ -112,9 +112,19 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
     assert main(['allan', two, '--topic', 'left/imu', *out, *FOG]) == 0
     assert 'settings' in capsys.readouterr().out
     write_bag(tmp_path / 'gap', np.delete(t_ns, 1234), '/imu/data')
-    assert main(['allan', str(tmp_path / 'gap'), '-o', str(tmp_path / 'out3')]) == 2
-    assert '0.02 s from sample 1233 to 1234, 12.33 s after its start' in capsys.readouterr().err
-    assert not (tmp_path / 'out3').exists()
+    assert main(['allan', str(tmp_path / 'gap'), '-o', str(tmp_path / 'out3')]) == 0
+    said = capsys.readouterr().out
+    assert 'gap: 1 reading is lost, the first at 12.33 s\n' in said
+    assert 'gap: the longest part between them is taken: 2765 of 3999 readings, from 12.35' in said
+    assert rows(tmp_path / 'out3')['gyro', 'N']['x'] == pytest.approx(
+        SIGMA[0] * 0.1 * 57.29578 * 60.0, rel=0.07)
+    write_bag(tmp_path / 'same', np.full(400, t_ns[0]), '/imu/data')
+    same = ['allan', str(tmp_path / 'same'), '-o', str(tmp_path / 'out4')]
+    assert main(same) == 2
+    assert 'same: the stamps of the record do not go on: of 399' in capsys.readouterr().err
+    assert not (tmp_path / 'out4').exists()
+    assert main([*same, '-p', 'rate_hz:=100.0']) == 0
+    assert 'same: 400 readings are taken at 100 Hz, as rate_hz says' in capsys.readouterr().out
 
 
 def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
@@ -166,7 +176,7 @@ def test_a_folder_that_is_no_run_is_named(tmp_path):
 
 def test_a_perfect_axis_is_left_out():
     """Noise on one axis of three: its coefficients stand alone; of a perfect triad nothing."""
-    settings = parameter_files.read([resources.config('default')], [
+    settings = parameter_files.read([], [
         'rate_hz:=10.0', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.0, 0.1, 0.0]'])
     imu = ImuSamples.concatenate(resting_record(settings, 200.0))
     assert len(imu.t_ns) == 2001
@@ -176,6 +186,9 @@ def test_a_perfect_axis_is_left_out():
     n = noise.rows()[1]
     assert n['x'] is None and n['y'] == n['all'] == pytest.approx(0.1, rel=0.1)
     assert noise_terms.analyse_noise('accelerometer', imu.f, 10.0, AccelerometerErrors()) is None
+    imu.f[5, 1] = np.nan
+    with pytest.raises(ValueError, match='holds NaN or infinity'):
+        noise_terms.analyse_noise('accelerometer', imu.f, 10.0, AccelerometerErrors())
 
 
 def test_expected_coefficients_of_the_settings():

@@ -65,6 +65,12 @@ def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
         sums.append(re.findall(r'SHA-256 of .*: ([0-9a-f]{64})', capsys.readouterr().out))
         assert len(sums[-1]) == 2
     assert sums[0] == sums[1] and not set(sums[0]) & set(sums[2])
+    # a file of a bag holds its name: in a folder of another name only the messages are the same
+    bag_of(tmp_path, *options, '-p', 'seed:=1', name='other', motion=motion)
+    said = capsys.readouterr().out
+    assert re.search(r'SHA-256 of other_0\.\w+, which holds this name: ', said)
+    other = re.findall(r'SHA-256 of .*: ([0-9a-f]{64})', said)
+    assert other[0] != sums[0][0] and other[1] == sums[0][1]
     with open_bag(path) as bag:
         # what the instrument knows of its noise is in the message
         imu = bag.arrays('imu/data_raw')

@@ -73,6 +73,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
     (['-p', 'gyro.delay.x:=1'], "nearest known one is 'gyro.delay_us.x'"),
     (['--params-file', 'motion_3'], "no config named 'motion_3'; expected one of aggressive"),
     (['--params-file', 'absent.yaml'], 'absent.yaml'),
+    (['--params-file', '/dev/zero'], '/dev/zero is a device; expected a YAML file'),
     (['-p', 'motion.kind:=recording', '-p', 'motion.recording.path:=absent.csv'], 'absent.csv'),
     (['-p', 'duration_s:=0.0'], 'duration_s is 0'),
     (['-p', 'initial.after_s:=10.0', '-p', 'duration_s:=5.0'], 'the run navigates for'),

@@ -59,7 +59,8 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
         'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report', 'regular_file'}
+                         'graph', 'studies', 'report', 'regular_file',
+                         'ros_parameters', 'yaml_text'}
 MAY_IMPORT = {
     'settings': set(),
     'core.numerics': set(),
@@ -80,10 +81,12 @@ MAY_IMPORT = {
                                 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
-    'bags': {'messages', 'settings.suggest', 'settings.shown', 'regular_file'},
+    'bags': {'messages', 'settings.suggest', 'settings.shown', 'regular_file', 'yaml_text'},
     'regular_file': set(),
     'io': CORE | {'bags', 'messages', 'settings', 'regular_file'},
-    'parameter_files': {'settings', 'regular_file'},
+    'yaml_text': {'settings.shown', 'regular_file'},
+    'ros_parameters': {'settings.shown', 'yaml_text'},
+    'parameter_files': {'settings', 'ros_parameters', 'yaml_text'},
     'resources': {'settings.suggest'},
     'graph': {'messages'},
     'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file'},

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import runpy
+import warnings
 
 from hypothesis import given, strategies as st
 import pytest
@@ -52,9 +53,9 @@ def test_an_overlay_wins_over_the_default(name):
 @pytest.mark.parametrize('name', CONFIG)
 def test_every_shipped_file_runs(name, shared_flight):
     """Each overlay over the default runs for two seconds offline."""
-    assignments = ['duration_s:=2.0']
+    assignments = ['motion_generator:duration_s:=2.0']
     if name == 'recorded_flight':
-        assignments.append(f'motion.recording.path:="{shared_flight}"')
+        assignments.append(f'motion_generator:motion.recording.path:="{shared_flight}"')
     settings = parameter_files.read([resources.config('default'), resources.config(name)],
                                     assignments)
     assert len(run_offline(settings).errors) == 201
@@ -100,7 +101,10 @@ BAD_ASSIGNMENTS = [
     ('topics.depth:=100', 'pacing.window is 200; expected at most topics.depth, 100'),
     ('motion.kind:=recording', 'motion.recording.path is empty'),
     ('rate_hz=5', "-p 'rate_hz=5' has no \":=\"; expected NAME:=VALUE"),
-    ('rate_hz:=[', 'is not YAML'),
+    ('rate_hz:=[', '-p rate_hz:=[ is not YAML: line '),
+    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is no single value and no '),
+    ('rate_hz:=*a', 'is no single value and no list'),
+    ('rate_hz:=' + '9' * 400, "'999"), ('rate_hz:=1:30', "rate_hz is '1:30'; expected a number"),
 ]
 
 
@@ -114,9 +118,21 @@ def test_bad_assignments(assignment, sentence):
 
 
 BAD_FILES = [
-    (b'', 'holds no parameters'), (b'[]', 'holds no parameters'), (b'a: [', 'is not YAML'),
+    (b'', 'holds no parameters'), (b'[]', 'has a list for a key at line 1; expected a name'),
+    (b'/**: {ros__parameters: {a: [', 'is not YAML: line '),
     (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
-    (b'strapdown:\n  rate_hz: 1.0', 'expects exactly one mapping, "ros__parameters"'),
+    (b'strapdown:\n  rate_hz: 1.0', 'has \'1.0\' before "ros__parameters" at line 2; expected '
+     'sections such as "/**: ros__parameters: ..."'),
+    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS takes none'),
+    (b'/**:\n  ros__parameters: {rate_hz: [1.0, 2]}', "has '2' in a list of numbers with a point "
+     "at line 2, 'rate_hz'; ROS expects values of one type, such as [1.0, 0.0, 0.0]"),
+    (b'/**:\n  ros__parameters: {rate_hz: }', 'has no value at line 2; expected one'),
+    (b'/**: {ros__parameters: {a: ' + b'[' * 100, 'is nested deeper than 64 at line 1'),
+    (b'gnss:\n  ros__parameters: {seed: -1}', 'bad.yaml: gnss: seed is -1; expected 0 to'),
+    (b'/**/gnss:\n  ros__parameters: {sed: 1}', "bad.yaml: unknown parameter 'sed'; the nearest "
+     "known one is 'seed'"),
+    (b'/a/gnss: {ros__parameters: {seed: 1}}\n/b/gnss: {ros__parameters: {seed: 2}}',
+     'the sections are of 2 namespaces, /a, /b; expected one vehicle'),
     (b'strapdown:\n  ros__parameters: {gyro: {delay_us: {x: 1.0}}}',
      "unknown parameter 'gyro.delay_us.x'"),
     (b'strapdown:\n  ros__parameters: {rate_hz: .inf}', 'rate_hz is inf; expected a finite'),
@@ -196,5 +212,80 @@ def test_an_assignment_may_name_its_node():
     settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
     assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
     assert settings.simulation.imu_sensor.seed == 0
-    with pytest.raises(ValueError, match="unknown parameter 'meter:seed'"):
+    with pytest.raises(ValueError, match="-p meter:seed:=7: 'meter' is no node of ins_sim; the "
+                       "nearest is 'velocity_meter'"):
         parameter_files.read_aided([], ['meter:seed:=7'])
+
+
+def told(paths, assignments=()):
+    """Return the settings, and what is said beside."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter('always')
+        settings = parameter_files.read(paths, assignments)
+    return settings, [str(one.message) for one in said]
+
+
+def test_sections_of_other_nodes_are_ignored_with_a_word(tmp_path):
+    """A file may serve a camera too; a name near one of ours is said."""
+    path = tmp_path / 'p.yaml'
+    path.write_text('/**/motion_generator: {ros__parameters: {duration_s: 2.0}}\n'
+                    '/my_camera: {ros__parameters: {fps: 30}}\n'
+                    'strapdwn: {ros__parameters: {rate_hz: 30.0}}\n'
+                    + ''.join(f'c{k}: {{ros__parameters: {{a: 1}}}}\n' for k in range(9)))
+    settings, said = told([path])
+    assert settings.motion_generator.duration_s == 2.0 and settings.strapdown.rate_hz == 100.0
+    assert said == [f'{path}: ignored, because no node of that name reads its parameters here: '
+                    '/my_camera, /strapdwn (did you mean strapdown?), /c0 and 8 more']
+
+
+@pytest.mark.parametrize('text, namespace', [
+    ('/**: {motion_generator: {ros__parameters: {duration_s: 2.0}}}', ''),
+    ('imu1: {motion_generator: {ros__parameters: {duration_s: 2.0}}}', '/imu1'),
+    ('/imu1/*: {ros__parameters: {duration_s: 2.0}}', '/imu1'),
+    ('/*: {ros__parameters: {duration_s: 2.0}}', '')])
+def test_sections_within_sections(tmp_path, text, namespace):
+    """Names of nodes and of namespaces may be nested; one namespace is that of all nodes."""
+    path = tmp_path / 'p.yaml'
+    path.write_text(text)
+    settings, said = told([path])
+    assert settings.motion_generator.duration_s == 2.0 and said == []
+    path.write_text(f'{text}\n/imu2/strapdown: {{ros__parameters: {{output_every: 7}}}}\n'
+                    '/strapdown: {ros__parameters: {output_every: 8}}')
+    settings, said = told([path])
+    assert settings.strapdown.output_every == 8
+    assert len(said) == 1 and "stand in the namespace '/': " in said[0]
+    assert '/imu2/strapdown' in said[0] and (namespace in said[0])
+
+
+def test_an_assignment_that_ros_overrules_is_said(tmp_path):
+    """A section behind /** wins over -p, as in a node; with the name of the node -p wins."""
+    path = tmp_path / 'prec.yaml'
+    path.write_text('/**: {ros__parameters: {rate_hz: 100.0}}\n'
+                    '/**/motion_generator: {ros__parameters: {duration_s: 0.2}}')
+    settings, said = told([path], ['duration_s:=1.0', 'rate_hz:=50.0'])
+    assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 50.0)
+    assert said == ['-p duration_s:=1.0: no effect on motion_generator, because, as in ROS 2, '
+                    f'{path} says otherwise in a section that comes later, or with another type; '
+                    'write -p motion_generator:duration_s:=1.0']
+    other = tmp_path / 'other.yaml'
+    other.write_text('/**: {ros__parameters: {duration_s: 7.0, rate_hz: 100}}')
+    settings, said = told([path, other])
+    assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 100.0)
+    assert said == [f'{other}: duration_s: no effect on motion_generator, because, as in ROS 2, '
+                    f'{path} says otherwise in a section that comes later, or with another type']
+    settings, said = told([path], ['motion_generator:duration_s:=1.0'])
+    assert settings.motion_generator.duration_s == 1.0 and said == []
+    path.write_text('imu1: {motion_generator: {ros__parameters: {duration_s: 0.2}}}')
+    settings, said = told([path], ['motion_generator:duration_s:=1.0', 'duration_s:=3.0'])
+    assert settings.motion_generator.duration_s == 3.0
+    assert said == ["ignored, because the nodes stand in the namespace '/imu1': /motion_generator"]
+    assert parameter_files.read([path], {'duration_s': 1.0}).motion_generator.duration_s == 1.0
+
+
+def test_texts_that_ros_takes_for_something_else(tmp_path):
+    """A plain y is the axis, and what is dumped is read again as the text it was."""
+    settings = parameter_files.read([], ['motion.coning.axis:=y', 'motion.recording.path:="1e5"'])
+    assert settings.motion_generator.motion.coning.axis == 'y'
+    path = tmp_path / 'p.yaml'
+    path.write_text(parameter_files.dump(settings))
+    assert "axis: 'y'" in path.read_text() and parameter_files.read([path]) == settings

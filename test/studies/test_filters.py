@@ -18,7 +18,7 @@ from support.studies import spread
 ALL = 12
 pytestmark = pytest.mark.slow
 
-FILES = ('default', 'route_flight', 'grade_mid')
+FILES = ('route_flight', 'grade_mid')
 
 
 def numbers(few):
@@ -119,7 +119,7 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
     have about half of the freedom that the bound assumes.
     """
     rows, flights = flown(
-        count, ('default', 'gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],
+        count, ('gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],
         ['gnss_model.use:=true', 'outages.start_s:=[600.0]', 'outages.end_s:=[4000.0]',
          'antennas.mounting_yaw_arcmin:=20.0', 'meter_model.mounting_sigma_arcmin:=30.0'])
     eskf, flights = rows[0], flights[0]

@@ -2,10 +2,8 @@
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 
-from ins_sim.settings.catalogue import build, flatten, values_of
+from ins_sim.settings.catalogue import build, flatten, from_ros, is_of_ros, values_of
 from ins_sim.settings.suggest import unknown_key
-
-OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
 
 
 def declare_settings(node, cls):
@@ -18,27 +16,20 @@ def declare_settings(node, cls):
     """
     fields = flatten(cls)
     given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
-    strange = [name for name in given if name not in fields and not name.startswith(OF_ROS)]
+    strange = [name for name in given if name not in fields and not is_of_ros(name)]
     if strange:
         # a parameter file may serve all nodes: a key of another node is not a mistake
         from ins_sim.settings.by_node import ALL_NAMES
         for name in strange:
             if name not in ALL_NAMES:
                 raise ValueError(unknown_key(name, ALL_NAMES))
-    settings = build(cls, {name: _plain(value, fields[name]) for name, value in given.items()
+    settings = build(cls, {name: from_ros(value, fields[name]) for name, value in given.items()
                            if name in fields})
     node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,
                                   _descriptor(fields[name], value))
                                  for name, value in values_of(settings).items()],
                             ignore_override=True)
     return settings
-
-
-def _plain(value, field):
-    if value is None and field.default == ():
-        # what ROS makes of an empty list in a file
-        return ()
-    return value.tolist() if hasattr(value, 'tolist') else value
 
 
 def _descriptor(field, value):

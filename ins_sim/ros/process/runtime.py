@@ -97,7 +97,8 @@ def node_main(load, args=None, **more):
         stop.request(EXIT_PARAMETERS)
     except RuntimeError as error:
         # rcl's own view of the arguments: a file that is no YAML, a remapping that is none
-        _fatal(rclpy, node_class, ' '.join(str(error).split()))
+        from .refusals import sentence
+        _fatal(rclpy, node_class, sentence(error, args))
         stop.request(EXIT_PARAMETERS)
     else:
         executor = SingleThreadedExecutor()

@@ -122,37 +122,6 @@ def test_coefficients_are_seen_where_they_matter():
         assert c.seen(curve).tolist() == seen, values
 
 
-def stamps(n=1000, dt_ns=10_000_000):
-    """Return regular stamps, ns."""
-    return 5_000_000_000 + dt_ns * np.arange(n)
-
-
-def test_rate_of_regular_stamps():
-    """Exact stamps give the exact rate; a jitter of 5 % does no harm."""
-    assert allan.rate_of(stamps()) == pytest.approx(100.0, rel=1e-12)
-    jitter = np.random.default_rng(2).normal(scale=0.05 * 1e7, size=200_000).astype(int)
-    assert allan.rate_of(stamps(200_000) + jitter) == pytest.approx(100.0, rel=1e-5)
-
-
-def test_irregular_stamps_are_refused_and_located():
-    """A lost sample, a step back, a doubled stamp and a change of rate, each with its place."""
-    lost = np.delete(stamps(), 700)
-    with pytest.raises(ValueError, match=r'0.02 s from sample 699 to 700, 6.99 s after its start; '
-                                         'expected the usual 0.01 s'):
-        allan.rate_of(lost)
-    back = stamps()
-    back[300:] -= 1_000_000_000
-    with pytest.raises(ValueError, match=r'-0.99 s from sample 299 to 300, 2.99 s'):
-        allan.rate_of(back)
-    with pytest.raises(ValueError, match=r': 0 s from sample 5 to 6'):
-        allan.rate_of(np.insert(stamps(), 5, stamps()[5]))
-    faster = np.concatenate([stamps(), stamps()[-1] + 9_000_000 * np.arange(1, 1001)])
-    with pytest.raises(ValueError, match='the rate of the record changes: 100 Hz from sample 0'):
-        allan.rate_of(faster)
-    with pytest.raises(ValueError, match='has 1 samples; expected at least 40'):
-        allan.rate_of(stamps(1))
-
-
 @pytest.mark.parametrize('record', ['white', 'walk', 'offset'])
 @pytest.mark.parametrize('samples', [40, 1001, 100_000])
 def test_estimate_is_that_of_allantools(record, samples):

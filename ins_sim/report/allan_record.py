@@ -1,0 +1,208 @@
+"""
+The regular part of a recorded IMU, which an Allan deviation needs, and what was done to get it.
+
+Readings count as taken at one rate where their stamps keep up with it in the long run. A stamp
+may come late, early or in a burst: it is evened out, as long as the readings before and behind it
+are where an even rate has them to half an interval. Where they are not, readings are lost, or the
+clock has jumped, and the record is cut there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ins_sim.core.timeseries.histories import ImuSamples
+from .allan import LEAST
+
+# An interval is odd where it differs from the usual one by more than this part of it, and readings
+# are lost where those behind are late by more than it.
+JITTER = 0.5
+# So many readings before and behind an odd interval tell whether some are lost; more in bursts,
+# which are the more odd intervals than this part.
+NEAR, NEAR_IN_BURSTS, BURSTS = 10, 400, 0.1
+# Odd intervals that follow each other as evenly are those of a coarse clock.
+EVENLY = 0.25
+# The mean interval of each of so many parts of a record is that of the others within STEADY.
+PARTS, STEADY = 100, 0.02
+WAY_OUT = '"-p rate_hz:=HZ" takes all readings in their order as taken at that rate'
+
+
+@dataclass(frozen=True)
+class RegularRecord:
+    """Readings at one rate: imu, rate_hz, and notes, the sentences on what was done."""
+
+    imu: ImuSamples
+    rate_hz: float
+    notes: tuple
+
+
+def regular_record(imu, rate_hz=None):
+    """
+    Return the longest regular part of ImuSamples as RegularRecord.
+
+    rate_hz: rate to be taken for that of all readings, whatever their stamps.  Raises ValueError,
+    in one sentence with what was found on the way, where fewer than LEAST readings are left.
+    """
+    notes, total, given = [], len(imu), rate_hz is not None
+    finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
+    if not finite.all():
+        bad = total - np.count_nonzero(finite)
+        notes.append(f'{bad} of {total} readings {"holds" if bad == 1 else "hold"} a value that '
+                     'is no number and counts as lost')
+    if given:
+        cuts = np.flatnonzero(np.diff(finite)) + 1
+        imu = _longest(imu, cuts, finite, notes)
+        notes.append(f'{len(imu)} readings are taken at {rate_hz:.6g} Hz, as rate_hz says; their '
+                     f'stamps say {_stamped_rate(imu.t_ns)}')
+    else:
+        imu = _without_copies(imu[finite], notes)
+        if len(imu) >= LEAST:
+            imu, rate_hz = _steady(imu, notes)
+    if len(imu) < LEAST:
+        stamps = not given and np.count_nonzero(finite) >= LEAST
+        said = '; '.join(notes)
+        raise ValueError(f'the record has {total} readings, of which {len(imu)} are left'
+                         f'{f" ({said})" if said else ""}; expected at least {LEAST}'
+                         f'{f"; {WAY_OUT}" if stamps else ""}')
+    return RegularRecord(imu, rate_hz, tuple(notes))
+
+
+def _stamped_rate(t_ns):
+    length_s = (int(t_ns[-1]) - int(t_ns[0])) * 1e-9 if len(t_ns) else 0.0
+    return f'{(len(t_ns) - 1) / length_s:.6g} Hz' if length_s > 0.0 else 'nothing of a rate'
+
+
+def _longest(imu, cuts, good, notes):
+    """Return the longest part between cuts whose readings are good."""
+    edges = np.concatenate([[0], cuts, [len(imu)]])
+    lengths = np.where(good[edges[:-1].clip(max=len(imu) - 1)], np.diff(edges), 0)
+    k = int(np.argmax(lengths))
+    part = imu[edges[k]:edges[k] + lengths[k]]
+    if len(cuts) and len(part):
+        since_s = (int(part.t_ns[0]) - int(imu.t_ns[0])) * 1e-9
+        notes.append(f'the longest part between them is taken: {len(part)} of {len(imu)} '
+                     f'readings, from {since_s:.6g} s after the start')
+    return part
+
+
+def _without_copies(imu, notes):
+    """Leave out readings that are there twice, with stamp and values."""
+    again = (np.diff(imu.t_ns) == 0) & (imu.omega[1:] == imu.omega[:-1]).all(axis=1) & (
+        imu.f[1:] == imu.f[:-1]).all(axis=1)
+    if again.any():
+        twice = _told(np.count_nonzero(again), 'reading is', 'readings are')
+        notes.append(f'{twice} there twice, with stamp and values: the copies are left out')
+        imu = imu[np.concatenate([[True], ~again])]
+    return imu
+
+
+def _steady(imu, notes):
+    """Return the longest part at one rate, and this rate, Hz."""
+    t_s = (imu.t_ns - imu.t_ns[0]) * 1e-9
+    step = _usual_step(t_s)
+    if not step > 0.0:
+        raise ValueError(f'the stamps of the record do not go on: of {len(t_s) - 1} intervals '
+                         f'{np.count_nonzero(np.diff(t_s) <= 0.0)} are not positive; {WAY_OUT}')
+    cuts, late = _losses(t_s, step)
+    if len(cuts):
+        lost, jumps = int(np.round(late[late > 0.0]).sum()), int(np.count_nonzero(late < 0.0))
+        back = f'the stamps fall behind at {_told(jumps, "place", "places")}'
+        what = (f'{back} and jump forward by {lost} intervals in all' if jumps and lost else
+                back if jumps else _told(lost, 'reading is lost', 'readings are lost'))
+        notes.append(f'{what}, the first at {t_s[cuts[0] - 1]:.6g} s')
+        imu = _longest(imu, cuts, np.full(len(imu), True), notes)
+    imu = _at_one_rate(imu, notes)
+    if len(imu) < LEAST:
+        return imu, 1.0 / step
+    t_s = (imu.t_ns - imu.t_ns[0]) * 1e-9
+    count = np.arange(len(t_s))
+    step, first = np.polyfit(count, t_s, 1)
+    off = np.abs(t_s - first - step * count)
+    uneven = int(np.count_nonzero(_odd(np.diff(t_s), step)))
+    if uneven:
+        notes.append(f'{uneven} of {len(t_s) - 1} intervals differ from {step:.6g} s by more than '
+                     f'half of it: the stamps are evened out, by at most {off.max():.3g} s')
+    return imu, 1.0 / float(step)
+
+
+def _told(count, one, many):
+    return f'{count} {one if count == 1 else many}'
+
+
+def _odd(steps, step):
+    return np.abs(steps - step) > JITTER * step
+
+
+def _usual_step(t_s):
+    """Return the usual interval, s: of neighbours if only losses disturb it, else the mean."""
+    steps = np.diff(t_s)
+    usual = float(np.median(steps))
+    odd = np.count_nonzero(_odd(steps, usual))
+    short = np.count_nonzero(steps < (1.0 - JITTER) * usual)
+    apart = max(1, min(100, len(steps) // 4))
+    mean = float(np.median(t_s[apart:] - t_s[:-apart])) / apart
+    return usual if usual > JITTER * mean and short < BURSTS * odd else mean
+
+
+def _losses(t_s, step):
+    """
+    Return the numbers of readings before which others are lost, and how many by their stamps.
+
+    In bursts, losses so near to an end that they cannot be told from a burst stay unseen.
+    """
+    steps = np.diff(t_s)
+    odd = np.flatnonzero(_odd(steps, step)) + 1
+    bursts = len(odd) > BURSTS * len(steps) and (steps[odd - 1] < step).any()
+    late = np.concatenate([[0.0], np.cumsum(t_s / step - np.arange(len(t_s)))])
+    if not bursts:
+        shift = _mean(late, odd, odd + NEAR) - _mean(late, odd - NEAR, odd)
+        lost = np.abs(shift) > JITTER
+        gaps = np.diff(odd[lost])
+        if len(gaps) >= NEAR and gaps.std() < EVENLY * gaps.mean():
+            # a coarse clock beats with the rate
+            return odd[:0], shift[:0]
+        return odd[lost], steps[odd[lost] - 1] / step - 1.0
+    half = min(NEAR_IN_BURSTS, len(t_s) // 4) // 2
+    odd = odd[(odd >= 2 * half) & (odd + 2 * half <= len(t_s))]
+    two, one, none, more = (_mean(late, odd + k * half, odd + (k + 1) * half)
+                            for k in (-2, -1, 0, 1))
+    # what the rate itself makes of so long a stretch is taken out
+    shift = (none + more - two - one) / 2.0 - (more - none + one - two)
+    seen = np.flatnonzero(np.abs(shift) > JITTER)
+    cuts, most = [], []
+    for group in np.split(seen, np.flatnonzero(np.diff(odd[seen]) > 2 * half) + 1):
+        if len(group):
+            # somewhere between these two
+            cuts += [odd[group[0]], odd[group[-1]]]
+            most += [shift[group[np.argmax(np.abs(shift[group]))]], 0.0]
+    return np.array(cuts, dtype=int), np.array(most)
+
+
+def _mean(sums, first, end):
+    """Return the means between numbers of a record, from the sums before each."""
+    first, end = (np.clip(edge, 0, len(sums) - 1) for edge in (first, end))
+    return (sums[end] - sums[first]) / np.maximum(end - first, 1)
+
+
+def _at_one_rate(imu, notes):
+    """Return the longest part in which the rate stays within STEADY."""
+    steps = np.diff(imu.t_ns) * 1e-9
+    # one late stamp must not change the mean interval of a part
+    least = NEAR_IN_BURSTS if _odd(steps, np.median(steps)).any() else 2 * NEAR
+    edges = np.linspace(0, len(steps), min(PARTS, len(steps) // least + 1) + 1).astype(int)
+    means = np.array([steps[a:b].mean() for a, b in zip(edges, edges[1:])])
+    best = 0, 0
+    for first in range(len(means)):
+        lowest = np.minimum.accumulate(means[first:])
+        highest = np.maximum.accumulate(means[first:])
+        count = int(np.argmin(np.append(highest <= lowest * (1.0 + 2.0 * STEADY), False)))
+        best = max(best, (count, -first))
+    count, first = best[0], -best[1]
+    if count == len(means):
+        return imu
+    part = imu[edges[first]:edges[first + count] + 1]
+    notes.append(f'the rate changes, from {1.0 / means.max():.6g} to {1.0 / means.min():.6g} Hz: '
+                 f'the longest part within {100.0 * STEADY:.0f} % of one rate is taken, '
+                 f'{len(part)} of {len(imu)} readings, from '
+                 f'{(int(part.t_ns[0]) - int(imu.t_ns[0])) * 1e-9:.6g} s after its start')
+    return part

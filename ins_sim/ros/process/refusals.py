@@ -1,0 +1,47 @@
+"""One sentence for the ROS arguments that rcl refuses, in the words of the offline commands."""
+
+from pathlib import Path
+import sys
+
+from ins_sim import resources
+from ins_sim.ros_parameters import Parameters
+from ins_sim.settings.shown import cut
+from ins_sim.yaml_text import read_bytes
+
+FILE_FLAG, VALUE_FLAGS = '--params-file', ('-p', '--param')
+LONGEST = 400
+
+
+def sentence(error, arguments=None):
+    """
+    Return what is wrong with the arguments of a node, one sentence.
+
+    error: that of rcl, which names its own source lines and stays where nothing better is known;
+    arguments: command line, by default that of the process.
+    """
+    words = sys.argv if arguments is None else list(arguments)
+    parameters = Parameters()
+    for flag, text in zip(words, words[1:]):
+        try:
+            if flag == FILE_FLAG:
+                _check_file(text, parameters)
+            elif flag in VALUE_FLAGS and ':=' in text:
+                name, _, value = text.partition(':=')
+                parameters.add_value('/**', name, value, f'{flag} {cut(text)}')
+        except (ValueError, OSError) as found:
+            return str(found)
+    return cut(' '.join(str(error).split()), LONGEST)
+
+
+def _check_file(name, parameters):
+    if Path(name).exists():
+        parameters.add_file(read_bytes(name), name)
+        return
+    try:
+        shipped = resources.config(Path(name).stem)
+    except FileNotFoundError as error:
+        if Path(name).parent != Path('.') or Path(name).suffix:
+            raise FileNotFoundError(f'the parameter file {name} does not exist') from None
+        raise error from None
+    raise FileNotFoundError(f'the parameter file {name} does not exist; a node takes the path of '
+                            f'a shipped one: {FILE_FLAG} {shipped}')
