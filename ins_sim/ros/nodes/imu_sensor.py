@@ -8,6 +8,7 @@ from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.messages import topics
+from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.imu import ImuSensorSettings
 from ..transport import qos
 from .stage import StageNode
@@ -37,7 +38,7 @@ class ImuSensorNode(StageNode):
         self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
         self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
         topic = topics.imu_raw(*reported_variances(settings))
-        self._reader, self._writer = topics.TRUTH_IMU.reader(), topic.writer()
+        self._reader, self._writer = PlausibleReader(topics.TRUTH_IMU), topic.writer()
         self._parity = None
         if self.stage.pair is not None:
             self._watch_parity()

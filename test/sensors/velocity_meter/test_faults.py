@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ins_sim.core.streams.faults import StreamFault
-from ins_sim.core.sensors.velocity_meter.meter import (CALM, NO_ANGLE, NO_INS, VelocityMeter,
-                                                       WAIT_NS)
+from ins_sim.core.sensors.velocity_meter.ins_means import NO_ANGLE, NO_INS, WAIT_NS
+from ins_sim.core.sensors.velocity_meter.meter import CALM, VelocityMeter
 from support.meter_streams import same
 
 V = 200.0
