@@ -40,8 +40,9 @@ class HostileMessages:
     """
 
     def __init__(self, seed, wanted):
-        self._random = random.Random(seed)
+        self.random = self._random = random.Random(seed)
         self._topics = {topic.name: topic for topic in wanted}
+        self.names = set(self._topics)
         self._good = {topic.name: deque(maxlen=50) for topic in wanted}
         self.kinds = {'field': self._field, 'fields': self._fields, 'stamp': self._stamp,
                       'shifted': self._shifted, 'text': self._text, 'malformed': self._malformed,

@@ -42,8 +42,8 @@ class MotionGeneratorNode(Node):
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
                 topics.HEADER)
-        self._publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
-        self._publish = [p.publish for p in self._publishers]
+        self._truth_publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
+        self._publish = [p.publish for p in self._truth_publishers]
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
@@ -60,7 +60,7 @@ class MotionGeneratorNode(Node):
     def run(self, executor, stop):
         """Publish until the end or until stop is set."""
         self._announce('running')
-        if not self._lock and not self._publishers[-1].get_subscription_count():
+        if not self._lock and not self._truth_publishers[-1].get_subscription_count():
             self.get_logger().warning(
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
