@@ -184,9 +184,13 @@ class FedNodes:
 
     def __enter__(self):
         import rclpy
+        from ins_sim.core.numerics.compilation import plain_only
         from ins_sim.ros.lock_step import pacing
         from ins_sim.ros.process import diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
+        # as in a node process
+        self._plain = plain_only()
+        self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
         for module in (diagnostics, said, backlog, patience, pacing):
@@ -227,6 +231,7 @@ class FedNodes:
         for patch in self._patches:
             patch.stop()
         self._context.try_shutdown()
+        self._plain.__exit__(*exception)
 
 
 def held_bytes(thing, seen=None):

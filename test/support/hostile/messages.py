@@ -53,6 +53,10 @@ class HostileMessages:
         """Remember a good message."""
         self._good[name].append(bytes(data))
 
+    def last(self, name):
+        """Return the last good message of a topic."""
+        return self._good[name][-1]
+
     def message(self):
         """Return one: its kind, topic name and bytes; None until something good was heard."""
         name = self._random.choice(list(self._topics))

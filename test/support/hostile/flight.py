@@ -9,7 +9,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.motion import MotionGeneratorSettings
 
 from .fed_nodes import FedNodes, held_bytes
-from .hostile import HostileMessages
+from .messages import HostileMessages
 
 RATE_HZ, DT_S = 100.0, 0.01
 COMMON = {'rate_hz': RATE_HZ, 'topics.depth': 500}
@@ -41,7 +41,7 @@ class Finding(AssertionError):
     """What must not be: one sentence."""
 
 
-class HostileRun:
+class HostileFlight:
     """
     All nodes in flight; ``attack(count)`` sends hostile messages, ``calm()`` none.
 
@@ -121,7 +121,7 @@ class HostileRun:
                 kind, name, data = message
                 self.tried[kind, name] += 1
                 left -= 1
-                self.last = message
+                self.spoilt = message
                 self.fed.bus.put(name, data)
                 if choose.random() < 0.8:
                     self._drive()
