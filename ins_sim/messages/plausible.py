@@ -6,12 +6,14 @@ for its instants: the navigator refuses it (``core.aiding.fix_checks``), so that
 for.
 """
 
+from itertools import chain
 import math
 
 from ins_sim.core.timeseries import bounds
 from . import topics
 from .cdr import Reader, SECOND
 
+_EARLIEST_NS, _LATEST_NS, _hypot = bounds.EARLIEST_NS, bounds.LATEST_NS, math.hypot
 # By message type and run of doubles: name, what the norm of the run stays below, and unit.
 BOUNDS = {
     (topics.IMU, (0, 4)): ('orientation', bounds.QUATERNION, ''),
@@ -36,20 +38,22 @@ class PlausibleReader:
         runs = topic.writer().runs if runs is None else tuple(runs)
         self._name, self._read = topic.name, Reader(topic.type_name, runs).read
         self._bounds = [BOUNDS[topic.type_name, run] for run in runs]
-        self._limits = [bound for _, bound, _ in self._bounds]
+        # which almost all messages stay below as a whole, places far from the datum apart
+        self._least = min(bound for _, bound, _ in self._bounds)
 
     def read(self, data):
         """Return stamp_ns and the doubles of each run; ValueError, one sentence, else."""
-        stamp_ns, *runs = message = self._read(data)
-        check_stamp(self._name, stamp_ns)
-        for run, limit in zip(runs, self._limits):
-            # false for what is not a number
-            if not math.hypot(*run) < limit:
-                self._refuse(stamp_ns, runs)
+        message = self._read(data)
+        stamp_ns, *runs = message
+        if not (_EARLIEST_NS <= stamp_ns < _LATEST_NS
+                and _hypot(*chain.from_iterable(runs)) < self._least):
+            self._look(stamp_ns, runs)
         return message
 
-    def _refuse(self, stamp_ns, runs):
+    def _look(self, stamp_ns, runs):
+        check_stamp(self._name, stamp_ns)
         for run, (name, bound, unit) in zip(runs, self._bounds):
+            # false for what is not a number
             if not math.hypot(*run) < bound:
                 found = ', '.join(f'{value:.6g}' for value in run)
                 raise ValueError(f'{self._name} at {stamp_ns / SECOND:.9f} s holds the {name} '

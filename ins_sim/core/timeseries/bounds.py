@@ -11,7 +11,7 @@ RATE_RAD_S = 1e4
 FORCE_M_S2 = 1e6
 SPEED_M_S = 1e5
 PLACE_M = 1e8
-QUATERNION = 10.0
+QUATERNION = 1e4
 # Above the surface of the Earth, and below it.
 HEIGHT_M = 1e7
 # Of standard deviations: the square of a smaller one is no divisor any more.
