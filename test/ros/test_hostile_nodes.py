@@ -49,3 +49,21 @@ def test_ten_thousand_hostile_messages(seed, ros_domain):
 def test_fifty_thousand_hostile_messages(seed, ros_domain):
     """The same for longer; tools/fuzz_nodes.py goes on with two million."""
     attacked(seed, 50_000)
+
+
+def test_a_recorder_hears_all_of_it(ros_domain, tmp_path):
+    """Hostile messages are recorded like others: the bag is whole, and can be read."""
+    from ins_sim.bags.bag_reader import open_bag
+    bag = tmp_path / 'bag'
+    with HostileFlight(5, {'recorder': {
+            'record.topics': [topic.name for topic in ATTACKED], 'storage.path': str(bag)}}) as f:
+        f.good(50)
+        f.attack(1500)
+        f.good(50)
+        recorder = f.fed.nodes['recorder']
+        recorder.recorder.finish()
+        recorder._bag.close()
+        assert not f.rescued
+        counts = recorder.recorder.counts
+    with open_bag(bag) as bag:
+        assert {name: span.count for name, span in bag.spans().items()} == counts
