@@ -2,7 +2,8 @@
 Fly all nodes amid hostile messages: python tools/fuzz_nodes.py [COUNT] [SEED].
 
 Prints what was tried by kind and topic; exits with 1 on a finding, whose seed and message it
-prints.  The same as test/ros/test_hostile_nodes.py, for as long as one likes.
+prints.  The same as test/ros/test_hostile_nodes.py, for as long as one likes and with all settings
+of VARIANTS in turn.
 """
 
 from collections import Counter
@@ -17,7 +18,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / 'test')]
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 # messages of one set of nodes, and those between two calm stretches
-RUN, ATTACK = 50_000, 2500
+RUN, ATTACK = 20_000, 2500
 # of an attack and its calm stretch
 HANG_S = 600
 
@@ -27,7 +28,7 @@ def fuzz(count, seed):
     from support.hostile.flight import HostileFlight
     tried, rescued, sent, held = Counter(), Counter(), 0, 0
     while (done := sum(tried.values())) < count:
-        with HostileFlight(seed + done // RUN) as run:
+        with HostileFlight(seed + done // RUN, variant=done // RUN) as run:
             run.good(50)
             try:
                 while sum(run.tried.values()) < min(RUN, count - done):

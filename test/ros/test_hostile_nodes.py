@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from support.hostile.flight import ATTACKED, HostileFlight
+from support.hostile.flight import ATTACKED, HostileFlight, VARIANTS
 import pytest
 
 pytest.importorskip('rclpy')
@@ -42,6 +42,17 @@ def attacked(seed, count):
 def test_ten_thousand_hostile_messages(seed, ros_domain):
     """No exception out, nothing not finite, bounded work, memory and log; all nodes come back."""
     attacked(seed, 10_000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('variant', range(1, len(VARIANTS)))
+def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
+    """Sources, outputs, errors, channels, modes and filters: all nodes come back."""
+    with HostileFlight(variant, variant=variant) as flight:
+        flight.good(50)
+        flight.attack(2000)
+        flight.calm()
+        assert not flight.rescued
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ import math
 
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.streams.matching import MatchedStreams, TRUTH_LENGTH
 from ins_sim.core.streams.restarts import LastStamps, RestartDetector
 from .fix_checks import check_ahead, check_gnss, check_velocity
@@ -141,6 +142,16 @@ class AidedStream(MatchedStreams):
         """Wait no longer for a source until it delivers again; return the outputs."""
         self._schedule.give_up(source)
         return self.match()
+
+    def go_on(self):
+        """Go on without the sources that the oldest sample waits for; return the outputs."""
+        outputs = []
+        for source in self.awaited:
+            self.faults.append(StreamFault(
+                f'no fix of {source} while {len(self._imu)} readings came; expected it within '
+                'topics.depth of them: going on without it until it delivers again', False))
+            outputs += self.go_on_without(source)
+        return outputs
 
     def push_imu(self, t_ns, omega, f):
         """Take the IMU sample of stamp t_ns (motion time)."""

@@ -75,6 +75,10 @@ class MatchedStreams:
         """Return whether an IMU sample that has its truth must wait for something else."""
         return False
 
+    def go_on(self):
+        """Wait no longer for anything but the truth: too many samples wait; return outputs."""
+        return []
+
     def push_imu(self, t_ns, omega, f):
         """Take the IMU sample of stamp t_ns (motion time)."""
         check_finite('imu', t_ns, omega, f)
@@ -127,8 +131,12 @@ class MatchedStreams:
             return []
         if not self._truth:
             self._joined_ns = t_ns
+        outputs = []
+        if len(self._truth) == self._truth.maxlen and self._imu:
+            # the oldest truth is about to be lost, and a reading may need it
+            outputs = self.go_on()
         self._truth.append((t_ns, r_m, q_mb, v_b))
-        return self.match()
+        return outputs + self.match()
 
     def _follow_truth(self, t_ns):
         step_ns, truth = t_ns - self._truth_ns, self._truth
