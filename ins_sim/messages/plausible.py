@@ -6,7 +6,6 @@ for its instants: the navigator refuses it (``core.aiding.fix_checks``), so that
 for.
 """
 
-from itertools import chain
 import math
 
 from ins_sim.core.timeseries import bounds
@@ -24,6 +23,10 @@ BOUNDS = {
     (topics.ODOMETRY, (43, 46)): ('linear velocity', bounds.SPEED_M_S, ' m/s'),
     (topics.ODOMETRY, (46, 49)): ('angular velocity', bounds.RATE_RAD_S, ' rad/s'),
 }
+# Norms of a message of so many runs, written out: a loop would cost as much again.
+_NORMS = {1: lambda _, a: _hypot(*a), 2: lambda _, a, b: _hypot(*a, *b),
+          3: lambda _, a, b, c: _hypot(*a, *b, *c),
+          4: lambda _, a, b, c, d: _hypot(*a, *b, *c, *d)}
 
 
 class PlausibleReader:
@@ -39,18 +42,18 @@ class PlausibleReader:
         self._name, self._read = topic.name, Reader(topic.type_name, runs).read
         self._bounds = [BOUNDS[topic.type_name, run] for run in runs]
         # which almost all messages stay below as a whole, places far from the datum apart
+        self._norm = _NORMS[len(runs)]
         self._least = min(bound for _, bound, _ in self._bounds)
 
     def read(self, data):
         """Return stamp_ns and the doubles of each run; ValueError, one sentence, else."""
         message = self._read(data)
-        stamp_ns, *runs = message
-        if not (_EARLIEST_NS <= stamp_ns < _LATEST_NS
-                and _hypot(*chain.from_iterable(runs)) < self._least):
-            self._look(stamp_ns, runs)
+        if not (_EARLIEST_NS <= message[0] < _LATEST_NS
+                and self._norm(*message) < self._least):
+            self._look(*message)
         return message
 
-    def _look(self, stamp_ns, runs):
+    def _look(self, stamp_ns, *runs):
         check_stamp(self._name, stamp_ns)
         for run, (name, bound, unit) in zip(runs, self._bounds):
             # false for what is not a number

@@ -122,7 +122,7 @@ class MatchedStreams:
         check_unit('truth', t_ns, q_mb)
         if t_ns == self._truth_ns:
             return []
-        if self._truth_ns is not None:
+        if self._truth_ns is not None and t_ns - self._truth_ns != self._truth_step_ns:
             self._follow_truth(t_ns)
         self._truth_ns = t_ns
         if self._truth_stamps.take(t_ns):

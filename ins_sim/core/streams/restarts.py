@@ -22,11 +22,16 @@ class LastStamps:
 
     def take(self, t_ns):
         """Remember a stamp; return whether the newest one was a stray of the past."""
-        if t_ns == self._newest_ns:
+        newest_ns, before_ns = self._newest_ns, self._before_ns
+        if before_ns is not None and before_ns < newest_ns < t_ns:
+            # as almost always
+            self._before_ns, self._newest_ns = newest_ns, t_ns
+            return False
+        if t_ns == newest_ns:
             return False
         returned = self.was_of_the_past(t_ns)
         if not (returned or self.was_ahead(t_ns)):
-            self._before_ns = self._newest_ns
+            self._before_ns = newest_ns
         self._newest_ns = t_ns
         return returned
 
