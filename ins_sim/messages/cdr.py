@@ -8,6 +8,7 @@ Protocol 2.2, section 10; the ROS 2 Jazzy message definitions.
 """
 
 from dataclasses import dataclass
+import math
 import struct
 
 import numpy as np
@@ -67,6 +68,7 @@ class Writer:
         layout = LAYOUTS[type_name]
         if len(strings) != layout.strings:
             raise ValueError(f'{type_name} takes {layout.strings} strings, not {len(strings)}')
+        self._name = type_name
         self.runs = layout.runs if runs is None else tuple(runs)
         body = bytearray(8)
         for text in strings:
@@ -102,11 +104,20 @@ class Writer:
                                'itemsize': len(self._template)})
 
     def pack(self, stamp_ns, *values):
-        """Return the bytes of one message; values: one sequence of floats for each run."""
-        buffer = self._template
+        """
+        Return the bytes of one message; values: one sequence of floats for each run.
+
+        Raises ValueError where one of them is not finite.
+        """
+        buffer, total = self._template, 0.0
         self._stamp(buffer, 4, *divmod(stamp_ns, SECOND))
         for (pack_into, offset), run in zip(self._slots, values):
             pack_into(buffer, offset, *run)
+            total += sum(run)
+        # of an infinity the difference is no number, and of no number it is none either
+        if total - total != 0.0 and not all(math.isfinite(x) for run in values for x in run):
+            raise ValueError(f'{self._name} of {stamp_ns / SECOND:.9f} s would hold {values}; '
+                             'expected finite numbers; it is not sent')
         return bytes(buffer)
 
     def block(self, stamps_ns, values=None):
@@ -171,6 +182,9 @@ class Reader:
                 raise ValueError(f'{self._name} begins with {bytes(buffer[:2])!r}; expected the '
                                  'encapsulation of little-endian CDR')
             sec, nanosec = _STAMP(buffer, 4)
+            if nanosec >= SECOND:
+                raise ValueError(f'{self._name} has {nanosec} nanoseconds in its stamp; expected '
+                                 'less than 1e9')
             key = self._lengths(buffer)
             slots = self._known.get(key) or self._find(key)
             stamp_ns = sec * SECOND + nanosec

@@ -61,6 +61,10 @@ def _read(buffer):
         raise ValueError(f'DiagnosticArray of {len(buffer)} bytes begins with {buffer[:2]!r}; '
                          'expected the encapsulation of little-endian CDR and a stamp')
     offset = 8 + len(ENCAPSULATION)
+    nanosec, = struct.unpack_from('<I', buffer, 8)
+    if nanosec >= SECOND:
+        raise ValueError(f'DiagnosticArray has {nanosec} nanoseconds in its stamp; expected less '
+                         'than 1e9')
 
     def number():
         nonlocal offset

@@ -5,10 +5,10 @@ import math
 
 from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 from . import topics
+from .plausible import check_stamp
 
 # fixes or velocities that wait for their other half
 _WAITING = 100
-_NOTHING = (math.nan,) * 3
 
 
 class GnssWriter:
@@ -23,7 +23,7 @@ class GnssWriter:
         """Return gnss/fix: degrees; a fix that is none has status -1 and NaN."""
         stamp_ns = fix.t_ns + self._epoch_ns
         if not fix.valid:
-            return self._none(stamp_ns, _NOTHING, (0.0,), (0.0,), (0.0,))
+            return self._none(stamp_ns)
         return self._fix(stamp_ns, (math.degrees(fix.lat), math.degrees(fix.lon), fix.height),
                          *((sigma * sigma,) for sigma in fix.position_sigma))
 
@@ -53,12 +53,15 @@ class GnssPairs:
     def push_fix(self, data):
         """Take a message of gnss/fix."""
         stamp_ns, place, *variances = self._fix_reader.read(data)
+        check_stamp(topics.GNSS_FIX.name, stamp_ns)
         valid = self._fix_reader.numbers(data)[0] >= 0
         return self._push(self._fixes, (stamp_ns, place if valid else None, variances))
 
     def push_velocity(self, data):
         """Take a message of gnss/velocity."""
-        return self._push(self._velocities, self._velocity_reader.read(data))
+        message = self._velocity_reader.read(data)
+        check_stamp(topics.GNSS_VELOCITY.name, message[0])
+        return self._push(self._velocities, message)
 
     def _push(self, queue, message):
         last_ns = queue[-1][0] if queue else self._done_ns

@@ -1,6 +1,7 @@
 """Every topic: name, type and frames stand here and nowhere else.  No ROS is imported."""
 
 from dataclasses import dataclass, replace
+from math import nan
 
 from .cdr import Reader, Writer
 
@@ -68,7 +69,9 @@ METER_VELOCITY = Topic('velocity_meter/velocity', TWIST, ('velocity_meter_link',
 # service GPS; covariance diagonal, known
 GNSS_FIX = Topic('gnss/fix', FIX, ('gnss_link',), (), ((0, 3), (3, 4), (7, 8), (11, 12)),
                  (0, 1, 2))
-GNSS_NO_FIX = replace(GNSS_FIX, numbers=(-1, 1, 0))
+# without a place: not a number, as a receiver of ROS says it
+GNSS_NO_FIX = replace(GNSS_FIX, constants=tuple((k, nan) for k in range(3)), runs=(),
+                      numbers=(-1, 1, 0))
 GNSS_VELOCITY = Topic('gnss/velocity', TWIST, ('enu',), _NO_RATE,
                       ((0, 3), (6, 7), (13, 14), (20, 21)))
 AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (),

@@ -9,8 +9,11 @@ bit.
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
 from . import diagnostic_array, topics
 from .diagnostic_array import Status
+from .plausible import check_arrival, check_stamp
 
 NAME = 'velocity_meter'
+# of a stranger's texts and statuses so much is repeated
+TEXT, MOST = 80, 3
 _FLOATS = (('velocity', ('velocity_x', 'velocity_y')), ('sigma', ('sigma_x', 'sigma_y')),
            ('tau', ('tau12', 'tau23')), ('g', ('g12', 'g23')))
 
@@ -31,23 +34,31 @@ def pack_fix(fix, epoch_ns):
 def read_fix(data, epoch_ns):
     """Return the VelocityFix of a message; ValueError, one sentence, where it holds none."""
     _, _, statuses = diagnostic_array.read_diagnostics(data)
+    name = topics.METER_RECORD.name
     if len(statuses) != 1 or statuses[0].name != NAME:
-        raise ValueError(f'{topics.METER_RECORD.name} holds the statuses '
-                         f'{[status.name for status in statuses]}; expected one of {NAME}')
+        found = [status.name[:TEXT] for status in statuses[:MOST]]
+        raise ValueError(f'{name} holds the statuses {found}; expected one of {NAME}')
     values = dict(statuses[0].values)
 
     def number(key, kind):
+        text = values.get(key)
         try:
             return kind(values[key])
         except (KeyError, ValueError):
-            raise ValueError(f'{topics.METER_RECORD.name}: {key} is {values.get(key)!r}; expected '
-                             f'{"a whole number" if kind is int else "a number"}') from None
+            raise ValueError(f'{name}: {key} is {text if text is None else repr(text[:TEXT])}; '
+                             f'expected {"a whole number" if kind is int else "a number"}'
+                             ) from None
 
+    start_ns, end_ns, arrival_ns = (number(key, int) for key in (
+        'window_start_ns', 'window_end_ns', 'arrival_ns'))
+    for t_ns in (start_ns, end_ns):
+        check_stamp(name, t_ns)
+    check_arrival(name, end_ns, arrival_ns)
     pairs = {field: tuple(number(key, float) for key in keys) for field, keys in _FLOATS}
-    return VelocityFix(number('window_start_ns', int) - epoch_ns,
-                       number('window_end_ns', int) - epoch_ns, number('cycles', int),
-                       tan_alpha=number('tan_alpha', float), status=values.get('status', VALID),
-                       arrival_ns=number('arrival_ns', int) - epoch_ns, **pairs)
+    return VelocityFix(start_ns - epoch_ns, end_ns - epoch_ns, number('cycles', int),
+                       tan_alpha=number('tan_alpha', float),
+                       status=values.get('status', VALID)[:TEXT],
+                       arrival_ns=arrival_ns - epoch_ns, **pairs)
 
 
 def velocity_one(fix):

@@ -47,6 +47,21 @@ def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
     assert [t.outcome.taken for t in stream.judged if t.source == METER] == [True] * 5
 
 
+def test_whatever_waits_is_bounded():
+    """Of a source that never delivers: no truth is lost of the readings that wait for it."""
+    _, _, streams = scene()
+    stream = AidedStream(scene()[0].aided_navigator, 50)
+    outputs, faults = [], []
+    for truth, imu in zip(streams['push_truth'], streams['push_imu']):
+        outputs += push(stream, 'push_truth', truth, faults)
+        outputs += push(stream, 'push_imu', imu, faults)
+    faults += map(str, stream.faults)
+    assert [t for t, *_ in outputs] == [t for t, *_ in streams['push_imu']][:len(outputs)]
+    assert len(outputs) > 1150 and stream.silent == [GNSS, METER]
+    assert [fault.partition(';')[0] for fault in faults] == [
+        f'no fix of {source} while 50 readings came' for source in (GNSS, METER)]
+
+
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():
     """A window of another length is refused in a sentence; the samples go on without it."""
     from dataclasses import replace

@@ -1,5 +1,7 @@
 """Messages as bytes: they are what ROS writes, and what ROS writes is read back."""
 
+import math
+
 from hypothesis import given, settings, strategies
 from ins_sim.messages.cdr import LAYOUTS, Reader, Writer
 import numpy as np
@@ -108,7 +110,8 @@ def test_constants_stand_in_every_message():
 @settings(max_examples=200, deadline=None)
 @given(stamp=strategies.integers(0, 2**31 * 10**9 - 1), frame=strategies.text(max_size=30).filter(
     lambda s: '\x00' not in s and s.isprintable()),
-    values=strategies.lists(strategies.floats(allow_nan=False), min_size=49, max_size=49))
+    values=strategies.lists(strategies.floats(allow_nan=False, allow_infinity=False),
+                            min_size=49, max_size=49))
 def test_runs_come_back_whatever_the_strings(stamp, frame, values):
     runs = ((0, 7), (43, 49))
     a, b = tuple(values[:7]), tuple(values[43:])
@@ -135,3 +138,21 @@ def test_big_endian_is_refused():
 def test_the_wrong_number_of_strings_is_refused():
     with pytest.raises(ValueError, match='takes 2 strings'):
         Writer('nav_msgs/msg/Odometry', 'map')
+
+
+@pytest.mark.parametrize('wrong', [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_not_packed(wrong):
+    """Nothing that is not finite leaves a node; a huge sum of finite numbers does."""
+    writer = Writer('geometry_msgs/msg/Vector3Stamped', 'enu')
+    for values in ((wrong, 0.0, 0.0), (0.0, wrong, -wrong)):
+        with pytest.raises(ValueError, match='would hold .* expected finite numbers'):
+            writer.pack(5 * 10**9, values)
+    assert writer.pack(0, (1.5e308, 1.5e308, 5e-324))
+
+
+def test_nanoseconds_are_less_than_a_second():
+    """Whoever sends more has a broken clock; a message of ours has fewer."""
+    data = bytearray(Writer('std_msgs/msg/Header', 'map').pack(1))
+    data[8:12] = (1_000_000_000).to_bytes(4, 'little')
+    with pytest.raises(ValueError, match='1000000000 nanoseconds in its stamp; expected less'):
+        Reader('std_msgs/msg/Header').read(bytes(data))

@@ -118,7 +118,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
         fix.clear()
         stream.send(np.arange(0, 301) * DT, poison=230)
         stream.chain.wait_text(node, 'truth jumps back from 2.300000000 s to 0.000000000 s')
-        stream.chain.wait_text(node, 'truth at 2.300000000 s holds')
+        stream.chain.wait_text(node, 'truth/odometry at 2.300000000 s holds')
         stream.chain.wait_text(node, 'gap from 2.290000000 s to 2.310000000 s')
         stream.wait_diagnosis('gap')
         stream.wait_ack(300 * DT)

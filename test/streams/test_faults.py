@@ -139,6 +139,26 @@ def test_navigator_refuses_bad_truth(navigator, truth):
     assert not navigator.navigates
 
 
+def test_a_lost_truth_is_told_from_another_rate(navigator, truth):
+    """Overload is said as such; only readings between the samples are of another rate."""
+    for k in (4, 5):
+        navigator.push_truth(*truth(k)[1])
+    navigator.push_imu(3 * DT, *truth(3)[0][2:])
+    assert 'that sample of the truth was lost, as where a node cannot keep up and a queue runs ' \
+           'over: expected a lower rate_hz' in str(navigator.faults.pop())
+    navigator.reset()
+    navigator.push_imu(4 * DT, *truth(4)[0][2:])
+    navigator.push_imu(5 * DT - DT // 8, *truth(5)[0][2:])
+    assert 'expected a truth rate that is a multiple of the IMU rate, both from the same start: ' \
+           'rate_hz must go together in all nodes' in str(navigator.faults.pop())
+
+
+def test_another_rate_names_rate_hz(navigator, truth):
+    """An IMU at twice the rate."""
+    refused(navigator.push_imu, (2 * DT + DT // 2, *truth(3)[0][2:]),
+            'expected steps of 0.01 s: rate_hz must be the same in the node that sends it', True)
+
+
 def test_navigator_starts_anew_after_a_jump_back(navigator, truth):
     """After reset the same samples give the same output: nothing of the past is left."""
     navigator.reset()

@@ -1,5 +1,6 @@
 """Settings, flights and readings that the tests of the velocity meter share."""
 
+from dataclasses import astuple
 import math
 
 import numpy as np
@@ -51,3 +52,8 @@ def errors(settings, windows, beta=0.0, speed=250.0):
         if one.status == VALID:
             found.append((one.v_x - v[0], one.v_z - v[2], one.v_z_delays - v[2]))
     return np.array(found), len(found) / windows
+
+
+def same(a, b):
+    """Return whether two lists of fixes are equal to the bit, NaN included."""
+    return repr([astuple(fix) for fix in a]) == repr([astuple(fix) for fix in b])

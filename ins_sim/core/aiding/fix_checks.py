@@ -4,6 +4,7 @@ import math
 
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import StreamFault
+from ins_sim.core.timeseries import bounds
 
 
 def check_velocity(fix, cycles, dt_ns):
@@ -20,7 +21,7 @@ def check_velocity(fix, cycles, dt_ns):
                        f'{window_ns * 1e-9:.9g} s of motion time')
     _check_arrival(where, fix)
     if fix.valid:
-        _check(where, 'velocity', fix.velocity, fix.sigma)
+        _check(where, 'velocity', (*fix.velocity, fix.up), fix.sigma, bounds.SPEED_M_S)
 
 
 def check_ahead(source, t_ns, newest_ns, ahead_ns):
@@ -36,8 +37,9 @@ def check_gnss(fix):
     where = f'gnss: fix at {seconds(fix.t_ns)}'
     _check_arrival(where, fix)
     if fix.valid:
-        _check(where, 'position', (fix.lat, fix.lon, fix.height), fix.position_sigma)
-        _check(where, 'velocity', fix.v_n, fix.velocity_sigma)
+        _check(where, 'position', (fix.lat, fix.lon, fix.height), fix.position_sigma,
+               bounds.HEIGHT_M)
+        _check(where, 'velocity', fix.v_n, fix.velocity_sigma, bounds.SPEED_M_S)
         if not abs(fix.lat) <= 0.5 * math.pi:
             raise _dropped(f'{where} has a latitude of {math.degrees(fix.lat):g} deg; expected '
                            '-90 to 90')
@@ -49,12 +51,17 @@ def _check_arrival(where, fix):
                        'own instant')
 
 
-def _check(where, name, values, sigmas):
+def _check(where, name, values, sigmas, bound):
     if not all(map(math.isfinite, values)):
         raise _dropped(f'{where} has a {name} of {values}; expected finite numbers')
-    if not all(math.isfinite(s) and s > 0.0 for s in sigmas):
+    if not math.hypot(*values) < bound:
+        raise _dropped(f'{where} has a {name} of {values}; expected less than {bound:g}')
+    if not all(s > 0.0 for s in sigmas):
         raise _dropped(f'{where} has standard deviations of {name} {sigmas}; expected positive '
                        'ones')
+    if not all(map(bounds.is_sigma, sigmas)):
+        raise _dropped(f'{where} has standard deviations of {name} {sigmas}; expected '
+                       f'{bounds.LEAST_SIGMA:g} to {bounds.MOST_SIGMA:g}')
 
 
 def _dropped(sentence):

@@ -12,8 +12,9 @@ import math
 
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.streams.matching import MatchedStreams, TRUTH_LENGTH
-from ins_sim.core.streams.restarts import RestartDetector
+from ins_sim.core.streams.restarts import LastStamps, RestartDetector
 from .fix_checks import check_ahead, check_gnss, check_velocity
 from .navigator import AidedNavigator, GNSS, METER
 
@@ -32,9 +33,14 @@ class FixSchedule:
                    GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
         # runs: the samples are the first, a source the second
-        self._newest, self._runs = {}, defaultdict(RestartDetector)
-        self.silent = set()
+        self.forget()
         self.begin()
+
+    def forget(self):
+        """Forget what has come."""
+        self._newest, self._runs = {}, defaultdict(RestartDetector)
+        self._stamps = defaultdict(LastStamps)
+        self.silent = set()
 
     def begin(self):
         """Count from the next sample on; what has come stays known."""
@@ -69,8 +75,11 @@ class FixSchedule:
         # the instant of the last fix again: that of the new run if the samples have begun one
         if t_ns == newest_ns and not runs.first_is_ahead:
             return False
-        if newest_ns is not None and t_ns <= newest_ns:
+        stamps = self._stamps[source]
+        if newest_ns is not None and t_ns <= newest_ns and not stamps.was_ahead(t_ns):
             runs.second_jumps(t_ns, sample_ns)
+        if stamps.take(t_ns):
+            runs.second_returns()
         return True
 
     def jump_back(self, t_ns):
@@ -78,6 +87,11 @@ class FixSchedule:
         for source, newest_ns in self._newest.items():
             self._runs[source].first_jumps(t_ns, newest_ns)
         return {source for source, runs in self._runs.items() if runs.first_is_ahead}
+
+    def return_back(self):
+        """Take note that the samples have jumped back by a stray alone."""
+        for runs in self._runs.values():
+            runs.first_returns()
 
     def give_up(self, source):
         """Wait for a source no longer, until it delivers again."""
@@ -103,6 +117,12 @@ class AidedStream(MatchedStreams):
         self.navigator = AidedNavigator(self._settings)
         self._schedule.begin()
 
+    def rejoin(self):
+        """Start anew as if all streams began now."""
+        self._schedule.forget()
+        self._fixes = []
+        super().rejoin()
+
     @property
     def navigates(self):
         """Return whether there is a solution."""
@@ -123,9 +143,22 @@ class AidedStream(MatchedStreams):
         self._schedule.give_up(source)
         return self.match()
 
+    def go_on(self):
+        """Go on without the sources that the oldest sample waits for; return the outputs."""
+        outputs = []
+        for source in self.awaited:
+            self.faults.append(StreamFault(
+                f'no fix of {source} while {len(self._imu)} readings came; expected it within '
+                'topics.depth of them: going on without it until it delivers again', False))
+            outputs += self.go_on_without(source)
+        return outputs
+
     def push_imu(self, t_ns, omega, f):
         """Take the IMU sample of stamp t_ns (motion time)."""
-        if self._last_ns is not None and t_ns < self._last_ns:
+        if self._imu_stamps.was_of_the_past(t_ns):
+            self._schedule.return_back()
+        elif self._last_ns is not None and t_ns < self._last_ns and \
+                not self._imu_stamps.was_ahead(t_ns):
             behind = self._schedule.jump_back(t_ns)
             self._fixes = [entry for entry in self._fixes if entry[1] not in behind]
         return super().push_imu(t_ns, omega, f)
@@ -155,6 +188,8 @@ class AidedStream(MatchedStreams):
         else:
             check_gnss(fix)
         insort(self._fixes, (fix.arrival_ns, source, fix), key=lambda entry: entry[:2])
+        # those of a minute of motion time or more: without readings none is ever taken
+        del self._fixes[:-self._truth.maxlen]
         return self.match()
 
     def held(self, t_ns):

@@ -7,6 +7,8 @@ from ins_sim.core.numerics.instants import seconds
 # How far an interval may be off the sampling period, as a fraction of it: jitter of the stamps,
 # but no lost sample.
 INTERVAL_TOLERANCE = 0.2
+# What a stage computes at once: of more sampling periods a step of the truth is a gap.
+MOST_PERIODS = 1000
 # Bounds of the square of the norm of a quaternion.
 UNIT_LOW, UNIT_HIGH = 0.998, 1.002
 
@@ -69,5 +71,15 @@ def check_interval(name, t_ns, last_ns, expected_ns):
         raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
                           'expected rising stamps', restart=True)
     what = 'has a gap' if step > expected_ns else 'comes at another rate'
+    advice = '' if step > expected_ns else (': rate_hz must be the same in the node that sends it '
+                                            'and in the one that reads it')
     raise StreamFault(f'{name} {what} from {seconds(last_ns)} to {seconds(t_ns)}; expected steps '
-                      f'of {expected_ns * 1e-9:.9g} s', restart=True)
+                      f'of {expected_ns * 1e-9:.9g} s{advice}', restart=True)
+
+
+def check_periods(t_ns, last_ns, shortest_ns, longest_ns):
+    """Raise StreamFault (restart) unless a step of the truth is one that rate_hz may have."""
+    if not shortest_ns <= t_ns - last_ns <= longest_ns:
+        raise StreamFault(f'truth steps from {seconds(last_ns)} to {seconds(t_ns)}; expected '
+                          f'{shortest_ns * 1e-9:.9g} to {longest_ns * 1e-9:.9g} s, {MOST_PERIODS} '
+                          'periods of rate_hz at most', restart=True)

@@ -12,8 +12,8 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_differences,
                                                  newton_value)
 from ins_sim.core.numerics.instants import seconds
-from .faults import (check_finite, check_interval, check_unit, INTERVAL_TOLERANCE, StreamFault,
-                     UNIT_HIGH, UNIT_LOW)
+from .faults import (check_finite, check_interval, check_periods, check_unit,
+                     INTERVAL_TOLERANCE, MOST_PERIODS, StreamFault, UNIT_HIGH, UNIT_LOW)
 from .truth_pieces import pieces_of_samples, TruthBlock, TruthPieces
 
 # fields of a sample
@@ -35,10 +35,11 @@ class TruthBuffer:
 
     frame: MapFrame; reach_ns: how far behind the newest sample it must answer; frozen: the
     history before the first sample stands still (else it goes on at the first rate and force);
-    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for.
+    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for; dt_ns: the period of rate_hz, of
+    which a step of the truth is at most MOST_PERIODS, and at least as small a part.
     """
 
-    def __init__(self, frame, reach_ns, frozen, wanted):
+    def __init__(self, frame, reach_ns, frozen, wanted, dt_ns):
         self._frame = frame
         self._reach_ns = reach_ns
         self._wanted = wanted
@@ -48,6 +49,7 @@ class TruthBuffer:
         self._cubics = None
         self._first = None
         self._step_ns = None
+        self._longest_ns, self._shortest_ns = MOST_PERIODS * dt_ns, dt_ns // MOST_PERIODS
 
     @property
     def newest_ns(self):
@@ -63,7 +65,8 @@ class TruthBuffer:
         """
         Take a sample; raise StreamFault on NaN, repeated or backwards stamps, gaps and turns.
 
-        The step between the first two samples is the step expected of all.
+        The step between the first two samples is the step expected of all; it is itself a number
+        of periods of rate_hz that can be answered at once.
         """
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         check_unit('truth', t_ns, q_mb)
@@ -77,6 +80,7 @@ class TruthBuffer:
         start = self._last[0]
         step_ns = t_ns - start[0]
         check_interval('truth', t_ns, start[0], self._step_ns or max(step_ns, 1))
+        check_periods(t_ns, start[0], self._shortest_ns, self._longest_ns)
         h = step_ns * 1e-9
         if h * max(map(abs, omega_mb_b)) > TURN_LIMIT:
             raise StreamFault(
@@ -149,7 +153,8 @@ class TruthBuffer:
         steps = np.diff(t_ns[:finite], prepend=self._last[0][0])
         expected = np.concatenate([[self._step_ns], steps[:-1]])
         count = leading((n2 > UNIT_LOW) & (n2 < UNIT_HIGH)
-                        & (abs(steps - expected) <= INTERVAL_TOLERANCE * expected))
+                        & (abs(steps - expected) <= INTERVAL_TOLERANCE * expected)
+                        & (steps >= self._shortest_ns) & (steps <= self._longest_ns))
         return t_ns[:count], *(tuple(x[:count] for x in vector)
                                for vector in (q_mb, omega_ib_b, f_ib_b))
 

@@ -4,11 +4,14 @@ import math
 import time
 
 from ins_sim.messages import topics
+from ..process.said import visible
 
 REPEAT_S = 0.1
 # longer than a busy machine keeps a consumer from its core
 SILENCE_S = 2.0
 STARTING = -1
+# names on sim/ack that nobody waits for: so many are kept, of so many characters
+STRANGERS, STRANGER = 10, 60
 
 
 class Pace:
@@ -52,19 +55,25 @@ class LockStep:
     def restart(self):
         """Forget all acknowledgements."""
         self._acked = dict.fromkeys(self._required, STARTING)
-        self.strangers = set()
+        self.strangers, self._more = set(), False
         self._repeated = self.moved = time.monotonic()
 
     def ack(self, name, k, sent):
         """Take the acknowledgement of sample k; sent: number of samples sent."""
         last = self._acked.get(name)
         if last is None:
-            self.strangers.add(name)
+            self._hear(name)
         # before the first sample is acknowledged a later one can only be an echo of a past run
         if last is None or k >= sent or k <= last or (last == STARTING and k != 0):
             return
         self._acked[name] = k
         self.moved = time.monotonic()
+
+    def _hear(self, name):
+        if len(self.strangers) < STRANGERS:
+            self.strangers.add(visible(name, STRANGER))
+        elif not self._more:
+            self._more = visible(name, STRANGER) not in self.strangers
 
     @property
     def slowest(self):
@@ -98,6 +107,7 @@ class LockStep:
 
     def complaint(self, late, expected):
         """Return the sentence about consumers that are late; expected: who was to run."""
-        heard = f' (heard: {", ".join(sorted(self.strangers))})' if self.strangers else ''
+        names = ', '.join(sorted(self.strangers)) + (' and others' if self._more else '')
+        heard = f' (heard: {names})' if names else ''
         return (f'no acknowledgement on {topics.ACK.name} from {", ".join(late)} for '
                 f'{self._timeout_s:g} s; expected {expected} to run{heard}')

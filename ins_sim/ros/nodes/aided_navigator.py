@@ -47,6 +47,10 @@ class AidedNavigatorNode(NavigatorNode):
         self._health = AidingHealth(self.stage)
         self.monitor.add(self._health.describe)
 
+    def hand_queues(self):
+        """Return the queues of truth and fixes."""
+        return {**super().hand_queues(), **{queue.topic: queue for queue, *_ in self._queues}}
+
     def begin_run(self):
         """Begin on the first leg."""
         self._leg = 0
@@ -55,7 +59,7 @@ class AidedNavigatorNode(NavigatorNode):
         """Take the truth and the fixes that have come."""
         super().take()
         for queue, source, read in self._queues:
-            while not self.stop and (data := queue.take()) is not None:
+            for data in self.taken_of(queue):
                 self._take_fixes(source, read, data)
 
     def _take_fixes(self, source, read, data):

@@ -3,7 +3,9 @@
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.navigation.loop import Decimation
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.timeseries.bounds import LATEST_NS
 from ins_sim.messages import topics
+from ins_sim.messages.plausible import PlausibleReader
 from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.patience import MISSING_S, Patience
@@ -22,6 +24,8 @@ class NavigatorNode(StageNode):
     """
 
     DRIVER = topics.IMU_RAW
+    # a solution counts from its first reading, wherever the epoch is
+    FIRST_NS = -2 * LATEST_NS
 
     def make_stage(self):
         """Return the navigator."""
@@ -34,9 +38,9 @@ class NavigatorNode(StageNode):
 
     def make_outputs(self):
         """Make publishers, readers, writers and the queue of truth."""
-        self._imu_reader = topics.IMU_RAW.reader()
+        self._imu_reader = PlausibleReader(topics.IMU_RAW)
         # the rate of the body is not needed: pose and velocity only
-        self._truth_reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
+        self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
         self._outputs = [(qos.make_publisher(self, topic, self.depth), topic.writer().pack)
                          for topic in self.PUBLISHED]
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
@@ -45,6 +49,16 @@ class NavigatorNode(StageNode):
         self._patience = Patience(self, lambda: self.stage.waiting,
                                   lambda: self.stage.processed_ns, self.take, self.miss,
                                   self._settle)
+
+    def hand_queues(self):
+        """Return the queue of truth."""
+        return {topics.TRUTH_ODOMETRY.name: self._truth}
+
+    def start_anew(self):
+        """Forget all that has come, and which stream is ahead of the other."""
+        self._rates.clear()
+        self._newest_ns = None
+        self.stage.rejoin()
 
     def instant(self, stamp_ns):
         """Return the instant of a reading by its stamp, motion time."""
@@ -57,6 +71,9 @@ class NavigatorNode(StageNode):
             return
         sample = (self.instant(sample[0]), *sample[1:])
         self._newest_ns = sample[0]
+        if len(self._rates) > self.depth:
+            # of readings that are refused, none is ever needed
+            self._rates.clear()
         self._rates[sample[0]] = sample[1]
         # the rest first: it may have jumped back as the IMU is about to
         self.take()
@@ -65,15 +82,20 @@ class NavigatorNode(StageNode):
 
     def take(self):
         """Take what has come beside the readings."""
-        while not self.stop and (data := self._truth.take()) is not None:
+        for data in self.taken_of(self._truth):
             sample = self.read(self._truth_reader, data)
             if sample is not None:
                 self.publish(self.push(self.stage.push_truth, sample))
 
     def miss(self):
         """Say what has not come, and go on without."""
-        self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected the '
-                   'truth of every reading')
+        if self.stage.parted:
+            self.fault(f'of {topics.IMU_RAW.name} and {topics.TRUTH_ODOMETRY.name} one has jumped '
+                       f'back and the other has not followed in {MISSING_S:g} s; expected both '
+                       'from one run: they are taken as of one run from now on')
+        else:
+            self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected '
+                       'the truth of every reading')
         self.stage.rejoin()
 
     def _settle(self):

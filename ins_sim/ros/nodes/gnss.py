@@ -6,6 +6,7 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.messages import topics
 from ins_sim.messages.gnss_fixes import GnssWriter
+from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.gnss import GnssSettings
 from ..transport import qos
 from ..transport.arriving import Arriving
@@ -28,7 +29,8 @@ class GnssNode(StageNode):
 
     def make_outputs(self):
         """Make publishers, reader and writer, and the service that forces an outage."""
-        self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46), (46, 49)))
+        self._reader = PlausibleReader(topics.TRUTH_ODOMETRY,
+                                       ((0, 3), (3, 7), (43, 46), (46, 49)))
         self._writer = GnssWriter(self.epoch_ns)
         self._fix, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.GNSS_FIX, topics.GNSS_VELOCITY))

@@ -7,7 +7,9 @@ from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.streams.grid import SampleGrid
 from ins_sim.messages import topics
+from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.imu import ImuSensorSettings
 from ..transport import qos
 from .stage import StageNode
@@ -34,10 +36,11 @@ class ImuSensorNode(StageNode):
         """Make publishers, reader and writers."""
         settings = self.settings
         self._dt_ns = period_ns(settings.rate_hz)
+        self._grid, self._reading_ns = SampleGrid(self._dt_ns), None
         self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
         self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
         topic = topics.imu_raw(*reported_variances(settings))
-        self._reader, self._writer = topics.TRUTH_IMU.reader(), topic.writer()
+        self._reader, self._writer = PlausibleReader(topics.TRUTH_IMU), topic.writer()
         self._parity = None
         if self.stage.pair is not None:
             self._watch_parity()
@@ -56,7 +59,8 @@ class ImuSensorNode(StageNode):
         sample = self.read(self._reader, data)
         if sample is None:
             return
-        for t_ns, omega, force, parity in self.push(self.stage.push, sample):
+        for t_ns, omega, force, parity in self.push(self._push, sample):
+            self._reading_ns = t_ns
             stamp_ns = self._sampler.stamp(t_ns // self._dt_ns, t_ns)
             if stamp_ns is None:
                 continue
@@ -66,6 +70,10 @@ class ImuSensorNode(StageNode):
             if parity is not None:
                 self._test_parity(stamp_ns, t_ns, omega, force, parity)
         self.seen(sample[0])
+
+    def _push(self, t_ns, *sample):
+        self._grid.check(t_ns, self._reading_ns)
+        return self.stage.push(t_ns, *sample)
 
     def _test_parity(self, stamp_ns, t_ns, omega, force, parity):
         self._parity.push(t_ns, omega, force, parity)

@@ -14,6 +14,7 @@ from ..lock_step.pacing import LockStep, Pace
 from ..lock_step.truth_source import TruthSource
 from ..process.diagnostics import Monitor
 from ..process.parameters import declare_settings
+from ..process.publishers import SolePublishers
 from ..process.runtime import EXIT_CONSUMER
 from ..transport import qos
 from ..transport.backlog import HandQueue
@@ -41,8 +42,8 @@ class MotionGeneratorNode(Node):
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
                 topics.HEADER)
-        self._publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
-        self._publish = [p.publish for p in self._publishers]
+        self._truth_publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
+        self._publish = [p.publish for p in self._truth_publishers]
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
@@ -50,6 +51,7 @@ class MotionGeneratorNode(Node):
             self._clock_writer = topics.CLOCK_TOPIC.writer()
         self._status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
         self.monitor = Monitor(self)
+        self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None}).describe)
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)
         self.create_service(Trigger, '~/reset', self._on_reset)
@@ -58,7 +60,7 @@ class MotionGeneratorNode(Node):
     def run(self, executor, stop):
         """Publish until the end or until stop is set."""
         self._announce('running')
-        if not self._lock and not self._publishers[-1].get_subscription_count():
+        if not self._lock and not self._truth_publishers[-1].get_subscription_count():
             self.get_logger().warning(
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
@@ -112,10 +114,17 @@ class MotionGeneratorNode(Node):
         self.monitor.sent += 1
 
     def _take_acks(self):
-        while (data := self._acks.take()) is not None:
-            stamp_ns, _ = self._ack_reader.read(data)
+        for _ in range(qos.ACK_DEPTH):
+            if (data := self._acks.take()) is None:
+                return
+            try:
+                stamp_ns, _ = self._ack_reader.read(data)
+                name = self._ack_reader.strings(data)[0]
+            except ValueError as error:
+                self.monitor.fault(f'{topics.ACK.name}: {error}; the message was dropped')
+                continue
             k = (stamp_ns - self._source.stamp_ns(0)) // self._source.dt_ns
-            self._lock.ack(self._ack_reader.strings(data)[0], k, self._next)
+            self._lock.ack(name, k, self._next)
             self.monitor.received += 1
 
     def _announce(self, state):

@@ -216,12 +216,19 @@ class PlayerNode(Node):
             self._serve(POLL_S if time.monotonic() - lock.moved < 0.05 else 10 * POLL_S)
 
     def _take_acks(self):
-        while (data := self._acks.take()) is not None:
-            stamp_ns, _ = self._ack_reader.read(data)
+        for _ in range(qos.ACK_DEPTH):
+            if (data := self._acks.take()) is None:
+                return
+            try:
+                stamp_ns, _ = self._ack_reader.read(data)
+                name = self._ack_reader.strings(data)[0]
+            except ValueError as error:
+                self.monitor.fault(f'{topics.ACK.name}: {error}; the message was dropped')
+                continue
             if stamp_ns > self._stamps[-1] + JUMP_NS:
                 # an echo of the part before
                 continue
             # an answer may stand between two samples, or before the first, by a known latency
             k = max(0, bisect_right(self._stamps, stamp_ns) - 1)
-            self._lock.ack(self._ack_reader.strings(data)[0], k, len(self._stamps))
+            self._lock.ack(name, k, len(self._stamps))
             self.monitor.received += 1

@@ -4,11 +4,14 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, Writer
 from ..process.diagnostics import Monitor
+from ..process.net import caught
 from ..process.parameters import declare_settings
+from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_FAULT, Stop
 from ..transport import qos
 from ..transport.backlog import DrivingQueue, LINGER_S
@@ -19,8 +22,11 @@ class StageNode(Node):
     A node driven by one topic, which reads no clock and computes from the messages alone.
 
     A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
-    pushes raise StreamFault, and has ``on_message(bytes)``.
+    pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
+    is a fault too, after which the node starts anew.  FIRST_NS: the earliest motion time.
     """
+
+    FIRST_NS = 0
 
     def __init__(self, stop=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
@@ -38,8 +44,37 @@ class StageNode(Node):
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.create_subscription(String, topics.STATUS.name, self._on_status,
                                  qos.latched_profile())
-        self._queue = DrivingQueue(self, self.DRIVER, self.depth, self._on_data, self.on_drained,
+        # whoever waits for an answer waits for every one of them: only then nothing may be lost
+        self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
+                                   self.guarded(self.on_drained),
+                                   lambda: not self._ack_publisher.get_subscription_count(),
                                    LINGER_S)
+        queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
+        self.monitor.add(SolePublishers(self, queues).describe)
+        self.monitor.add(MessageLosses(queues, self.depth).describe)
+
+    def hand_queues(self):
+        """Return {topic name: HandQueue} of what is taken beside the driver."""
+        return {}
+
+    def taken_of(self, queue):
+        """Yield the messages of a HandQueue, no more than it may have held: never for ever."""
+        for _ in range(self.depth):
+            if self.stop or (data := queue.take()) is None:
+                return
+            yield data
+
+    def guarded(self, callback):
+        """Return a callback that raises nothing: an exception is a fault, after it all is new."""
+        return caught(callback, self._rescue)
+
+    def _rescue(self, sentence):
+        self.fault(sentence)
+        self.start_anew()
+
+    def start_anew(self):
+        """Forget all that has come."""
+        self.stage.reset()
 
     def _on_data(self, data):
         if not self.stop:
@@ -53,7 +88,13 @@ class StageNode(Node):
         except ValueError as error:
             self.fault(str(error))
             return None
-        return (stamp_ns - self.epoch_ns, *runs)
+        t_ns = stamp_ns - self.epoch_ns
+        if t_ns < self.FIRST_NS:
+            self.fault(f'a message has the stamp {seconds(stamp_ns)}, {seconds(-t_ns)} before '
+                       f'time.epoch_s {self.settings.time.epoch_s}; expected none before it: '
+                       'time.epoch_s must be the same in all nodes; the message was dropped')
+            return None
+        return (t_ns, *runs)
 
     def push(self, push, sample):
         """Return the outputs of a push; report a fault, start anew or stop, as on_fault says."""
@@ -96,6 +137,6 @@ class StageNode(Node):
         self.monitor.awaited = message.data == 'running'
 
     def _on_reset(self, request, response):
-        self.stage.reset()
+        self.start_anew()
         response.success, response.message = True, 'started anew'
         return response

@@ -4,6 +4,7 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.messages import topics, velocity_record
+from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ..transport import qos
 from ..transport.arriving import Arriving
@@ -33,22 +34,32 @@ class VelocityMeterNode(StageNode):
 
     def make_outputs(self):
         """Make publishers, readers and the queue of the INS."""
-        self._reader = topics.TRUTH_ODOMETRY.reader(((0, 3), (3, 7), (43, 46)))
+        self._reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
         self._record, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.METER_RECORD, topics.METER_VELOCITY))
         self._pack = topics.METER_VELOCITY.writer().pack
-        self._windows = self._invalid = self._heard = 0
+        self._windows = self._invalid = 0
         self._reason = ''
         self.monitor.add(self._describe)
         self._newest_ns, self._dt_ns = None, period_ns(self.settings.rate_hz)
         self._absent = False
         self._ins = None
         if self.settings.attack_angle == 'ins':
-            self._ins_reader = topics.INS_ODOMETRY.reader(((43, 46),))
+            self._ins_reader = PlausibleReader(topics.INS_ODOMETRY, ((43, 46),))
             self._ins = HandQueue(self, topics.INS_ODOMETRY, self.depth)
         self._patience = Patience(self, lambda: self._meter.waits_for_ns is not None,
-                                  lambda: (self._windows, self._heard), self._take_ins,
-                                  self._miss_ins, self._settle)
+                                  lambda: (self._windows, self._meter.ins_reached_ns),
+                                  self._take_ins, self._miss_ins, self._settle)
+
+    def hand_queues(self):
+        """Return the queue of the INS, if it is read."""
+        return {} if self._ins is None else {topics.INS_ODOMETRY.name: self._ins}
+
+    def start_anew(self):
+        """Forget all that has come, that of the INS too."""
+        self._newest_ns = None
+        self.stage.reset()
+        self._meter.rejoin()
 
     def on_message(self, data):
         """Give one truth message to the instrument, and the solutions that have come."""
@@ -65,17 +76,22 @@ class VelocityMeterNode(StageNode):
         self._patience.wait()
 
     def _take_ins(self):
-        while self._ins is not None and not self.stop and (data := self._ins.take()) is not None:
+        for data in () if self._ins is None else self.taken_of(self._ins):
             self._absent = False
-            self._heard += 1
             sample = self.read(self._ins_reader, data)
             if sample is not None:
                 self._publish(self.stage.add(self.push(self._meter.push_ins, sample)))
 
     def _miss_ins(self):
         self._absent = True
-        self.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected the '
-                   'solution up to the end of every window (attack_angle: none needs none)')
+        if self._meter.parted:
+            self.fault(f'of {self.DRIVER.name} and {topics.INS_ODOMETRY.name} one has jumped back '
+                       f'and the other has not followed in {MISSING_S:g} s; expected both from '
+                       'one run: they are taken as of one run from now on')
+        else:
+            self.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected '
+                       'the solution up to the end of every window (attack_angle: none needs '
+                       'none)')
         self._publish(self.stage.add(self._meter.give_up_ins()))
 
     def _settle(self):

@@ -1,12 +1,12 @@
 """What a node says about itself on /diagnostics, once a second of wall time."""
 
-import math
-import re
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from ..transport.wall_timer import wall_timer
+from .net import described
+from .said import kind, Said, visible
 
 RECENT_S = 5.0
 
@@ -22,7 +22,8 @@ class Monitor:
     def __init__(self, node, input_name=None, stale_s=2.0):
         self.received = self.sent = self.faults = 0
         self.state, self.awaited = 'running', True
-        self.last_fault, self._logged = '', {}
+        self.last_fault = ''
+        self._said = Said(lambda sentence: node.get_logger().warning(sentence))
         self._node, self._input, self._stale_s = node, input_name, stale_s
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
@@ -40,18 +41,14 @@ class Monitor:
         self._more.append(describe)
 
     def fault(self, sentence, fatal=False):
-        """Count a fault and log it, each kind at most once a second."""
+        """Count a fault and log it, each kind once and then more and more rarely."""
         self.faults += 1
-        self.last_fault = sentence
+        self.last_fault = sentence = visible(sentence)
         self._fault_time = time.monotonic()
-        logger = self._node.get_logger()
         if fatal:
-            logger.fatal(sentence)
+            self._node.get_logger().fatal(sentence)
         else:
-            name = kind(sentence)
-            if self._fault_time - self._logged.get(name, -math.inf) >= 1.0:
-                self._logged[name] = self._fault_time
-                logger.warning(sentence)
+            self._said.say(sentence)
 
     def publish(self):
         """Publish the status."""
@@ -77,19 +74,19 @@ class Monitor:
             if self.received and not self._stale:
                 self._node.get_logger().warning(status.message)
                 self._stale = True
-        more = [describe() for describe in self._more]
+        more = [self._ask(describe) for describe in self._more]
         kinds = {kind(wrong): wrong for wrong, _ in more if wrong}
         for name, wrong in kinds.items():
             if name in self._standing:
                 # said when it began, and true until it ends
-                self.last_fault, self._fault_time = wrong, now
+                self.last_fault, self._fault_time = visible(wrong), now
             else:
                 self.fault(wrong)
         self._standing = set(kinds)
         if self.faults and now - self._fault_time < RECENT_S:
             status.level, status.message = DiagnosticStatus.WARN, self.last_fault
         span = max(now - last, 1e-3)
-        status.values = [KeyValue(key=key, value=str(value)) for key, value in (
+        status.values = [KeyValue(key=key, value=visible(str(value))) for key, value in (
             ('received', self.received), ('sent', self.sent), ('faults', self.faults),
             ('last fault', self.last_fault),
             ('received per second', f'{(self.received - received) / span:.1f}'),
@@ -100,7 +97,9 @@ class Monitor:
         array.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(array)
 
-
-def kind(sentence):
-    """Return a sentence without its numbers: which kind of fault it tells of."""
-    return re.sub(r'[-+.\d]+(e[-+]?\d+)?', '#', sentence)
+    @staticmethod
+    def _ask(describe):
+        try:
+            return describe()
+        except Exception as error:
+            return described(error), ()

@@ -1,15 +1,22 @@
-"""Subscriptions that give bytes and are emptied by hand."""
+"""
+Subscriptions that give bytes and are emptied by hand.
+
+Each counts by the numbers of the publishers what was lost before it was taken.
+"""
 
 import time
 
 from rclpy.callback_groups import CallbackGroup
 
 from . import qos
+from .gaps import Gaps
 
 TURN_S = 0.01
 LINGER_S = 0.003
 NAP_S = 5e-4
 BATCH = 50
+# what has waited for longer is dropped where nobody waits for its answer
+BACKLOG_NS = 5_000_000_000
 
 
 class NeverReady(CallbackGroup):
@@ -31,6 +38,7 @@ class HandQueue:
     """A raw subscription out of the wait set; profile: its QoS, by default that of data."""
 
     def __init__(self, node, topic, depth, profile=None):
+        self.topic, self.gaps, self.dropped = topic.name, Gaps(), 0
         self._group = NeverReady()
         self._class = qos.message_class(topic)
         self.subscription = node.create_subscription(
@@ -42,7 +50,10 @@ class HandQueue:
     def take(self):
         """Return the oldest message as bytes, or None."""
         taken = self._take(self._class, True)
-        return None if taken is None else taken[0]
+        if taken is None:
+            return None
+        self.gaps.take(taken[1]['publication_sequence_number'])
+        return taken[0]
 
     def take_with_info(self):
         """Return the oldest message as bytes and what DDS notes of it, or None."""
@@ -56,26 +67,37 @@ class DrivingQueue:
     A cycle of the executor costs more than a message.  So a wake-up takes all there are, and
     with linger_s waits that long for the next one before it goes back to the executor; it does
     so after TURN_S in any case, for timers and services.  on_data(bytes) takes each message,
-    on_drained() follows when the queue is empty and every BATCH messages.
+    on_drained() follows when the queue is empty and every BATCH messages.  What has waited for
+    BACKLOG_NS is ``dropped``, and counted, where may_drop() says so: in real time, what is late
+    is worth less than what is new.
     """
 
-    def __init__(self, node, topic, depth, on_data, on_drained, linger_s=0.0):
+    def __init__(self, node, topic, depth, on_data, on_drained, may_drop, linger_s=0.0):
+        self.gaps, self.dropped, self._may_drop = Gaps(), 0, may_drop
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
         self._class = qos.message_class(topic)
         self.subscription = node.create_subscription(self._class, topic.name, self._wake,
                                                      qos.data_profile(depth), raw=True)
         self._take = self.subscription.handle.take_message
 
-    def _wake(self, data):
-        now = time.monotonic()
+    def _give(self, data, info, late_ns):
+        self.gaps.take(info['publication_sequence_number'])
+        # a middleware that notes no time gives zero
+        if 0 < info['received_timestamp'] < late_ns and self._may_drop():
+            self.dropped += 1
+        else:
+            self._on_data(data)
+
+    def _wake(self, data, info):
+        now, late_ns = time.monotonic(), time.time_ns() - BACKLOG_NS
         turn_end, linger_end = now + TURN_S, now + self._linger_s
-        self._on_data(data)
+        self._give(data, info, late_ns)
         count = 1
         while now < turn_end:
             taken = self._take(self._class, True)
             now = time.monotonic()
             if taken is not None:
-                self._on_data(taken[0])
+                self._give(*taken, late_ns)
                 count += 1
                 linger_end = now + self._linger_s
                 if count < BATCH:

@@ -1,5 +1,8 @@
 """Lost messages, seen as gaps in the numbers that their publishers give them.  No ROS."""
 
+# rising sequences that are told apart
+MOST = 100
+
 
 class Gaps:
     """
@@ -36,3 +39,5 @@ class Gaps:
                 if len(following) < self.publishers:
                     self.before += number - 1
                 following.append(number + 1)
+                # of publishers that have left
+                del following[:-MOST]

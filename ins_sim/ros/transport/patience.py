@@ -24,7 +24,7 @@ class Patience:
         self._node, self._waiting, self._progress = node, waiting, progress
         self._take, self._missed, self._settle = take, missed, settle
         self._since = self._mark = None
-        self._retry = wall_timer(node, RETRY_S, self._on_retry)
+        self._retry = wall_timer(node, RETRY_S, node.guarded(self._on_retry))
         self._retry.cancel()
 
     def wait(self, patience_s=PATIENCE_S):

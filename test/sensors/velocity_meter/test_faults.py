@@ -3,14 +3,13 @@
 import math
 import warnings
 
-from support.meter_studies import DT_NS, flight, meter_settings
+from support.meter_studies import DT_NS, flight, meter_settings, same
 import numpy as np
 import pytest
 
 from ins_sim.core.streams.faults import StreamFault
-from ins_sim.core.sensors.velocity_meter.meter import (CALM, NO_ANGLE, NO_INS, VelocityMeter,
-                                                       WAIT_NS)
-from support.meter_streams import same
+from ins_sim.core.sensors.velocity_meter.ins_means import NO_ANGLE, NO_INS, WAIT_NS
+from ins_sim.core.sensors.velocity_meter.meter import CALM, VelocityMeter
 
 V = 200.0
 MODES = ('signal', 'surrogate')

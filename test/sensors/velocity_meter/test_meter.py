@@ -3,7 +3,7 @@
 import math
 
 from hypothesis import example, given, settings as hypothesis_settings, strategies as st
-from support.meter_studies import body, DT_NS, flight, meter_settings, PERFECT
+from support.meter_studies import body, DT_NS, flight, meter_settings, PERFECT, same
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -11,7 +11,6 @@ from scipy.stats import chi2
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.sensors.velocity_meter.surrogate import velocity_sigmas
-from support.meter_streams import same
 
 V = 200.0
 MODES = ('signal', 'surrogate')

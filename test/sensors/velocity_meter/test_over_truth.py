@@ -5,8 +5,7 @@ from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
 from ins_sim.core.timeseries.histories import Truth
 import numpy as np
 import pytest
-from support.meter_streams import same
-from support.meter_studies import meter_settings
+from support.meter_studies import meter_settings, same
 
 COUNT = 4097
 

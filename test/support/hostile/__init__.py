@@ -1,1 +1,1 @@
-"""Files that are damaged or made to do harm."""
+"""What tests and tools/fuzz_nodes.py share: nodes fed by hand, and messages that nobody sends."""

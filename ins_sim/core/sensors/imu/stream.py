@@ -6,7 +6,8 @@ import numpy as np
 
 from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.instants import seconds
-from ins_sim.core.streams.faults import check_finite, StreamFault
+from ins_sim.core.streams.faults import (check_finite, check_periods, MOST_PERIODS,
+                                         StreamFault)
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 from ..sensor import Sensor
 from .ideal import MotionImu, Triads
@@ -60,7 +61,7 @@ class StreamImu(Sensor):
         wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
         delays = triads.attitude_delays
         reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
-        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted)
+        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted, triads.dt_ns)
         self._next_ns = None
         self._q_start = None
 
@@ -189,6 +190,7 @@ class PacedImu(Sensor):
                               f'{seconds(t_ns)}; expected rising stamps', restart=True)
         if t_ns == self._last_ns and self._first:
             return self._first if t_ns == self._first_ns else []
+        check_periods(t_ns, self._last_ns, 0, MOST_PERIODS * self._triads.dt_ns)
         self._last_ns = t_ns
         readings = []
         while (self._ready or self._compute()) and self._ready[-1][0] <= t_ns:

@@ -14,21 +14,15 @@ from ins_sim.core.numerics.elementary import atan2, sincos
 from ins_sim.core.numerics.instants import period_ns, seconds
 from ins_sim.core.streams.faults import (check_finite, check_interval, INTERVAL_TOLERANCE,
                                          StreamFault)
-from ins_sim.core.streams.restarts import RestartDetector
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
-from .blocks import in_order, pieces
+from .blocks import pieces
+from .ins_means import InsMeans, UNSEEN
 from .limits import all_measurable, why_not_measurable
 from .reading import Reading
 from .surrogate import SurrogateWindows, velocity_sigmas
 
 NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
-NO_INS = 'no INS velocity in the window'
-NO_ANGLE = 'INS velocity gives no angle of attack below 45 deg'
-# without the INS: why not, tan(alpha), and no sideslip
-UNSEEN = (NO_INS, 0.0, None)
-# How long a window waits for the INS, in motion time: more than lock-step lets it lag.
-WAIT_NS = 60_000_000_000
 
 
 class VelocityMeter:
@@ -60,8 +54,7 @@ class VelocityMeter:
             self._method = SignalWindows(settings, run)
         else:
             self._method = SurrogateWindows(settings, run)
-        self._truth_ns = None
-        self._forget_ins()
+        self._ins = InsMeans(self._dt_ns, self._span_ns)
         self.reset()
 
     def reset(self):
@@ -85,11 +78,7 @@ class VelocityMeter:
             raise StreamFault(f'truth at {seconds(t_ns)} lies between the cycles of rate_hz; '
                               f'expected whole periods of {self._dt_ns * 1e-9:.9g} s; the sample '
                               'was dropped', restart=False)
-        if self._truth_ns is not None and t_ns < self._truth_ns:
-            self._runs.first_jumps(t_ns, self._last_ins_ns)
-            if self._runs.first_is_ahead:
-                self._ins = {}
-        self._truth_ns = t_ns
+        self._ins.follow_truth(t_ns)
         v = self._in_antennas(v_b)
         if self._last is None:
             self._repeatable = True
@@ -123,20 +112,18 @@ class VelocityMeter:
         if not self._waits:
             return []
         check_finite('INS velocity', t_ns, v_b)
-        if self._last_ins_ns is not None and t_ns <= self._last_ins_ns:
-            if t_ns == self._last_ins_ns:
-                return []
-            self._runs.second_jumps(t_ns, self._truth_ns)
-            self._ins = {}
-        self._last_ins_ns = t_ns
-        if self._runs.first_is_ahead:
-            return []
-        end_ns = -(-(t_ns - self._dt_ns // 2) // self._span_ns) * self._span_ns
-        last = self._ins.get(end_ns, (0.0, 0.0, 0.0))
-        self._ins[end_ns] = tuple(a + b for a, b in zip(last, v_b))
-        while next(iter(self._ins)) < end_ns - max(WAIT_NS, self._span_ns):
-            del self._ins[next(iter(self._ins))]
+        self._ins.push(t_ns, v_b)
         return self._complete()
+
+    @property
+    def parted(self):
+        """Return whether truth or INS has jumped back and the other has not followed."""
+        return self._ins.is_parted
+
+    @property
+    def ins_reached_ns(self):
+        """Return how far the INS has come in the run of the truth, or None."""
+        return self._ins.reached_ns
 
     @property
     def waits_for_ns(self):
@@ -148,13 +135,14 @@ class VelocityMeter:
         fixes = [self._fix(index, why_not, total, *UNSEEN)
                  for index, why_not, total in self._waiting]
         self._waiting.clear()
-        if not self._runs.same_run:
-            self._forget_ins()
+        if self._ins.is_parted:
+            self._ins.forget()
         return fixes
 
-    def _forget_ins(self):
-        # The truth is the first of the two.
-        self._runs, self._last_ins_ns, self._ins = RestartDetector(), None, {}
+    def rejoin(self):
+        """Forget everything, the INS too: as if both streams began now."""
+        self._ins.forget()
+        self.reset()
 
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """
@@ -183,7 +171,7 @@ class VelocityMeter:
 
     def _add_cycles(self, t_ns, v_b, height):
         """Add cycles to the open window at once; return False if each is to be looked at."""
-        if self._last is None or t_ns[0] <= self._truth_ns:
+        if self._last is None or not self._ins.rises(t_ns[0]):
             return False
         last_ns, v_last, height_last = self._last
         v = np.column_stack((v_last, self._in_antennas(v_b.T)))
@@ -199,7 +187,8 @@ class VelocityMeter:
                 return False
             self._sum = self._method.add_cycles(self._sum, v)
         self._last = int(t_ns[-1]), tuple(v[:, -1].tolist()), float(height[-1])
-        self._truth_ns, self._repeatable = self._last[0], False
+        self._ins.skip_truth(self._last[0])
+        self._repeatable = False
         return True
 
     def advance_ins(self, t_ns, v_b):
@@ -208,23 +197,7 @@ class VelocityMeter:
 
         t_ns (n,) int64; v_b (n, 3).  Raises StreamFault.
         """
-        fixes, half_ns = [], self._dt_ns // 2
-        ends = -(-(t_ns - half_ns) // self._span_ns) * self._span_ns
-        for a, b in pieces(np.diff(ends, append=0) != 0):
-            # Those before the window can be over are added at once.
-            end_ns = int(ends[a])
-            inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
-            rising = (np.diff(t_ns[a:inside]) > 0).all() and (
-                self._last_ins_ns is None or t_ns[a] > self._last_ins_ns)
-            if a + 2 < inside and rising and self._waits and np.isfinite(
-                    v_b[a:inside]).all() and not self._runs.first_is_ahead:
-                self._ins[end_ns] = in_order(self._ins.get(end_ns, (0.0, 0.0, 0.0)),
-                                             v_b[a:inside].T)
-                self._last_ins_ns = int(t_ns[inside - 1])
-                a = inside
-            for t, v in zip(t_ns[a:b].tolist(), v_b[a:b].tolist()):
-                fixes += self.push_ins(t, v)
-        return fixes
+        return self._ins.advance(t_ns, v_b, self.push_ins) if self._waits else []
 
     def _open(self, index):
         """Begin the window that starts at index periods; None: no window, until one starts."""
@@ -267,15 +240,7 @@ class VelocityMeter:
         """Return VALID or why not, tan(alpha) and sideslip by the INS; None: not known yet."""
         if not self._waits:
             return VALID, 0.0, None
-        if not self._runs.same_run or self._last_ins_ns is None \
-                or self._last_ins_ns < end_ns - self._dt_ns // 2:
-            return UNSEEN if self._last[0] >= end_ns + WAIT_NS else None
-        if end_ns not in self._ins:
-            return UNSEEN
-        forward, left, up = self._ins[end_ns]
-        if abs(up) >= forward:
-            return NO_ANGLE, 0.0, None
-        return VALID, -up / forward, atan2(-left, forward)
+        return self._ins.angle(end_ns, self._last[0])
 
     def _fix(self, index, why_not, total, angle_status, tan_alpha, slip):
         """

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ins_sim.core.earth.rates import body_velocity
-from .meter import WAIT_NS
+from .ins_means import WAIT_NS
 
 
 class MeterOnTruth:

@@ -1,0 +1,133 @@
+"""Velocities of the INS as the velocity meter uses them: their means over its windows."""
+
+import numpy as np
+
+from ins_sim.core.numerics.elementary import atan2
+from ins_sim.core.streams.restarts import LastStamps, RestartDetector
+from ins_sim.core.timeseries.fixes import VALID
+from .blocks import in_order, pieces
+
+NO_INS = 'no INS velocity in the window'
+NO_ANGLE = 'INS velocity gives no angle of attack below 45 deg'
+# without the INS: why not, tan(alpha), and no sideslip
+UNSEEN = (NO_INS, 0.0, None)
+# How long a window waits for the INS, in motion time: more than lock-step lets it lag.
+WAIT_NS = 60_000_000_000
+
+
+class InsMeans:
+    """
+    Sums of the velocities by window, and which run of the truth they belong to.
+
+    dt_ns: navigation cycle; span_ns: window.  A stamp of the INS that jumps back begins a new
+    history, unless the one before it was a stray.
+    """
+
+    def __init__(self, dt_ns, span_ns):
+        self._dt_ns, self._span_ns = dt_ns, span_ns
+        self.forget()
+
+    def forget(self):
+        """Forget what the INS said."""
+        # The truth is the first of the two.
+        self._runs, self.newest_ns, self._sums = RestartDetector(), None, {}
+        self._truth_ns, self._truth_stamps, self._stamps = None, LastStamps(), LastStamps()
+
+    @property
+    def is_parted(self):
+        """Return whether truth or INS has jumped back and the other has not followed."""
+        return not self._runs.same_run
+
+    @property
+    def reached_ns(self):
+        """Return how far the INS has come in the run of the truth, or None."""
+        return None if self.is_parted else self.newest_ns
+
+    def follow_truth(self, t_ns):
+        """Take note of a stamp of the truth."""
+        if self._truth_ns is not None and t_ns < self._truth_ns \
+                and not self._truth_stamps.was_ahead(t_ns):
+            self._runs.first_jumps(t_ns, self.newest_ns)
+            if self._runs.first_is_ahead:
+                self._sums = {}
+        self._truth_ns = t_ns
+        if self._truth_stamps.take(t_ns):
+            self._runs.first_returns()
+
+    def skip_truth(self, t_ns):
+        """Take note of the last of some rising stamps of the truth."""
+        self._truth_ns = t_ns
+
+    def rises(self, t_ns):
+        """Return whether a stamp of the truth is later than the last one."""
+        return self._truth_ns is None or t_ns > self._truth_ns
+
+    def push(self, t_ns, v_b):
+        """Take a velocity (FLU, m/s); a repeated stamp is passed over."""
+        if self.newest_ns is not None and t_ns <= self.newest_ns:
+            if t_ns == self.newest_ns:
+                return
+            self._jump_back(t_ns)
+        self.newest_ns = t_ns
+        if self._stamps.take(t_ns):
+            self._runs.second_returns()
+        if self._runs.first_is_ahead:
+            return
+        end_ns, sums = self._end_of(t_ns), self._sums
+        last = sums.get(end_ns, (0.0, 0.0, 0.0))
+        sums[end_ns] = tuple(a + b for a, b in zip(last, v_b))
+        while next(iter(sums)) < end_ns - max(WAIT_NS, self._span_ns):
+            del sums[next(iter(sums))]
+
+    def _jump_back(self, t_ns):
+        if self._stamps.was_ahead(t_ns):
+            # of a stray nothing stays, at most its part in the mean of its window
+            end_ns = self._end_of(t_ns)
+            self._sums = {end: total for end, total in self._sums.items() if end <= end_ns}
+        else:
+            self._runs.second_jumps(t_ns, self._truth_ns)
+            self._sums = {}
+
+    def _end_of(self, t_ns):
+        """Return the end of the window of an instant."""
+        return -(-(t_ns - self._dt_ns // 2) // self._span_ns) * self._span_ns
+
+    def advance(self, t_ns, v_b, push):
+        """
+        Return what push(t_ns, v_b) returns of the velocities of a block, most of which go at once.
+
+        t_ns (n,) int64; v_b (n, 3); push(t_ns, v_b) must call ``push`` for one of them.
+        """
+        found, half_ns = [], self._dt_ns // 2
+        ends = self._end_of(t_ns)
+        for a, b in pieces(np.diff(ends, append=0) != 0):
+            # Those before the window can be over are added at once.
+            end_ns = int(ends[a])
+            inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
+            rising = (np.diff(t_ns[a:inside]) > 0).all() and (
+                self.newest_ns is None or t_ns[a] > self.newest_ns)
+            if a + 2 < inside and rising and np.isfinite(
+                    v_b[a:inside]).all() and not self._runs.first_is_ahead:
+                self._sums[end_ns] = in_order(self._sums.get(end_ns, (0.0, 0.0, 0.0)),
+                                              v_b[a:inside].T)
+                self.newest_ns = int(t_ns[inside - 1])
+                a = inside
+            for t, v in zip(t_ns[a:b].tolist(), v_b[a:b].tolist()):
+                found += push(t, v)
+        return found
+
+    def angle(self, end_ns, now_ns):
+        """
+        Return VALID or why not, tan(alpha) and sideslip of a window; None: not known yet.
+
+        end_ns: its end; now_ns: where the truth is.
+        """
+        reached_ns = self.reached_ns
+        if reached_ns is None or reached_ns < end_ns - self._dt_ns // 2:
+            return UNSEEN if now_ns >= end_ns + WAIT_NS else None
+        if end_ns not in self._sums:
+            return UNSEEN
+        forward, left, up = self._sums[end_ns]
+        if abs(up) >= forward:
+            return NO_ANGLE, 0.0, None
+        return VALID, -up / forward, atan2(-left, forward)

@@ -1,0 +1,69 @@
+"""Topics that one node alone should publish: two on one of them are said in words."""
+
+from ..transport.backlog import BACKLOG_NS
+from .said import visible
+
+# as many are named
+NAMED = 4
+
+
+class SolePublishers:
+    """
+    Looks who publishes some topics of a node.
+
+    queues: {topic name: a queue with ``gaps``, or None where the node publishes the topic itself}.
+    """
+
+    def __init__(self, node, queues):
+        self._node = node
+        self._queues = {node.resolve_topic_name(name): queue for name, queue in queues.items()}
+
+    def describe(self):
+        """Return what is wrong, or '', and no values: as ``Monitor.add`` takes it."""
+        wrong = ''
+        for name, queue in self._queues.items():
+            count = self._node.count_publishers(name)
+            if queue is not None:
+                queue.gaps.publishers = max(1, count)
+            if count > 1 and not wrong:
+                wrong = (f'{name} has {count} publishers, {self._names(name)}; expected one: two '
+                         'of them (two generators, two of the same node, or a player beside a '
+                         'simulation) make whoever reads it start anew again and again')
+        return wrong, ()
+
+    def _names(self, name):
+        infos = self._node.get_publishers_info_by_topic(name)
+        names = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in infos)
+        more = f' and {len(names) - NAMED} more' if len(names) > NAMED else ''
+        return ', '.join(visible(name, 80) for name in names[:NAMED]) + more
+
+
+class MessageLosses:
+    """
+    Messages that a node has lost, by the numbers that their publishers give them, or has dropped.
+
+    queues: {topic name: a queue with ``gaps`` and ``dropped``}; depth: of these queues.
+    """
+
+    def __init__(self, queues, depth):
+        self._queues, self._depth = queues, depth
+        self._lost, self._dropped = dict.fromkeys(queues, 0), dict.fromkeys(queues, 0)
+
+    def describe(self):
+        """Return what was lost since the last time, or '', and the counts."""
+        wrong, values = '', []
+        for name, queue in self._queues.items():
+            lost, dropped = queue.gaps.lost, queue.dropped
+            if dropped > self._dropped[name]:
+                wrong = (f'{dropped - self._dropped[name]} messages of {name} were dropped: they '
+                         f'had waited for more than {BACKLOG_NS // 1_000_000_000} s, this node '
+                         'cannot keep up; expected a lower rate_hz or real_time_factor, or '
+                         'pacing.lock_step')
+            elif lost > self._lost[name]:
+                wrong = (f'{lost - self._lost[name]} messages of {name} were lost: this node '
+                         'cannot keep up, or the transport; expected a lower rate_hz or '
+                         f'real_time_factor, pacing.lock_step, or a topics.depth above '
+                         f'{self._depth}')
+            self._lost[name], self._dropped[name] = lost, dropped
+            values += [(f'{name} lost', lost), (f'{name} dropped', dropped)]
+        return wrong, values

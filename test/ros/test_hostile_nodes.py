@@ -1,0 +1,80 @@
+"""Hostile messages amid a good flight of all nodes: nothing ends, nothing is lost for good."""
+
+from collections import Counter
+
+from support.hostile.flight import ATTACKED, HostileFlight, VARIANTS
+import pytest
+
+pytest.importorskip('rclpy')
+
+KINDS = {'field', 'fields', 'stamp', 'shifted', 'text', 'malformed', 'order', 'duplicate',
+         'publisher'}
+# messages between two calm stretches
+ATTACK = 2500
+
+
+def attacked(seed, count):
+    """
+    Send so many hostile messages amid a flight; return how many were tried by kind.
+
+    After every ATTACK the good stream alone must bring all nodes back.  A HostileFlight raises a
+    Finding for what is not finite, for too many messages, bytes and lines, and for a node that
+    has ended; an exception out of a callback ends the test by itself.
+    """
+    with HostileFlight(seed) as flight:
+        flight.good(50)
+        while sum(flight.tried.values()) < count:
+            flight.attack(ATTACK)
+            flight.calm()
+        print(f'\nseed {seed}: {sum(flight.tried.values())} hostile messages; one led to at most '
+              f'{flight.most_sent} of the nodes; a node held at most {flight.most_bytes} bytes')
+        # bounds stand before the last net, which none of these messages reaches
+        assert not flight.rescued
+        kinds = Counter()
+        for (kind, _), number in flight.tried.items():
+            kinds[kind] += number
+        assert set(kinds) == KINDS and {name for _, name in flight.tried} == {
+            topic.name for topic in ATTACKED}
+        return kinds
+
+
+@pytest.mark.parametrize('seed', [1, 2])
+def test_ten_thousand_hostile_messages(seed, ros_domain):
+    """No exception out, nothing not finite, bounded work, memory and log; all nodes come back."""
+    attacked(seed, 10_000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('variant', range(1, len(VARIANTS)))
+def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
+    """Sources, outputs, errors, channels, modes and filters: all nodes come back."""
+    with HostileFlight(variant, variant=variant) as flight:
+        flight.good(50)
+        flight.attack(2000)
+        flight.calm()
+        assert not flight.rescued
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('seed', [3, 4])
+def test_fifty_thousand_hostile_messages(seed, ros_domain):
+    """The same for longer; tools/fuzz_nodes.py goes on with two million."""
+    attacked(seed, 50_000)
+
+
+def test_a_recorder_hears_all_of_it(ros_domain, tmp_path):
+    """Hostile messages are recorded like others: the bag is whole, and can be read."""
+    from ins_sim.bags.bag_reader import open_bag
+    bag = tmp_path / 'bag'
+    with HostileFlight(5, {'recorder': {
+            'record.topics': [topic.name for topic in ATTACKED], 'storage.path': str(bag)}}) as f:
+        f.good(50)
+        f.attack(1500)
+        f.good(50)
+        recorder = f.fed.nodes['recorder']
+        recorder.recorder.finish()
+        recorder._bag.close()
+        assert not f.rescued
+        counts = recorder.recorder.counts
+    with open_bag(bag) as bag:
+        assert {name: span.count for name, span in bag.spans().items()} == counts

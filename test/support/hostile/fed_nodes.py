@@ -1,0 +1,253 @@
+"""
+Real node objects whose DDS is a bus in this process, fed with bytes through the doors of DDS.
+
+Nothing waits: the clock is told how late it is.  What the nodes publish goes to those that read
+it, and is looked at.
+"""
+
+from collections import defaultdict, deque
+from functools import lru_cache
+import math
+import struct
+import sys
+from types import SimpleNamespace
+from unittest import mock
+
+from ins_sim.messages import topics, velocity_record
+from ins_sim.messages.cdr import LAYOUTS, Reader, stamp_of
+
+TOPICS = {topic.name: topic for topic in (
+    *topics.DATA, *topics.AIDING, topics.IMU_PARITY, topics.ACK, topics.CLOCK_TOPIC)}
+
+
+class ToldClock:
+    """Stands for the module ``time``: its time passes when it is told so, and in naps."""
+
+    def __init__(self):
+        self.now_s, self.timers = 1e6, []
+
+    def monotonic(self):
+        """Return the time, s."""
+        return self.now_s
+
+    def time_ns(self):
+        """Return the time, ns."""
+        return round(1e9 * self.now_s)
+
+    def sleep(self, nap_s):
+        """Let a nap pass."""
+        self.now_s += nap_s
+
+    def pass_by(self, step_s):
+        """Let time pass, and call the timers that are due."""
+        self.now_s += step_s
+        for timer in self.timers:
+            timer.call_if_due()
+
+
+class ToldTimer:
+    """Stands for a wall timer."""
+
+    def __init__(self, clock, period_s, callback):
+        self._clock, self._period_s, self._callback = clock, period_s, callback
+        self.reset()
+        clock.timers.append(self)
+
+    def reset(self):
+        """Begin a period now."""
+        self._due_s = self._clock.now_s + self._period_s
+
+    def cancel(self):
+        """Never be due, until the next reset."""
+        self._due_s = math.inf
+
+    def call_if_due(self):
+        """Call the callback."""
+        if self._clock.now_s >= self._due_s:
+            self.reset()
+            self._callback()
+
+
+class Bus:
+    """
+    Delivers bytes from publishers to queues, and looks at what nodes publish.
+
+    ``sent`` counts messages by topic, ``newest_ns`` has the last stamp of each; ``wrong`` collects
+    what is not finite.  ``listen(name, data)`` is told of every message that a node publishes.
+    """
+
+    def __init__(self, clock):
+        self.clock, self.listen = clock, lambda name, data: None
+        self.sent, self.newest_ns, self.wrong = defaultdict(int), {}, []
+        self._queues, self._numbers = defaultdict(list), defaultdict(int)
+        self._driven = []
+
+    def make_publisher(self, node, topic, depth):
+        """Return what stands for a publisher of a Topic."""
+        return SimpleNamespace(publish=lambda data: self._publish(topic.name, data),
+                               get_subscription_count=lambda: 1,
+                               wait_for_all_acked=lambda _: True, topic_name=topic.name)
+
+    def join(self, queue, name, is_driving):
+        """Let what comes on a topic go into a queue of a node instead of what DDS has."""
+        waiting = deque()
+        queue._take = lambda cls, raw: waiting.popleft() if waiting else None
+        self._queues[name].append(waiting)
+        if is_driving:
+            queue._linger_s = 0.0
+            self._driven.append((waiting, queue))
+
+    def _publish(self, name, data):
+        self.sent[name] += 1
+        self.newest_ns[name] = stamp_of(data)
+        reason = not_finite(name, data)
+        if reason:
+            self.wrong.append((name, reason))
+        self.listen(name, data)
+        self.put(name, data)
+
+    def put(self, name, data):
+        """Deliver a message, whoever sends it."""
+        self._numbers[name] += 1
+        info = {'publication_sequence_number': self._numbers[name],
+                'received_timestamp': self.clock.time_ns()}
+        for waiting in self._queues[name]:
+            waiting.append((data, info))
+
+    def drive(self):
+        """Wake the nodes until nothing that drives one waits."""
+        busy = True
+        while busy:
+            busy = False
+            for waiting, queue in self._driven:
+                if waiting:
+                    queue._wake(*waiting.popleft())
+                    busy = True
+
+
+def not_finite(name, data):
+    """Return what a published message holds that is no number, or ''."""
+    topic = TOPICS.get(name)
+    if topic is None:
+        return ''
+    if topic == topics.METER_RECORD:
+        fix = velocity_record.read_fix(data, 0)
+        values = (*fix.velocity, *fix.sigma, fix.tan_alpha, *fix.tau, *fix.g) if fix.valid else ()
+    else:
+        unpack, size = _doubles(topic.type_name)
+        values = unpack(data, len(data) - size)
+        if math.isfinite(sum(values)):
+            return ''
+        if topic.type_name == topics.FIX and Reader(topics.FIX).numbers(data)[0] < 0:
+            # a receiver without a fix says so, with a place that is not a number
+            values = values[3:]
+    return '' if all(map(math.isfinite, values)) else str(values)
+
+
+@lru_cache(maxsize=None)
+def _doubles(type_name):
+    """Return what unpacks the doubles of a message, and the size of what they begin."""
+    layout = LAYOUTS[type_name]
+    found = struct.Struct(f'<{layout.doubles}d')
+    return found.unpack_from, found.size + layout.fix
+
+
+class Log:
+    """Stands for the logger of a node: counts lines, and keeps the last ones."""
+
+    def __init__(self):
+        self.lines, self.longest, self.kept = 0, 0, deque(maxlen=200)
+
+    def say(self, sentence, **more):
+        """Take a line."""
+        self.lines += 1
+        self.longest = max(self.longest, len(sentence))
+        assert sentence.isprintable(), sentence
+        self.kept.append(sentence)
+
+    info = warning = error = fatal = debug = say
+
+
+class FedNodes:
+    """
+    Nodes of the table of executables, joined by a Bus; a context manager.
+
+    parameters: {node: {name: value}}.  ``nodes`` has them by name, ``logs`` what they say.
+    """
+
+    def __init__(self, parameters):
+        self._parameters = parameters
+        self.clock = ToldClock()
+        self.began_s = self.clock.now_s
+        self.bus = Bus(self.clock)
+        self.nodes, self.logs, self._patches = {}, {}, []
+
+    def __enter__(self):
+        import rclpy
+        from ins_sim.core.numerics.compilation import plain_only
+        from ins_sim.ros.lock_step import pacing
+        from ins_sim.ros.process import diagnostics, said
+        from ins_sim.ros.transport import backlog, patience, qos
+        # as in a node process
+        self._plain = plain_only()
+        self._plain.__enter__()
+        self._context = rclpy.Context()
+        self._context.init()
+        for module in (diagnostics, said, backlog, patience, pacing):
+            self._patch(module, 'time', self.clock)
+        for module in (diagnostics, patience):
+            self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
+                self.clock, period_s, callback))
+        self._patch(qos, 'make_publisher', self.bus.make_publisher)
+        for name, parameters in self._parameters.items():
+            self._make(name, parameters)
+        return self
+
+    def _patch(self, owner, name, value):
+        patch = mock.patch.object(owner, name, value)
+        patch.start()
+        self._patches.append(patch)
+
+    def _make(self, name, parameters):
+        from rclpy.parameter import Parameter
+        from ins_sim.ros import main
+        node = main._load(name)(context=self._context, parameter_overrides=[
+            Parameter(key, value=value) for key, value in parameters.items()])
+        self.nodes[name], self.logs[name] = node, Log()
+        node.get_logger = lambda: self.logs[name]
+        if hasattr(node, '_queue'):
+            self.bus.join(node._queue, node.DRIVER.name, True)
+            for topic, queue in node.hand_queues().items():
+                self.bus.join(queue, topic, False)
+        if hasattr(node, 'recorder'):
+            for topic, track in node.recorder.tracks.items():
+                self.bus.join(track.queue, topic.lstrip('/'), False)
+        if hasattr(node, '_acks'):
+            self.bus.join(node._acks, topics.ACK.name, False)
+
+    def __exit__(self, *exception):
+        for node in self.nodes.values():
+            node.destroy_node()
+        for patch in self._patches:
+            patch.stop()
+        self._context.try_shutdown()
+        self._plain.__exit__(*exception)
+
+
+def held_bytes(thing, seen=None):
+    """Return how many bytes an object holds, with all it leads to that is ours or plain."""
+    seen = set() if seen is None else seen
+    total, todo = 0, [thing]
+    while todo:
+        one = todo.pop()
+        if id(one) in seen:
+            continue
+        seen.add(id(one))
+        total += sys.getsizeof(one, 0)
+        if isinstance(one, dict):
+            todo += [*one.keys(), *one.values()]
+        elif isinstance(one, (list, tuple, set, frozenset, deque)):
+            todo += one
+        elif type(one).__module__.startswith('ins_sim'):
+            todo += getattr(one, '__dict__', {}).values()
+    return total

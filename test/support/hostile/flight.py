@@ -1,0 +1,183 @@
+"""A flight of all nodes amid hostile messages: what must hold whatever comes, and what came."""
+
+from collections import Counter
+
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND
+from ins_sim.ros.lock_step.truth_source import TruthSource
+from ins_sim.settings.catalogue import build
+from ins_sim.settings.motion import MotionGeneratorSettings
+
+from .fed_nodes import FedNodes, held_bytes
+from .messages import HostileMessages
+
+RATE_HZ, DT_S = 100.0, 0.01
+COMMON = {'rate_hz': RATE_HZ, 'topics.depth': 500}
+FLIGHT = {**COMMON, 'motion.kind': 'racetrack', 'pacing.lock_step': True, 'pacing.window': 200}
+WINDOWS = {'window.cycles': 50, 'limits.height_max_m': 2e4}
+NODES = {
+    'motion_generator': FLIGHT,
+    'imu_sensor': {**COMMON, 'gyro.errors.bias_deg_h': [1.0, 1.0, 1.0]},
+    'strapdown': COMMON,
+    'velocity_meter': {**COMMON, **WINDOWS},
+    'gnss': COMMON,
+    'aided_navigator': {**COMMON, 'window.cycles': 50, 'gnss_model.use': True},
+}
+_INTEGRATED = {'input': 'integrated'}
+# Other settings of the nodes: what is theirs alone.
+VARIANTS = (
+    {},
+    {'imu_sensor': {'source': 'motion', 'motion.kind': 'racetrack', 'gyro.delay_us.x': 1000.0}},
+    {'imu_sensor': {'gyro.delay_us.x': 2500.0, 'accelerometer.delay_us.z': -30000.0, 'output':
+                    'integrated'}, 'strapdown': _INTEGRATED, 'aided_navigator': _INTEGRATED},
+    {'imu_sensor': {'gyro.model': 'dtg', 'output': 'integrated'}, 'strapdown': _INTEGRATED,
+     'aided_navigator': _INTEGRATED},
+    {'imu_sensor': {'sampling.jitter_us': 500.0, 'sampling.latency_us': 1000.0},
+     'strapdown': {'imu_time': 'nominal', 'imu_latency_us': 1000.0, 'vertical.channel': 'damped'}},
+    {'imu_sensor': {'gyro.errors.angle_random_walk_deg_sqrt_h': [0.1] * 3,
+                    'gyro.errors.rate_random_walk_deg_h_sqrt_h': [1.0] * 3},
+     'velocity_meter': {'mode': 'signal'}},
+    {'strapdown': {'vertical.channel': 'free'}, 'velocity_meter': {'attack_angle': 'none'},
+     'gnss': {'errors.position_drift_m': [1.0] * 3, 'gnss.latency_ms': 100.0, 'lever_arm_m':
+              [1.0, 2.0, 3.0]}, 'aided_navigator': {'gnss.latency_ms': 100.0}},
+    *({'aided_navigator': {'filter': name, 'gnss_model.use': False}}
+      for name in ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf')),
+)
+# which of them has stamps that the aided navigator finds no truth for
+JITTERED = 4
+ATTACKED = (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.IMU_RAW, topics.INS_ODOMETRY,
+            topics.METER_RECORD, topics.GNSS_FIX, topics.GNSS_VELOCITY, topics.ACK)
+# What every node must have said of the last seconds of a calm stretch: topic, and how late, s.
+ALIVE = ((topics.IMU_RAW, 0.05), (topics.INS_ODOMETRY, 0.05), (topics.AIDED_ODOMETRY, 0.3),
+         (topics.METER_RECORD, 1.1), (topics.METER_VELOCITY, 1.1), (topics.GNSS_FIX, 1.1))
+# Good samples after which all nodes are back: the 5 s of patience, twice, and some windows.
+CALM = 1500
+# What one message may lead to, all nodes together.
+MOST_SENT = 20_000
+MOST_BYTES = 20_000_000
+# Of a second of all nodes, and at once when a kind of fault is new.
+LINES_PER_SECOND, LINES_AT_ONCE, LONGEST_LINE = 4, 60, 700
+
+
+class Finding(AssertionError):
+    """What must not be: one sentence."""
+
+
+class HostileFlight:
+    """
+    All nodes in flight; ``attack(count)`` sends hostile messages, ``calm()`` none.
+
+    variant: which of VARIANTS; more: {node: parameters} of further ones.  tried: how many by kind
+    and topic; rescued: what the last net has caught, by sentence.
+    """
+
+    def __init__(self, seed, more=None, variant=0):
+        settings = VARIANTS[variant % len(VARIANTS)]
+        self.fed = FedNodes({**{node: {**parameters, **settings.get(node, {})}
+                                for node, parameters in NODES.items()}, **(more or {})})
+        self._alive = [(topic, late_s) for topic, late_s in ALIVE
+                       if variant % len(VARIANTS) != JITTERED or topic != topics.AIDED_ODOMETRY]
+        self.hostile = HostileMessages(seed, ATTACKED)
+        self.tried, self.rescued, self._k = Counter(), Counter(), 0
+        self._source = TruthSource(build(MotionGeneratorSettings, FLIGHT))
+        self.most_sent = self.most_bytes = 0
+
+    def __enter__(self):
+        self.fed.__enter__()
+        self.fed.bus.listen = self._heard
+        for node in self.fed.nodes.values():
+            self._watch(node)
+        return self
+
+    def __exit__(self, *exception):
+        self.fed.__exit__(*exception)
+
+    def _watch(self, node):
+        fault = node.monitor.fault
+
+        def counted(sentence, fatal=False):
+            if 'please report it' in sentence:
+                self.rescued[sentence.partition(';')[0]] += 1
+            fault(sentence, fatal)
+
+        node.monitor.fault = counted
+
+    def _heard(self, name, data):
+        if name in self.hostile.names:
+            self.hostile.heard(name, data)
+
+    def good(self, count):
+        """Send good samples of the truth."""
+        bus = self.fed.bus
+        for _ in range(count):
+            messages = dict(zip((topic.name for topic in topics.TRUTH),
+                                self._source.messages(self._k)))
+            for topic in (topics.TRUTH_ODOMETRY, topics.TRUTH_IMU):
+                self.hostile.heard(topic.name, messages[topic.name])
+                bus.put(topic.name, messages[topic.name])
+            self._k += 1
+            self.fed.clock.pass_by(DT_S)
+            self._drive()
+
+    def _drive(self):
+        before = sum(self.fed.bus.sent.values())
+        self.fed.bus.drive()
+        self.fed.nodes['motion_generator']._take_acks()
+        recorder = self.fed.nodes.get('recorder')
+        if recorder is not None:
+            recorder.recorder.poll()
+        sent = sum(self.fed.bus.sent.values()) - before
+        self.most_sent = max(self.most_sent, sent)
+        if sent > MOST_SENT:
+            raise Finding(f'one message leads to {sent} of the nodes; expected {MOST_SENT}')
+
+    def attack(self, count):
+        """Send hostile messages, in bursts amid good samples."""
+        choose = self.hostile.random
+        left = count
+        while left > 0:
+            self.good(choose.randint(1, 6))
+            if choose.random() < 0.002:
+                # the generator starts anew
+                self._k = 0
+            for _ in range(choose.randint(1, 12)):
+                message = self.hostile.message()
+                if message is None:
+                    continue
+                kind, name, data = message
+                self.tried[kind, name] += 1
+                left -= 1
+                self.spoilt = message
+                self.fed.bus.put(name, data)
+                if choose.random() < 0.8:
+                    self._drive()
+        self._check()
+
+    def _check(self):
+        bus = self.fed.bus
+        if bus.wrong:
+            raise Finding(f'{bus.wrong[0][0]} holds {bus.wrong[0][1]}; expected finite numbers')
+        for name, node in self.fed.nodes.items():
+            size = held_bytes(node)
+            self.most_bytes = max(self.most_bytes, size)
+            if size > MOST_BYTES:
+                raise Finding(f'{name} holds {size} bytes; expected at most {MOST_BYTES}')
+            if node.__dict__.get('stop'):
+                raise Finding(f'{name} has ended')
+        for name, log in self.fed.logs.items():
+            most = LINES_AT_ONCE + LINES_PER_SECOND * (self.fed.clock.now_s - self.fed.began_s)
+            if log.lines > most or log.longest > LONGEST_LINE:
+                raise Finding(f'{name} has said {log.lines} lines of up to {log.longest} '
+                              f'characters; expected {most:.0f} of {LONGEST_LINE}')
+
+    def calm(self, samples=CALM):
+        """Send good samples alone; every node must be back at the end of them."""
+        self.good(samples)
+        self._check()
+        now_ns = self._source.stamp_ns(self._k - 1)
+        for topic, late_s in self._alive:
+            late_ns = now_ns - self.fed.bus.newest_ns.get(topic.name, -1)
+            # latency and jitter may put a stamp before now
+            if not -SECOND // 100 <= late_ns <= round(late_s * SECOND):
+                raise Finding(f'{topic.name} is {late_ns / SECOND:.3f} s late after {samples} '
+                              f'good samples; expected {late_s:g} s')
