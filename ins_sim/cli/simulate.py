@@ -62,7 +62,7 @@ def run(chosen):
         storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
                           report)
         table.show_table(title, rows, console)
-        for line in (*summary.gap_lines(result.faults),
+        for line in (*summary.gap_lines(result.faults), *summary.withheld_lines(settings),
                      *summary.parity_lines(settings.imu_sensor, result.imu)):
             console.print(line)
         if report is not None:

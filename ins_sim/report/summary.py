@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ins_sim.core.simulation.inertial import withheld_readings
+
 DEG_PER_HOUR = 180.0 / math.pi * 3600.0
 
 # Largest |dN|, |dE| in metres after one hour at 100 Hz: the tables of the paper's two motions and
@@ -120,6 +122,15 @@ def gap_lines(faults):
         return []
     return [f'{len(faults)} gaps, at each of which the strapdown started anew; the first: '
             f'{faults[0]}']
+
+
+def withheld_lines(settings):
+    """Return the lines about readings that a negative delay withholds; SimulationSettings."""
+    count = withheld_readings(settings)
+    if not count:
+        return []
+    return [f'the last {count} readings are left out: a channel of negative delay would need the '
+            'truth from beyond the end of the run']
 
 
 def parity_lines(sensor, imu):

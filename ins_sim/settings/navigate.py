@@ -1,7 +1,7 @@
 """Settings of the command ``navigate``: the strapdown over a recorded IMU."""
 
 from .field import group, setting, settings_class, SettingsGroup
-from .place import Earth
+from .place import Earth, HIGHEST_M
 
 INPUTS = ('instant', 'integrated', 'rotation_vector')
 
@@ -60,7 +60,7 @@ class StartSettings(SettingsGroup):
                                               1e4, size=3)
     latitude_deg: float = setting(0.0, 'geodetic latitude', 'deg', -89.9, 89.9)
     longitude_deg: float = setting(0.0, 'longitude', 'deg', -180.0, 180.0)
-    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, 50000.0)
+    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, HIGHEST_M)
 
 
 @settings_class

@@ -75,6 +75,7 @@ class _Search:
         self._s, self._imu, self._broken = settings, imu, broken
         self._reference, self._odometry = sources.reference, sources.odometry
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
+        self._gravity = ellipsoid.GRAVITY_TERMS[settings.earth.gravity]
 
     def start(self, first, last, again):
         source = self._s.initial.attitude
@@ -201,7 +202,7 @@ class _Search:
             figures = {'stationary_s': (still.end_ns - still.start_ns) * 1e-9,
                        'force_sd_m_s2': still.force_sd, 'rate_sd_rad_s': still.rate_sd,
                        'gravity_excess_m_s2': length(still.force) - ellipsoid.gravity(
-                           elementary.sin(lat), where[2])}
+                           elementary.sin(lat), where[2], self._gravity)}
             q_nb, compassed = self._headed(still, k, where, again, notes, figures)
             v = (0.0, 0.0, 0.0) if self._s.initial.velocity == 'auto' else \
                 self._velocity(k, q_nb, again)

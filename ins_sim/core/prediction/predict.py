@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.rates import rate_of_n
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
@@ -74,6 +75,7 @@ class _FineRun:
         self.tau = np.array(self._gyro.delay_us.in_ns()) * 1e-9
         self._tau_f = np.array(settings.imu_sensor.accelerometer.delay_us.in_ns()) * 1e-9
         self._rotation, self._initial = generator.earth.rotation, nav.initial
+        self._gravity = ellipsoid.GRAVITY_TERMS[nav.earth.gravity]
         self._start_s = generator.start_s + nav.initial.after_s
         self._span_s = generator.duration_s - nav.initial.after_s
         self._steps = int(self._span_s / STEP_S)
@@ -101,7 +103,7 @@ class _FineRun:
         initial, last = self._initial, self._steps * SUBSAMPLES
         turned = np.radians(initial.attitude_error_deg)
         model = ErrorModel(self._fine_s, SUBSAMPLES, self._rotation, initial.position_error_m,
-                           initial.velocity_error_m_s)
+                           initial.velocity_error_m_s, self._gravity)
         for first in range(0, last, BLOCK):
             stop = min(first + BLOCK, last)
             # The slope of the specific force needs an instant on either side.

@@ -5,6 +5,7 @@ See docs/theory.md, "Streamed truth".
 """
 
 from collections import deque
+import math
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_differences,
                                                  newton_value)
 from ins_sim.core.numerics.instants import seconds
-from .faults import (check_finite, check_interval, check_unit, INTERVAL_TOLERANCE, StreamFault,
-                     UNIT_HIGH, UNIT_LOW)
+from .faults import (check_finite, check_interval, check_unit, half_turn_sentence,
+                     INTERVAL_TOLERANCE, StreamFault, UNIT_HIGH, UNIT_LOW)
 from .truth_pieces import pieces_of_samples, TruthBlock, TruthPieces
 
 # fields of a sample
@@ -29,20 +30,27 @@ def leading(true):
     return len(true) if np.all(true) else int(np.argmin(true))
 
 
+def _square(vector):
+    """Return the square of the length of a vector, floats or arrays."""
+    return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
+
+
 class TruthBuffer:
     """
     Ring buffer of streamed truth that answers for any instant it covers.
 
     frame: MapFrame; reach_ns: how far behind the newest sample it must answer; frozen: the
     history before the first sample stands still (else it goes on at the first rate and force);
-    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for.
+    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for; interval_ns: of the increments
+    of attitude that it will be asked for, which must be less than half a turn, or None.
     """
 
-    def __init__(self, frame, reach_ns, frozen, wanted):
+    def __init__(self, frame, reach_ns, frozen, wanted, interval_ns=None):
         self._frame = frame
         self._reach_ns = reach_ns
         self._wanted = wanted
         self._frozen = frozen
+        self._interval_s = 0.0 if interval_ns is None else interval_ns * 1e-9
         self._pieces = deque()
         self._last = deque(maxlen=3)
         self._cubics = None
@@ -83,6 +91,10 @@ class TruthBuffer:
                 f'truth at {seconds(t_ns)} turns {h * max(map(abs, omega_mb_b)):.3g} rad in one '
                 f'step; expected less than {TURN_LIMIT:g}: raise rate_hz of motion_generator',
                 restart=True)
+        rate = math.sqrt(_square(omega_ib_b))
+        if rate * self._interval_s >= math.pi:
+            raise StreamFault(half_turn_sentence('truth', t_ns, rate, self._interval_s),
+                              restart=True)
         self._step_ns = step_ns
         back = [1e9 / (t_ns - other[0]) for other in self._last] + [0.0, 0.0]
         self._cubics = {k: newton_differences(cubic, sample[k], *back[:3])
@@ -113,7 +125,8 @@ class TruthBuffer:
             return 0, None
         new = self._sample(*self._sound(t_ns, q_mb, omega_ib_b, f_ib_b))
         steps = np.diff(new[0], prepend=self._last[0][0])
-        count = leading(steps * 1e-9 * abs(np.array(new[2])).max(axis=0) <= TURN_LIMIT)
+        count = leading((steps * 1e-9 * abs(np.array(new[2])).max(axis=0) <= TURN_LIMIT)
+                        & (np.sqrt(_square(new[4])) * self._interval_s < math.pi))
         if not count:
             return 0, None
         # The three last samples lead the new ones.

@@ -68,7 +68,7 @@ class RecordedMotion(Motion):
         outside it.
         """
         self.path = recording.path
-        self._earth_rotation = earth.rotation
+        self._earth_rotation, self._gravity = earth.rotation, earth.gravity
         rows = poses
         q, rate = rows.q_nb, rows.omega_nb_b
         part, cut = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
@@ -158,7 +158,8 @@ class RecordedMotion(Motion):
         step = _exponential(*_horner(self._rotation[:, :, interval], h), self._terms)
         base = self._base[interval]
         q_nb = quaternion.multiply(tuple(base[:, k] for k in range(4)), step)
-        return truth_from_pose(t_ns, lat, lon, height, q_nb, self._earth_rotation)
+        return truth_from_pose(t_ns, lat, lon, height, q_nb, self._earth_rotation,
+                               self._gravity)
 
 
 def _horner(c, x):

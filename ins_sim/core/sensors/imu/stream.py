@@ -12,6 +12,7 @@ from ..sensor import Sensor
 from .ideal import MotionImu, Triads
 from .increments import NODES
 from .readings import components, joined, samples_of
+from .turning import check_turning, NODE_S
 from .with_errors import ImuWithErrors, with_errors
 
 BLOCK = 256
@@ -21,9 +22,14 @@ def make_imu(settings, motion=None):
     """
     Return the IMU that ImuSensorSettings name; every kind has push(...) and reset().
 
-    motion: the motion to evaluate with source motion; not used with source stream.
+    motion: the motion to evaluate with source motion; not used with source stream.  Raises
+    ValueError where it turns too fast for the rate of the IMU.
     """
-    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings, motion)
+    if settings.source == 'stream':
+        imu = StreamImu(settings)
+    else:
+        check_turning(settings, motion, 0.0, min(NODE_S, motion.end_s))
+        imu = PacedImu(settings, motion)
     errors = with_errors(settings)
     return imu if errors is None else ImuWithErrors(imu, errors)
 
@@ -60,7 +66,8 @@ class StreamImu(Sensor):
         wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
         delays = triads.attitude_delays
         reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
-        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted)
+        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted,
+                                   None if triads.integrated else triads.dt_ns)
         self._next_ns = None
         self._q_start = None
 
