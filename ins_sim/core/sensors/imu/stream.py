@@ -1,11 +1,13 @@
 """The IMU as a consumer of streamed truth: samples in, samples out."""
 
+from functools import partial
 import math
 
 import numpy as np
 
 from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.streams.before_truth import BeforeTruth
 from ins_sim.core.streams.faults import check_finite, StreamFault
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
 from ..sensor import Sensor
@@ -66,7 +68,8 @@ class StreamImu(Sensor):
         wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
         delays = triads.attitude_delays
         reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
-        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted,
+        before = partial(BeforeTruth, frozen=self._frozen, delay_ns=max(0, max(delays)))
+        self._buffer = TruthBuffer(triads.frame, reach_ns, before, wanted,
                                    None if triads.integrated else triads.dt_ns)
         self._next_ns = None
         self._q_start = None
