@@ -88,6 +88,11 @@ class AlignmentSettings(SettingsGroup):
     heading_sigma_deg: float = setting(2.0, 'worst standard error with which gyrocompassing is '
                                        'trusted; the mean rate must agree with that of the '
                                        'Earth to the same measure', 'deg', 0.0, 90.0)
+    gyro_bias_sigma_deg_h: float = setting(
+        10.0, 'standard deviation of the bias of the gyros, which a gyrocompass takes for a part '
+        'of the rate of the Earth: it turns the heading by bias / (15.04 cos(latitude)) rad. '
+        '10 is assumed where nothing is known; navigation-grade gyros have 0.01', 'deg/h',
+        0.0, 1e5)
     gyro_bias: str = setting('auto', 'subtract: the mean rate less the rate of the Earth, from '
                              'the stationary interval, is taken off every sample; keep; auto: '
                              'subtract after an alignment that could not gyrocompass',
