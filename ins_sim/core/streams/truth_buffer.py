@@ -40,8 +40,9 @@ class TruthBuffer:
     Ring buffer of streamed truth that answers for any instant it covers.
 
     frame: MapFrame; reach_ns: how far behind the newest sample it must answer; before: function of
-    the first sample that returns its BeforeTruth; wanted: which of FORCE_M, RATE, FORCE_B it will be asked for; interval_ns: of the increments
-    of attitude that it will be asked for, which must be less than half a turn, or None.
+    the first sample that returns its BeforeTruth; wanted: which of FORCE_M, RATE, FORCE_B it will
+    be asked for; interval_ns: of the increments of attitude that it will be asked for, which must
+    be less than half a turn, or None.
     """
 
     def __init__(self, frame, reach_ns, before, wanted, interval_ns=None):
