@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.studies import settings, streamed
+from support.studies import run_offline, settings, streamed
 
 from ins_sim.cli.main import main
 from ins_sim.core.motion.factory import make_motion
@@ -97,3 +97,23 @@ def test_a_fast_rotation_is_read_right():
         omega = np.concatenate([b.omega for b in imu_blocks(chosen, motion)])[1:]
         # The Earth adds 7.3e-5 rad/s at most.
         assert np.abs(omega[:, 2] - 40.0 * math.pi).max() < 1e-4
+
+
+@pytest.mark.parametrize('gravity', ['free_air', 'second_order'])
+def test_the_physics_holds_at_the_limits(gravity):
+    """
+    A minute at 7.9 km/s and 400 km, and of 20 turns a second at 500 km: the run closes.
+
+    To 1e-3 m, as a flight does: the position rule is of second order in the step.
+    """
+    route = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (50.0, 55.0, 56.0),
+             'motion.route.points.longitude_deg': (0.0, 20.0, 40.0), 'vertical.channel': 'free',
+             'motion.route.airspeed_m_s': 7900.0, 'motion.route.height_m': 400e3,
+             'motion.route.turn_rate_deg_s': 0.05}
+    rocket = {**SPINNING, 'motion.two_axis.psi_rate_rad_s': 1.0, 'datum.height_m': 500e3,
+              'motion.two_axis.gamma_rate_rad_s': 40.0 * math.pi, 'rate_hz': 1000.0}
+    for values, length_s in ((route, 60.0), (rocket, 5.0)):
+        errors = run_offline(settings({**values, 'earth.gravity': gravity},
+                                      duration_s=length_s), twin=False).errors
+        assert np.abs(errors.position).max() < 1e-3
+        assert np.abs(errors.attitude).max() < 1e-12
