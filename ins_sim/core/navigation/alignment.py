@@ -232,7 +232,8 @@ def gyrocompass(still, lat, bias_sigma=0.0):
         east /= level
         q_nb = _attitude(east, up)
         noise = length(still.rate_error * east) / spin_level
-        sigma = math.hypot(noise, bias_sigma / spin_level)
+        by_bias = bias_sigma / spin_level
+        sigma = math.sqrt(noise * noise + by_bias * by_bias)
     return Gyrocompass(q_nb, sigma, noise, length(still.rate) - ellipsoid.ROTATION_RATE,
                        dot(still.rate, up) - spin_up, bias_sigma)
 

@@ -7,6 +7,8 @@ import numpy as np
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.earth.rates import rate_of_n
 from ins_sim.core.motion.motion import check_length
+from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.timeseries.collecting import Collected
 from ins_sim.core.timeseries.histories import History
@@ -84,7 +86,8 @@ def _along_parallels(position, lat):
     East along the parallel and North along the meridian (``navigation.errors.position_error``),
     to second order: a great circle that begins eastwards leaves the parallel by d^2 tan(lat) / 2R.
     """
-    per_r = np.tan(lat) / ellipsoid.MEAN_RADIUS
+    s, c = elementary.sincos(lat)
+    per_r = s / c / ellipsoid.MEAN_RADIUS
     east, north = position[:, 0], position[:, 1]
     return np.stack([east * (1.0 + north * per_r), north - 0.5 * east * east * per_r,
                      position[:, 2]], axis=-1)
@@ -92,7 +95,7 @@ def _along_parallels(position, lat):
 
 def _longest(vectors):
     """Return the largest length of vectors (n, 3)."""
-    return float(np.sqrt((vectors * vectors).sum(axis=1)).max())
+    return float(length(vectors).max())
 
 
 class _FineRun:
@@ -154,7 +157,8 @@ class _FineRun:
             inside = slice(before, len(k) - behind)
             slope = np.gradient(truth.f_ib_b, self._fine_s, axis=0)[inside]
             truth = truth[inside]
-            self._steepest = max(self._steepest, float(abs(np.tan(truth.lat)).max()))
+            s, c = elementary.sincos(truth.lat)
+            self._steepest = max(self._steepest, float(abs(s / c).max()))
             omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, self._rotation)
             # Attitude error in n without the turning of n.
             beta = self._beta(truth, omega_in, first)
@@ -192,7 +196,7 @@ class _FineRun:
         The rotation vector of an attitude error that grows by e grows by e + error x e / 2: twice
         the area that it sweeps.  turned: the largest one, rad, for the next order.
         """
-        return 0.5 * float(np.sqrt((self._swept ** 2).sum())) / self._span_s * (1.0 + turned)
+        return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)
 
     def drift(self):
         """Return the mean drift (3,), rad/s, once the blocks have been made."""

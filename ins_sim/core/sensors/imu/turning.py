@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.streams.faults import half_turn_sentence
 
@@ -26,7 +27,7 @@ def check_turning(settings, motion, start_s, span_s):
     dt_s = period_ns(settings.rate_hz) * 1e-9
     t_ns = np.round((start_s + span_s * np.arange(LOOKS) / LOOKS) * 1e9).astype(np.int64)
     omega = motion.at(t_ns).omega_ib_b
-    rate = np.sqrt((omega * omega).sum(axis=1))
+    rate = length(omega)
     k = int(np.argmax(rate))
     if rate[k] * dt_s >= math.pi:
         raise ValueError(half_turn_sentence('the motion', t_ns[k], rate[k], dt_s))
