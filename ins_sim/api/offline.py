@@ -72,7 +72,9 @@ def predict(settings: SimulationSettings, motion: Motion | None = None) -> Predi
     Returns
     -------
     Prediction
-        drift (3,) rad/s, East, North, Up; t_s (n,); attitude (n, 3) rad and position (n, 3) m.
+        drift (3,) rad/s, East, North, Up; t_s (n,); attitude (n, 3) rad and position (n, 3) m;
+        drift_bound, rad/s, and position_bound, m: what the theory may leave out. Errors of the
+        instruments are not covered.
 
     Raises
     ------

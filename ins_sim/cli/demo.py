@@ -90,7 +90,7 @@ def _run(name, settings, work, folder, console):
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
     from ins_sim.io.published import read_errors
-    from ins_sim.report import figure, summary, table
+    from ins_sim.report import coverage, figure, summary, table
     from ins_sim.ros.session import Session
     from .progress import progress_bars
     title = summary.title(settings)
@@ -102,7 +102,10 @@ def _run(name, settings, work, folder, console):
             counts = session.run(show)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
-    figure.save_figure(work / 'errors.png', title, errors, prediction)
+    figure.save_figure(work / 'errors.png', title, errors,
+                       coverage.comparable(settings, prediction))
     table.show_table(title, summary.summary_rows(settings, errors, None, prediction), console)
+    for line in coverage.coverage_lines(settings, prediction):
+        console.print(line, soft_wrap=True)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
                   f'figure: {folder / "errors.png"}')

@@ -3,11 +3,11 @@
 import argparse
 import signal
 import sys
-import warnings
 
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
                info, navigate, play, predict, record, simulate)
 from ins_sim import __version__
+from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.settings import shown
 
 ROS_ARGS = '--ros-args'
@@ -55,8 +55,7 @@ def main(arguments=None):
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
         top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')
     signal.signal(signal.SIGTERM, _interrupt)
-    warnings.showwarning = lambda sentence, *_: print(f'ins_sim {chosen.verb}: {sentence}',
-                                                      file=sys.stderr)
+    tell_warnings(lambda sentence: print(f'ins_sim {chosen.verb}: {sentence}', file=sys.stderr))
     try:
         return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:

@@ -18,7 +18,7 @@ def run(chosen):
     from rich.table import Table
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
-    from ins_sim.report import summary, table
+    from ins_sim.report import coverage, summary, table
     settings = arguments.read_settings(chosen)
     prediction = predict(settings, read_motion(settings.motion_generator), collect=None)
     key = summary.study_key(settings)
@@ -35,5 +35,7 @@ def run(chosen):
                       table.number_text(place and place[1 - axis]))
     console = Console()
     console.print(shown)
+    for line in coverage.coverage_lines(settings, prediction):
+        console.print(line, soft_wrap=True)
     table.show_resonances(prediction.resonances, console)
     return 0

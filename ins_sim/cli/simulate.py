@@ -32,7 +32,7 @@ def run(chosen):
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
-    from ins_sim.report import spool, storage, summary, table
+    from ins_sim.report import coverage, spool, storage, summary, table
     from .progress import progress_bars
     if chosen.aided:
         from ins_sim.core.simulation.aided import make_instruments, simulate_aided
@@ -62,9 +62,10 @@ def run(chosen):
         storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
                           report)
         table.show_table(title, rows, console)
-        for line in (*summary.gap_lines(result.faults),
+        for line in (*coverage.coverage_lines(settings, prediction),
+                     *summary.gap_lines(result.faults), *summary.withheld_lines(settings),
                      *summary.parity_lines(settings.imu_sensor, result.imu)):
-            console.print(line)
+            console.print(line, soft_wrap=True)
         if report is not None:
             report.show(console)
         console.print(f'written: {chosen.output}')

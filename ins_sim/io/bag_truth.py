@@ -8,6 +8,7 @@ from ins_sim.core.motion.recorded.poses import poses_of_truth
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
 from .csv_flight import USED
+from .map_origin import map_origin
 from .topic_choice import choose_topic
 
 KEY = 'motion.recording.topic'
@@ -20,16 +21,21 @@ def read_poses(path, topic, datum, key=KEY):
     """
     Return the RecordedPoses of an Odometry topic of a bag.
 
-    topic: its name, or 'auto' for the only one that ends in truth/odometry; datum: the origin of
-    its frame; key: what the name is the value of.  Position and attitude are those of truth/fix
-    and truth/attitude beside it where both are there, whatever the datum.  Raises ValueError in
-    one sentence where the topic is missing, of another type, or holds what is no motion.
+    topic: its name, or 'auto' for the only one that ends in truth/odometry; key: what the name is
+    the value of.  Position and attitude are those of truth/fix and truth/attitude beside it where
+    both are there; else the origin of its frame is that of ``map_origin``, for which datum is the
+    one given.  Raises ValueError in one sentence where the topic is missing, of another type, or
+    holds what is no motion, and where the origin is unknown.
     """
     with open_bag(path) as bag:
         name = choose_topic(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name,
                             needed=True)
         table = bag.arrays(name, ('position', 'orientation', 'linear', 'angular'))
         beside = _beside(bag, name)
+        notes = ()
+        if beside is None and len(table):
+            datum, note = map_origin(bag, name, datum)
+            notes = (note,)
     where = f'{path}: {name}'
     if not len(table):
         raise ValueError(f'{where} is empty; expected messages')
@@ -49,7 +55,7 @@ def read_poses(path, topic, datum, key=KEY):
     norm = np.linalg.norm(q_nb, axis=1)
     _check(where, t_ns, 'norm of the orientation', norm, np.abs(norm - 1.0) < 1e-3, '1')
     return poses_of_truth(str(path), t_ns.copy(), lat_deg, lon_deg, height_m,
-                          q_nb / norm[:, None], table['linear'], table['angular'])
+                          q_nb / norm[:, None], table['linear'], table['angular'], notes)
 
 
 def _check(where, t_ns, what, values, good, expected='finite numbers'):

@@ -88,7 +88,7 @@ def _to_csv(source, target, datum, topic, chosen):
             return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes, *more])
     poses = read_poses(source, name, datum, '--topic')
     csv_writer.write_flight(target, poses)
-    return f'{target} with {len(poses.t_ns)} rows of {name}'
+    return '\n'.join([f'{target} with {len(poses.t_ns)} rows of {name}', *poses.notes])
 
 
 def _imu_to_bag(source, target, settings, topic, how, chosen):

@@ -7,11 +7,12 @@ import numpy as np
 from ins_sim.core.attitude.angles import from_compass
 from ins_sim.core.attitude.interpolation import continuous_quaternions
 from ins_sim.core.motion.recorded.poses import RecordedPoses
+from ins_sim.settings.place import HIGHEST_M
 from .csv_table import CsvTable
 
 # The splines are of latitude and longitude, which end at the poles; hence 89.9.  The heights keep
-# out sentinels (-9999) and feet above flight level 3280.
-USED = {'lat_deg': (-89.9, 89.9), 'lon_deg': (-180.0, 360.0), 'height_m': (-1000.0, 100000.0),
+# out sentinels (-9999).
+USED = {'lat_deg': (-89.9, 89.9), 'lon_deg': (-180.0, 360.0), 'height_m': (-1000.0, HIGHEST_M),
         'roll_deg': (-180.0, 180.0), 'pitch_deg': (-90.0, 90.0), 'heading_deg': (-180.0, 360.0)}
 # Angles that may have turned on: they are brought into the range above. Ten turns keep out
 # sentinels such as -9999.

@@ -5,15 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.attitude.angles import to_compass, within_half_turn_deg
 from ins_sim.core.numerics.instants import seconds
 from . import csv_flight, csv_imu
 
 
 def write_flight(path, poses):
     """Write RecordedPoses with velocity; what is there is replaced.  Raises OSError."""
-    lon = poses.lon_deg
-    lon = np.where(np.abs(lon) <= 180.0, lon, (lon + 180.0) % 360.0 - 180.0)
+    lon = within_half_turn_deg(poses.lon_deg)
     east, north, up = poses.v_n.T
     values = (poses.lat_deg, lon, poses.height_m,
               *(np.degrees(a) for a in to_compass(poses.q_nb)), north, east, -up)

@@ -1,5 +1,7 @@
 """The motion that settings name: in closed form, or read from a CSV file or a bag."""
 
+import warnings
+
 from ins_sim.bags.storages import is_bag
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import Motion
@@ -10,15 +12,20 @@ def read_motion(settings) -> Motion:
     """
     Return the motion of MotionGeneratorSettings or ImuSensorSettings.
 
-    Raises ValueError or OSError in one sentence on settings or a recording that cannot be used.
+    What was assumed of a recording, cut, smoothed or found noisy is given as warnings, a sentence
+    each.  Raises ValueError or OSError in one sentence on settings or a recording that cannot be
+    used.
     """
     motion = settings.motion
     if motion.kind != 'recording':
         return make_motion(motion, settings.datum, settings.earth)
     # Imported lazily: splines need SciPy, and nodes that do not need them start faster.
     from ins_sim.core.motion.recorded.spline import RecordedMotion
-    return RecordedMotion(_read_poses(motion.recording, settings.datum), motion.recording,
-                          settings.earth)
+    flown = RecordedMotion(_read_poses(motion.recording, settings.datum), motion.recording,
+                           settings.earth)
+    for sentence in flown.warnings:
+        warnings.warn(sentence, stacklevel=1)
+    return flown
 
 
 def _read_poses(recording, datum):

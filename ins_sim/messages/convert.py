@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import within_half_turn_deg
 from . import topics
 
 # of what is published on aided/sigma/*
@@ -69,8 +70,11 @@ def odometry_one(frame, solution, omega):
 
 
 def fix_one(solution):
-    """Return the run of ins/fix."""
-    return math.degrees(solution[0]), math.degrees(solution[1]), solution[2]
+    """Return the run of a NavSatFix: latitude, longitude (deg, within +-180) and height, m."""
+    lon_deg = math.degrees(solution[1])
+    if abs(lon_deg) > 180.0:
+        lon_deg = float(within_half_turn_deg(lon_deg))
+    return math.degrees(solution[0]), lon_deg, solution[2]
 
 
 def aided_odometry_one(frame, solution, omega, sigmas):
@@ -122,4 +126,5 @@ def _rate_in_map(frame, q_mb, omega):
 
 
 def _fix(record):
-    return np.stack([np.degrees(record.lat), np.degrees(record.lon), record.height], axis=-1)
+    return np.stack([np.degrees(record.lat), within_half_turn_deg(np.degrees(record.lon)),
+                     record.height], axis=-1)

@@ -5,6 +5,7 @@ import math
 
 from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 from . import topics
+from .convert import fix_one
 from .plausible import check_stamp
 
 # fixes or velocities that wait for their other half
@@ -24,7 +25,7 @@ class GnssWriter:
         stamp_ns = fix.t_ns + self._epoch_ns
         if not fix.valid:
             return self._none(stamp_ns)
-        return self._fix(stamp_ns, (math.degrees(fix.lat), math.degrees(fix.lon), fix.height),
+        return self._fix(stamp_ns, fix_one((fix.lat, fix.lon, fix.height)),
                          *((sigma * sigma,) for sigma in fix.position_sigma))
 
     def velocity(self, fix):

@@ -14,7 +14,7 @@ from numpy.lib import format as npy_format
 
 from ins_sim import parameter_files
 from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
-from . import figure
+from . import coverage, figure
 from .manifest import manifest
 from .stored_arrays import read_arrays
 
@@ -97,7 +97,8 @@ def write_run(folder, settings, run, rows, prediction, title, force=False, aided
         (work / PARAMETERS).write_text(parameters, encoding='utf-8')
         (work / MANIFEST).write_text(
             manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
-        figure.save_figure(work / 'errors.png', title, run.errors, prediction)
+        figure.save_figure(work / 'errors.png', title, run.errors,
+                           coverage.comparable(settings, prediction))
         (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                  encoding='utf-8')
 

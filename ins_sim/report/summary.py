@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ins_sim.core.simulation.inertial import withheld_readings
+from . import coverage
+
 DEG_PER_HOUR = 180.0 / math.pi * 3600.0
 
 # Largest |dN|, |dE| in metres after one hour at 100 Hz: the tables of the paper's two motions and
@@ -78,7 +81,13 @@ def study_key(settings):
 
 
 def summary_rows(settings, errors, twin=None, prediction=None):
-    """Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction."""
+    """
+    Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction.
+
+    The prediction is in the rows that it covers alone (``coverage``).
+    """
+    of_twin = coverage.comparable_with_twin(settings, prediction)
+    prediction = coverage.comparable(settings, prediction)
     key = study_key(settings)
     place, drift = PUBLISHED_POSITION.get(key), PUBLISHED_DRIFT.get(key)
     end, twin_end = errors.drift[-1], None if twin is None else twin.drift[-1]
@@ -102,7 +111,9 @@ def summary_rows(settings, errors, twin=None, prediction=None):
         apart = _largest(block.position - other.position
                          for block, other in zip(errors.blocks(), twin.blocks()))
         for axis, name in ((1, 'N'), (0, 'E')):
-            table.append(SummaryRow(f'max |d{name} - twin|', 'm', None, apart[axis], None, None))
+            table.append(SummaryRow(
+                f'max |d{name} - twin|', 'm', None if of_twin is None else of_twin.largest[axis],
+                apart[axis], None, None))
     return table
 
 
@@ -120,6 +131,16 @@ def gap_lines(faults):
         return []
     return [f'{len(faults)} gaps, at each of which the strapdown started anew; the first: '
             f'{faults[0]}']
+
+
+def withheld_lines(settings):
+    """Return the lines about readings that a negative delay withholds; SimulationSettings."""
+    count = withheld_readings(settings)
+    if not count:
+        return []
+    what = 'reading is' if count == 1 else f'{count} readings are'
+    return [f'the last {what} left out: a channel of negative delay would need the truth from '
+            'beyond the end of the run']
 
 
 def parity_lines(sensor, imu):

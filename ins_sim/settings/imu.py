@@ -67,7 +67,9 @@ class ImuSensorSettings(SettingsGroup):
                           'the inertially rotated velocity increment; integrated: plain '
                           'integrals of rate and specific force', choices=OUTPUTS)
     history: str = setting('analytic', 'motion before the first instant: continued backwards '
-                           '(analytic) or held (frozen)', choices=('analytic', 'frozen'))
+                           '(analytic) or held (frozen). A stream is continued by the straight '
+                           'line through rate and force of its first two samples for 50 ms, and '
+                           'by constant ones before', choices=('analytic', 'frozen'))
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
 

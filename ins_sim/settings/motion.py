@@ -5,6 +5,10 @@ from .node import Pacing, Time, Topics
 from .place import Datum, Earth
 from .route import FlownRouteSettings
 
+# The sum of the three is less than a third of the rate at which a message is taken to be damaged,
+# 1e4 rad/s; half a turn in an interval of the IMU is refused before, by its rate.
+FASTEST_RAD_S = 1000.0
+
 
 @settings_class
 class Rocking(SettingsGroup):
@@ -20,9 +24,12 @@ class Rocking(SettingsGroup):
 class TwoAxis(SettingsGroup):
     """Motion 2: constant rates of psi and gamma at constant theta."""
 
-    psi_rate_rad_s: float = setting(1.0, 'rate of psi', 'rad/s', -100.0, 100.0)
-    gamma_rate_rad_s: float = setting(0.5, 'rate of gamma', 'rad/s', -100.0, 100.0)
-    detuning_rad_s: float = setting(0.0, 'added to the rate of psi', 'rad/s', -100.0, 100.0)
+    psi_rate_rad_s: float = setting(1.0, 'rate of psi', 'rad/s', -FASTEST_RAD_S,
+                                    FASTEST_RAD_S)
+    gamma_rate_rad_s: float = setting(0.5, 'rate of gamma', 'rad/s', -FASTEST_RAD_S,
+                                      FASTEST_RAD_S)
+    detuning_rad_s: float = setting(0.0, 'added to the rate of psi', 'rad/s', -FASTEST_RAD_S,
+                                    FASTEST_RAD_S)
 
 
 @settings_class

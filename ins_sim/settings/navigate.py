@@ -2,7 +2,7 @@
 
 from .field import group, setting, settings_class, SettingsGroup
 from .motion import FlightColumns
-from .place import Earth
+from .place import Earth, HIGHEST_M
 from .recorded_imu import AcceptNavigated, ImuColumns, RecordUnits, StampSettings
 
 INPUTS = ('instant', 'integrated', 'rotation_vector')
@@ -63,7 +63,7 @@ class StartSettings(SettingsGroup):
                                               1e4, size=3)
     latitude_deg: float = setting(0.0, 'geodetic latitude', 'deg', -89.9, 89.9)
     longitude_deg: float = setting(0.0, 'longitude', 'deg', -180.0, 180.0)
-    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, 50000.0)
+    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, HIGHEST_M)
 
 
 @settings_class
@@ -93,6 +93,11 @@ class AlignmentSettings(SettingsGroup):
     heading_sigma_deg: float = setting(2.0, 'worst standard error with which gyrocompassing is '
                                        'trusted; the mean rate must agree with that of the '
                                        'Earth to the same measure', 'deg', 0.0, 90.0)
+    gyro_bias_sigma_deg_h: float = setting(
+        10.0, 'standard deviation of the bias of the gyros, which a gyrocompass takes for a part '
+        'of the rate of the Earth: it turns the heading by bias / (15.04 cos(latitude)) rad. '
+        '10 is assumed where nothing is known; navigation-grade gyros have 0.01', 'deg/h',
+        0.0, 1e5)
     gyro_bias: str = setting('auto', 'subtract: the mean rate less the rate of the Earth, from '
                              'the stationary interval, is taken off every sample; keep; auto: '
                              'subtract after an alignment that could not gyrocompass',

@@ -1,6 +1,7 @@
 """Settings of flights along great circles."""
 
 from .field import group, setting, settings_class, SettingsGroup
+from .place import HIGHEST_M
 
 
 @settings_class
@@ -33,8 +34,9 @@ class RouteSettings(SettingsGroup):
 class FlownRouteSettings(RouteSettings):
     """A flight along great circles, with turns inside the corners."""
 
-    airspeed_m_s: float = setting(200.0, 'airspeed', 'm/s', 1.0, 1000.0)
-    height_m: float = setting(500.0, 'height above the ellipsoid', 'm', -500.0, 50000.0)
+    airspeed_m_s: float = setting(200.0, 'airspeed; the limit is the speed of an orbit',
+                                  'm/s', 1.0, 8000.0)
+    height_m: float = setting(500.0, 'height above the ellipsoid', 'm', -500.0, HIGHEST_M)
     turn_rate_deg_s: float = setting(1.2, 'rate of the heading in a turn', 'deg/s', 0.01, 100.0)
     roll_in_s: float = setting(5.0, 'time to roll into a turn and out of it', 's', 0.1, 100.0)
     attack_deg: float = setting(3.0, 'attack angle: nose above the velocity relative to the air',

@@ -144,7 +144,7 @@ def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
     begin = ['-p', 'input:=integrated', '-p', 'initial.position:=given', '-p',
              'topic:=imu/data_raw', '-p', 'initial.latitude_deg:=55.75', '-p',
              'alignment.longest_s:=20.0', '-p', 'reference.fix:=none', '-p',
-             'reference.odometry:=none']
+             'reference.odometry:=none', '-p', 'alignment.gyro_bias_sigma_deg_h:=0.0']
     ends = []
     for k, source in enumerate(('bag', 'imu.csv')):
         assert main(['navigate', str(tmp_path / source), '-o', str(tmp_path / f'out{k}'),

@@ -71,7 +71,7 @@ def test_a_gap_restarts_from_a_standstill_behind_it():
                       np.full((n, 4), np.nan))
     reference = Reference('fix', SampledTrack(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))))
     got = run(imu, reference, on_gap='restart', initial__attitude='align',
-              alignment__longest_s=8.0)
+              alignment__longest_s=8.0, alignment__gyro_bias_sigma_deg_h=0.0)
     assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
     assert sum('heading by gyrocompassing' in note for note in got.notes) == 2
     # east is forward: q_nb is the identity

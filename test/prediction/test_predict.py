@@ -61,7 +61,7 @@ def test_fourier_sum_equals_time_mean(name, values, w):
     generator, delay = s.motion_generator, s.imu_sensor.gyro.delay_us
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     tau = 1e-9 * np.array((delay.x, delay.y, delay.z))
-    time = mean_drift(motion, tau, True, 0.0, None)
+    time = mean_drift(motion, lambda truth: truth.omega_ib_b * tau, True, 0.0, None)
     fourier = channel_drift(motion, [delay_response(x) for x in tau])
     assert np.linalg.norm(fourier - time) <= 1e-7 * np.linalg.norm(time)
 

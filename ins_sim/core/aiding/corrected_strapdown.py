@@ -20,7 +20,7 @@ def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
     Parameters
     ----------
     constants : start_ns; rate of the Earth, rad/s; whether the readings are plain integrals;
-        vertical channel
+        vertical channel; terms of gravity, one of ``ellipsoid.GRAVITY_TERMS``
     biases : of the gyros, rad/s, and of the accelerometers, m/s^2, which are subtracted
     carry : t_ns; ``mechanization.PLACE``; q_ib; q_nb; velocity in b (m/s); rate, rad/s, and
         integrals of the last interval
@@ -33,7 +33,7 @@ def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
     delta_v : velocity increment in b at the start of the interval, m/s
 
     """
-    start_ns, spin, integrated, channel = constants
+    start_ns, spin, integrated, channel, gravity = constants
     (bx, by, bz), (ax, ay, az) = biases
     last_ns, place, q_ib, _, _, _, last = carry
     dt = (t_ns - last_ns) * 1e-9
@@ -42,7 +42,7 @@ def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
     phi, delta_v = fixed_rate_increments(integrated, now, last)
     place = mechanization.advance(place, q_ib, delta_v, dt, spin,
                                   spin * ((last_ns - start_ns) * 1e-9), channel,
-                                  (height, v_u, 0.0, 0.0, 0.0))
+                                  (height, v_u, 0.0, 0.0, 0.0), gravity)
     q_ib = turn(q_ib, phi)
     q_nb = level_attitude(place[0], place[1], q_ib, spin * ((t_ns - start_ns) * 1e-9))
     v_b = quaternion.rotate_back(q_nb, (place[3], place[4], place[5]))
@@ -61,6 +61,7 @@ class CorrectedStrapdown(Placed):
     spin : rotation rate of the Earth, rad/s
     integrated : whether readings are plain integrals
     channel : vertical channel, FREE or FROM_TRUTH
+    gravity : one of ``ellipsoid.GRAVITY_TERMS``
 
     Attributes
     ----------
@@ -69,8 +70,9 @@ class CorrectedStrapdown(Placed):
 
     """
 
-    def __init__(self, t_ns, omega, f, dt, place, spin, integrated, channel=FREE):
-        self.constants = t_ns, spin, integrated, channel
+    def __init__(self, t_ns, omega, f, dt, place, spin, integrated, channel=FREE,
+                 gravity=None):
+        self.constants = t_ns, spin, integrated, channel, gravity
         self.gyro_bias = self.accelerometer_bias = ZERO
         lat, lon, height, v, q_nb = place
         self._set(t_ns, mechanization.begin(lat, lon, height, v, 0.0), q_nb, omega,

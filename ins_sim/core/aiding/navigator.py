@@ -190,7 +190,8 @@ class AidedNavigator:
         place = lat, lon, height, v, quaternion.multiply(error, q_nb)
         channel = FROM_TRUTH if self._altimeter else FREE
         ins = CorrectedStrapdown(t_ns, omega, f, self._dt_ns * 1e-9, place, self._spin,
-                                 self._settings.input == 'integrated', channel)
+                                 self._settings.input == 'integrated', channel,
+                                 ellipsoid.GRAVITY_TERMS[self._settings.earth.gravity])
         p, s = initial.position_sigma_m, initial.velocity_sigma_m_s
         ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
                     velocity=(-s * draw[2], -s * draw[3], 0.0))

@@ -32,6 +32,11 @@ def to_compass(q_nb):
             elementary.atan2(east, north) % (2.0 * math.pi))
 
 
+def within_half_turn_deg(angle):
+    """Return an angle, deg, within +-180; the bits of one that is there already are kept."""
+    return np.where(np.abs(angle) <= 180.0, angle, (angle + 180.0) % 360.0 - 180.0)
+
+
 def about_axis(axis, angle):
     """Return the quaternion Series of a rotation by the angle Series about axis 0, 1 or 2."""
     s, c = taylor.sincos(angle * 0.5)

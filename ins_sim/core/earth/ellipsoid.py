@@ -19,6 +19,14 @@ ROTATION_RATE = 7.292115e-5
 MEAN_RADIUS = 6371000.0
 GRAVITY_EQUATOR = 9.7803253359
 GRAVITY_FORMULA = 0.00193185265241
+# The first and the second order of normal gravity in height above the surface (Heiskanen and
+# Moritz, "Physical Geodesy", 2-123; Groves 2.139): 1 - h (a0 - a1 sin^2 lat) + a2 h^2.
+GRAVITY_RATIO = 0.00344978650684
+SECOND_ORDER = (2.0 / SEMI_MAJOR * (2.0 - FLATTENING + GRAVITY_RATIO),
+                4.0 / SEMI_MAJOR * (1.0 - FLATTENING), 3.0 / (SEMI_MAJOR * SEMI_MAJOR))
+# What the functions of gravity take for each choice of settings.place.Earth.gravity. None, and no
+# other value, lets compiled code leave the other choice out.
+GRAVITY_TERMS = {'free_air': None, 'second_order': SECOND_ORDER}
 
 
 def rotation_rate(rotates):
@@ -26,13 +34,14 @@ def rotation_rate(rotates):
     return ROTATION_RATE if rotates else 0.0
 
 
-def radii_and_gravity(sin_lat, height):
+def radii_and_gravity(sin_lat, height, terms):
     """
     Return the meridian radius R_N, the transverse radius R_E, m, and normal gravity, m/s^2.
 
-    Groves 2.105, 2.106; gravity downward along the ellipsoid normal by Somigliana's formula with
-    the free-air term (1 - 2 h / a) (Groves 2.134, first order in h).  1 / sqrt(1 - e^2 sin^2) is
-    the binomial series in x = e^2 sin^2 <= 0.0067; what is left out is below 1e-18.
+    Groves 2.105, 2.106; gravity downward along the ellipsoid normal by Somigliana's formula
+    (Groves 2.134) with the free-air term (1 - 2 h / a), or with terms, SECOND_ORDER.
+    1 / sqrt(1 - e^2 sin^2) is the binomial series in x = e^2 sin^2 <= 0.0067; what is left out is
+    below 1e-18.
     """
     sin2 = sin_lat * sin_lat
     x = sin2 * ECCENTRICITY2
@@ -40,18 +49,22 @@ def radii_and_gravity(sin_lat, height):
     per_w = (x * 0.5 + 1.0) + x2 * ((x * 0.3125 + 0.375) + x2 * (
         (x * 0.24609375 + 0.2734375) + x2 * (x * 0.20947265625 + 0.2255859375)))
     surface = (sin2 * (GRAVITY_EQUATOR * GRAVITY_FORMULA) + GRAVITY_EQUATOR) * per_w
+    if terms is None:
+        fall = 1.0 - height * (2.0 / SEMI_MAJOR)
+    else:
+        fall = 1.0 - height * (terms[0] - sin2 * terms[1] - height * terms[2])
     return (per_w * per_w * per_w * ((1.0 - ECCENTRICITY2) * SEMI_MAJOR), per_w * SEMI_MAJOR,
-            surface * (1.0 - height * (2.0 / SEMI_MAJOR)))
+            surface * fall)
 
 
 def radii(sin_lat):
     """Return the meridian radius R_N and the transverse radius R_E, m."""
-    return radii_and_gravity(sin_lat, 0.0)[:2]
+    return radii_and_gravity(sin_lat, 0.0, None)[:2]
 
 
-def gravity(sin_lat, height):
-    """Return normal gravity, m/s^2, downward along the ellipsoid normal."""
-    return radii_and_gravity(sin_lat, height)[2]
+def gravity(sin_lat, height, terms=None):
+    """Return normal gravity, m/s^2, downward along the ellipsoid normal; terms: GRAVITY_TERMS."""
+    return radii_and_gravity(sin_lat, height, terms)[2]
 
 
 def ecef(sin_lat, cos_lat, sin_lon, cos_lon, height):

@@ -38,6 +38,7 @@ class Group:
         self._gyro = _sensed([i and i.gyro for i in instruments], 0)
         self._accelerometer = _sensed([i and i.accelerometer for i in instruments], 3)
         self._spin = ellipsoid.rotation_rate(strapdown.earth.rotation)
+        self._gravity = ellipsoid.GRAVITY_TERMS[strapdown.earth.gravity]
         self._channel = CHANNELS[strapdown.vertical.channel]
         self._damping = NO_DAMPING
         if self._channel == DAMPED:
@@ -86,8 +87,9 @@ class Group:
             found = np.empty((np.count_nonzero(later), whole_run.SOLVED, LANES))
             marks = np.append(picked[later] - begun, -1)
             inputs = (self._state, self._spin, self._start_ns, self._last_ns, self._channel,
-                      self._damping, self._integrated, t_ns[begun:], readings[begun:],
-                      truth.height[begun:], np.ascontiguousarray(truth.v_n[begun:, 2]), marks)
+                      self._damping, self._gravity, self._integrated, t_ns[begun:],
+                      readings[begun:], truth.height[begun:],
+                      np.ascontiguousarray(truth.v_n[begun:, 2]), marks)
             state = compilation.run(lanes.advance, LANES * (len(t_ns) - begun), inputs, found)
             self._state = np.reshape(state, (lanes.NUMBERS, LANES))
             solved[later] = found

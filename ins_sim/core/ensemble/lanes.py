@@ -18,13 +18,13 @@ LANES = 16
 PLACES, CARRIED, NUMBERS = 22, 32, 38
 
 
-def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, readings, height,
-            v_u, picked, out):
+def advance(state, spin, start_ns, last_ns, channel, damping, gravity, integrated, t_ns, readings,
+            height, v_u, picked, out):
     """
     Advance 16 runs over samples; return the state.
 
     state : NUMBERS rows of LANES
-    spin, start_ns, channel, damping, integrated, height, v_u : as of ``whole_run.solve``
+    spin, start_ns, channel, damping, gravity, integrated, height, v_u : as of ``whole_run.solve``
     last_ns : instant of the state
     readings : of each sample, omega and f, six rows of LANES
     picked : indices of the samples whose solution is written, in ascending order, and last an
@@ -38,10 +38,10 @@ def advance(state, spin, start_ns, last_ns, channel, damping, integrated, t_ns, 
         earth_angle = spin * ((last_ns - start_ns) * 1e-9)
         reference = height[k], v_u[k], damping[0], damping[1], damping[2]
         if increments_of(state, readings, 6 * LANES * k, dt, spin, integrated):
-            small_steps(state, dt, spin, channel, reference)
+            small_steps(state, dt, spin, channel, reference, gravity)
         else:
             for lane in range(LANES):
-                any_step(state, lane, dt, spin, earth_angle, channel, reference)
+                any_step(state, lane, dt, spin, earth_angle, channel, reference, gravity)
         last_ns = now_ns
         if k == picked[p]:
             write_solved(state, out, p * SOLVED * LANES)
@@ -82,20 +82,21 @@ def increments_of(state, readings, first, dt, spin, integrated):
     return small == LANES
 
 
-def small_steps(state, dt, spin, channel, reference):
+def small_steps(state, dt, spin, channel, reference, gravity):
     """Do the step of every run, where it is a small one for all."""
     for lane in range(LANES):
         place, q, phi, delta_v = lane_of(state, lane)
         place = mechanization.small_step(place, quaternion.rotate(q, delta_v), dt, spin, channel,
-                                         reference)
+                                         reference, gravity)
         q = quaternion.normalise(quaternion.multiply(q, quaternion.small_exponential(phi)))
         put(state, lane, place, q)
 
 
-def any_step(state, lane, dt, spin, earth_angle, channel, reference):
+def any_step(state, lane, dt, spin, earth_angle, channel, reference, gravity):
     """Do the step of one run, whatever it is."""
     place, q, phi, delta_v = lane_of(state, lane)
-    place = mechanization.advance(place, q, delta_v, dt, spin, earth_angle, channel, reference)
+    place = mechanization.advance(place, q, delta_v, dt, spin, earth_angle, channel, reference,
+                                  gravity)
     put(state, lane, place, integration.turn(q, phi))
 
 

@@ -10,7 +10,7 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary, taylor
 from ins_sim.core.numerics.compilation import run
 from . import bench_attitudes as attitudes
-from .motion import Motion
+from .motion import check_latitude, Motion
 from .truth import translation, truth_of
 
 TWO_PI = 2.0 * math.pi
@@ -24,11 +24,11 @@ class BenchMotion(Motion):
     A motion on one spot.
 
     attitude, constants: a function of ``bench_attitudes`` and its constants; datum: Datum of the
-    spot; excursion: path about it, E, N, U in m of the series of time, or None; earth_rotation,
+    spot; excursion: path about it, E, N, U in m of the series of time, or None; earth: Earth;
     period_s: as of Motion.
     """
 
-    def __init__(self, attitude, constants, datum, excursion, earth_rotation, period_s):
+    def __init__(self, attitude, constants, datum, excursion, earth, period_s):
         self._attitude, self._constants = attitude, constants
         self._spot = (math.radians(datum.latitude_deg), math.radians(datum.longitude_deg),
                       datum.height_m)
@@ -37,11 +37,12 @@ class BenchMotion(Motion):
         def pose(t):
             return *self._path(t), attitude(constants, t)
 
-        super().__init__(pose, 2, earth_rotation, period_s, self._path)
+        super().__init__(pose, 2, earth.rotation, period_s, self._path, earth.gravity)
         self._still = None
         if excursion is None:
             # One instant tells velocity, rate and specific force in n of all.
-            found = translation(*self._path(taylor.Series.time(np.zeros(1), 2)), earth_rotation)
+            found = translation(*self._path(taylor.Series.time(np.zeros(1), 2)), earth.rotation,
+                                earth.gravity)
             self._still = tuple(tuple(float(x[0]) for x in vector) for vector in found)
 
     def _path(self, t):
@@ -64,6 +65,7 @@ class BenchMotion(Motion):
         if self._excursion is None:
             return *self._spot[:2], q_nb
         lat, lon, _ = self._path(taylor.Series.time(t, 0))
+        check_latitude(t_ns, lat.value)
         return lat.value, lon.value, q_nb
 
     def _rows(self, constants, t, out):
@@ -208,4 +210,4 @@ def bench_motion(motion, datum, earth):
     """
     attitude, constants, period_s = _ATTITUDES.get(motion.kind, _static)(motion)
     excursion = _PATHS.get(motion.kind, _no_path)(motion)
-    return BenchMotion(attitude, constants, datum, excursion, earth.rotation, period_s)
+    return BenchMotion(attitude, constants, datum, excursion, earth, period_s)

@@ -96,4 +96,4 @@ FLIGHTS = {'cruise': _flight(_cruise, 3.0, CRUISE_WOBBLE),
 def flight_motion(motion, datum, earth):
     """Return the flight that MotionSettings name, from a Datum; earth: Earth."""
     pose, path = FLIGHTS[motion.kind](datum)
-    return Motion(pose, 3, earth.rotation, path=path)
+    return Motion(pose, 3, earth.rotation, path=path, gravity=earth.gravity)

@@ -7,9 +7,13 @@ from typing import Any
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.numerics import taylor
+from ins_sim.core.numerics import instants, taylor
 from ins_sim.core.timeseries.histories import Truth
 from .truth import translation, truth_from_pose
+
+HALF_PI = 0.5 * math.pi
+# Instants at which the places of a run are looked at before it.
+LOOKS = 1000
 
 # Latitude, longitude, and the attitude or the specific force there.
 Answer = tuple[Any, Any, Any]
@@ -39,6 +43,8 @@ class Motion:
     path : callable, optional
         Maps the Taylor series of time, of order 2, to latitude, longitude and height alone,
         where that is less work than the pose.
+    gravity : str
+        How normal gravity falls with height, ``free_air`` or ``second_order``.
     """
 
     # The last motion time at which the motion may be used, s, and what happens then.
@@ -48,11 +54,13 @@ class Motion:
 
     def __init__(self, pose: Callable[[Any], tuple[Any, ...]], order: int, earth_rotation: bool,
                  period_s: float | None = None,
-                 path: Callable[[Any], tuple[Any, ...]] | None = None) -> None:
+                 path: Callable[[Any], tuple[Any, ...]] | None = None,
+                 gravity: str = 'free_air') -> None:
         self._pose = pose
         self._path_alone = path
         self._order = order
         self._rotation = earth_rotation
+        self._gravity = gravity
         self._attitude_order: int | None = None
         self.period_s = period_s
 
@@ -75,7 +83,9 @@ class Motion:
             Motion times, ns.
         """
         t = taylor.Series.time(np.asarray(t_ns) * 1e-9, self._order)
-        return truth_from_pose(t_ns, *self._pose(t), self._rotation)
+        pose = self._pose(t)
+        check_latitude(t_ns, pose[0].value)
+        return truth_from_pose(t_ns, *pose, self._rotation, self._gravity)
 
     def attitude_at(self, t_ns: np.ndarray) -> Answer:
         """
@@ -99,6 +109,7 @@ class Motion:
             q_nb = self._pose(taylor.Series.time(seconds[:1], self._order))[3]
             self._attitude_order = self._order - min(len(x.c) - 1 for x in q_nb)
         lat, lon, _, q_nb = self._pose(taylor.Series.time(seconds, self._attitude_order))
+        check_latitude(t_ns, lat.value)
         return lat.value, lon.value, np.stack([x.value for x in q_nb], axis=-1)
 
     def force_at(self, t_ns: np.ndarray) -> Answer:
@@ -122,7 +133,9 @@ class Motion:
             lat, lon, height = self._pose(taylor.Series.time(seconds, self._order))[:3]
         else:
             lat, lon, height = self._path_alone(taylor.Series.time(seconds, 2))
-        return lat.value, lon.value, translation(lat, lon, height, self._rotation)[2]
+        check_latitude(t_ns, lat.value)
+        return lat.value, lon.value, translation(lat, lon, height, self._rotation,
+                                                 self._gravity)[2]
 
     def body_force_at(self, t_ns: np.ndarray) -> Any:
         """
@@ -159,11 +172,28 @@ def _body_force_of(motion, t_ns):
     return tuple(motion.at(t_ns).f_ib_b.T)
 
 
+def check_latitude(t_ns, lat):
+    """Raise ValueError where a latitude, rad, an array, is past a pole."""
+    if len(lat) and not abs(lat).max() <= HALF_PI:
+        k = int(np.argmax(abs(lat) > HALF_PI))
+        raise ValueError(f'the motion is past the pole at {instants.seconds(t_ns[k])} of motion '
+                         f'time, where its latitude would be {math.degrees(lat[k]):.6g} deg; '
+                         'expected within 90: choose a datum farther from the pole')
+
+
+def check_places(motion, start_s, span_s):
+    """Raise ValueError where a motion without an end leaves the Earth's latitudes in a span, s."""
+    if motion.end_s == math.inf:
+        motion.force_at(np.round((start_s + span_s * np.arange(LOOKS + 1) / LOOKS) * 1e9
+                                 ).astype(np.int64))
+
+
 def check_length(generator, motion):
-    """Raise ValueError unless the run is finite and lies within the motion."""
+    """Raise ValueError unless the run is finite, lies within the motion and keeps to the Earth."""
     if generator.duration_s == 0.0:
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
     end_s = generator.start_s + generator.duration_s
     if end_s > motion.end_s:
         raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most {motion.end_s:g}'
                          f' s, {motion.end_name}')
+    check_places(motion, generator.start_s, generator.duration_s)

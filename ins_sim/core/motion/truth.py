@@ -8,14 +8,15 @@ from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
 
 
-def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation):
+def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation, gravity='free_air'):
     """
     Return the Truth of a pose given as Taylor series.
 
     t_ns (n,) int64; lat, lon, height: Series of order >= 2 (rad, rad, m); q_nb: tuple of four
-    Series of order >= 1.  Rate omega_ib_b = C_bn omega_in_n + 2 q* q'.
+    Series of order >= 1; gravity: settings.place.Earth.gravity.  Rate omega_ib_b = C_bn omega_in_n
+    + 2 q* q'.
     """
-    moved = translation(lat, lon, height, earth_rotation)
+    moved = translation(lat, lon, height, earth_rotation, gravity)
     return truth_of(t_ns, (lat.value, lon.value, height.value), *moved, q_nb)
 
 
@@ -44,7 +45,7 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
                  omega_ib_b=table(omega_ib_b), f_ib_b=table(quaternion.rotate_back(q, f_n)))
 
 
-def translation(lat, lon, height, earth_rotation):
+def translation(lat, lon, height, earth_rotation, gravity='free_air'):
     """
     Return velocity, rate omega_in_n and specific force in n of a path, three arrays each.
 
@@ -70,4 +71,5 @@ def translation(lat, lon, height, earth_rotation):
                                  omega_in_n[2] + spin * sin_lat), v_value)
     return v_value, omega_in_n, (
         v_rate[0] + coriolis[0], v_rate[1] + coriolis[1],
-        v_rate[2] + coriolis[2] + ellipsoid.gravity(sin_lat, height.value))
+        v_rate[2] + coriolis[2] + ellipsoid.gravity(sin_lat, height.value,
+                                                    ellipsoid.GRAVITY_TERMS[gravity]))

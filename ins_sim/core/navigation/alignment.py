@@ -17,9 +17,14 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.elementary import sincos
 from ins_sim.core.numerics.fixed_order import dot, length
 from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.numerics.units import DEG_PER_HOUR
 
 # A window of fewer samples has no variance to speak of.
 FEWEST = 5
+# The standard deviation of a standstill is that of means over at least 1 / BAND_HZ, s.
+BAND_HZ = 400.0
+# Of a shorter standstill the power at so many frequencies is taken all the same.
+FEWEST_FREQUENCIES = 3
 
 
 @dataclass(frozen=True)
@@ -28,9 +33,9 @@ class Standstill:
     A stationary interval: samples first to last (not included) of a record.
 
     start_ns, end_ns: stamps of the first and the last sample; force, rate (3,): means, m/s^2 and
-    rad/s; force_sd, rate_sd: mean standard deviation of an axis within a window; rate_error (3,):
-    standard error of the mean rate, from the scatter of the window means (so that slow noise
-    counts); windows: how many.
+    rad/s; force_sd, rate_sd: mean standard deviation of an axis within a window, of means over
+    ``together`` samples; rate_error (3,): standard error of the mean rate, ``standard_error``;
+    windows: how many.
     """
 
     first: int
@@ -43,6 +48,7 @@ class Standstill:
     rate_sd: float
     rate_error: np.ndarray
     windows: int
+    together: int = 1
 
 
 class _Windows:
@@ -55,6 +61,8 @@ class _Windows:
         self.last = np.append(self.first[1:], len(imu))
         self.count = self.last - self.first
         self.full = self.count >= max(FEWEST, 0.5 * length_ns / imu.step_ns)
+        # The limits hold for the motion of a vehicle; white noise grows with the rate.
+        self.together = max(1, math.floor(1e9 / imu.step_ns / BAND_HZ))
         self.force, self.force_sd = self._moments(imu.f)
         self.rate, self.rate_sd = self._moments(imu.omega)
         self.middle_ns = (imu.t_ns[self.first] + imu.t_ns[self.last - 1]) // 2
@@ -63,9 +71,24 @@ class _Windows:
     def _moments(self, x):
         count = self.count[:, None]
         mean = np.add.reduceat(x, self.first) / count
-        off = x - np.repeat(mean, self.count, axis=0)
-        variance = np.add.reduceat(off * off, self.first) / np.maximum(count - 1, 1)
+        off, first = x - np.repeat(mean, self.count, axis=0), self.first
+        if self.together > 1:
+            off, first, count = self._grouped(off)
+        variance = np.add.reduceat(off * off, first) / np.maximum(count - 1, 1)
         return mean, np.sqrt((variance[:, 0] + variance[:, 1] + variance[:, 2]) / 3.0)
+
+    def _grouped(self, off):
+        """
+        Return the means of ``together`` samples each, where the windows begin, and their counts.
+
+        Those that are left at the end of a window make a mean of their own.
+        """
+        within = np.arange(len(off)) - np.repeat(self.first, self.count)
+        start = np.flatnonzero(within % self.together == 0)
+        size = np.diff(np.append(start, len(off)))[:, None]
+        counts = -(-self.count // self.together)
+        first = np.append(0, np.cumsum(counts)[:-1])
+        return np.add.reduceat(off, start) / size, first, counts[:, None]
 
 
 def find_standstill(imu, limits, speed_at=None, longest=False):
@@ -120,13 +143,31 @@ def _standstill(imu, windows, start, stop):
     first, last = int(windows.first[start]), int(windows.last[stop - 1])
     run = slice(start, stop)
     count = stop - start
-    scatter = windows.rate[run].std(axis=0, ddof=1) if count > 1 else \
-        imu.omega[first:last].std(axis=0, ddof=1)
     return Standstill(
         first, last, int(imu.t_ns[first]), int(imu.t_ns[last - 1]),
         imu.f[first:last].mean(axis=0), imu.omega[first:last].mean(axis=0),
         _mean(windows.force_sd[run]), _mean(windows.rate_sd[run]),
-        scatter / math.sqrt(count if count > 1 else last - first), count)
+        standard_error(imu.omega[first:last], count), count, windows.together)
+
+
+def standard_error(rate, windows):
+    """
+    Return the standard error (3,) of the mean of rates (n, 3) over some windows.
+
+    Square root of the power at the lowest frequencies that are not zero, up to a quarter of a
+    cycle a window (Heidelberger and Welch, "A Spectral Method for Confidence Interval
+    Generation", CACM 24, 1981). Of white noise it is the scatter over root n; slow noise counts;
+    and on a base that rocks, where the angle is bounded and the rate averages out, it is small as
+    the error is.
+    """
+    count = max(FEWEST_FREQUENCIES, windows // 4)
+    turn = 2.0 * math.pi / len(rate) * np.arange(len(rate))
+    off, power = rate - rate.mean(axis=0), np.zeros(3)
+    for k in range(1, count + 1):
+        for wave in sincos(k * turn):
+            total = np.cumsum(wave[:, None] * off, axis=0)[-1] / len(rate)
+            power = power + total * total
+    return np.sqrt(power / count)
 
 
 def _mean(values):
@@ -154,30 +195,47 @@ class Gyrocompass:
     A gyrocompassing.
 
     q_nb, None where the mean rate is parallel to up; sigma: standard error of the heading from
-    the noise of the rate, rad; excess: length of the mean rate less that of the Earth, rad/s;
+    the noise of the rate and from the bias of the gyros, rad; noise_sigma: that from the noise
+    alone; excess: length of the mean rate less that of the Earth, rad/s;
     excess_up: the same of its part along up; both are the bias of the gyros, as far as it can
-    be seen.
+    be seen; bias_sigma: standard deviation of it that was assumed, rad/s.
     """
 
     q_nb: tuple
     sigma: float
+    noise_sigma: float
     excess: float
     excess_up: float
+    bias_sigma: float
+
+    def describe(self):
+        """Return what was found, and of what its standard error is made."""
+        return (f'standard error {math.degrees(self.sigma):.3g} deg, by noise '
+                f'{math.degrees(self.noise_sigma):.3g} deg and by the bias of '
+                f'{self.bias_sigma * DEG_PER_HOUR:.3g} deg/h of alignment.gyro_bias_sigma_deg_h; '
+                f'mean rate {self.excess * DEG_PER_HOUR:+.3g} deg/h from that of the Earth')
 
 
-def gyrocompass(still, lat):
-    """Return the Gyrocompass of a Standstill at a latitude, rad."""
+def gyrocompass(still, lat, bias_sigma=0.0):
+    """
+    Return the Gyrocompass of a Standstill at a latitude, rad.
+
+    bias_sigma: standard deviation of the bias of the gyros, rad/s.  Its part along East turns the
+    heading and cannot be seen at a standstill.
+    """
     up = still.force / length(still.force)
     east = np.cross(still.rate, up)
     level = length(east)
     spin_level, spin_up = _spin(lat)
-    q_nb, sigma = None, math.inf
+    q_nb, sigma, noise = None, math.inf, math.inf
     if level > 0.0:
         east /= level
         q_nb = _attitude(east, up)
-        sigma = length(still.rate_error * east) / spin_level
-    return Gyrocompass(q_nb, sigma, length(still.rate) - ellipsoid.ROTATION_RATE,
-                       dot(still.rate, up) - spin_up)
+        noise = length(still.rate_error * east) / spin_level
+        by_bias = bias_sigma / spin_level
+        sigma = math.sqrt(noise * noise + by_bias * by_bias)
+    return Gyrocompass(q_nb, sigma, noise, length(still.rate) - ellipsoid.ROTATION_RATE,
+                       dot(still.rate, up) - spin_up, bias_sigma)
 
 
 def _spin(lat, rate=ellipsoid.ROTATION_RATE):

@@ -55,7 +55,8 @@ def renewed(place, earth_angle):
             a_u, per_north, per_east, bias, 0.0, c_e, c_n, c_u)
 
 
-def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, reference):
+def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, reference,
+            gravity=None):
     """
     Advance position and velocity over one sampling interval.
 
@@ -70,6 +71,7 @@ def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, referenc
     channel : how height and vertical velocity are found: FROM_TRUTH, FREE or DAMPED
     reference : height and vertical velocity at the end of the interval, for FROM_TRUTH; the
         reference height first for DAMPED; and c1, c2, c3 of ``vertical_channel.damping``
+    gravity : terms of the formula of gravity, one of ``ellipsoid.GRAVITY_TERMS``
 
     Returns
     -------
@@ -80,8 +82,9 @@ def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, referenc
         place = renewed(place, earth_angle)
     delta_v_i = quaternion.rotate(q_ib, delta_v)
     if is_small(place, dt, earth_rate):
-        return small_step(place, delta_v_i, dt, earth_rate, channel, reference)
-    return polar_step.advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference)
+        return small_step(place, delta_v_i, dt, earth_rate, channel, reference, gravity)
+    return polar_step.advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference,
+                              gravity)
 
 
 def is_small(place, dt, earth_rate):
@@ -107,7 +110,7 @@ def coriolis(m_e, m_n, m_u, cos_m, sin_m, per_north, per_east, earth_rate):
     return w_u * m_n - w_n * m_u, w_e * m_u - w_u * m_e, w_n * m_e - w_e * m_n
 
 
-def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
+def small_step(place, delta_v_i, dt, earth_rate, channel, reference, gravity=None):
     """Advance where n turns by less than 0.01 rad; delta_v_i: velocity increment in i, m/s."""
     (lat, lon, height, v_e, v_n, v_u, sin_lat, cos_lat, sin_lon, cos_lon, rest_lat, rest_lon, a_e,
      a_n, a_u, per_north, per_east, bias, age, c_e, c_n, c_u) = place
@@ -123,7 +126,7 @@ def small_step(place, delta_v_i, dt, earth_rate, channel, reference):
     sin_m, cos_m = turned(sin_lat, cos_lat, rest_lat + to_lat)
     sin_l, cos_l = turned(sin_lon, cos_lon, rest_lon + (to_lon + half * earth_rate))
     # 1 / (R_N + h) and 1 / ((R_E + h) cos lat) by one division
-    r_n, r_e, g = ellipsoid.radii_and_gravity(sin_m, m_h)
+    r_n, r_e, g = ellipsoid.radii_and_gravity(sin_m, m_h, gravity)
     r_n, r_e = r_n + m_h, (r_e + m_h) * cos_m
     per_both = 1.0 / (r_n * r_e)
     per_north, per_east = per_both * r_e, per_both * r_n

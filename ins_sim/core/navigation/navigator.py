@@ -28,6 +28,7 @@ class InertialNavigator:
     def __init__(self, settings):
         self._settings = settings
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
+        self._gravity = ellipsoid.GRAVITY_TERMS[settings.earth.gravity]
         self._integrated = settings.input == 'integrated'
         self._channel = CHANNELS[settings.vertical.channel]
         self._after_ns = round(settings.initial.after_s * 1e9)
@@ -93,8 +94,9 @@ class InertialNavigator:
 
     def _solve(self, t_ns, omega, f, truth, solved):
         ins = self._strapdown
-        inputs = (self.carry, ins.spin, ins.start_ns, ins.channel, ins.damping, self._integrated,
-                  t_ns, omega, f, truth.height, np.ascontiguousarray(truth.v_n[:, 2]))
+        inputs = (self.carry, ins.spin, ins.start_ns, ins.channel, ins.damping, self._gravity,
+                  self._integrated, t_ns, omega, f, truth.height,
+                  np.ascontiguousarray(truth.v_n[:, 2]))
         carry = compilation.run(whole_run.solve, len(t_ns), inputs, solved)
         orientation, place, self._last, last_ns = carry
         ins.resume(last_ns, orientation, place)
@@ -128,7 +130,7 @@ class InertialNavigator:
             constants = damping(vertical.time_constant_s)
         error = quaternion.exponential(tuple(map(math.radians, initial.attitude_error_deg)))
         ins = Strapdown(t_ns, (lat, lon, height, v, quaternion.multiply(error, q_nb)), self._spin,
-                        self._channel, constants, self._settings.orientation)
+                        self._channel, constants, self._settings.orientation, self._gravity)
         # The attitude error is one of the inertial attitude, which the place does not change.
         lat, lon, off_height = ellipsoid.moved(lat, lon, height, initial.position_error_m)
         v_e, v_n, v_u = (a + b for a, b in zip(v, initial.velocity_error_m_s))

@@ -15,7 +15,7 @@ from ins_sim.core.numerics.elementary import atan2, sincos
 from .vertical_channel import DAMPED, damped, FROM_TRUTH
 
 
-def advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference):
+def advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference, gravity=None):
     """Advance PLACE as ``mechanization.small_step`` does, anywhere and over any interval."""
     lat, lon, height, v_e, v_n, v_u, _, _, _, _, _, _, _, _, _, _, _, bias, age, _, _, _ = place
     sin_lat, cos_lat = sincos(lat)
@@ -29,7 +29,7 @@ def advance(place, delta_v_i, dt, earth_rate, earth_angle, channel, reference):
         m = (r[0] + half * (0.75 * v[0] + 0.25 * end[0]),
              r[1] + half * (0.75 * v[1] + 0.25 * end[1]),
              r[2] + half * (0.75 * v[2] + 0.25 * end[2]))
-        a, m_h = gravitation(m, earth_rate)
+        a, m_h = gravitation(m, earth_rate, gravity)
         end = (v[0] + delta_v_i[0] + dt * a[0], v[1] + delta_v_i[1] + dt * a[1],
                v[2] + delta_v_i[2] + dt * a[2])
     r = (r[0] + half * (v[0] + end[0]), r[1] + half * (v[1] + end[1]),
@@ -65,10 +65,10 @@ def in_level(v_i, r, sin_lat, cos_lat, sin_lon, cos_lon, earth_rate):
             cos_lat * level + sin_lat * z)
 
 
-def gravitation(r, earth_rate):
+def gravitation(r, earth_rate, gravity=None):
     """Return normal gravity less the centrifugal acceleration in i, m/s^2, and the height, m."""
     sin_lat, cos_lat, sin_lon, cos_lon, height = ellipsoid.geodetic_directions(r[0], r[1], r[2])
-    g = ellipsoid.gravity(sin_lat, height)
+    g = ellipsoid.gravity(sin_lat, height, gravity)
     square = earth_rate * earth_rate
     return (-g * cos_lat * cos_lon - square * r[0], -g * cos_lat * sin_lon - square * r[1],
             -g * sin_lat), height

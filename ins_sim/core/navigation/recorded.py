@@ -13,11 +13,13 @@ class RecordedNavigator:
     The strapdown of a recorded IMU, from an initial state at the first sample.
 
     kind: one of settings.navigate.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
-    height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one.
+    height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one;
+    gravity: one of ``ellipsoid.GRAVITY_TERMS``.
     """
 
-    def __init__(self, kind, spin, initial, time_constant_s=None):
+    def __init__(self, kind, spin, initial, time_constant_s=None, gravity=None):
         self._kind, self._spin, self._initial = kind, spin, initial
+        self._gravity = gravity
         self._channel, self._damping = FREE, NO_DAMPING
         if time_constant_s is not None:
             self._channel, self._damping = DAMPED, damping(time_constant_s)
@@ -39,7 +41,7 @@ class RecordedNavigator:
         """
         if self._strapdown is None:
             self._strapdown = Strapdown(t_ns, self._initial, self._spin, self._channel,
-                                        self._damping)
+                                        self._damping, gravity=self._gravity)
             self._last, self._dt_last = (omega, f), None
         elif self._bridge_ns is not None:
             self._bridge(t_ns, (omega, f), height)

@@ -21,6 +21,7 @@ class Strapdown(Placed):
     channel : vertical channel, as of ``mechanization.advance``
     damping : c1, c2, c3 of the channel DAMPED
     orientation : attitude algorithm, one of ``integration.KINDS``
+    gravity : terms of the formula of gravity, one of ``ellipsoid.GRAVITY_TERMS``
 
     Attributes
     ----------
@@ -32,9 +33,10 @@ class Strapdown(Placed):
     """
 
     def __init__(self, t_ns, place, spin, channel=FREE, damping=NO_DAMPING,
-                 orientation='quaternion'):
+                 orientation='quaternion', gravity=None):
         self.t_ns = self.start_ns = t_ns
         self.spin, self.channel, self.damping = spin, channel, damping
+        self.gravity = gravity
         _, self._state_of = integration.ALGORITHMS[orientation]
         lat, lon, height, v, q_nb = place
         self.place = mechanization.begin(lat, lon, height, v, 0.0)
@@ -62,7 +64,7 @@ class Strapdown(Placed):
         dt = (t_ns - self.t_ns) * 1e-9
         self.place = mechanization.advance(
             self.place, self.q_ib, delta_v, dt, self.spin, self.spin * self.elapsed_s,
-            self.channel, (height, v_u, *self.damping))
+            self.channel, (height, v_u, *self.damping), self.gravity)
         self.orientation = integration.turned(self.orientation, phi, dt)
         self.q_ib = integration.quaternion_of_state(self.orientation)
         self.t_ns = t_ns

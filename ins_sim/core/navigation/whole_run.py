@@ -19,7 +19,8 @@ SOLVED = 10
 JUDGED = 13
 
 
-def solve(carry, spin, start_ns, channel, damping, integrated, t_ns, omega, f, height, v_u, out):
+def solve(carry, spin, start_ns, channel, damping, gravity, integrated, t_ns, omega, f, height,
+          v_u, out):
     """
     Advance over samples; return the carry.
 
@@ -36,7 +37,7 @@ def solve(carry, spin, start_ns, channel, damping, integrated, t_ns, omega, f, h
         phi, delta_v = fixed_rate_increments(integrated, now, last)
         place = mechanization.advance(place, q, delta_v, dt, spin,
                                       spin * ((last_ns - start_ns) * 1e-9), channel,
-                                      (height[k], v_u[k], c1, c2, c3))
+                                      (height[k], v_u[k], c1, c2, c3), gravity)
         orientation = integration.turned(orientation, phi, dt)
         last, last_ns = now, now_ns
         q = integration.quaternion_of_state(orientation)

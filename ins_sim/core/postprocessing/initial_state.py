@@ -58,6 +58,7 @@ class _Search:
         self._reference, self._odometry = sources.reference, sources.odometry
         self._without_position = sources.without_position
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
+        self._gravity = ellipsoid.GRAVITY_TERMS[settings.earth.gravity]
 
     def start(self, first, last, again):
         source = self._s.initial.attitude
@@ -198,7 +199,7 @@ class _Search:
             figures = {'stationary_s': (still.end_ns - still.start_ns) * 1e-9,
                        'force_sd_m_s2': still.force_sd, 'rate_sd_rad_s': still.rate_sd,
                        'gravity_excess_m_s2': length(still.force) - ellipsoid.gravity(
-                           elementary.sin(lat), where[2])}
+                           elementary.sin(lat), where[2], self._gravity)}
             q_nb, compassed = self._headed(still, k, where, again, notes, figures)
             v = (0.0, 0.0, 0.0) if self._s.initial.velocity == 'auto' else \
                 self._velocity(k, q_nb, again)
@@ -225,16 +226,16 @@ class _Search:
                 still.force, math.radians(self._s.initial.heading_deg)), False
         refused = 'the Earth does not turn (earth.rotation)'
         if wanted in ('auto', 'gyrocompass', 'given') and self._spin:
-            compass = alignment.gyrocompass(still, where[0])
+            compass = alignment.gyrocompass(still, where[0],
+                                            self._s.alignment.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
             worst = math.radians(self._s.alignment.heading_sigma_deg)
-            seen = (f'standard error {math.degrees(compass.sigma):.3g} deg, mean rate '
-                    f'{compass.excess * DEG_PER_HOUR:+.3g} deg/h from that of the Earth')
+            seen = compass.describe()
             if alignment.is_trusted(compass, still, where[0], worst):
                 notes.append(f'heading by gyrocompassing: {seen}')
                 figures.update(heading_source='gyrocompass',
                                heading_sigma_deg=math.degrees(compass.sigma))
                 return compass.q_nb, True
-            refused = (f'the gyros are too coarse to see the Earth turn ({seen}; expected '
+            refused = (f'the gyros are too coarse to see the Earth turn ({seen}; expected at most '
                        f'{self._s.alignment.heading_sigma_deg:g} deg)')
         if wanted == 'gyrocompass':
             raise ValueError(f'{refused}; expected another initial.heading than gyrocompass')
@@ -293,4 +294,5 @@ class _Search:
 def _described(still):
     return (f'stationary from {seconds(still.start_ns)} for '
             f'{(still.end_ns - still.start_ns) * 1e-9:.3f} s: standard deviation '
-            f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} windows')
+            f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} windows'
+            + (f', of means over {still.together} samples' if still.together > 1 else ''))

@@ -194,7 +194,8 @@ class _Replay:
 
     def _navigator(self, begin):
         return partial(RecordedNavigator, self._s.input, self._spin, begin.state,
-                       self._s.vertical.time_constant_s if self._damped else None)
+                       self._s.vertical.time_constant_s if self._damped else None,
+                       ellipsoid.GRAVITY_TERMS[self._s.earth.gravity])
 
     def _segment(self, loop, begin, last):
         """Return the NavStates from an InitialState to a gap or to last, which is left out."""

@@ -30,26 +30,27 @@ def _to_n(truth, vectors_b):
     return np.stack(quaternion.rotate(_columns(truth.q_nb), _columns(vectors_b)), axis=-1)
 
 
-def drift_density(truth, omega_in_n, tau):
+def drift_density(truth, omega_in_n, late):
     """
-    Return R (w x T w) and R T w (n, 3): integrand and boundary term of the attitude error.
+    Return R (w x D) and R D (n, 3): integrand and boundary term of the attitude error.
 
-    tau (3,): delays of the gyro channels x, y, z, s.  The reading errs by -T w', so that the
-    attitude error grows by nu = -R T w' = -d/dt(R T w) + R (w_nb x T w). The rate w under T is
-    that of b in i; the one that turns R is that of b in n. Bogdanov and Fomichev (2018) neglect
-    the difference, the rotation of the Earth (docs/theory.md, "Prediction").
+    late (n, 3): the turns D that the channels x, y, z have not read yet, rad; to first order in
+    the delays T they are T w, w the rate of b in i.  The reading errs by -D', so that the attitude
+    error grows by nu = -R D' = -d/dt(R D) + R (w_nb x D): what turns R is the rate of b in n.
+    Bogdanov and Fomichev (2018) neglect the difference, the rotation of the Earth (docs/theory.md,
+    "Prediction").
     """
     omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
-    late = truth.omega_ib_b * np.asarray(tau)
     density = np.stack(quaternion.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)),
                        -1)
     return _to_n(truth, density), _to_n(truth, late)
 
 
-def mean_drift(motion, tau, earth_rotation, start_s, span_s):
+def mean_drift(motion, turns, earth_rotation, start_s, span_s):
     """
-    Return the mean drift (3,) in East, North, Up, rad/s, to first order in the delays tau (3,), s.
+    Return the mean drift (3,) in East, North, Up, rad/s.
 
+    turns: function of a Truth that returns the turns D of ``drift_density``.
     Over one period where the motion has one (the trapezium rule then is spectrally accurate),
     else over the span.
     """
@@ -60,7 +61,7 @@ def mean_drift(motion, tau, earth_rotation, start_s, span_s):
         k = np.arange(first, min(first + BLOCK, count))
         truth = motion.at(_nanoseconds(start_s + length * k / count))
         omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, earth_rotation)
-        density, _ = drift_density(truth, omega_in, tau)
+        density, _ = drift_density(truth, omega_in, turns(truth))
         total = np.add.reduce(np.concatenate([total[None], density]), axis=0)
     return total / count
 
@@ -69,11 +70,11 @@ class LateAttitudeError:
     """
     Attitude error beta of late channels: the boundary term and the integral of ``drift_density``.
 
-    tau (3,): delays, s; step_s: interval between the instants, s.
+    turns: as of ``mean_drift``; step_s: interval between the instants, s.
     """
 
-    def __init__(self, tau, step_s):
-        self._tau, self._step_s = tau, step_s
+    def __init__(self, turns, step_s):
+        self._turns, self._step_s = turns, step_s
         self._first = self._integral = None
 
     def advance(self, truth, omega_in):
@@ -82,7 +83,7 @@ class LateAttitudeError:
 
         truth (n,), omega_in (n, 3): the first instant is the last one of the block before.
         """
-        density, late = drift_density(truth, omega_in, self._tau)
+        density, late = drift_density(truth, omega_in, self._turns(truth))
         if self._first is None:
             self._first, self._integral = late[0], np.zeros((1, 3))
         running = np.cumsum(np.concatenate([
@@ -109,12 +110,13 @@ class PairAttitudeError:
     Attitude error beta of two tuned gyros: the integral of R (reading - rate).
 
     motion: that of the run; gyro: settings.Gyro; tau (3,): delays, s; start_s: first instant, s of
-    motion time; step_s: interval between the instants, s.  The rotors are run over the rates of
-    the motion; the mean rate of a step is Simpson's.
+    motion time; step_s: interval between the instants, s; held_ns: motion time before which the
+    channels see the rate of then, or None.  The rotors are run over the rates of the motion; the
+    mean rate of a step is Simpson's.
     """
 
-    def __init__(self, motion, gyro, tau, start_s, step_s):
-        self._motion, self._tau = motion, tau
+    def __init__(self, motion, gyro, tau, start_s, step_s, held_ns=None):
+        self._motion, self._tau, self._held_ns = motion, tau, held_ns
         self._start_s, self._step_s = start_s, step_s
         self._pair, self._integral = exact_pair(gyro, step_s), None
 
@@ -122,7 +124,7 @@ class PairAttitudeError:
         """Return beta (count + 1, 3), rad, from instant ``first`` on; in turn from 0."""
         halves = self._start_s + 0.5 * self._step_s * np.arange(2 * first,
                                                                 2 * (first + count) + 1)
-        late = np.stack([self._motion.at(_nanoseconds(halves - d)).omega_ib_b[:, i]
+        late = np.stack([self._motion.at(self._seen(_nanoseconds(halves - d))).omega_ib_b[:, i]
                          for i, d in enumerate(self._tau)], axis=-1)
         if self._integral is None:
             self._pair.settle(late[0])
@@ -134,6 +136,9 @@ class PairAttitudeError:
         running = np.cumsum(np.concatenate([self._integral, self._step_s * growth]), axis=0)
         self._integral = running[-1:]
         return running
+
+    def _seen(self, t_ns):
+        return t_ns if self._held_ns is None else np.maximum(t_ns, self._held_ns)
 
 
 def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):

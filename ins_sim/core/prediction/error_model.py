@@ -30,13 +30,15 @@ class ErrorModel:
     per_step : intervals of a step
     rotation : whether the Earth turns
     position, velocity : initial errors in n, m and m/s
+    gravity : one of ``ellipsoid.GRAVITY_TERMS``
 
     """
 
-    def __init__(self, fine_s, per_step, rotation, position, velocity):
+    def __init__(self, fine_s, per_step, rotation, position, velocity, gravity=None):
         self._per_step, self._step_s = per_step, fine_s * per_step
         self._spin = ellipsoid.rotation_rate(rotation)
         self._start, self._state = (position, velocity), None
+        self._gravity = gravity
 
     def advance(self, truth, omega_in, f_n, beta, df_n):
         """
@@ -48,7 +50,7 @@ class ErrorModel:
         """
         sin, cos = elementary.sincos(truth.lat)
         r_n, r_e = ellipsoid.radii(sin)
-        g = ellipsoid.gravity(sin, truth.height)
+        g = ellipsoid.gravity(sin, truth.height, self._gravity)
         spin = self._spin
         pull = np.stack((g / (r_e + truth.height), g / (r_n + truth.height)), axis=-1)
         pull[:, 0] += spin * spin

@@ -14,6 +14,7 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import StreamImu
+from ins_sim.core.sensors.imu.turning import check_turning
 from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.timeseries.collecting import Collected
 from ins_sim.core.timeseries.histories import ImuSamples, NavErrors, NavStates, Truth
@@ -79,6 +80,7 @@ def ideal_blocks(settings, motion):
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
     if sensor.source == 'motion':
+        check_turning(sensor, motion, generator.start_s, generator.duration_s)
         imu = MotionImu(sensor, motion, first_ns)
         left = reading_count(generator, imu.dt_ns)
         while left > 0:
@@ -169,18 +171,44 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
         for store, part in zip(flown, parts):
             store.append(part)
-    truth, states, errors = (store.history() for store in flown)
+    imu, (truth, states, errors) = sensed.history(), (store.history() for store in flown)
     if truth is None:
         raise ValueError('the run has no navigation output; expected duration_s longer than '
                          'initial.after_s')
     twin_errors = None
     if twin:
         store = collect()
-        blocks = watch(imu_blocks(settings.without_delays(), motion, run), total / 2)
+        blocks = watch(_until(int(imu.t_ns[-1]), imu_blocks(
+            settings.without_delays(), motion, run)), total / 2)
         for _, _, part in navigate_blocks(settings.strapdown, motion, blocks):
             store.append(part)
         twin_errors = store.history()
-    return SimulationResult(truth, sensed.history(), states, errors, twin_errors, tuple(faults))
+    return SimulationResult(truth, imu, states, errors, twin_errors, tuple(faults))
+
+
+def withheld_readings(settings):
+    """
+    Return how many readings at the end of a run wait for truth that does not come.
+
+    A channel of negative delay reads what is still to come; on a stream of truth its last
+    readings would need truth from beyond the end.
+    """
+    generator, sensor = settings.motion_generator, settings.imu_sensor
+    if sensor.source != 'stream':
+        return 0
+    lead_ns = -min(0, *sensor.gyro.delay_us.in_ns(), *sensor.accelerometer.delay_us.in_ns())
+    dt_ns, span_ns = period_ns(sensor.rate_hz), _steps(generator) * period_ns(generator.rate_hz)
+    # The first one carries the first instant alone.
+    return span_ns // dt_ns - max(0, (span_ns - lead_ns) // dt_ns)
+
+
+def _until(last_ns, blocks):
+    """Yield the readings up to an instant: a twin has no others than the run itself."""
+    for block in blocks:
+        if block.t_ns[-1] > last_ns:
+            block = block[:int(np.searchsorted(block.t_ns, last_ns, side='right'))]
+        if len(block):
+            yield block
 
 
 def _kept(blocks, store):

@@ -33,6 +33,13 @@ class StreamFault(ValueError):
         return type(self), (str(self), self.restart)
 
 
+def half_turn_sentence(name, t_ns, rate, interval_s):
+    """Return the sentence on a rate, rad/s, at which an interval of the IMU turns too far."""
+    return (f'{name} at {seconds(t_ns)} turns at {rate:.4g} rad/s, {rate * interval_s:.3g} rad in '
+            f'an interval of the IMU; expected less than half a turn, {math.pi:.3g} rad: raise '
+            f'rate_hz of imu_sensor above {rate / math.pi:.4g} Hz, or set output integrated')
+
+
 def check_finite(name, t_ns, *vectors):
     """Raise StreamFault (sample dropped) if a vector of floats holds a NaN or an infinity."""
     for vector in vectors:

@@ -5,6 +5,7 @@ See docs/theory.md, "Streamed truth".
 """
 
 from collections import deque
+import math
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from ins_sim.core.attitude.interpolation import (hermite_coefficients, newton_di
                                                  newton_value)
 from ins_sim.core.numerics.instants import seconds
 from .faults import (check_finite, check_interval, check_periods, check_unit,
-                     INTERVAL_TOLERANCE, MOST_PERIODS, StreamFault, UNIT_HIGH, UNIT_LOW)
+                     half_turn_sentence, INTERVAL_TOLERANCE, MOST_PERIODS, StreamFault,
+                     UNIT_HIGH, UNIT_LOW)
 from .truth_pieces import pieces_of_samples, TruthBlock, TruthPieces
 
 # fields of a sample
@@ -29,25 +31,31 @@ def leading(true):
     return len(true) if np.all(true) else int(np.argmin(true))
 
 
+def _square(vector):
+    """Return the square of the length of a vector, floats or arrays."""
+    return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
+
+
 class TruthBuffer:
     """
     Ring buffer of streamed truth that answers for any instant it covers.
 
-    frame: MapFrame; reach_ns: how far behind the newest sample it must answer; frozen: the
-    history before the first sample stands still (else it goes on at the first rate and force);
-    wanted: which of FORCE_M, RATE, FORCE_B it will be asked for; dt_ns: the period of rate_hz, of
-    which a step of the truth is at most MOST_PERIODS, and at least as small a part.
+    frame: MapFrame; reach_ns: how far behind the newest sample it must answer; before: function of
+    the first sample that returns its BeforeTruth; wanted: which of FORCE_M, RATE, FORCE_B it will
+    be asked for; dt_ns: the period of rate_hz, of which a step of the truth is at most
+    MOST_PERIODS, and at least as small a part; interval_ns: of the increments of attitude that it
+    will be asked for, which must be less than half a turn, or None.
     """
 
-    def __init__(self, frame, reach_ns, frozen, wanted, dt_ns):
+    def __init__(self, frame, reach_ns, before, wanted, dt_ns, interval_ns=None):
         self._frame = frame
         self._reach_ns = reach_ns
         self._wanted = wanted
-        self._frozen = frozen
+        self._make_before, self._before = before, None
+        self._interval_s = 0.0 if interval_ns is None else interval_ns * 1e-9
         self._pieces = deque()
         self._last = deque(maxlen=3)
         self._cubics = None
-        self._first = None
         self._step_ns = None
         self._longest_ns, self._shortest_ns = MOST_PERIODS * dt_ns, dt_ns // MOST_PERIODS
 
@@ -73,7 +81,7 @@ class TruthBuffer:
         sample = self._sample(t_ns, q_mb, omega_ib_b, f_ib_b)
         omega_mb_b = sample[2]
         if not self._last:
-            self._first = sample
+            self._before = self._make_before(sample)
             self._last.appendleft(sample)
             self._cubics = {k: [sample[k], ZERO, ZERO, ZERO] for k in self._wanted}
             return
@@ -87,6 +95,12 @@ class TruthBuffer:
                 f'truth at {seconds(t_ns)} turns {h * max(map(abs, omega_mb_b)):.3g} rad in one '
                 f'step; expected less than {TURN_LIMIT:g}: raise rate_hz of motion_generator',
                 restart=True)
+        rate = math.sqrt(_square(omega_ib_b))
+        if rate * self._interval_s >= math.pi:
+            raise StreamFault(half_turn_sentence('truth', t_ns, rate, self._interval_s),
+                              restart=True)
+        if self._step_ns is None:
+            self._before.take_second(sample)
         self._step_ns = step_ns
         back = [1e9 / (t_ns - other[0]) for other in self._last] + [0.0, 0.0]
         self._cubics = {k: newton_differences(cubic, sample[k], *back[:3])
@@ -117,7 +131,8 @@ class TruthBuffer:
             return 0, None
         new = self._sample(*self._sound(t_ns, q_mb, omega_ib_b, f_ib_b))
         steps = np.diff(new[0], prepend=self._last[0][0])
-        count = leading(steps * 1e-9 * abs(np.array(new[2])).max(axis=0) <= TURN_LIMIT)
+        count = leading((steps * 1e-9 * abs(np.array(new[2])).max(axis=0) <= TURN_LIMIT)
+                        & (np.sqrt(_square(new[4])) * self._interval_s < math.pi))
         if not count:
             return 0, None
         # The three last samples lead the new ones.
@@ -129,8 +144,7 @@ class TruthBuffer:
         fields = {k: tuple(x[:count] for x in new[k]) for k in self._wanted}
         made = pieces_of_samples(stamps, q, w, fields, self._cubics)
         kept = TruthPieces.of_tuples(self._pieces)
-        block = TruthBlock(made.behind(kept), len(self._pieces), self._first, self._frozen,
-                           self._reach_ns)
+        block = TruthBlock(made.behind(kept), len(self._pieces), self._before, self._reach_ns)
         self._keep(block.pieces, new, count)
         return count, block
 
@@ -166,14 +180,8 @@ class TruthBuffer:
 
     def attitude(self, t_ns):
         """Return q_mb at t_ns, not later than the newest sample."""
-        first = self._first
-        if t_ns <= first[0]:
-            if self._frozen or t_ns == first[0]:
-                return first[1]
-            s = (t_ns - first[0]) * 1e-9
-            w = first[2]
-            return quaternion.multiply(first[1],
-                                       quaternion.exponential((w[0] * s, w[1] * s, w[2] * s)))
+        if t_ns <= self._before.first[0]:
+            return self._before.attitude(t_ns)
         start_ns, _, q, per_step, (c1, c2, c3), _, _ = self._piece(t_ns)
         s = (t_ns - start_ns) * per_step
         r = (s * (c1[0] + s * (c2[0] + s * c3[0])), s * (c1[1] + s * (c2[1] + s * c3[1])),
@@ -182,8 +190,8 @@ class TruthBuffer:
 
     def cubic(self, t_ns, field):
         """Return FORCE_M (m/s^2 in m), RATE (omega_ib_b, rad/s) or FORCE_B (f_ib_b, m/s^2)."""
-        if t_ns <= self._first[0]:
-            return self._first[field]
+        if t_ns <= self._before.first[0]:
+            return self._before.value(t_ns, field)
         piece = self._piece(t_ns)
         t0, t1, t2 = piece[6]
         return newton_value(piece[5][field], (t_ns - t0) * 1e-9, (t_ns - t1) * 1e-9,

@@ -70,34 +70,31 @@ class TruthBlock:
     """
     A block of new samples that answers for any instant, as ``TruthBuffer`` did when they came.
 
-    pieces: TruthPieces, of which those from number ``new`` end at the new samples; first: the
-    first sample of the stream (t_ns, q_mb, omega_mb_b, ...); frozen, reach_ns: as of the buffer.
+    pieces: TruthPieces, of which those from number ``new`` end at the new samples; before:
+    BeforeTruth of the stream; reach_ns: as of the buffer.
     """
 
-    def __init__(self, pieces, new, first, frozen, reach_ns):
+    def __init__(self, pieces, new, before, reach_ns):
         self.pieces = pieces
-        self._new, self._first, self._frozen, self._reach_ns = new, first, frozen, reach_ns
+        self._new, self._before, self._reach_ns = new, before, reach_ns
 
     def attitude(self, t_ns, newest):
         """Return q_mb (n, 4) at instants (n,) asked when new sample newest was the last."""
         q = np.stack(self.pieces.attitude(t_ns, self._piece(t_ns, newest)), axis=-1)
-        first_ns, q_first, w = self._first[:3]
-        before = np.flatnonzero(t_ns <= first_ns)
+        first_ns, q_first = self._before.first[:2]
+        q[t_ns == first_ns] = q_first
+        before = np.flatnonzero(t_ns < first_ns)
         if len(before):
-            q[before] = q_first
-            before = before[t_ns[before] < first_ns]
-            if len(before) and not self._frozen:
-                s = (t_ns[before] - first_ns) * 1e-9
-                turn = exponentials((w[0] * s, w[1] * s, w[2] * s))
-                q[before] = np.stack(quaternion.multiply(q_first, turn), axis=-1)
+            q[before] = self._before.attitudes(t_ns[before])
         return q
 
     def cubic(self, t_ns, newest, field):
         """Return a field, (3, n), at instants asked when new sample newest was the last."""
         values = np.array(self.pieces.cubic(t_ns, self._piece(t_ns, newest), field))
-        before = t_ns <= self._first[0]
-        if before.any():
-            values[:, before] = np.array(self._first[field])[:, None]
+        before = np.flatnonzero(t_ns <= self._before.first[0])
+        if len(before):
+            for row, value in zip(values, self._before.value(t_ns[before], field)):
+                row[before] = value
         return values
 
     def _piece(self, t_ns, newest):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ins_sim.core.earth.frames import MapFrame
-from ins_sim.core.motion.motion import check_length
+from ins_sim.core.motion.motion import check_length, check_places
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
@@ -14,6 +14,8 @@ from ins_sim.messages.convert import truth_blocks
 
 BLOCK = 256
 STAMP_END_S = 2**31
+# Of a run without an end, how much of it is looked at before it, s.
+LOOK_S = 86400.0
 
 
 class TruthSource:
@@ -36,6 +38,8 @@ class TruthSource:
             check_length(settings, self._motion)
         elif self._motion.end_s < math.inf:
             length_s = self._motion.end_s - settings.start_s
+        else:
+            check_places(self._motion, settings.start_s, LOOK_S)
         last_s = settings.time.epoch_s + settings.start_s + length_s
         if last_s >= STAMP_END_S:
             raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '

@@ -12,7 +12,6 @@ traceback, as "ignored due to race condition": ignored is what it shall be, so t
 import gc
 import signal
 import sys
-import warnings
 
 from ..transport.repairs import drain_publishers, use_profile
 
@@ -78,6 +77,7 @@ def node_main(load, args=None, **more):
         from rclpy.executors import SingleThreadedExecutor
 
         from ins_sim.core.numerics.compilation import plain_only
+        from ins_sim.core.numerics.sentences import tell_warnings
         from .last_resort import exit_within
         node_class = load()
     except ImportError as error:
@@ -86,8 +86,7 @@ def node_main(load, args=None, **more):
         return EXIT_PARAMETERS
     if stop:
         return stop.code
-    warnings.showwarning = lambda sentence, *_: rclpy.logging.get_logger(
-        node_class.NAME).warning(str(sentence))
+    tell_warnings(rclpy.logging.get_logger(node_class.NAME).warning)
     node = None
     try:
         rclpy.init(args=args, signal_handler_options=rclpy.SignalHandlerOptions.NO)

@@ -19,6 +19,8 @@ NOISY = {'gyro.errors.angle_random_walk_deg_sqrt_h': [0.01] * 3,
 TUNED = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
 KINDS = {'rotations': {}, 'integrals': {'output': 'integrated'}, 'frozen': {'history': 'frozen'},
          'looking far back': {'gyro.delay_us.x': 40000.0, 'accelerometer.delay_us.x': 15000.0},
+         'looking back beyond the line': {'gyro.delay_us.y': 120000.0,
+                                          'accelerometer.delay_us.z': 90000.0},
          'looking ahead': {'gyro.delay_us.x': -30000.0}, 'noisy': NOISY, 'tuned': TUNED,
          'on the motion': {'source': 'motion'}}
 

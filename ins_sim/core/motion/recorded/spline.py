@@ -56,7 +56,7 @@ class RecordedMotion(Motion):
     Motion time 0 is recorder time start_s after the first row; the recording must reach 3 s
     further on both sides (end effects of the splines; history of delayed channels).  end_s: last
     motion time to be used, s; zero_ns: the recorder's stamp of motion time 0.  warnings: what was
-    cut, smoothed or found noisy, in sentences.
+    assumed, cut, smoothed or found noisy, in sentences.
     """
 
     end_name = 'the end of the recording'
@@ -70,11 +70,11 @@ class RecordedMotion(Motion):
         outside it.
         """
         self.path = recording.path
-        self._earth_rotation = earth.rotation
+        self._earth_rotation, self._gravity = earth.rotation, earth.gravity
         rows = poses
         q, rate = rows.q_nb, rows.omega_nb_b
-        part, self.warnings = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
-        self.warnings = [*rows.notes, *self.warnings]
+        part, cut = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
+        self.warnings = [*rows.notes, *cut]
         self.zero_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
         self._knots = rows.t_ns[part] - self.zero_ns
         self._check_extent(recording, int(rows.t_ns[0]))
@@ -165,7 +165,8 @@ class RecordedMotion(Motion):
         step = _exponential(*_horner(self._rotation[:, :, interval], h), self._terms)
         base = self._base[interval]
         q_nb = quaternion.multiply(tuple(base[:, k] for k in range(4)), step)
-        return truth_from_pose(t_ns, lat, lon, height, q_nb, self._earth_rotation)
+        return truth_from_pose(t_ns, lat, lon, height, q_nb, self._earth_rotation,
+                               self._gravity)
 
 
 def _horner(c, x):

@@ -44,7 +44,7 @@ class RouteMotion(Motion):
     end_name = 'the arrival at the last turning point'
 
     def __init__(self, settings, earth_settings):
-        self._rotation = earth_settings.rotation
+        self._rotation, self._gravity = earth_settings.rotation, earth_settings.gravity
         self._spin = ellipsoid.rotation_rate(self._rotation)
         self._height, self._airspeed = settings.height_m, settings.airspeed_m_s
         self._attack = math.radians(settings.attack_deg)
@@ -91,7 +91,8 @@ class RouteMotion(Motion):
         # the axis points left: nose up is negative
         q_nb = quaternion.multiply(angles.from_angles(-psi, psi.constant(0.0), bank),
                                    angles.about_axis(1, psi.constant(-self._attack)))
-        return truth_from_pose(t_ns, lat, lon, up + self._height, q_nb, self._rotation)
+        return truth_from_pose(t_ns, lat, lon, up + self._height, q_nb, self._rotation,
+                               self._gravity)
 
 
 def route_motion(motion, datum, earth):

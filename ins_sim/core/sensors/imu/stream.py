@@ -1,11 +1,13 @@
 """The IMU as a consumer of streamed truth: samples in, samples out."""
 
+from functools import partial
 import math
 
 import numpy as np
 
 from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.streams.before_truth import BeforeTruth
 from ins_sim.core.streams.faults import (check_finite, check_periods, MOST_PERIODS,
                                          StreamFault)
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
@@ -13,6 +15,7 @@ from ..sensor import Sensor
 from .ideal import MotionImu, Triads
 from .increments import NODES
 from .readings import components, joined, samples_of
+from .turning import check_turning, NODE_S
 from .with_errors import ImuWithErrors, with_errors
 
 BLOCK = 256
@@ -22,9 +25,14 @@ def make_imu(settings, motion=None):
     """
     Return the IMU that ImuSensorSettings name; every kind has push(...) and reset().
 
-    motion: the motion to evaluate with source motion; not used with source stream.
+    motion: the motion to evaluate with source motion; not used with source stream.  Raises
+    ValueError where it turns too fast for the rate of the IMU.
     """
-    imu = StreamImu(settings) if settings.source == 'stream' else PacedImu(settings, motion)
+    if settings.source == 'stream':
+        imu = StreamImu(settings)
+    else:
+        check_turning(settings, motion, 0.0, min(NODE_S, motion.end_s))
+        imu = PacedImu(settings, motion)
     errors = with_errors(settings)
     return imu if errors is None else ImuWithErrors(imu, errors)
 
@@ -61,7 +69,9 @@ class StreamImu(Sensor):
         wanted = (RATE, FORCE_B) if triads.integrated else (FORCE_M,)
         delays = triads.attitude_delays
         reach_ns = max(0, max(delays)) + 2 * triads.dt_ns + max(0, -min(delays))
-        self._buffer = TruthBuffer(triads.frame, reach_ns, self._frozen, wanted, triads.dt_ns)
+        before = partial(BeforeTruth, frozen=self._frozen, delay_ns=max(0, max(delays)))
+        self._buffer = TruthBuffer(triads.frame, reach_ns, before, wanted, triads.dt_ns,
+                                   None if triads.integrated else triads.dt_ns)
         self._next_ns = None
         self._q_start = None
 

@@ -1,0 +1,100 @@
+"""The origin of the map frame of an odometry in a bag, found from a NavSatFix beside it."""
+
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.frames import level_frame
+from ins_sim.core.numerics.elementary import sincos
+from ins_sim.messages import topics
+from ins_sim.settings.place import Datum
+
+ODOMETRY, FIX = 'odometry', 'fix'
+# Pairs of an odometry and the NavSatFix of the same solution that the nodes publish.
+PAIRS = tuple(f'{room}/' for room in ('truth', 'ins', 'aided'))
+# The origin is a place: what it may move by while the vehicle travels, m.
+STEADY_M = 1.0
+ROUNDS = 100
+
+
+def map_origin(bag, name, given):
+    """
+    Return the Datum of the frame of an Odometry topic, and a sentence about it.
+
+    bag: BagReader; name: of the topic; given: Datum of the settings, which counts as given where
+    it is not the default one.  Its origin is where a NavSatFix of the same stamps puts it: that
+    of the same solution, or of another one in the same namespace.  Raises ValueError where there
+    is none and none is given.
+    """
+    for odometry, fix in _pairs(bag, name):
+        origins = _origins(bag, odometry, fix)
+        if origins is None:
+            continue
+        lat, lon, height = origins[0]
+        apart = max(math.dist(_ecef(*origins[0]), _ecef(*other)) for other in origins)
+        if apart > STEADY_M:
+            raise ValueError(f'{bag.path}: {odometry} and {fix} put the origin of the map frame '
+                             f'at places {apart:.3g} m apart; expected one place')
+        datum = Datum(*(float(round(math.degrees(a), 12)) for a in (lat, lon)), height)
+        return datum, (f'{bag.path}: the origin of the frame of {name} is at '
+                       f'{datum.latitude_deg:.9g}, {datum.longitude_deg:.9g} deg, '
+                       f'{datum.height_m:.6g} m, by {fix}')
+    if given == Datum():
+        raise ValueError(f'{bag.path} has no NavSatFix beside {name}, so that the place of its '
+                         'frame is unknown; expected datum.latitude_deg, datum.longitude_deg and '
+                         'datum.height_m of its origin (the default datum is not assumed)')
+    return given, (f'{bag.path}: the origin of the frame of {name} is taken to be the datum '
+                   f'given, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
+                   f'{given.height_m:.6g} m')
+
+
+def _pairs(bag, name):
+    """Yield the names of an Odometry and a NavSatFix that tell the origin, the best first."""
+    known = {topic: channel.type_name for topic, channel in bag.topics.items()}
+    own = f'{name.removesuffix(ODOMETRY)}{FIX}'
+    space = next((name.removesuffix(pair + ODOMETRY) for pair in PAIRS
+                  if name.endswith(pair + ODOMETRY)), '/')
+    found = [(name, own)] if name.endswith(ODOMETRY) else []
+    found += [(f'{space}{pair}{ODOMETRY}', f'{space}{pair}{FIX}') for pair in PAIRS]
+    others = [topic for topic, kind in known.items() if kind == topics.FIX]
+    if len(others) == 1:
+        found.append((name, others[0]))
+    for odometry, fix in found:
+        if known.get(odometry) == topics.ODOMETRY and known.get(fix) == topics.FIX:
+            yield odometry, fix
+
+
+def _origins(bag, odometry, fix):
+    """Return the origins (lat, lon, height) at the first, middle and last common stamp."""
+    poses = bag.arrays(odometry, ('position',))
+    fixes = bag.arrays(fix, ('latitude', 'longitude', 'altitude', 'status'))
+    fixes = fixes[(fixes['status'] >= 0) & np.isfinite(fixes['altitude'])
+                  & (np.abs(fixes['latitude']) <= 90.0) & np.isfinite(fixes['longitude'])]
+    poses = poses[np.isfinite(poses['position']).all(axis=1)]
+    _, a, b = np.intersect1d(poses['stamp_ns'], fixes['stamp_ns'], return_indices=True)
+    if not len(a):
+        return None
+    found = []
+    for k in sorted({0, len(a) // 2, len(a) - 1}):
+        fixed = fixes[b[k]]
+        found.append(_origin((math.radians(fixed['latitude']), math.radians(fixed['longitude']),
+                              float(fixed['altitude'])), poses['position'][a[k]].tolist()))
+    return found
+
+
+def _origin(place, r_m):
+    """Return lat, lon, height of the origin of the frame in which a place has coordinates r_m."""
+    x = _ecef(*place)
+    origin = place
+    for _ in range(ROUNDS):
+        r = quaternion.rotate(level_frame(*origin[:2]), tuple(r_m))
+        last, origin = origin, ellipsoid.geodetic(*(a - b for a, b in zip(x, r)))
+        if math.dist(last, origin) < 1e-13:
+            break
+    return origin
+
+
+def _ecef(lat, lon, height):
+    return ellipsoid.ecef(*sincos(lat), *sincos(lon), height)

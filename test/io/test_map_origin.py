@@ -1,0 +1,130 @@
+"""Places anywhere on Earth: the origin of a map frame, and longitudes over the 180th meridian."""
+
+import math
+
+import numpy as np
+import pytest
+from support.studies import FLIGHT, settings
+from support.truth_bags import record, recorded
+
+from ins_sim.bags.bag_reader import open_bag
+from ins_sim.cli.main import main
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.timeseries.fixes import GnssFix
+from ins_sim.io.csv_flight import read_poses
+from ins_sim.io.motion import read_motion
+from ins_sim.messages import topics
+from ins_sim.messages.convert import fix_one
+from ins_sim.messages.gnss_fixes import GnssPairs, GnssWriter
+
+SECOND = 1_000_000_000
+
+
+def flown(path, latitude, longitude, *names):
+    """Write the bag of 20 s of racetrack from a place; names: topics, all where there are none."""
+    words = [f'datum.latitude_deg:={latitude}', f'datum.longitude_deg:={longitude}',
+             'motion.kind:=racetrack', 'duration_s:=20.0', 'rate_hz:=20.0']
+    given = [word for a in words for word in ('-p', a)]
+    chosen = ['--topics', *names] if names else []
+    assert main(['simulate', *given, '-o', str(path) + '_run', '--bag', str(path), *chosen]) == 0
+
+
+def apart_m(poses, latitude, longitude):
+    """Return the distance of the first pose from the start of the racetrack, m."""
+    east, north, up = ellipsoid.offset(
+        math.radians(latitude), math.radians(longitude), 6000.0,
+        (math.radians(poses.lat_deg[0]), math.radians(poses.lon_deg[0]), poses.height_m[0]))
+    return math.hypot(east, north, up)
+
+
+@pytest.mark.parametrize('others', ([], ['truth/odometry', 'truth/fix']))
+def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_path, capsys):
+    """The datum is that of the fix beside it, or of another solution; 90 km off by the default."""
+    names = others or ['ins/fix']
+    flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry', *names)
+    target = tmp_path / 'flight.csv'
+    assert main(['convert', str(tmp_path / 'bag'), str(target), '--topic', 'ins/odometry']) == 0
+    said = capsys.readouterr().out
+    assert 'origin of the frame of /ins/odometry is at 55, 37 deg' in said
+    assert ('by /truth/fix' if others else 'by /ins/fix') in said
+    # The solution starts on the truth, and rounding of 1e-9 m is all that is between.
+    assert apart_m(read_poses(target), 55.0, 37.0) < 1e-6
+
+
+def test_no_datum_is_assumed(tmp_path, capsys):
+    """Without a fix the origin has to be given; then it is used, which is said."""
+    flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry')
+    words = ['convert', str(tmp_path / 'bag'), str(tmp_path / 'x.csv'), '--topic', 'ins/odometry']
+    capsys.readouterr()
+    assert main(words) == 2
+    assert ('has no NavSatFix beside /ins/odometry, so that the place of its frame is unknown; '
+            'expected datum.latitude_deg') in capsys.readouterr().err
+    assert not (tmp_path / 'x.csv').exists()
+    given = ['-p', 'datum.latitude_deg:=55.0', '-p', 'datum.longitude_deg:=37.0']
+    assert main([*words, *given]) == 0
+    assert 'taken to be the datum given, 55, 37 deg, 0 m' in capsys.readouterr().out
+    assert apart_m(read_poses(tmp_path / 'x.csv'), 55.0, 37.0) < 1e-6
+
+
+def test_an_origin_that_wanders_is_refused(tmp_path):
+    """A fix that is none of the odometry beside it tells no origin."""
+    def shifted(window):
+        window[topics.TRUTH_FIX][1][-1, 0] += 1e-3
+
+    record(tmp_path / 'bag', FLIGHT, 10.0, only=(topics.TRUTH_ODOMETRY, topics.TRUTH_FIX),
+           change=shifted)
+    with pytest.raises(ValueError, match='put the origin of the map frame at places 111 m apart'):
+        read_motion(recorded(tmp_path / 'bag', {}).motion_generator)
+
+
+@pytest.mark.parametrize('longitude', (179.999, -179.999))
+def test_a_flight_over_the_180th_meridian_is_read_again(longitude, tmp_path, capsys):
+    """Longitudes published are within +-180 degrees, and the bag is a motion, either direction."""
+    flown(tmp_path / 'bag', 60.0, longitude)
+    with open_bag(tmp_path / 'bag') as bag:
+        for name in ('/truth/fix', '/ins/fix'):
+            degrees = bag.arrays(name, ('longitude',))['longitude']
+            assert np.abs(degrees).max() <= 180.0
+            # The racetrack begins northwards and turns to the East.
+            assert (degrees.min() < 0.0 < degrees.max()) == (longitude > 0.0)
+    values = {'motion.kind': 'racetrack', 'datum.latitude_deg': 60.0,
+              'datum.longitude_deg': longitude}
+    t_ns = np.arange(0, 14 * SECOND, SECOND // 7)
+    x = read_motion(recorded(tmp_path / 'bag', values).motion_generator).at(t_ns)
+    y = read_motion(settings(values).motion_generator).at(t_ns + 3 * SECOND)
+    east, north, _ = ellipsoid.offset(y.lat, y.lon, y.height, (x.lat, x.lon, x.height))
+    # Splines of degree 5 through 20 Hz; degrees of 16 digits are 1e-9 m.
+    assert max(np.abs(east).max(), np.abs(north).max()) < 1e-6
+    assert np.abs(x.v_n - y.v_n).max() < 1e-5
+    capsys.readouterr()
+
+
+def westwards(path):
+    """Write a bag of truth that goes west over the meridian, and return its settings."""
+    values = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (60.0, 60.0),
+              'motion.route.points.longitude_deg': (-179.99, 179.0)}
+    record(path, values, 20.0)
+    return recorded(path, values)
+
+
+def test_a_flight_west_over_the_180th_meridian(tmp_path):
+    """The longitude goes on from -180 to 180; read again it goes on without a jump."""
+    chosen = westwards(tmp_path / 'bag')
+    with open_bag(tmp_path / 'bag') as bag:
+        degrees = bag.arrays('/truth/fix', ('longitude',))['longitude']
+    assert degrees.min() < -179.9 and degrees.max() > 179.9 and np.abs(degrees).max() <= 180.0
+    truth = read_motion(chosen.motion_generator).at(np.arange(0, 14 * SECOND, SECOND))
+    assert np.abs(np.diff(truth.lon)).max() < 1e-4
+
+
+def test_the_180th_meridian_in_single_messages():
+    """A fix beyond +-180 degrees is published within them, that of GNSS too."""
+    assert fix_one((0.0, math.radians(190.0), 5.0)) == pytest.approx((0.0, -170.0, 5.0))
+    assert fix_one((0.0, math.radians(-190.0), 5.0)) == pytest.approx((0.0, 170.0, 5.0))
+    assert fix_one((0.0, math.pi, 5.0))[1] == 180.0
+    writer, pairs = GnssWriter(0), GnssPairs(0, 0)
+    fix = GnssFix(SECOND, 0.5, math.radians(181.0), 10.0, (0.0, 0.0, 0.0), (1.0,) * 3, (0.1,) * 3,
+                  arrival_ns=SECOND)
+    assert pairs.push_velocity(writer.velocity(fix)) == []
+    again, = pairs.push_fix(writer.fix(fix))
+    assert math.degrees(again.lon) == pytest.approx(-179.0)

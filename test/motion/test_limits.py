@@ -1,0 +1,119 @@
+"""Motions that leave what the simulation can hold are refused in a sentence."""
+
+import math
+
+import numpy as np
+import pytest
+from support.studies import run_offline, settings, streamed
+
+from ins_sim.cli.main import main
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.sensors.imu.stream import make_imu
+from ins_sim.core.streams.faults import StreamFault
+
+SECOND = 1_000_000_000
+POLAR = {'motion.kind': 'cruise', 'datum.latitude_deg': 89.9}
+SPINNING = {'motion.kind': 'two_axis', 'motion.two_axis.psi_rate_rad_s': 100.0,
+            'motion.two_axis.gamma_rate_rad_s': 0.0, 'motion.theta_deg': 0.0, 'rate_hz': 25.0,
+            'duration_s': 2.0}
+
+
+def words(values):
+    """Return the words of the command line that give values."""
+    return [word for name, value in values.items() for word in ('-p', f'{name}:={value}')]
+
+
+@pytest.mark.parametrize('values, at', [
+    # The cruise goes north by half of its 100 m/s and more; 0.1 deg are 11.1 km.
+    (POLAR, 'the motion is past the pole at'),
+    ({'motion.kind': 'sinusoids', 'motion.sinusoids.position_m': '[0.0, 50000.0, 0.0]',
+      'datum.latitude_deg': -89.9}, 'the motion is past the pole at')])
+@pytest.mark.parametrize('verb', ['simulate', 'predict'])
+def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys):
+    """Before the run, wherever in it the pole is passed."""
+    more = ['-o', str(tmp_path / 'run')] if verb == 'simulate' else []
+    assert main([verb, *more, *words(values)]) == 2
+    said = capsys.readouterr().err
+    assert at in said and 'expected within 90: choose a datum farther from the pole' in said
+    assert said.count('\n') == 1 and not (tmp_path / 'run').exists()
+
+
+def test_a_motion_near_the_pole_is_flown():
+    """6 km from 89.9 degrees do not reach it."""
+    chosen = settings({**POLAR, 'motion.kind': 'racetrack'}).motion_generator
+    motion = make_motion(chosen.motion, chosen.datum, chosen.earth)
+    t_ns = np.arange(400) * SECOND
+    assert np.degrees(motion.at(t_ns).lat).max() < 90.0
+
+
+def test_a_generator_without_an_end_looks_ahead():
+    """An endless flight past the pole is refused before its first message."""
+    from ins_sim.ros.lock_step.truth_source import TruthSource
+    chosen = settings({**POLAR, 'duration_s': 0.0})
+    with pytest.raises(ValueError, match='past the pole'):
+        TruthSource(chosen.motion_generator)
+
+
+def test_half_a_turn_a_sample_is_refused(tmp_path, capsys):
+    """100 rad/s at 25 Hz is 4 rad a sample, which would read 4 - 2 pi: -57 rad/s."""
+    sentence = ('turns at 100 rad/s, 4 rad in an interval of the IMU; expected less than half a '
+                'turn, 3.14 rad: raise rate_hz of imu_sensor above 31.83 Hz, or set output '
+                'integrated')
+    given = words({**SPINNING, 'source': 'motion'})
+    assert main(['simulate', *given, '-o', str(tmp_path / 'run')]) == 2
+    assert sentence in capsys.readouterr().err
+    chosen = settings(SPINNING)
+    generator = chosen.motion_generator
+    with pytest.raises(ValueError, match='turns at 100 rad/s, 4 rad'):
+        make_imu(chosen.imu_sensor, make_motion(generator.motion, generator.datum,
+                                                generator.earth))
+
+
+@pytest.mark.parametrize('block', [True, False])
+def test_half_a_turn_a_sample_on_a_stream_of_truth(block):
+    """The truth of 1000 Hz turns by 0.1 rad a step, the IMU of 25 Hz by 4 rad."""
+    chosen = settings({**SPINNING, 'rate_hz': 1000.0, 'duration_s': 0.1}, source='stream')
+    slow = settings(SPINNING, source='stream').imu_sensor
+    generator = chosen.motion_generator
+    imu = make_imu(slow)
+    with pytest.raises(StreamFault, match='truth at 0.* turns at 100 rad/s, 4 rad'):
+        if block:
+            motion = make_motion(generator.motion, generator.datum, generator.earth)
+            imu.advance(motion.at(np.arange(101) * (SECOND // 1000)))
+        else:
+            for sample in streamed(chosen)[1]:
+                imu.push(*sample)
+
+
+def test_a_fast_rotation_is_read_right():
+    """20 turns a second at 1 kHz: the reading is the rate, and that of the integrated output."""
+    fast = {**SPINNING, 'motion.two_axis.psi_rate_rad_s': 40.0 * math.pi}
+    for rate_hz, output in ((1000.0, 'rotation_vector'), (25.0, 'integrated')):
+        chosen = settings({**fast, 'rate_hz': rate_hz, 'output': output, 'input': output},
+                          duration_s=0.5)
+        from ins_sim.core.simulation.inertial import imu_blocks
+        generator = chosen.motion_generator
+        motion = make_motion(generator.motion, generator.datum, generator.earth)
+        omega = np.concatenate([b.omega for b in imu_blocks(chosen, motion)])[1:]
+        # The Earth adds 7.3e-5 rad/s at most.
+        assert np.abs(omega[:, 2] - 40.0 * math.pi).max() < 1e-4
+
+
+@pytest.mark.parametrize('gravity', ['free_air', 'second_order'])
+def test_the_physics_holds_at_the_limits(gravity):
+    """
+    A minute at 7.9 km/s and 400 km, and of 20 turns a second at 500 km: the run closes.
+
+    To 1e-3 m, as a flight does: the position rule is of second order in the step.
+    """
+    route = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (50.0, 55.0, 56.0),
+             'motion.route.points.longitude_deg': (0.0, 20.0, 40.0), 'vertical.channel': 'free',
+             'motion.route.airspeed_m_s': 7900.0, 'motion.route.height_m': 400e3,
+             'motion.route.turn_rate_deg_s': 0.05}
+    rocket = {**SPINNING, 'motion.two_axis.psi_rate_rad_s': 1.0, 'datum.height_m': 500e3,
+              'motion.two_axis.gamma_rate_rad_s': 40.0 * math.pi, 'rate_hz': 1000.0}
+    for values, length_s in ((route, 60.0), (rocket, 5.0)):
+        errors = run_offline(settings({**values, 'earth.gravity': gravity},
+                                      duration_s=length_s), twin=False).errors
+        assert np.abs(errors.position).max() < 1e-3
+        assert np.abs(errors.attitude).max() < 1e-12
