@@ -2,10 +2,10 @@
 
 from contextlib import contextmanager
 from pathlib import Path
-import shutil
 
 import numpy as np
 
+from ins_sim.own_folders import check_free, OwnFolder
 from . import mcap_format as form
 from . import mcap_writer, metadata, qos, sqlite_writer
 from .compression import compression_library, NAMES
@@ -15,6 +15,8 @@ from .records import arrange_records, fill_records, Records
 
 WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
            'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
+# files that SQLite keeps beside its own
+COMPANIONS = {mcap_writer.SUFFIX: (), sqlite_writer.SUFFIX: ('-wal', '-shm', '-journal')}
 CHUNK_BYTES = 1 << 21
 # of a recorder that is killed, what is older than this in log time is in the bag
 CHUNK_NS = 1_000_000_000
@@ -36,19 +38,21 @@ class BagWriter:
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
                  split_ns=None):
         check_target(path, storage, compression, replace)
+        self._own = OwnFolder(path, replace, in_place=True)
         self.path, self.storage = Path(path), storage
         self._compression = '' if compression == 'none' else compression
         self._split_bytes, self._split_ns = split_bytes, split_ns
-        self.folder = self.path
-        if self.path.exists():
-            self.folder = self.path.with_name(f'.{self.path.name}.part')
-            shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.mkdir(parents=True)
+        self._own.note(metadata.NAME)
         self.topics, self._files, self._file = {}, [], None
         self._written = 0
         # one buffer for every chunk: fresh memory costs more than what is put into it
         self._buffer = bytearray(CHUNK_BYTES)
         self._empty()
+
+    @property
+    def folder(self):
+        """Return where the bag is now."""
+        return self._own.work
 
     def _empty(self):
         self._used, self._columns, self._single = 0, [], ([], [], [])
@@ -216,7 +220,8 @@ class BagWriter:
 
     def _open_file(self):
         make, suffix = WRITERS[self.storage]
-        self._name = f'{self.path.name}_{len(self._files)}{suffix}'
+        self._name = f'{self._own.path.name}_{len(self._files)}{suffix}'
+        self._own.note(self._name, *(self._name + more for more in COMPANIONS[suffix]))
         self._file = make(self.folder / self._name, self._compression)
         self._counts, self._first_ns, self._last_ns = {}, None, None
         for channel in self.topics.values():
@@ -241,10 +246,7 @@ class BagWriter:
                                                    self._files),
                             encoding='utf-8')
             part.rename(target)
-            if self.folder != self.path:
-                shutil.rmtree(self.path)
-                self.folder.rename(self.path)
-                self.folder = self.path
+            self._own.commit()
 
     @contextmanager
     def _disk(self):
@@ -263,11 +265,12 @@ class BagWriter:
             self._file.abort()
             self._file = None
         self._empty()
+        self._own.close()
 
     def discard(self):
         """Close and delete what was written."""
         self.abort()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._own.discard()
 
 
 def check_target(path, storage, compression, replace):
@@ -282,12 +285,6 @@ def check_target(path, storage, compression, replace):
                          'mcap, or the compression none')
     if compression != 'none':
         compression_library(compression)
-    path = Path(path)
-    if not path.exists():
-        return
-    if not replace:
+    if not replace and Path(path).exists():
         raise ValueError(f'{path} exists; expected a new path for the bag')
-    suffixes = {suffix for _, suffix in WRITERS.values()}
-    if not path.is_dir() or not all(f.name == metadata.NAME or f.suffix in suffixes
-                                    for f in path.iterdir()):
-        raise ValueError(f'{path} is no bag; only a bag is replaced')
+    check_free(path, replace, metadata.NAME)

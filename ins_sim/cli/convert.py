@@ -22,10 +22,10 @@ def add_arguments(parser):
 
 def run(chosen):
     """Convert and say what was written; return the exit code."""
-    from rich.console import Console
+    from ins_sim.report.console import PlainConsole
     from ins_sim.io.convert import convert_recording
     settings = arguments.read_settings(chosen).motion_generator
     written = convert_recording(chosen.source, chosen.target, settings, chosen.topic,
                                 chosen.storage, chosen.compression, chosen.force)
-    Console().print(f'written: {written}', markup=False, highlight=False, soft_wrap=True)
+    PlainConsole().print(f'written: {written}')
     return 0

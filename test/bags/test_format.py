@@ -109,7 +109,8 @@ def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
         bag.add_topic('/t', topics.STRING)
         bag.write('/t', 1, bytes(STORE.serialize_cdr(STORE.types[topics.STRING]('x'),
                                                      topics.STRING)))
-    assert sorted(f.name for f in (tmp_path / 'bag').iterdir()) == ['bag_0.db3', 'metadata.yaml']
+    assert sorted(f.name for f in (tmp_path / 'bag').iterdir()) == [
+        '.ins_sim', 'bag_0.db3', 'metadata.yaml']
     database = sqlite3.connect(tmp_path / 'bag' / 'bag_0.db3')
     assert database.execute('SELECT * FROM schema').fetchall() == [(4, 'jazzy')]
     names = {r[0] for r in database.execute('SELECT name FROM sqlite_master')}

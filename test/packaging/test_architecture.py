@@ -59,7 +59,7 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
         'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report'}
+                         'graph', 'studies', 'report', 'own_folders', 'visible_text'}
 MAY_IMPORT = {
     'settings': set(),
     'core.numerics': set(),
@@ -80,12 +80,14 @@ MAY_IMPORT = {
                                 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
-    'bags': {'messages', 'settings.suggest'},
+    'bags': {'messages', 'settings.suggest', 'own_folders'},
     'io': CORE | {'bags', 'messages', 'settings'},
     'parameter_files': {'settings'},
     'resources': {'settings.suggest'},
     'graph': {'messages'},
-    'report': CORE | {'settings', 'studies', 'parameter_files'},
+    'own_folders': set(),
+    'visible_text': set(),
+    'report': CORE | {'settings', 'studies', 'parameter_files', 'visible_text'},
     'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS,
     'cli': FILES_AND_BAGS | {'ros', '__version__'},
