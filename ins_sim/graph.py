@@ -73,7 +73,7 @@ def play_command(bag, replay, options=(), namespace=''):
 
     options: further ones of ``ins_sim play``.
     """
-    words = [sys.executable, '-m', 'ins_sim.cli.main', 'play', str(bag), *options, '--topics',
+    words = [sys.executable, '-m', 'ins_sim', 'play', str(bag), *options, '--topics',
              *replay.topics]
     return words + (['--ros-args', *_in_namespace(namespace)] if namespace else [])
 

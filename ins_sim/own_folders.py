@@ -12,12 +12,14 @@ import json
 import os
 from pathlib import Path
 import shutil
+import signal
 import tempfile
 
 MARKER = '.ins_sim'
 HEAD = '# written by ins_sim; a folder that holds more than these names is never replaced\n'
 # instead of names, of a folder that has none yet but that of its process
 ANYTHING = '*'
+HELD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 FOLDER_FLAGS = os.O_RDONLY | os.O_DIRECTORY
 
 
@@ -41,12 +43,13 @@ class OwnFolder:
         self.work = self.path if in_place and not self.path.exists() else beside
         self._made, self._lock = _make_parents(self.path), None
         try:
-            self._claim()
-            if self.work != self.path:
-                # another process may have come to its end between the first look and the claim
-                check_free(path, replace, mark, option)
-                self._check_idle()
-            self.note(*([] if self.work == self.path else [ANYTHING]))
+            with _signals_held():
+                self._claim()
+                if self.work != self.path:
+                    # another process may have come to its end between the first look and the claim
+                    check_free(path, replace, mark, option)
+                    self._check_idle()
+                self.note(*([] if self.work == self.path else [ANYTHING]))
         except BaseException:
             if self._lock is not None:
                 self.discard()
@@ -110,6 +113,10 @@ class OwnFolder:
         if self.work == self.path:
             self.close()
             return
+        with _signals_held():
+            self._take_place()
+
+    def _take_place(self):
         _write_marker(self.work, 'w', HEAD, sorted(
             p.name for p in self.work.iterdir() if p.name != MARKER))
         old = None
@@ -159,12 +166,15 @@ def whole_folder(path, replace=False, mark='', option='--force'):
 
     Whatever breaks in the block leaves what was there before.  Raises as OwnFolder does.
     """
-    folder = OwnFolder(path, replace, mark=mark, option=option)
+    folder = None
     try:
+        with _signals_held():
+            folder = OwnFolder(path, replace, mark=mark, option=option)
         yield folder.work
         folder.commit()
     except BaseException:
-        folder.discard()
+        if folder is not None and folder.work != folder.path:
+            folder.discard()
         raise
 
 
@@ -259,6 +269,16 @@ def _make_parents(folder):
 def _real(path):
     """Return an absolute path without links: what is renamed is the folder, not a link to it."""
     return Path(os.path.realpath(path))
+
+
+@contextmanager
+def _signals_held():
+    """Put off what would break a step in two until the block is through."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, HELD)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _write_marker(folder, mode, head, names):

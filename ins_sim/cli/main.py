@@ -1,13 +1,14 @@
 """The command ``ins_sim``: find the verb, run it, and turn what goes wrong into an exit code."""
 
 import argparse
-import signal
 import sys
 import warnings
 
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
                info, navigate, play, predict, record, simulate)
 from ins_sim import __version__
+from ins_sim.entry import command, INTERRUPTED
+from ins_sim.visible_text import visible
 
 ROS_ARGS = '--ros-args'
 # In the order of the printed list.
@@ -47,24 +48,27 @@ def main(arguments=None):
     chosen.ros_args = words[cut:]
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
         top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')
-    signal.signal(signal.SIGTERM, _interrupt)
-    warnings.showwarning = lambda sentence, *_: print(f'ins_sim {chosen.verb}: {sentence}',
-                                                      file=sys.stderr)
+    for stream in (sys.stdout, sys.stderr):
+        # names of files may hold what the encoding of the terminal lacks
+        if hasattr(stream, 'reconfigure'):
+            stream.reconfigure(errors='backslashreplace')
+    warnings.showwarning = lambda sentence, *_: _say(chosen.verb, sentence)
     try:
         return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:
-        print(f'ins_sim {chosen.verb}: {error}', file=sys.stderr)
+        _say(chosen.verb, error)
+        return 2
+    except MemoryError as error:
+        _say(chosen.verb, f'there is not enough memory: {str(error) or "out of memory"}')
         return 2
     except KeyboardInterrupt:
-        print(f'ins_sim {chosen.verb}: interrupted; only what is named above was written',
-              file=sys.stderr)
-        return 130
+        _say(chosen.verb, 'interrupted; only what is named above was written')
+        return INTERRUPTED
 
 
-def _interrupt(number, frame):
-    """End as Ctrl-C does: verbs clean up after KeyboardInterrupt."""
-    raise KeyboardInterrupt
+def _say(verb, sentence):
+    print(f'ins_sim {verb}: {visible(str(sentence))}', file=sys.stderr)
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    command()

@@ -1,5 +1,8 @@
 """The console of the verbs: words as they are, tables whole, however wide the terminal is."""
 
+import os
+import sys
+
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
@@ -24,6 +27,11 @@ class PlainConsole(Console):
     def render_str(self, text, **more):
         """Return a text in which control characters are seen."""
         return super().render_str(visible(text, keep='\n\t'), **more)
+
+    def on_broken_pipe(self):
+        """Say no more: what is computed is still to be written."""
+        self.quiet = True
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
     def print(self, *objects, **more):
         """Print; a table gets the width that it needs."""

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.live
 def start(folder, duration_s, log):
     """Start the demo in a process group of its own."""
     return subprocess.Popen(
-        [sys.executable, '-m', 'ins_sim.cli.main', 'demo', '-o', str(folder), '--duration',
+        [sys.executable, '-m', 'ins_sim', 'demo', '-o', str(folder), '--duration',
          str(duration_s)], env={**os.environ, 'PYTHONPATH': str(ROOT)}, stdout=log, stderr=log,
         start_new_session=True)
 

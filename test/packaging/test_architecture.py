@@ -87,10 +87,13 @@ MAY_IMPORT = {
     'graph': {'messages'},
     'own_folders': set(),
     'visible_text': set(),
+    # it stands before all others
+    'entry': {'cli'},
+    '__main__': {'entry'},
     'report': CORE | {'settings', 'studies', 'parameter_files', 'visible_text'},
     'api': FILES_AND_BAGS,
-    'ros': FILES_AND_BAGS,
-    'cli': FILES_AND_BAGS | {'ros', '__version__'},
+    'ros': FILES_AND_BAGS | {'entry'},
+    'cli': FILES_AND_BAGS | {'ros', 'entry', '__version__'},
     # The public names; what is not in api is imported for annotations.
     '__init__': {'api', 'bags', 'core.motion', 'core.prediction', 'settings'},
 }
