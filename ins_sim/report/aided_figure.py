@@ -4,7 +4,7 @@ import numpy as np
 
 from ins_sim.core.aiding.navigator import GNSS, METER
 from .consistency import chi_square_limit
-from .plotting import COLOURS, new_figure, save_png, thinned
+from .plotting import COLOURS, literal, new_figure, save_png, thinned
 
 SOURCES = {METER: ('tab:purple', 'velocity meter'), GNSS: ('tab:cyan', 'GNSS')}
 PANELS = (('position', 'position error [m]', (0, 1, 2), 1.0),
@@ -61,7 +61,7 @@ def save_figure(path, title, flown, sources, gate_probability):
         axes.grid(alpha=0.3)
         axes.set_xlim(*time((start_ns, end_ns)))
         axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), fontsize='small', frameon=False)
-    figure.suptitle(title)
+    figure.suptitle(literal(title))
     save_png(figure, path)
 
 

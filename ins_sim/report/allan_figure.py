@@ -3,7 +3,7 @@
 import numpy as np
 
 from .noise_terms import TRIADS
-from .plotting import new_figure, save_png
+from .plotting import literal, new_figure, save_png
 
 COLOURS = {'x': 'tab:red', 'y': 'tab:green', 'z': 'tab:blue'}
 GUIDES = {'Q': ':', 'N': '--', 'B': '-.', 'K': (0, (6, 2))}
@@ -33,5 +33,5 @@ def save_figure(path, title, noise):
     axes.grid(which='major', alpha=0.5)
     axes.grid(which='minor', alpha=0.15)
     axes.legend(fontsize='small')
-    axes.set_title(f'{noise.triad}: {title}')
+    axes.set_title(literal(f'{noise.triad}: {title}'))
     save_png(figure, path)

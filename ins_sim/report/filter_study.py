@@ -7,7 +7,7 @@ from rich import box
 from rich.table import Table
 
 from .consistency import mean_interval
-from .plotting import new_figure, save_png
+from .plotting import literal, new_figure, save_png
 
 COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
            'paper_corrected': 'tab:orange', 'window_kf': 'tab:blue', 'eskf': 'tab:green'}
@@ -116,5 +116,5 @@ def save_figure(path, title, cases, flown):
     for axes in (top, bottom):
         axes.grid(which='both', alpha=0.3)
         axes.legend(fontsize='small', loc='lower right' if axes is top else 'upper left')
-    figure.suptitle(title)
+    figure.suptitle(literal(title))
     save_png(figure, path)

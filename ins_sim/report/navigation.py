@@ -11,7 +11,7 @@ from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.postprocessing.comparison import error_rows
 from ins_sim.core.postprocessing.reference import SampledTrack
 from .console import PlainConsole
-from .plotting import new_figure, save_png, thinned
+from .plotting import literal, new_figure, save_png, thinned
 from .table import number_text
 
 MARK = 'nav.npz'
@@ -121,5 +121,5 @@ def save_figure(path, title, result):
     axes.set_xlabel('time since the start [s]')
     way.grid(alpha=0.3)
     way.legend(loc='best', fontsize='small')
-    figure.suptitle(title)
+    figure.suptitle(literal(title))
     save_png(figure, path)

@@ -5,6 +5,7 @@ What all figures share: size, colours, the number of points drawn, and how a fig
 """
 
 from ins_sim.core.numerics.garbage_collection import collector_paused
+from ins_sim.visible_text import visible
 
 with collector_paused:
     from matplotlib.figure import Figure
@@ -27,6 +28,11 @@ def new_figure(width, height, margins=None):
     figure = Figure(figsize=(width, height))
     figure.subplots_adjust(**margins)
     return figure
+
+
+def literal(text):
+    """Return a text, perhaps with names of files, that a figure shows as it is."""
+    return visible(text).replace('$', r'\$')
 
 
 def thinned(values):
