@@ -83,7 +83,7 @@ def _fly_all(settings, cases, runs, jobs, console):
     flights = [None] * runs
     with progress_bars(console, 'flights') as add_bar:
         show = add_bar('flying', runs)
-        with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
+        with ProcessPoolExecutor(min(jobs, runs), initializer=_begin_worker) as pool:
             futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
             try:
                 for done, future in enumerate(as_completed(futures), 1):
@@ -97,7 +97,9 @@ def _fly_all(settings, cases, runs, jobs, console):
     return flights
 
 
-def _deaf():
-    """Leave the signals of a terminal to the process that started this one."""
+def _begin_worker():
+    """Leave the signals of a terminal to the process that started this one, and end with it."""
+    from ins_sim.ros.process.tied import end_with_parent
+    end_with_parent(os.getppid(), signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
