@@ -50,14 +50,16 @@ REPLAYS = {
 }
 
 
-def process_command(process, params_files=(), parameters=(), namespace=''):
+def process_command(process, params_files=(), parameters=(), namespace='', parent=None):
     """
     Return the argument list that starts a process without ``ros2 run``.
 
     ``params_files`` are paths, ``parameters`` pairs of name and value as ROS writes them.
+    parent: id of the process with which it is to end, or None.
     """
     # The module, and not the script, for where the script is depends on the kind of installation.
-    words = [sys.executable, '-m', 'ins_sim.ros.main', process.executable, '--ros-args',
+    tied = ['ins_sim.ros.main'] if parent is None else ['ins_sim.ros.process.tied', str(parent)]
+    words = [sys.executable, '-m', *tied, process.executable, '--ros-args',
              '-r', f'__node:={process.name}']
     words += _in_namespace(namespace)
     for path in params_files:
@@ -73,7 +75,7 @@ def play_command(bag, replay, options=(), namespace=''):
 
     options: further ones of ``ins_sim play``.
     """
-    words = [sys.executable, '-m', 'ins_sim.cli.main', 'play', str(bag), *options, '--topics',
+    words = [sys.executable, '-m', 'ins_sim', 'play', str(bag), *options, '--topics',
              *replay.topics]
     return words + (['--ros-args', *_in_namespace(namespace)] if namespace else [])
 

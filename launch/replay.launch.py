@@ -1,5 +1,6 @@
 """
-Play a bag into the strapdown, or into the IMU and the strapdown; end when the bag ends.
+Play a bag into the strapdown, or into the IMU and the strapdown; end when the bag or a node
+ends.
 
 Example: ros2 launch ins_sim replay.launch.py bag:=DIR source:=truth params_file:=motion_2
 """
@@ -56,8 +57,11 @@ def _replay(context):
                     {'use_sim_time': use_sim_time}]) for process in replay.processes]
     player = ExecuteProcess(name='player', output='screen', cmd=graph.play_command(
         value['bag'], replay, _options(value), value['namespace']))
-    end = OnProcessExit(target_action=player, on_exit=[Shutdown(reason='the bag has ended')])
-    return [RegisterEventHandler(end),
+    ends = [RegisterEventHandler(OnProcessExit(
+        target_action=action, on_exit=[Shutdown(reason=f'{action_name} has ended')]))
+        for action_name, action in (('player', player), *zip(
+            [process.name for process in replay.processes], nodes))]
+    return [*ends,
             GroupAction([PushRosNamespace(value['namespace']), *nodes]), player]
 
 

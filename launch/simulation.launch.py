@@ -1,5 +1,5 @@
 """
-Start the motion generator, the IMU and the strapdown; end when the generator ends.
+Start the motion generator, the IMU and the strapdown; end when one of them ends.
 
 Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_time_factor:=10.0
 With aided:=true velocity meter, GNSS and aided navigator run too.  With record:=DIR a recorder
@@ -63,9 +63,10 @@ def _simulation(context):
         package='ins_sim', executable=process.executable, name=process.name, output='screen',
         parameters=[*(str(resources.config(name)) for name in process.config), *overlay,
                     _overrides(process, value)]) for process in (*_added(value), *graph.PROCESSES)}
-    end = OnProcessExit(target_action=nodes[graph.MASTER],
-                        on_exit=[Shutdown(reason='the motion generator has ended')])
-    return [RegisterEventHandler(end),
+    ends = [RegisterEventHandler(OnProcessExit(
+        target_action=node, on_exit=[Shutdown(reason=f'{name} has ended')]))
+        for name, node in nodes.items()]
+    return [*ends,
             GroupAction([PushRosNamespace(value['namespace']), *nodes.values()])]
 
 

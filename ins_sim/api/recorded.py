@@ -188,10 +188,11 @@ class Navigation:
         ValueError
             Where the folder exists and is not to be replaced, or holds no navigation.
         """
-        from ins_sim.report import navigation, storage
-        storage.check_free(checked_path('folder', folder), overwrite, navigation.MARK,
-                           'overwrite=True')
-        navigation.write_navigation(folder, self.settings, self.name, self.result, overwrite)
+        from ins_sim.own_folders import whole_folder
+        from ins_sim.report import navigation
+        with whole_folder(checked_path('folder', folder), overwrite, navigation.MARK,
+                          'overwrite=True') as work:
+            navigation.write_navigation(work, self.settings, self.name, self.result)
 
 
 def navigate(source: Name | ImuRecord, values: Values | None = None, names: Names = (),

@@ -126,10 +126,12 @@ class Run:
         self._write(folder, overwrite, None)
 
     def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
+        from ins_sim.own_folders import existing_parent, whole_folder
         from ins_sim.report import storage, summary
         from ins_sim.report.spool import Spool
-        storage.check_free(checked_path('folder', folder), overwrite, option='overwrite=True')
-        with Spool(storage.existing_parent(folder)) as spool:
+        checked_path('folder', folder)
+        with Spool(existing_parent(folder)) as spool, whole_folder(
+                folder, overwrite, storage.MARK, 'overwrite=True') as work:
             try:
                 prediction = predict(self.settings, self.motion, spool.store)
             except NoPrediction:
@@ -140,8 +142,8 @@ class Run:
                 # Published figures belong to the motion of the settings.
                 rows = [replace(row, published=None) for row in rows]
                 title = f'{type(self.motion).__name__} given as an object'
-            storage.write_run(folder, self.settings, self.result, rows, prediction, title,
-                              overwrite, report, self.own_motion)
+            storage.write_run(work, self.settings, self.result, rows, prediction, title, report,
+                              self.own_motion)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -2,22 +2,27 @@
 
 from contextlib import contextmanager
 from pathlib import Path
-import shutil
 
 import numpy as np
 
+from ins_sim.own_folders import check_free, OwnFolder
 from . import mcap_format as form
 from . import mcap_writer, metadata, qos, sqlite_writer
 from .compression import compression_library, NAMES
 from .definitions import message_definition
+from .log_clocks import LogClocks
 from .piece import Channel
 from .records import arrange_records, fill_records, Records
 
 WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
            'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
+# files that SQLite keeps beside its own
+COMPANIONS = {mcap_writer.SUFFIX: (), sqlite_writer.SUFFIX: ('-wal', '-shm', '-journal')}
 CHUNK_BYTES = 1 << 21
 # of a recorder that is killed, what is older than this in log time is in the bag
 CHUNK_NS = 1_000_000_000
+# as far as these are: stamps of two clocks in turns would make a chunk of every message
+CHUNK_LEAST = 64
 LATEST_NS = 2**63 - 1
 
 
@@ -27,28 +32,31 @@ class BagWriter:
 
     path: the folder; storage: 'mcap' or 'sqlite3'; compression of MCAP chunks: 'none', 'lz4' or
     'zstd'; split_bytes, split_ns: begin another file where one is as large, or its messages span
-    as much.  The bag grows in place and gets its metadata.yaml last: without one it is not whole,
-    but what was written can be read.  A bag that is there is refused, or, with replace, stays
-    until the new one is whole, which grows in ``folder`` beside it.  Raises ValueError for such,
-    and OSError where it cannot be written.
+    as much by one clock (``log_clocks``).  The bag grows in place and gets its metadata.yaml
+    last: without one it is not whole, but what was written can be read.  A bag that is there is
+    refused, or, with replace, stays until the new one is whole, which grows in ``folder`` beside
+    it.  Raises ValueError for such, and OSError where it cannot be written.
     """
 
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
                  split_ns=None):
         check_target(path, storage, compression, replace)
+        self._own = OwnFolder(path, replace, in_place=True)
         self.path, self.storage = Path(path), storage
         self._compression = '' if compression == 'none' else compression
-        self._split_bytes, self._split_ns = split_bytes, split_ns
-        self.folder = self.path
-        if self.path.exists():
-            self.folder = self.path.with_name(f'.{self.path.name}.part')
-            shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.mkdir(parents=True)
+        self._split_bytes = split_bytes
+        self._clocks = None if split_ns is None else LogClocks(split_ns)
+        self._own.note(metadata.NAME)
         self.topics, self._files, self._file = {}, [], None
         self._written = 0
         # one buffer for every chunk: fresh memory costs more than what is put into it
         self._buffer = bytearray(CHUNK_BYTES)
         self._empty()
+
+    @property
+    def folder(self):
+        """Return where the bag is now."""
+        return self._own.work
 
     def _empty(self):
         self._used, self._columns, self._single = 0, [], ([], [], [])
@@ -102,13 +110,14 @@ class BagWriter:
         """
         Write one message (bytes).
 
-        It is on disk when its chunk is: after CHUNK_BYTES, after CHUNK_NS of log time, or after
-        ``flush``.
+        It is on disk when its chunk is: after CHUNK_BYTES, after CHUNK_NS of log time and
+        CHUNK_LEAST messages, or after ``flush``.
         """
         if not 0 <= log_ns <= LATEST_NS:
             raise ValueError(f'{name}: the log time is {log_ns} ns; expected 0 or later')
         number = self._channel(name).id
-        if self._single[1] and abs(log_ns - self._single[1][0]) >= CHUNK_NS:
+        if len(self._single[1]) >= CHUNK_LEAST and abs(
+                log_ns - self._single[1][0]) >= CHUNK_NS:
             self.flush()
         channels, times, starts = self._single
         head, size = form.MESSAGE_HEAD, len(data)
@@ -175,32 +184,31 @@ class BagWriter:
         records = Records(memoryview(self._buffer)[:self._used],
                           *(np.concatenate(x) for x in zip(*self._columns)))
         self._empty()
-        for part in self._split(records):
-            self._append(part)
+        for begins_file, part in self._split(records):
+            self._append(part, begins_file)
 
     def _split(self, records):
-        """Yield Records cut where the span of a file in log time ends."""
-        if self._split_ns is None:
-            yield records
+        """Yield Records, and whether another file begins with them by the time that one spans."""
+        if self._clocks is None:
+            yield False, records
             return
-        origin = self._first_ns
-        if self._file is None or origin is None:
-            origin = int(records.log_ns[0])
-        number = np.maximum.accumulate((records.log_ns - origin) // self._split_ns)
-        edges = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(number)]
+        begins = [k for k, log_ns in enumerate(records.log_ns.tolist())
+                  if self._clocks.begins_file(log_ns)]
+        count, starts_file = len(records.log_ns), set(begins)
+        edges = [*([] if begins[:1] == [0] else [0]), *begins, count]
         for a, b in zip(edges, edges[1:]):
             start = int(records.starts[a])
-            stop = int(records.starts[b]) if b < len(number) else len(records.data)
-            yield Records(records.data[start:stop], records.channel[a:b], records.log_ns[a:b],
-                          records.starts[a:b] - start)
+            stop = int(records.starts[b]) if b < count else len(records.data)
+            yield a in starts_file, Records(
+                records.data[start:stop], records.channel[a:b], records.log_ns[a:b],
+                records.starts[a:b] - start)
 
-    def _append(self, records):
+    def _append(self, records, begins_file):
         first, last = int(records.log_ns.min()), int(records.log_ns.max())
         with self._disk():
             if self._file is not None and self._first_ns is not None and (
-                    (self._split_bytes is not None and self._file.size >= self._split_bytes)
-                    or (self._split_ns is not None
-                        and last - self._first_ns >= self._split_ns)):
+                    begins_file or self._split_bytes is not None
+                    and self._file.size >= self._split_bytes):
                 self._close_file()
             if self._file is None:
                 self._open_file()
@@ -216,7 +224,8 @@ class BagWriter:
 
     def _open_file(self):
         make, suffix = WRITERS[self.storage]
-        self._name = f'{self.path.name}_{len(self._files)}{suffix}'
+        self._name = f'{self._own.path.name}_{len(self._files)}{suffix}'
+        self._own.note(self._name, *(self._name + more for more in COMPANIONS[suffix]))
         self._file = make(self.folder / self._name, self._compression)
         self._counts, self._first_ns, self._last_ns = {}, None, None
         for channel in self.topics.values():
@@ -241,10 +250,7 @@ class BagWriter:
                                                    self._files),
                             encoding='utf-8')
             part.rename(target)
-            if self.folder != self.path:
-                shutil.rmtree(self.path)
-                self.folder.rename(self.path)
-                self.folder = self.path
+            self._own.commit()
 
     @contextmanager
     def _disk(self):
@@ -263,11 +269,12 @@ class BagWriter:
             self._file.abort()
             self._file = None
         self._empty()
+        self._own.close()
 
     def discard(self):
         """Close and delete what was written."""
         self.abort()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._own.discard()
 
 
 def check_target(path, storage, compression, replace):
@@ -282,12 +289,6 @@ def check_target(path, storage, compression, replace):
                          'mcap, or the compression none')
     if compression != 'none':
         compression_library(compression)
-    path = Path(path)
-    if not path.exists():
-        return
-    if not replace:
+    if not replace and Path(path).exists():
         raise ValueError(f'{path} exists; expected a new path for the bag')
-    suffixes = {suffix for _, suffix in WRITERS.values()}
-    if not path.is_dir() or not all(f.name == metadata.NAME or f.suffix in suffixes
-                                    for f in path.iterdir()):
-        raise ValueError(f'{path} is no bag; only a bag is replaced')
+    check_free(path, replace, metadata.NAME)

@@ -29,11 +29,16 @@ def add_arguments(parser):
 
 def run(chosen):
     """Read or simulate, show and save; return the exit code."""
-    from rich.console import Console
+    from ins_sim.own_folders import whole_folder
+    with whole_folder(chosen.output, chosen.force, MARK) as work:
+        return _analyse(chosen, work)
+
+
+def _analyse(chosen, work):
     from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
-    from ins_sim.report import allan_figure, allan_record, noise_terms, storage
-    storage.check_free(chosen.output, chosen.force, MARK)
-    console = Console()
+    from ins_sim.report import allan_figure, allan_record, noise_terms
+    from ins_sim.report.console import PlainConsole
+    console = PlainConsole()
     imu, settings, title = _record(chosen, console)
     try:
         record = allan_record.regular_record(imu, _given_rate(chosen, settings))
@@ -41,7 +46,7 @@ def run(chosen):
         raise ValueError(f'{title}: {error}') from None
     imu, rate_hz = record.imu, record.rate_hz
     for note in record.notes:
-        console.print(f'{title}: {note}', soft_wrap=True)
+        console.print(f'{title}: {note}')
     found = []
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
@@ -57,14 +62,13 @@ def run(chosen):
     if not found:
         raise ValueError(f'{title}: both triads are constant throughout; {EXPECTED}')
     title = f'{title}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'
-    with storage.whole_folder(chosen.output, chosen.force, MARK) as work:
-        for noise in found:
-            allan_figure.save_figure(work / f'{noise.triad}.png', title, noise)
-        rows = [row for noise in found for row in noise.rows()]
-        (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
+    for noise in found:
+        allan_figure.save_figure(work / f'{noise.triad}.png', title, noise)
+    rows = [row for noise in found for row in noise.rows()]
+    (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
     for noise in found:
         noise_terms.show_noise(noise, title, console)
-        console.print(f'figure: {Path(chosen.output) / noise.triad}.png', soft_wrap=True)
+        console.print(f'figure: {Path(chosen.output) / noise.triad}.png')
     return 0
 
 
@@ -103,7 +107,7 @@ def _record(chosen, console):
         kind = settings.motion_generator.motion.kind
         if kind != 'static':
             console.print(f'{source}: the motion is {kind}, not static: its own Allan deviation '
-                          'is in the record', soft_wrap=True)
+                          'is in the record')
         return storage.read_imu(source), settings, source.name
     if not source.exists() or not is_bag(source):
         raise ValueError(f'{source} is neither a run of "ins_sim simulate" ({storage.ARRAYS}) nor '

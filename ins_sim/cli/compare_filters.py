@@ -33,33 +33,32 @@ def add_arguments(parser):
 
 def run(chosen):
     """Fly, show and save; return the exit code."""
-    from rich.console import Console
     from ins_sim.core.motion.factory import make_motion
     from ins_sim.core.motion.motion import check_length
+    from ins_sim.own_folders import whole_folder
     from ins_sim.report import filter_study as report
-    from ins_sim.report import storage
+    from ins_sim.report.console import PlainConsole
     from ins_sim.studies.filters import run_settings
     settings = arguments.read_aided_settings(chosen, SHIPPED)
     if chosen.runs < 1 or chosen.jobs < 0:
         raise ValueError(f'--runs is {chosen.runs} and --jobs {chosen.jobs}; expected 1 or more '
                          'runs, and 0 (every core) or more jobs')
-    storage.check_free(chosen.output, chosen.force, MARK)
     cases = _cases(chosen, settings.velocity_meter.window.cycles)
     # Checked here, so that a flight that is refused is reported once and not by every worker.
     generator = run_settings(settings, 0).simulation.motion_generator
     check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
-    console = Console()
-    flights = _fly_all(settings, cases, chosen.runs, chosen.jobs or os.cpu_count(), console)
-    flown = list(zip(*flights))
-    rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
+    console = PlainConsole()
     title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
              + ', '.join(chosen.params_file or SHIPPED))
-    report.show_filter_study(title, rows, console)
-    with storage.whole_folder(chosen.output, chosen.force, MARK) as folder:
+    with whole_folder(chosen.output, chosen.force, MARK) as folder:
+        flights = _fly_all(settings, cases, chosen.runs, chosen.jobs or os.cpu_count(), console)
+        flown = list(zip(*flights))
+        rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
         report.save_figure(folder / 'comparison.png', title, cases, flown)
         (folder / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
                                    encoding='utf-8')
-    console.print(f'figure: {chosen.output}/comparison.png', soft_wrap=True, markup=False)
+    report.show_filter_study(title, rows, console)
+    console.print(f'figure: {chosen.output}/comparison.png')
     return 0
 
 
@@ -84,7 +83,7 @@ def _fly_all(settings, cases, runs, jobs, console):
     flights = [None] * runs
     with progress_bars(console, 'flights') as add_bar:
         show = add_bar('flying', runs)
-        with ProcessPoolExecutor(min(jobs, runs), initializer=_deaf) as pool:
+        with ProcessPoolExecutor(min(jobs, runs), initializer=_begin_worker) as pool:
             futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
             try:
                 for done, future in enumerate(as_completed(futures), 1):
@@ -98,7 +97,9 @@ def _fly_all(settings, cases, runs, jobs, console):
     return flights
 
 
-def _deaf():
-    """Leave the signals of a terminal to the process that started this one."""
+def _begin_worker():
+    """Leave the signals of a terminal to the process that started this one, and end with it."""
+    from ins_sim.ros.process.tied import end_with_parent
+    end_with_parent(os.getppid(), signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -16,16 +16,16 @@ def add_arguments(parser):
 
 def run(chosen):
     """Compare and show; return the exit code."""
-    from rich.console import Console
     from rich.table import Table
     from ins_sim.core.attitude.integration import KINDS
     from ins_sim.io.motion import read_motion
     from ins_sim.report import summary
+    from ins_sim.report.console import PlainConsole
     from ins_sim.report.table import number_text
     from ins_sim.studies.orientation import compare_orientations
     from .progress import progress_bars
     settings = arguments.read_settings(chosen)
-    console = Console()
+    console = PlainConsole()
     with progress_bars(console, 'algorithms') as add_bar:
         results = compare_orientations(settings, read_motion(settings.motion_generator),
                                        add_bar('navigating', len(KINDS)))

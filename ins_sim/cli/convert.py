@@ -22,7 +22,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Convert and say what was written; return the exit code."""
-    from rich.console import Console
+    from ins_sim.report.console import PlainConsole
     from ins_sim.io.convert import convert_recording
     from ins_sim import parameter_files
     from ins_sim.settings.by_node import ALL_NODES, NODES
@@ -33,5 +33,5 @@ def run(chosen):
     written = convert_recording(chosen.source, chosen.target, settings['motion_generator'],
                                 chosen.topic, chosen.storage, chosen.compression, chosen.force,
                                 settings['convert'])
-    Console().print(f'written: {written}', markup=False, highlight=False, soft_wrap=True)
+    PlainConsole().print(f'written: {written}')
     return 0

@@ -3,7 +3,6 @@
 from dataclasses import replace
 import os
 from pathlib import Path
-import shutil
 import sys
 
 from . import arguments
@@ -32,8 +31,8 @@ def run(chosen):
     except ImportError as error:
         raise ValueError(f'rclpy cannot be imported ({error}); source ROS 2 Jazzy or install '
                          'ins_sim[ros]; "ins_sim simulate" needs no ROS') from None
-    from rich.console import Console
-    console = Console()
+    from ins_sim.report.console import PlainConsole
+    console = PlainConsole()
     folder = Path(chosen.output)
     parts = [('motion_2', _settings('motion_2', chosen.duration))]
     if chosen.recording is None:
@@ -72,18 +71,10 @@ def _settings(name, duration_s, assignments=()):
 
 
 def _part(name, settings, folder, console):
-    from ins_sim.report import storage
-    storage.check_free(folder, force=True, mark='parameters.yaml')
+    from ins_sim.own_folders import whole_folder
     # The old folder stays until the new part is complete.
-    work = folder.with_name(f'.{folder.name}.part')
-    shutil.rmtree(work, ignore_errors=True)
-    work.mkdir(parents=True)
-    try:
+    with whole_folder(folder, replace=True, mark='parameters.yaml') as work:
         _run(name, settings, work, folder, console)
-        shutil.rmtree(folder, ignore_errors=True)
-        work.rename(folder)
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
 
 
 def _run(name, settings, work, folder, console):
@@ -106,6 +97,6 @@ def _run(name, settings, work, folder, console):
                        coverage.comparable(settings, prediction))
     table.show_table(title, summary.summary_rows(settings, errors, None, prediction), console)
     for line in coverage.coverage_lines(settings, prediction):
-        console.print(line, soft_wrap=True)
+        console.print(line)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
                   f'figure: {folder / "errors.png"}')

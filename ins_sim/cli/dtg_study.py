@@ -19,14 +19,15 @@ def add_arguments(parser):
                         f'repeated (default: {" and ".join(SHIPPED)})')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                         help='one parameter, for every table')
-    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures')
+    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures, replaced')
 
 
 def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
-    from rich.console import Console
     from ins_sim import parameter_files
+    from ins_sim.own_folders import whole_folder
     from ins_sim.report import tuned_gyro_study as report
+    from ins_sim.report.console import PlainConsole
     from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
     studies = {}
     for path in arguments.parameter_paths(chosen, SHIPPED):
@@ -35,14 +36,12 @@ def run(chosen):
                              'names, as the figures bear them')
         studies[path.stem] = parameter_files.read_nodes([path], chosen.param,
                                                         {NODE: TunedGyroStudySettings})[NODE]
-    console = Console()
-    figures = [(name, settings, *_study(name, settings, console))
-               for name, settings in studies.items()]
-    folder = Path(chosen.output)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, *figure in figures:
-        report.save_figure(folder / f'{name}.png', *figure)
-        console.print(f'figure: {folder / name}.png', soft_wrap=True)
+    console = PlainConsole()
+    with whole_folder(chosen.output, replace=True) as work:
+        for name, settings in studies.items():
+            report.save_figure(work / f'{name}.png', settings, *_study(name, settings, console))
+    for name in studies:
+        console.print(f'figure: {Path(chosen.output) / name}.png')
     return 0
 
 

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from ins_sim.visible_text import visible
+
 HELP = 'what is in a bag'
 DESCRIPTION = 'Show storage, topics, counts, rates and times of a bag, and whether it is whole.'
 SECOND_NS = 1_000_000_000
@@ -14,9 +16,9 @@ def add_arguments(parser):
 
 def run(chosen):
     """Show a bag; return the exit code."""
-    from rich.console import Console
     from ins_sim.bags.bag_reader import open_bag
-    console = Console()
+    from ins_sim.report.console import PlainConsole
+    console = PlainConsole()
     with open_bag(chosen.bag) as bag:
         spans = bag.spans()
         counted = [span for span in spans.values() if span.count]
@@ -38,7 +40,7 @@ def run(chosen):
             rows += [('start', f'{_seconds(first)} s'), ('end', f'{_seconds(last)} s'),
                      ('duration', f'{_seconds(last - first)} s')]
         for name, value in rows:
-            console.print(f'{name:9} {value}', markup=False, highlight=False, soft_wrap=True)
+            console.print(f'{name:9} {visible(value)}')
         _show_topics(bag, spans, console)
     return 0
 
@@ -49,11 +51,11 @@ def _show_topics(bag, spans, console):
         kind = channel.type_name
         if channel.encoding != 'cdr':
             kind += f' ({channel.encoding})'
-        lines.append((name, kind, str(spans[name].count), _rate(spans[name])))
+        lines.append((visible(name), visible(kind), str(spans[name].count), _rate(spans[name])))
     widths = [max(map(len, column)) for column in zip(*lines)]
     for name, kind, count, rate in lines:
         console.print(f'{name:{widths[0]}}  {kind:{widths[1]}}  {count:>{widths[2]}}  '
-                      f'{rate:>{widths[3]}}', markup=False, highlight=False, soft_wrap=True)
+                      f'{rate:>{widths[3]}}')
 
 
 def _seconds(t_ns):

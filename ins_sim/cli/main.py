@@ -1,14 +1,15 @@
 """The command ``ins_sim``: find the verb, run it, and turn what goes wrong into an exit code."""
 
 import argparse
-import signal
 import sys
 
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
                info, navigate, play, predict, record, simulate)
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
+from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
+from ins_sim.visible_text import visible
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
@@ -54,29 +55,24 @@ def main(arguments=None):
     chosen.ros_args = words[cut:]
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
         top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')
-    signal.signal(signal.SIGTERM, _interrupt)
-    tell_warnings(lambda sentence: print(f'ins_sim {chosen.verb}: {sentence}', file=sys.stderr))
+    tell_warnings(lambda sentence: _say(chosen.verb, sentence))
     try:
         return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:
-        sentence = shown.cut(' '.join(str(error).splitlines()), LONGEST)
-        print(f'ins_sim {chosen.verb}: {sentence}', file=sys.stderr)
+        _say(chosen.verb, shown.cut(' '.join(str(error).splitlines()), LONGEST))
         return 2
     except MemoryError as error:
         why = f' ({shown.cut(str(error))})' if str(error) else ''
-        print(f'ins_sim {chosen.verb}: there is not enough memory{why}; expected a smaller input',
-              file=sys.stderr)
+        _say(chosen.verb, f'there is not enough memory{why}; expected a smaller input')
         return 2
     except KeyboardInterrupt:
-        print(f'ins_sim {chosen.verb}: interrupted; only what is named above was written',
-              file=sys.stderr)
-        return 130
+        _say(chosen.verb, 'interrupted; only what is named above was written')
+        return INTERRUPTED
 
 
-def _interrupt(number, frame):
-    """End as Ctrl-C does: verbs clean up after KeyboardInterrupt."""
-    raise KeyboardInterrupt
+def _say(verb, sentence):
+    print(f'ins_sim {verb}: {visible(str(sentence))}', file=sys.stderr)
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    command()

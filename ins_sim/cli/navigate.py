@@ -19,21 +19,22 @@ def add_arguments(parser):
 
 def run(chosen):
     """Read, navigate, write and show; return the exit code."""
-    from rich.console import Console
     from ins_sim import parameter_files
     from ins_sim.core.postprocessing.navigate import navigate
     from ins_sim.io import imu
-    from ins_sim.report import navigation, storage
+    from ins_sim.own_folders import whole_folder
+    from ins_sim.report import navigation
+    from ins_sim.report.console import PlainConsole
     from ins_sim.settings.navigate import NAVIGATE
     from .progress import progress_bars
     settings = parameter_files.read_nodes(arguments.parameter_paths(chosen), chosen.param,
                                           NAVIGATE)['navigate']
-    storage.check_free(chosen.output, chosen.force, navigation.MARK)
-    sources = imu.read_imu(chosen.recording, settings)
-    console = Console()
-    with progress_bars(console) as add_bar:
-        result = navigate(settings, sources, add_bar('navigating'))
-    navigation.write_navigation(chosen.output, settings, sources.name, result, chosen.force)
+    console = PlainConsole()
+    with whole_folder(chosen.output, chosen.force, navigation.MARK) as work:
+        sources = imu.read_imu(chosen.recording, settings)
+        with progress_bars(console) as add_bar:
+            result = navigate(settings, sources, add_bar('navigating'))
+        navigation.write_navigation(work, settings, sources.name, result)
     navigation.show_navigation(sources.name, result, console)
     console.print(f'written: {chosen.output}')
     return 0

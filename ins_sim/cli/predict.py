@@ -14,11 +14,11 @@ def add_arguments(parser):
 
 def run(chosen):
     """Predict and show; return the exit code."""
-    from rich.console import Console
     from rich.table import Table
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
     from ins_sim.report import coverage, summary, table
+    from ins_sim.report.console import PlainConsole
     settings = arguments.read_settings(chosen)
     prediction = predict(settings, read_motion(settings.motion_generator), collect=None)
     key = summary.study_key(settings)
@@ -33,9 +33,9 @@ def run(chosen):
     for axis, name in ((1, 'N'), (0, 'E')):
         shown.add_row(f'max |d{name}|', 'm', table.number_text(prediction.largest[axis]),
                       table.number_text(place and place[1 - axis]))
-    console = Console()
+    console = PlainConsole()
     console.print(shown)
     for line in coverage.coverage_lines(settings, prediction):
-        console.print(line, soft_wrap=True)
+        console.print(line)
     table.show_resonances(prediction.resonances, console)
     return 0

@@ -1,14 +1,22 @@
-"""The progress bars of the verbs that take longer than a moment."""
+"""The progress of the verbs that take longer than a moment: bars, or lines in a pipe."""
 
 from contextlib import contextmanager
+import sys
+import time
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+
+# in a pipe or a file: how long until the first line, and from line to line
+FIRST_S, NEXT_S = 5.0, 30.0
 
 
 @contextmanager
 def progress_bars(console, unit=None):
     """
     Show progress bars on a console while the block runs, and remove them at its end.
+
+    Where the console is no terminal a line on stderr tells now and then how far it is.
 
     Parameters
     ----------
@@ -24,6 +32,9 @@ def progress_bars(console, unit=None):
         ``add_bar(label, total=1.0)`` adds a bar and returns the function that takes how much of
         the total is done.
     """
+    if not console.is_terminal:
+        yield lambda label, total=1.0: ProgressLines(label, total, unit)
+        return
     amount = ('{task.percentage:>3.0f} %' if unit is None else
               f'{{task.completed:.0f}} of {{task.total:.0f}} {unit}')
     with Progress(TextColumn('{task.description}', markup=False), BarColumn(),
@@ -35,3 +46,25 @@ def progress_bars(console, unit=None):
             return lambda done: progress.update(task, completed=done)
 
         yield add_bar
+
+
+class ProgressLines:
+    """Tells by lines on stderr how much is done, and how long the rest may take."""
+
+    def __init__(self, label, total, unit):
+        self._label, self._total, self._unit = label, total, unit
+        self._start = time.monotonic()
+        self._next = self._start + FIRST_S
+
+    def __call__(self, done):
+        """Take how much of the total is done."""
+        now = time.monotonic()
+        if now < self._next or done <= 0.0:
+            return
+        self._next = now + NEXT_S
+        amount = (f'{100.0 * done / self._total:.0f} %' if self._unit is None else
+                  f'{done:.0f} of {self._total:.0f} {self._unit}')
+        left_s = round((now - self._start) * max(0.0, self._total / done - 1.0))
+        hours, minutes, seconds = left_s // 3600, left_s // 60 % 60, left_s % 60
+        print(f'{self._label}: {amount}, {hours}:{minutes:02d}:{seconds:02d} left',
+              file=sys.stderr, flush=True)

@@ -26,46 +26,46 @@ def add_arguments(parser):
 
 def run(chosen):
     """Run, write and show; return the exit code."""
-    from rich.console import Console
     from ins_sim.core.prediction.drift import NoPrediction
     from ins_sim.core.prediction.predict import predict
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
+    from ins_sim.own_folders import existing_parent, whole_folder
     from ins_sim.report import coverage, spool, storage, summary, table
+    from ins_sim.report.console import PlainConsole
     from .progress import progress_bars
     if chosen.aided:
         from ins_sim.core.simulation.aided import make_instruments, simulate_aided
     aided = arguments.read_aided_settings(chosen) if chosen.aided else None
     settings = aided.simulation if aided else arguments.read_settings(chosen)
-    storage.check_free(chosen.output, chosen.force)
     write_bag = _bag_writer(chosen, settings)
     title = summary.title(settings)
-    console = Console()
+    console = PlainConsole()
     motion = read_motion(settings.motion_generator)
     # Made before the run, so that settings that do not fit are refused before it.
     instruments = None if aided is None else make_instruments(aided)
-    with spool.Spool(storage.existing_parent(chosen.output)) as spooled:
-        try:
-            prediction = predict(settings, motion, spooled.store)
-        except NoPrediction as reason:
-            prediction = None
-            console.print(str(reason))
-        with progress_bars(console) as add_bar:
-            # The aided stages take whole histories.
-            result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'),
-                              spooled.store if aided is None else Collected)
-            flown = None if aided is None else simulate_aided(aided, instruments, motion, result,
-                                                              add_bar('aiding'))
-        rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
-        report = None if aided is None else _report(aided, flown, result)
-        storage.write_run(chosen.output, settings, result, rows, prediction, title, chosen.force,
-                          report)
+    with spool.Spool(existing_parent(chosen.output)) as spooled:
+        with whole_folder(chosen.output, chosen.force, storage.MARK) as work:
+            try:
+                prediction = predict(settings, motion, spooled.store)
+            except NoPrediction as reason:
+                prediction = None
+                console.print(str(reason))
+            with progress_bars(console) as add_bar:
+                # The aided stages take whole histories.
+                result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'),
+                                  spooled.store if aided is None else Collected)
+                flown = None if aided is None else simulate_aided(aided, instruments, motion,
+                                                                  result, add_bar('aiding'))
+            rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
+            report = None if aided is None else _report(aided, flown, result)
+            storage.write_run(work, settings, result, rows, prediction, title, report)
         table.show_table(title, rows, console)
         for line in (*coverage.coverage_lines(settings, prediction),
                      *summary.gap_lines(result.faults), *summary.withheld_lines(settings),
                      *summary.parity_lines(settings.imu_sensor, result.imu)):
-            console.print(line, soft_wrap=True)
+            console.print(line)
         if report is not None:
             report.show(console)
         console.print(f'written: {chosen.output}')
@@ -99,8 +99,7 @@ def _bag_writer(chosen, settings):
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):
             console.print(f'SHA-256 of {file.name}, which holds this name: '
-                          f'{digest.file_digest(file)}', soft_wrap=True)
-        console.print(f'SHA-256 of the messages: {digest.payload_digest(chosen.bag)}',
-                      soft_wrap=True)
+                          f'{digest.file_digest(file)}')
+        console.print(f'SHA-256 of the messages: {digest.payload_digest(chosen.bag)}')
 
     return write_bag

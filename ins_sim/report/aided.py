@@ -75,7 +75,7 @@ class AidedReport:
         """Print the rows, and what went wrong."""
         show_aided(self.title, self.rows, console)
         for line in fault_lines(self.flown):
-            console.print(line, markup=False)
+            console.print(line)
 
     def save_figures(self, folder):
         """Save the figure into a folder."""
@@ -234,8 +234,7 @@ def show_aided(title, rows, console):
         counts = [row for row in rows if row.source == source]
         told = ', '.join(f'{row.measured} {row.name.split()[-1]}' for row in counts)
         notes = ''.join(f': {row.note}' for row in counts if row.note)
-        console.print(f'{source} fixes: {told}{notes}', markup=False, highlight=False,
-                      soft_wrap=True)
+        console.print(f'{source} fixes: {told}{notes}')
 
 
 def _short(value):

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from .plotting import COLOURS, finish_panel, MOST_POINTS, new_figure, save_png, thinned
+from .plotting import (COLOURS, finish_panel, MOST_POINTS, new_figure, save_png,
+                       thinned)
 from .summary import DEG_PER_HOUR
 
 MARGINS = {'left': 0.12, 'right': 0.98, 'bottom': 0.06, 'top': 0.94, 'hspace': 0.08}

@@ -78,7 +78,7 @@ def show_filter_study(title, rows, console):
     for r in rows:
         if r.refused:
             console.print(f'{r.filter}, N {r.cycles}: {r.refused} fixes not taken; the last: '
-                          f'{r.reason}', markup=False)
+                          f'{r.reason}')
 
 
 def save_figure(path, title, cases, flown):

@@ -4,15 +4,13 @@ from dataclasses import asdict, fields
 import json
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from ins_sim import parameter_files
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.postprocessing.comparison import error_rows
 from ins_sim.core.postprocessing.reference import SampledTrack
-from . import storage
+from .console import PlainConsole
 from .plotting import new_figure, save_png, thinned
 from .table import number_text
 
@@ -29,9 +27,9 @@ def _span(result):
 
 def show_navigation(title, result, console=None):
     """Print the notes of a Navigation and a table of errors for each reference."""
-    console = console or Console()
+    console = console or PlainConsole()
     for note in result.notes:
-        console.print(f'* {note}', highlight=False, markup=False)
+        console.print(f'* {note}')
     start_ns, end_ns = _span(result)
     length_s = sum(int(s.t_ns[-1] - s.t_ns[0]) for s in result.states) * 1e-9
     console.print(f'* navigated {length_s:.3f} s in {len(result.states)} segment(s)')
@@ -40,39 +38,38 @@ def show_navigation(title, result, console=None):
     for comparison in result.comparisons:
         table = Table(title=f'{title} less {comparison.name}')
         for _, head in COLUMNS:
-            table.add_column(escape(head), justify='right')
+            table.add_column(head, justify='right')
         for row in error_rows(comparison, start_ns, end_ns):
             table.add_row(*(number_text(getattr(row, name)) for name, _ in COLUMNS))
         console.print(table)
 
 
-def write_navigation(folder, settings, title, result, force=False):
+def write_navigation(work, settings, title, result):
     """
-    Write a Navigation into a folder that appears only when complete.
+    Write a Navigation into a folder.
 
     nav.npz holds states_<field> and, for reference k, error_<k>_<kind>_t_ns and
     error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables.
     """
     start_ns, end_ns = _span(result)
-    with storage.whole_folder(folder, force, MARK) as work:
-        arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
-                  for f in fields(result.states[0])}
-        arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])
-        for k, comparison in enumerate(result.comparisons):
-            for kind in ('position', 'velocity', 'attitude'):
-                track = getattr(comparison, kind)
-                if track is not None:
-                    arrays[f'error_{k}_{kind}_t_ns'] = track.t_ns
-                    arrays[f'error_{k}_{kind}'] = track.values
-        np.savez(work / MARK, **arrays)
-        summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
-                   'figures': result.figures, 'notes': result.notes,
-                   'errors': {c.name: [asdict(r) for r in error_rows(c, start_ns, end_ns)]
-                              for c in result.comparisons}}
-        (work / 'summary.json').write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
-        (work / 'parameters.yaml').write_text(
-            parameter_files.dump_nodes({'navigate': settings}), encoding='utf-8')
-        save_figure(work / 'navigation.png', title, result)
+    arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
+              for f in fields(result.states[0])}
+    arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])
+    for k, comparison in enumerate(result.comparisons):
+        for kind in ('position', 'velocity', 'attitude'):
+            track = getattr(comparison, kind)
+            if track is not None:
+                arrays[f'error_{k}_{kind}_t_ns'] = track.t_ns
+                arrays[f'error_{k}_{kind}'] = track.values
+    np.savez(work / MARK, **arrays)
+    summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
+               'figures': result.figures, 'notes': result.notes,
+               'errors': {c.name: [asdict(r) for r in error_rows(c, start_ns, end_ns)]
+                          for c in result.comparisons}}
+    (work / 'summary.json').write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
+    (work / 'parameters.yaml').write_text(
+        parameter_files.dump_nodes({'navigate': settings}), encoding='utf-8')
+    save_figure(work / 'navigation.png', title, result)
 
 
 def save_figure(path, title, result):

@@ -5,6 +5,7 @@ What all figures share: size, colours, the number of points drawn, and how a fig
 """
 
 from ins_sim.core.numerics.garbage_collection import collector_paused
+from ins_sim.visible_text import visible
 
 with collector_paused:
     from matplotlib.figure import Figure
@@ -46,12 +47,10 @@ def save_png(figure, path):
     """
     Save a figure as PNG, quickly rather than as small as can be.
 
-    Names of files are drawn as they are, though they hold a dollar or are no UTF-8.
+    Names of files are drawn as they are, with escapes for what is no UTF-8 or cannot be seen.
     """
     for text in figure.findobj(Text):
         text.set_parse_math(False)
-        shown = text.get_text().encode('utf-8', 'backslashreplace').decode()
-        if shown != text.get_text():
-            text.set_text(shown)
+        text.set_text(visible(text.get_text(), keep='\n'))
     with collector_paused:
         figure.savefig(path, dpi=DPI, pil_kwargs={'compress_level': 2})

@@ -1,12 +1,8 @@
 """A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
 
-from contextlib import contextmanager
 from dataclasses import asdict
 import json
-import os
 from pathlib import Path
-import shutil
-import tempfile
 from zipfile import ZipFile
 
 import numpy as np
@@ -26,81 +22,31 @@ _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f'
         'imu_parity': ('f', (None,))}
 
 
-def check_free(folder, force, mark=MARK, option='--force'):
+def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False):
     """
-    Raise ValueError unless the folder may be written: absent, or with its mark and force given.
-
-    mark: the file by which what a command writes is known; option: how the caller spells force.
-    """
-    folder = Path(folder)
-    parent = existing_parent(folder)
-    if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise ValueError(f'{folder} cannot be made in {parent}; expected a folder that may be '
-                         'written')
-    if not folder.exists():
-        return
-    if not force:
-        raise ValueError(f'{folder} exists; expected a new folder (or {option})')
-    if not folder.is_dir() or (any(folder.iterdir()) and not (folder / mark).exists()):
-        raise ValueError(f'{folder} holds no {mark}; {option} replaces only what the same command '
-                         'wrote')
-
-
-def existing_parent(folder):
-    """Return the nearest folder above one that need not exist yet."""
-    return next(p for p in Path(folder).absolute().parents if p.exists())
-
-
-@contextmanager
-def whole_folder(folder, force=False, mark=MARK):
-    """
-    Give a folder to write into that takes the place of ``folder`` once the block is through.
-
-    Whatever breaks in the block leaves what was there before.  Raises as check_free does.
-    """
-    folder = Path(folder)
-    check_free(folder, force, mark)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f'.{folder.name}.', dir=folder.parent))
-    try:
-        yield work
-        work.chmod(0o755)
-        if folder.exists():
-            shutil.rmtree(folder)
-        work.rename(folder)
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
-        raise
-
-
-def write_run(folder, settings, run, rows, prediction, title, force=False, aided=None,
-              own_motion=False):
-    """
-    Write a SimulationResult, and what was predicted of it or None, into a folder that appears when
-    complete.
+    Write a SimulationResult, and what was predicted of it or None, into a folder.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
     own_motion: whether the motion is not that of the settings.
     """
-    with whole_folder(folder, force) as work:
-        arrays = run_arrays(run)
-        if prediction is not None:
-            arrays['predicted_t_s'] = prediction.t_s
-            arrays['predicted_position'] = prediction.position
-        parameters = parameter_files.dump(settings)
-        if aided is not None:
-            arrays.update(aided.arrays())
-            parameters, rows = aided.parameters(), [*rows, *aided.rows]
-            aided.save_figures(work)
-        write_arrays(work / ARRAYS, arrays)
-        (work / PARAMETERS).write_text(parameters, encoding='utf-8')
-        (work / MANIFEST).write_text(
-            manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
-        figure.save_figure(work / 'errors.png', title, run.errors,
-                           coverage.comparable(settings, prediction))
-        (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
-                                 encoding='utf-8')
+    arrays = run_arrays(run)
+    if prediction is not None:
+        arrays['predicted_t_s'] = prediction.t_s
+        arrays['predicted_position'] = prediction.position
+    parameters = parameter_files.dump(settings)
+    if aided is not None:
+        arrays.update(aided.arrays())
+        parameters, rows = aided.parameters(), [*rows, *aided.rows]
+        aided.save_figures(work)
+    write_arrays(work / ARRAYS, arrays)
+    (work / PARAMETERS).write_text(parameters, encoding='utf-8')
+    (work / MANIFEST).write_text(
+        manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
+    figure.save_figure(work / 'errors.png', title, run.errors,
+                       coverage.comparable(settings, prediction))
+    (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
+                             encoding='utf-8')
 
 
 def run_arrays(run):

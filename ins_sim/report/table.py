@@ -1,9 +1,8 @@
 """Tables for a terminal."""
 
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
+from .console import PlainConsole
 from .summary import DEG_PER_HOUR
 
 
@@ -24,7 +23,7 @@ def show_table(title, rows, console=None):
         table.add_column(head, justify='right')
     for row in rows:
         table.add_row(row.name, row.unit, *(number_text(getattr(row, c)) for c, _ in columns))
-    (console or Console()).print(table)
+    (console or PlainConsole()).print(table)
 
 
 def show_resonances(resonances, console=None):
@@ -33,8 +32,8 @@ def show_resonances(resonances, console=None):
         return
     table = Table(title='resonances of motion 2')
     for head in ('resonance', "psi' [rad/s]", 'drift east [deg/h]', 'drift north [deg/h]'):
-        table.add_column(escape(head), justify='left' if head == 'resonance' else 'right')
+        table.add_column(head, justify='left' if head == 'resonance' else 'right')
     for name, rate, drift in resonances:
         table.add_row(name, number_text(rate), number_text(drift[0] * DEG_PER_HOUR),
                       number_text(drift[1] * DEG_PER_HOUR))
-    (console or Console()).print(table)
+    (console or PlainConsole()).print(table)

@@ -1,6 +1,5 @@
 """The study of the tuned-gyro paper in tables and figures."""
 
-from rich.markup import escape
 from rich.table import Table
 
 from ins_sim.settings.tuned_gyro_study import SWEEPS
@@ -21,8 +20,7 @@ def show_study(settings, cells, console):
     table = Table(title=study_title(settings))
     for head in (SWEEPS[settings.sweep], 'Poisson [deg]', 'Euler vector [deg]',
                  *(('paper [deg]', 'ours - paper') if compared else ())):
-        # rich would take [rad/s] for a style
-        table.add_column(escape(head), justify='right')
+        table.add_column(head, justify='right')
     for cell in cells:
         row = [f'{cell.value:g}', f'{cell.poisson_deg:.4f}', f'{cell.euler_vector_deg:.4f}']
         if compared:

@@ -8,7 +8,7 @@ from functools import partial
 from importlib import import_module
 import sys
 
-from .process.runtime import node_main
+from ins_sim.entry import end_at_once
 
 # executable: (module in ``nodes``, class)
 NODES = {
@@ -30,6 +30,12 @@ def run_node(name, args=None, **options):
     args: command line with ROS arguments, by default that of the process; options: further
     arguments of the class.
     """
+    end_at_once()
+    from .process.arguments import answer
+    from .process.runtime import node_main
+    code = answer(name, sys.argv if args is None else args)
+    if code is not None:
+        return code
     return node_main(partial(_load, name), args, **options)
 
 

@@ -24,7 +24,8 @@ class Session:
 
     settings: SimulationSettings, whose pacing must require the recorder; folder: where parameters
     and logs go; bag: path of the bag.  Use as a context manager: leaving it ends every process,
-    and drops the bag unless ``run`` came to its end.
+    and drops the bag unless ``run`` came to its end.  The processes end with this one, even
+    where it is killed.
     """
 
     def __init__(self, settings, folder, bag, namespace):
@@ -66,7 +67,8 @@ class Session:
         for process in graph.PROCESSES:
             with open(self._log(process.name), 'wb') as log:
                 self._processes[process.name] = subprocess.Popen(
-                    graph.process_command(process, [parameters], namespace=self.namespace),
+                    graph.process_command(process, [parameters], namespace=self.namespace,
+                                          parent=os.getpid()),
                     stdout=log, stderr=log, stdin=subprocess.DEVNULL)
         return self
 

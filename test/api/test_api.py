@@ -100,7 +100,8 @@ def test_a_saved_run_is_that_of_the_command_line(run, tmp_path):
     run.save(tmp_path / 'api', overwrite=True)
     (tmp_path / 'other').mkdir()
     (tmp_path / 'other' / 'file').touch()
-    with pytest.raises(ValueError, match='holds no summary.json; overwrite=True replaces only'):
+    with pytest.raises(ValueError, match='it has no marker .ins_sim of ins_sim; overwrite=True '
+                                         'replaces only'):
         run.save(tmp_path / 'other', overwrite=True)
 
 

@@ -109,7 +109,8 @@ def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
         bag.add_topic('/t', topics.STRING)
         bag.write('/t', 1, bytes(STORE.serialize_cdr(STORE.types[topics.STRING]('x'),
                                                      topics.STRING)))
-    assert sorted(f.name for f in (tmp_path / 'bag').iterdir()) == ['bag_0.db3', 'metadata.yaml']
+    assert sorted(f.name for f in (tmp_path / 'bag').iterdir()) == [
+        '.ins_sim', 'bag_0.db3', 'metadata.yaml']
     database = sqlite3.connect(tmp_path / 'bag' / 'bag_0.db3')
     assert database.execute('SELECT * FROM schema').fetchall() == [(4, 'jazzy')]
     names = {r[0] for r in database.execute('SELECT name FROM sqlite_master')}
@@ -191,3 +192,24 @@ def test_empty_bags_and_topics(storage, tmp_path):
         assert bag.topics == {} and not bag.cut
     with rosbag2.Reader(tmp_path / 'bag') as other:
         assert other.message_count == 0 and list(other.messages()) == []
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+@pytest.mark.parametrize('names', [('a', 'b'), ('a', 'a')])
+def test_stamps_of_two_clocks(storage, names, tmp_path):
+    """In turns, on one topic or two: no chunk a message, and files as long as each clock says."""
+    with BagWriter(tmp_path / 'bag', storage, split_ns=2 * 10**9) as bag:
+        for name in dict.fromkeys(names):
+            bag.add_topic(name, topics.IMU)
+        pack = topics.IMU_RAW.writer().pack
+        for k in range(2000):
+            for name, zero_ns in zip(names, (0, 1_700_000_000 * 10**9)):
+                t_ns = zero_ns + k * 5 * 10**6
+                bag.write(name, t_ns, pack(t_ns, (0.0,) * 3, (0.0,) * 3))
+    with open_bag(tmp_path / 'bag') as bag:
+        assert sum(span.count for span in bag.spans().values()) == 4000
+        files = bag.files
+    # ten seconds by either clock
+    assert len(files) == 5
+    if storage == 'mcap':
+        assert sum(path.stat().st_size for path in files) < 1.1 * 4000 * (324 + 31) + 5 * 6000

@@ -166,11 +166,12 @@ def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
     assert (path / 'bag_0.mcap').read_bytes() == before
     with BagWriter(path, 'sqlite3', replace=True):
         assert (path / 'bag_0.mcap').read_bytes() == before
-    assert sorted(f.name for f in path.iterdir()) == ['bag_0.db3', 'metadata.yaml']
+    assert sorted(f.name for f in path.iterdir()) == ['.ins_sim', 'bag_0.db3', 'metadata.yaml']
     assert [f.name for f in tmp_path.iterdir()] == ['bag']
     (tmp_path / 'other').mkdir()
     (tmp_path / 'other' / 'precious').write_text('x')
-    with pytest.raises(ValueError, match='is no bag; only a bag is replaced'):
+    with pytest.raises(ValueError, match='other: it has no marker .ins_sim of ins_sim; --force '
+                                         'replaces only what the same command wrote'):
         BagWriter(tmp_path / 'other', replace=True)
 
 

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.live
 def start(folder, duration_s, log):
     """Start the demo in a process group of its own."""
     return subprocess.Popen(
-        [sys.executable, '-m', 'ins_sim.cli.main', 'demo', '-o', str(folder), '--duration',
+        [sys.executable, '-m', 'ins_sim', 'demo', '-o', str(folder), '--duration',
          str(duration_s)], env={**os.environ, 'PYTHONPATH': str(ROOT)}, stdout=log, stderr=log,
         start_new_session=True)
 
@@ -51,3 +51,18 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
         assert 'interrupted' in log.read_text() and 'Traceback' not in log.read_text()
         assert members(demo.pid) == []
         assert {p: p.stat().st_mtime_ns for p in folder.rglob('*') if p.is_file()} == files
+
+
+def test_a_killed_demo_leaves_no_node(ros_domain, tmp_path):
+    """SIGKILL, which nobody can catch: the nodes end with the demo that started them."""
+    with open(tmp_path / 'log', 'w') as stream:
+        demo = start(tmp_path / 'demo', 3000.0, stream)
+    end = time.monotonic() + GUARD_S
+    while len(members(demo.pid)) < 4 and time.monotonic() < end:
+        time.sleep(0.1)
+    assert len(members(demo.pid)) == 4
+    demo.kill()
+    demo.wait()
+    while members(demo.pid) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert members(demo.pid) == []

@@ -59,8 +59,8 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
         'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report', 'regular_file',
-                         'ros_parameters', 'yaml_text'}
+                         'graph', 'studies', 'report', 'regular_file', 'own_folders',
+                         'ros_parameters', 'visible_text', 'yaml_text'}
 MAY_IMPORT = {
     'settings': set(),
     'core.numerics': set(),
@@ -81,7 +81,10 @@ MAY_IMPORT = {
                                 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
-    'bags': {'messages', 'settings.suggest', 'settings.shown', 'regular_file', 'yaml_text'},
+    'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
+             'yaml_text'},
+    'own_folders': set(),
+    'visible_text': set(),
     'regular_file': set(),
     'io': CORE | {'bags', 'messages', 'settings', 'regular_file'},
     'yaml_text': {'settings.shown', 'regular_file'},
@@ -89,10 +92,13 @@ MAY_IMPORT = {
     'parameter_files': {'settings', 'ros_parameters', 'yaml_text'},
     'resources': {'settings.suggest'},
     'graph': {'messages'},
-    'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file'},
+    # it stands before all others
+    'entry': {'cli'},
+    '__main__': {'entry'},
+    'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file', 'visible_text'},
     'api': FILES_AND_BAGS,
-    'ros': FILES_AND_BAGS,
-    'cli': FILES_AND_BAGS | {'ros', '__version__'},
+    'ros': FILES_AND_BAGS | {'entry'},
+    'cli': FILES_AND_BAGS | {'ros', 'entry', '__version__'},
     # The public names; what is not in api is imported for annotations.
     '__init__': {'api', 'bags', 'core.motion', 'core.prediction', 'settings'},
 }

@@ -55,9 +55,18 @@ def started(monkeypatch):
                   if a.what == 'DeclareLaunchArgument'}
         assert set(given) <= set(values)
         assert all(a.description for a in described if a.what == 'DeclareLaunchArgument')
-        return flat(described[-1].function({**values, **given}))
+        found = described[-1].function({**values, **given})
+        assert ended_by(found) == {name: f'{name} has ended' for name in flat(found)}
+        return flat(found)
 
     return actions
+
+
+def ended_by(found):
+    """Return the names of the processes whose end ends a launch, of its actions."""
+    handlers = [a.words[0] for a in found if a.what == 'RegisterEventHandler']
+    assert all(h.what == 'OnProcessExit' and h.on_exit[0].what == 'Shutdown' for h in handlers)
+    return {h.target_action.name: h.on_exit[0].reason for h in handlers}
 
 
 def flat(actions):

@@ -221,3 +221,20 @@ def test_what_is_refused(chain, tmp_path):
         player = chain.start_verb('play', *words)
         assert player.wait(20.0) == 2, chain.text(player)
         assert sentence in chain.text(player) and 'Traceback' not in chain.text(player)
+
+
+def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
+    """The first messages logged at 0, the others since 1970: not waited for in silence."""
+    path, pack = tmp_path / 'bag', topics.IMU_RAW.writer().pack
+    with BagWriter(path) as bag:
+        bag.add_topic('imu', topics.IMU)
+        for k in range(20):
+            log_ns = (k >= 5) * 1_700_000_000 * SECOND + k * 10**7
+            bag.write('imu', log_ns, pack(log_ns, (0.0,) * 3, (0.0, 0.0, 9.8)))
+    player = chain.start_verb('play', path, '--wait', '0')
+    chain.wait_text(player, 'nothing was logged for 1700000000.010 s from 0.040 s on: waiting '
+                            '1700000000 s (--start 1700000000.050 begins behind it')
+    end(chain, player)
+    player = chain.start_verb('play', path, '--wait', '0', '--start', '1700000000.050')
+    assert player.wait(30.0) == 0
+    assert 'played 15 messages' in chain.text(player) and 'nothing was' not in chain.text(player)

@@ -205,3 +205,27 @@ def test_losses_are_counted(talker, chain, tmp_path):
     assert rest == f'{510 - count} lost' and 20 <= count < 510
     with open_bag(tmp_path / 'bag') as bag:
         assert len(list(bag.messages())) == count
+
+
+def test_stamps_of_two_clocks(talker, chain, tmp_path):
+    """
+    6000 messages in a burst, to the last moment: what was sent is in the bag or counted as lost.
+
+    The one topic is stamped from the start of the computer, the other one from 1970; a file of
+    ten seconds of either clock is one file.
+    """
+    boot, wall = talker.imu('boot'), talker.imu('wall')
+    recorder = chain.start_verb('record', 'boot', 'wall', '-o', tmp_path / 'bag',
+                                '--max-duration', '60')
+    talker.wait_matched(boot, wall)
+    for k in range(3000):
+        boot.publish(talker.imu_bytes(k * 10**7))
+        wall.publish(talker.imu_bytes(1_700_000_000 * SECOND + k * 10**7))
+    said = end(chain, recorder)
+    with open_bag(tmp_path / 'bag') as bag:
+        files, spans = bag.files, bag.spans()
+    for name in ('/boot', '/wall'):
+        _, count, rest = said[name]
+        assert spans[name].count == count and count + int(rest.split()[0]) == 3000, said
+        assert rest.startswith('0 lost') or 'missing of 3000 at 100 Hz' in rest
+    assert len(files) <= 3

@@ -71,7 +71,8 @@ def test_what_is_refused(ros_domain, tmp_path):
     (old / 'notes.txt').write_text('mine')
     for words, sentence in (
             (['imu', '-o', old], 'old exists; expected a new path for the bag'),
-            (['imu', '-o', old, '--force'], 'old is no bag; only a bag is replaced'),
+            (['imu', '-o', old, '--force'], 'old: it has no marker .ins_sim of ins_sim; '
+             '--force replaces only what the same command wrote'),
             (['imu', '-o', '/sys/bag'], "Operation not permitted: '/sys/bag'"),
             (['imu raw', '-o', tmp_path / 'new'], 'record.topics: Invalid topic name: topic name '
                                                   'must not contain characters other than'),

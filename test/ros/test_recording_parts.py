@@ -4,6 +4,7 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, stamp_of
 from ins_sim.ros.transport.gaps import Gaps
+from ins_sim.ros.recording.holes import Holes
 from ins_sim.ros.recording.playing import Options, PlaybackStart, Playing
 from ins_sim.ros.recording.run_clock import RunClock
 import pytest
@@ -121,3 +122,41 @@ def test_start_and_duration(bag):
     playing = Playing(bag, Options(topics=('imu/data_raw',), start_s=1.0, duration_s=3.0))
     assert [t // SECOND for _, t, _ in playing.messages()] == [3, 4, 5, 6]
     playing.close()
+
+
+def stamps_with_losses(count, lost):
+    """Return the stamps, ns, of a stream at 1 kHz of which some samples are missing."""
+    return [k * 10**6 for k in range(count) if k not in lost]
+
+
+@pytest.mark.parametrize('stamps, missing, step_ns', [
+    (stamps_with_losses(1000, ()), 0, 10**6),
+    (stamps_with_losses(1001, range(1, 1000, 3)), 333, 10**6),
+    # 42 % of the samples, in runs of queues that overflow
+    (stamps_with_losses(10000, [k + j for k in range(10, 9900, 100) for j in range(42)]), 4158,
+     10**6),
+    # a pause is none, nor is a run that starts anew
+    ([*range(0, 10**9, 10**7), *range(10**12, 10**12 + 10**9, 10**7)], 0, 10**7),
+    ([*range(0, 10**9, 10**7), *range(0, 10**9, 10**7)], 0, 10**7),
+    # stamps that jitter by a tenth of the period, one of ten lost
+    ([k * 10**7 + (k * 7919 % 1000 - 500) * 1000 for k in range(2000) if k % 10], 199, None)])
+def test_holes(stamps, missing, step_ns):
+    """Counted against the usual step of the stream itself."""
+    holes = Holes()
+    for stamp_ns in stamps:
+        holes.take(stamp_ns)
+    found, found_ns = holes.count()
+    assert abs(found - missing) <= 2 and (step_ns is None or found_ns == step_ns)
+
+
+def test_holes_of_what_is_not_steady():
+    """Events, a few messages, and stamps of two clocks in turns have no rate."""
+    events, turns, few = Holes(), Holes(), Holes()
+    t_ns = 0
+    for k in range(1000):
+        t_ns += 10**6 + (k * 104729 % 997) ** 3
+        events.take(t_ns)
+        turns.take(k * 10**7 + k % 2 * 17 * 10**17)
+    for k in (0, 1, 2, 5):
+        few.take(k * 10**6)
+    assert events.count() == few.count() == (0, None) and turns.count()[0] == 0

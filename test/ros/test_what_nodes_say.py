@@ -54,8 +54,8 @@ def test_thousands_of_different_texts_are_few_lines(log):
     ('\u202eback', '\\u202eback'), ('\ud800', '\\ud800'), ('Grüße', 'Grüße')])
 def test_texts_are_cut_and_made_visible(text, shown):
     """No escape sequence of a stranger reaches a terminal, no text fills a disk."""
-    assert said.visible(text) == shown
-    long = said.visible(text * 10_000, 20)
+    assert said.short(text) == shown
+    long = said.short(text * 10_000, 20)
     assert len(long) < 220 and long.isprintable() and long.endswith('characters)')
 
 

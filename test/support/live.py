@@ -35,7 +35,7 @@ class Chain:
     def start_verb(self, *words):
         """Start a verb of ``ins_sim``."""
         words = [str(word) for word in words]
-        return self.run(words[0], [sys.executable, '-m', 'ins_sim.cli.main', *words])
+        return self.run(words[0], [sys.executable, '-m', 'ins_sim', *words])
 
     def run(self, name, command):
         """Start any command."""

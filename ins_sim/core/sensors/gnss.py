@@ -17,6 +17,9 @@ from ins_sim.core.streams.faults import check_finite, check_interval, check_unit
 from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 from .sensor import Sensor
 
+# m and m/s, of what is reported of errors: a navigator divides by the variance of a fix
+LEAST_SIGMA = 1e-3
+
 
 class Gnss(Sensor):
     """
@@ -41,11 +44,12 @@ class Gnss(Sensor):
         self._jumps = _spans((jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
         errors, reported = settings.errors, settings.reported
         self._position_sigma = tuple(
-            math.sqrt(noise * noise + drift * drift) if given < 0.0 else given
+            max(LEAST_SIGMA, math.sqrt(noise * noise + drift * drift)) if given < 0.0 else given
             for noise, drift, given in zip(errors.position_noise_m, errors.position_drift_m,
                                            reported.position_sigma_m))
-        self._velocity_sigma = tuple(noise if given < 0.0 else given for noise, given in zip(
-            errors.velocity_noise_m_s, reported.velocity_sigma_m_s))
+        self._velocity_sigma = tuple(
+            max(LEAST_SIGMA, noise) if given < 0.0 else given for noise, given in zip(
+                errors.velocity_noise_m_s, reported.velocity_sigma_m_s))
         self._errors = None
         self.forced = False
         self.reset()

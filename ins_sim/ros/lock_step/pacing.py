@@ -4,7 +4,7 @@ import math
 import time
 
 from ins_sim.messages import topics
-from ..process.said import visible
+from ..process.said import short
 
 REPEAT_S = 0.1
 # longer than a busy machine keeps a consumer from its core
@@ -71,9 +71,9 @@ class LockStep:
 
     def _hear(self, name):
         if len(self.strangers) < STRANGERS:
-            self.strangers.add(visible(name, STRANGER))
+            self.strangers.add(short(name, STRANGER))
         elif not self._more:
-            self._more = visible(name, STRANGER) not in self.strangers
+            self._more = short(name, STRANGER) not in self.strangers
 
     @property
     def slowest(self):

@@ -16,14 +16,16 @@ BLOCK = 256
 STAMP_END_S = 2**31
 # Of a run without an end, how much of it is looked at before it, s.
 LOOK_S = 86400.0
+# the stamps of readings are later than those of the truth by latency and jitter
+END_NS = 10 * SECOND
 
 
 class TruthSource:
     """
     Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
 
-    count: number of samples, or infinity; dt_ns: their spacing.  Raises ValueError on settings
-    that name no motion or a run longer than it.
+    count: number of samples; endless: whether only the stamps of ROS end the run; dt_ns: the
+    sampling period.  Raises ValueError on settings that name no motion or a run longer than it.
     """
 
     def __init__(self, settings):
@@ -44,7 +46,14 @@ class TruthSource:
         if last_s >= STAMP_END_S:
             raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '
                              f'than {STAMP_END_S} s, which a ROS stamp can hold')
-        self.count = round(length_s * SECOND) // self.dt_ns + 1 if length_s else math.inf
+        # an endless run ends where its stamps do
+        last_ns = round(length_s * SECOND) if length_s else STAMP_END_S * SECOND - END_NS - \
+            self.stamp_ns(0)
+        self.endless, self.count = not length_s, last_ns // self.dt_ns + 1
+        if self.count < 1:
+            raise ValueError(f'the first stamp is {last_s:g} s; expected less than '
+                             f'{STAMP_END_S - END_NS // SECOND} s in a run without duration_s: '
+                             'there the stamps of ROS end')
         self._block, self._start = [], 0
 
     def stamp_ns(self, k):

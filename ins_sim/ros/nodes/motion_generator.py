@@ -11,7 +11,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ..lock_step.pacing import LockStep, Pace
-from ..lock_step.truth_source import TruthSource
+from ..lock_step.truth_source import STAMP_END_S, TruthSource
 from ..process.diagnostics import Monitor
 from ..process.parameters import declare_settings
 from ..process.publishers import SolePublishers
@@ -134,6 +134,10 @@ class MotionGeneratorNode(Node):
     def _finish(self, stop):
         self._announce('finished')
         self.get_logger().info(f'finished after {self._next} samples')
+        if self._source.endless:
+            self.get_logger().warning(
+                f'the stamps of ROS end at {STAMP_END_S} s (2038-01-19, counted from 1970), and '
+                'the endless run with them; expected an earlier time.epoch_s for a longer one')
         if self.settings.exit_at_end:
             stop.request()
 

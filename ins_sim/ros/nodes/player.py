@@ -24,6 +24,8 @@ POLL_S = 2e-4
 DEPTH = 2000
 # a late joiner gets at most so many of the messages of a latched topic
 LATCHED_DEPTH = 1000
+# a silence that takes longer to wait for than this is said
+GAP_S = 10.0
 # /clock leaps a gap of the bag that lock-step does not wait through
 LEAP_NS = 10 * SECOND
 
@@ -117,7 +119,10 @@ class PlayerNode(Node):
         if self._lock:
             self._begin()
             messages = self._messages
+        before_ns = first_ns
         for name, log_ns, data in messages:
+            self._tell_gap(before_ns, log_ns)
+            before_ns = log_ns
             if self._clock_publisher:
                 self._tick(log_ns)
             if log_ns - first_ns > self._allowed_ns:
@@ -129,6 +134,17 @@ class PlayerNode(Node):
             self._send(name, data)
         if self._lock:
             self._wait_all_answered()
+
+    def _tell_gap(self, before_ns, log_ns):
+        """Say that a silence of the bag is waited for, if it is long, and how to leave it out."""
+        wait_s = (log_ns - before_ns) / SECOND / self._options.rate if self._options.rate else 0.0
+        if wait_s > GAP_S:
+            begin_ns = self._playing.first_ns - round(self._options.start_s * SECOND)
+            start_s = (log_ns - begin_ns) // 1_000_000 / 1000
+            self.get_logger().warning(
+                f'nothing was logged for {(log_ns - before_ns) / SECOND:.3f} s from '
+                f'{before_ns / SECOND:.3f} s on: waiting {wait_s:.0f} s (--start {start_s:.3f} '
+                'begins behind it, --duration ends before it, --rate shortens it)')
 
     def _send(self, name, data):
         publish = self._publish.get(name)

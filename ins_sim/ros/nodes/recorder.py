@@ -171,7 +171,7 @@ class RecorderNode(Node):
     def _describe(self):
         """Return what is wrong, or '', and the values for /diagnostics."""
         tracks = self.recorder.tracks.values()
-        lost = sum(track.gaps.lost for track in tracks)
+        lost = sum(track.gaps.lost + track.unwritten for track in tracks)
         wrong = ''
         if lost > self._lost:
             names = ', '.join(track.name for track in tracks if track.gaps.lost)
@@ -185,12 +185,18 @@ class RecorderNode(Node):
         log = self.get_logger().info
         for track in self.recorder.tracks.values():
             gaps = track.gaps
-            lost = f'{gaps.lost} lost' if gaps.known else 'losses unknown'
+            lost = f'{gaps.lost + track.unwritten} lost' if gaps.known else 'losses unknown'
+            if track.unwritten:
+                lost += f' ({track.unwritten} of them still queued at the end)'
             if gaps.known and gaps.publishers > 1:
                 lost += f' (of {gaps.publishers} publishers)'
             more = f', {track.repeated} repeated' if track.repeated else ''
             if gaps.before:
                 more += f', {gaps.before} sent before it was heard'
+            missing, step_ns = track.holes.count()
+            if missing and track.name != self.resolve_topic_name(topics.ACK.name):
+                more += (f', {missing} missing of {missing + track.count} at '
+                         f'{SECOND / step_ns:.6g} Hz by the stamps')
             log(f'{track.name} ({track.type_name}): {written.get(track.name, 0)} recorded, '
                 f'{lost}{more}')
         log(f'{self._bag.folder}: {sum(written.values())} messages on {len(self.recorder.tracks)} '

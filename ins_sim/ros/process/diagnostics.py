@@ -6,7 +6,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from ..transport.wall_timer import wall_timer
 from .net import described
-from .said import kind, Said, visible
+from .said import kind, Said, short
 
 RECENT_S = 5.0
 
@@ -43,7 +43,7 @@ class Monitor:
     def fault(self, sentence, fatal=False):
         """Count a fault and log it, each kind once and then more and more rarely."""
         self.faults += 1
-        self.last_fault = sentence = visible(sentence)
+        self.last_fault = sentence = short(sentence)
         self._fault_time = time.monotonic()
         if fatal:
             self._node.get_logger().fatal(sentence)
@@ -79,14 +79,14 @@ class Monitor:
         for name, wrong in kinds.items():
             if name in self._standing:
                 # said when it began, and true until it ends
-                self.last_fault, self._fault_time = visible(wrong), now
+                self.last_fault, self._fault_time = short(wrong), now
             else:
                 self.fault(wrong)
         self._standing = set(kinds)
         if self.faults and now - self._fault_time < RECENT_S:
             status.level, status.message = DiagnosticStatus.WARN, self.last_fault
         span = max(now - last, 1e-3)
-        status.values = [KeyValue(key=key, value=visible(str(value))) for key, value in (
+        status.values = [KeyValue(key=key, value=short(str(value))) for key, value in (
             ('received', self.received), ('sent', self.sent), ('faults', self.faults),
             ('last fault', self.last_fault),
             ('received per second', f'{(self.received - received) / span:.1f}'),

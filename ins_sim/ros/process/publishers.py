@@ -1,7 +1,7 @@
 """Topics that one node alone should publish: two on one of them are said in words."""
 
 from ..transport.backlog import BACKLOG_NS
-from .said import visible
+from .said import short
 
 # as many are named
 NAMED = 4
@@ -35,7 +35,7 @@ class SolePublishers:
         infos = self._node.get_publishers_info_by_topic(name)
         names = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in infos)
         more = f' and {len(names) - NAMED} more' if len(names) > NAMED else ''
-        return ', '.join(visible(name, 80) for name in names[:NAMED]) + more
+        return ', '.join(short(name, 80) for name in names[:NAMED]) + more
 
 
 class MessageLosses:

@@ -13,13 +13,15 @@ import gc
 import signal
 import sys
 
+from ins_sim.visible_text import visible
 from ..transport.repairs import drain_publishers, use_profile
 
 EXIT_OK = 0
 EXIT_PARAMETERS = 2
 EXIT_FAULT = 3
 EXIT_CONSUMER = 4
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+# the alarm: a signal of the command line that came amid its imports
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 POLL_S = 0.2
 # far longer than a node takes to leave the graph
 END_S = 5
@@ -74,6 +76,7 @@ def node_main(load, args=None, **more):
     use_profile()
     try:
         import rclpy
+        from rclpy.exceptions import NameValidationException, ParameterException
         from rclpy.executors import SingleThreadedExecutor
 
         from ins_sim.core.numerics.compilation import plain_only
@@ -94,10 +97,12 @@ def node_main(load, args=None, **more):
     except (ValueError, OSError) as error:
         _fatal(rclpy, node_class, error)
         stop.request(EXIT_PARAMETERS)
-    except RuntimeError as error:
-        # rcl's own view of the arguments: a file that is no YAML, a remapping that is none
+    except (RuntimeError, NameValidationException, ParameterException) as error:
+        # the view of rcl or rclpy: a file that is no YAML, a remapping that is none
         from .refusals import sentence
-        _fatal(rclpy, node_class, sentence(error, args))
+        unknown = type(error).__name__ == 'UnknownROSArgsError'
+        _fatal(rclpy, node_class, ('unknown ROS argument ' if unknown else '')
+               + sentence(error, args))
         stop.request(EXIT_PARAMETERS)
     else:
         executor = SingleThreadedExecutor()
@@ -125,4 +130,4 @@ def _spin(executor, stop):
 
 
 def _fatal(rclpy, node_class, sentence):
-    rclpy.logging.get_logger(node_class.NAME).fatal(str(sentence))
+    rclpy.logging.get_logger(node_class.NAME).fatal(visible(str(sentence)))

@@ -4,6 +4,9 @@ import math
 import re
 import time
 
+from ins_sim.settings.shown import cut
+from ins_sim.visible_text import visible
+
 # of a sentence, which may repeat a stranger's text
 LONGEST = 400
 # sentences of the same kind: after so long, then after twice as long, up to the last
@@ -13,13 +16,9 @@ KINDS, AT_ONCE, PER_SECOND = 100, 20, 2.0
 _VARIES = re.compile(r"'[^']*'|\b(nan|inf)\b|[-+.\d]+(e[-+]?\d+)?")
 
 
-def visible(text, longest=LONGEST):
-    """Return a text cut, with escape sequences and line breaks made visible."""
-    if len(text) > longest:
-        text = f'{text[:longest]}... ({len(text)} characters)'
-    if text.isprintable():
-        return text
-    return ''.join(c if c.isprintable() else c.encode('unicode_escape').decode() for c in text)
+def short(text, longest=LONGEST):
+    """Return a text cut, with what cannot be seen in it as escapes."""
+    return visible(cut(text, longest))
 
 
 def kind(sentence):
@@ -40,7 +39,7 @@ class Said:
         self._left, self._left_at, self._unsaid = AT_ONCE, -math.inf, 0
 
     def say(self, sentence):
-        """Log a sentence, unless its kind was just said; visible() must have cut it."""
+        """Log a sentence, unless its kind was just said; ``short`` must have cut it."""
         now, name = time.monotonic(), kind(sentence)
         due, pause_s, more = self._kinds.pop(name, (now, FIRST_S, 0))
         if now < due:

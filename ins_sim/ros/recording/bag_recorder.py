@@ -10,6 +10,7 @@ from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.gaps import Gaps
 from ..transport.repairs import REPAIR_S
+from .holes import Holes
 from .run_clock import is_stamped, RunClock
 
 BATCH = 200
@@ -35,8 +36,10 @@ class RecordedTopic:
     gaps: Gaps
     stamped: bool
     seldom: bool
+    holes: Holes
     count: int = 0
     repeated: int = 0
+    unwritten: int = 0
     last: bytes = None
     last_ns: int = 0
     heard_ns: int = 0
@@ -86,7 +89,7 @@ class BagRecorder:
         # its array is stamped with the time of the run, as that of /diagnostics need not be
         by_stamp = is_stamped(topic.type_name) or name == self._node.resolve_topic_name(
             topics.METER_RECORD.name)
-        track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom)
+        track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom, Holes())
         self.tracks[name] = track
         if (track.stamped or seldom) and name != self._ack_name:
             self._silent.append(track)
@@ -146,6 +149,8 @@ class BagRecorder:
             track.repeated += 1
             return
         track.last = data
+        if stamp_ns is not None:
+            track.holes.take(stamp_ns)
         if self._by_stamp and stamp_ns is not None:
             if stamp_ns < track.last_ns and not track.jumped:
                 self._on_jump(track, stamp_ns)
@@ -197,7 +202,12 @@ class BagRecorder:
             self._sent_ns = stamp_ns
 
     def finish(self):
-        """Take what is on its way or in the queues, write all there is, leave the bag open."""
+        """
+        Take what is on its way or in the queues, write all there is, leave the bag open.
+
+        What cannot be written within FINISH_S is counted as ``unwritten``.
+        """
+        end_ns = time.time_ns() + round(REPAIR_S * SECOND)
         repaired = time.monotonic() + REPAIR_S
         while time.monotonic() < repaired:
             if not self.poll():
@@ -205,3 +215,14 @@ class BagRecorder:
         while self.poll() and time.monotonic() < repaired + FINISH_S:
             pass
         self._write_waiting()
+        for track in self.tracks.values():
+            self._count_unwritten(track, end_ns)
+
+    def _count_unwritten(self, track, end_ns):
+        """Count what came before the end and still lies in a queue."""
+        for _ in range(self._depth):
+            message = track.queue.take_with_info()
+            if message is None or message[1]['received_timestamp'] > end_ns:
+                return
+            track.gaps.take(message[1]['publication_sequence_number'])
+            track.unwritten += 1

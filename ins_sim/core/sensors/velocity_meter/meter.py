@@ -19,7 +19,7 @@ from .blocks import pieces
 from .ins_means import InsMeans, UNSEEN
 from .limits import all_measurable, why_not_measurable
 from .reading import Reading
-from .surrogate import SurrogateWindows, velocity_sigmas
+from .surrogate import reported_sigmas, SurrogateWindows
 
 NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
@@ -258,7 +258,7 @@ class VelocityMeter:
         if reading.status == VALID:
             if slip is None:
                 slip = atan2(reading.v_z, reading.v_x)
-            sigma = velocity_sigmas(self._settings.surrogate, self._cycles, slip)
+            sigma = reported_sigmas(self._settings.surrogate, self._cycles, slip)
         end_ns = index * self._dt_ns
         return VelocityFix(
             end_ns - self._span_ns, end_ns, self._cycles, (reading.v_x, -reading.v_z), sigma,

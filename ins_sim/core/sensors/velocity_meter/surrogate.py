@@ -13,6 +13,10 @@ from ins_sim.core.timeseries.fixes import VALID
 from .blocks import in_order
 from .reading import Reading, secant
 
+# what a fix without errors carries: to weigh it the navigator divides by its variance, and its
+# window is the mean of a motion that the strapdown knows no better
+LEAST_SIGMA_M_S = 1e-3
+
 
 def velocity_sigmas(surrogate, cycles, beta):
     """
@@ -25,6 +29,12 @@ def velocity_sigmas(surrogate, cycles, beta):
     sigma_z = surrogate.sigma_z_m_s
     return (surrogate.sigma_x_m_s * math.sqrt(1.0 + x * x) / root,
             math.sqrt(sigma_z * sigma_z + z * z) / root)
+
+
+def reported_sigmas(surrogate, cycles, beta):
+    """Return the sigmas that a fix carries: those of ``velocity_sigmas``, but never zero."""
+    return tuple(max(sigma, LEAST_SIGMA_M_S)
+                 for sigma in velocity_sigmas(surrogate, cycles, beta))
 
 
 class SurrogateWindows:

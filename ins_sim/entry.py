@@ -1,0 +1,66 @@
+"""
+The command ``ins_sim`` as a process: Ctrl-C ends it with one sentence, whenever it comes.
+
+This module is small, and stands before all others, because they take seconds to import.
+"""
+
+import os
+import signal
+import sys
+
+# by the alarm comes what could not be raised at once
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+IMPORTING = '<frozen importlib._bootstrap>'
+AGAIN_S = 0.002
+INTERRUPTED = 130
+
+
+def command():
+    """Run the command line of this process, and end it with the exit code."""
+    sys.unraisablehook = _on_unraisable
+    for number in SIGNALS:
+        signal.signal(number, _interrupt)
+    try:
+        from ins_sim.cli.main import main
+        code = main()
+    except KeyboardInterrupt:
+        print('ins_sim: interrupted; nothing was written', file=sys.stderr)
+        code = INTERRUPTED
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    try:
+        sys.stdout.flush()
+    except OSError:
+        # who read it has gone, and Python would say so again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)
+
+
+def end_at_once():
+    """Let signals end this process with code 0, until a node that imports has its own handlers."""
+    for number in SIGNALS:
+        signal.signal(number, lambda *_: os._exit(0))
+
+
+def _interrupt(number, frame):
+    """
+    Raise KeyboardInterrupt, of which verbs clean up, once.
+
+    In the middle of an import it could be swallowed, or leave half a module: there it waits.
+    """
+    for each in SIGNALS[:2]:
+        signal.signal(each, signal.SIG_IGN)
+    while frame is not None:
+        if frame.f_code.co_filename == IMPORTING:
+            signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
+
+
+def _on_unraisable(unraisable):
+    """Raise KeyboardInterrupt again that was raised where nobody could catch it."""
+    if isinstance(unraisable.exc_value, KeyboardInterrupt):
+        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+    elif 'ignored due to race condition' not in str(unraisable.exc_value):
+        sys.__unraisablehook__(unraisable)

@@ -1,0 +1,179 @@
+"""Folders of results: whole or not at all, one writer at a time, and nothing of others is lost."""
+
+import os
+import subprocess
+import sys
+
+from ins_sim.bags.bag_writer import BagWriter
+from ins_sim.cli.main import main
+from ins_sim.own_folders import MARKER, OwnFolder, whole_folder
+import numpy as np
+import pytest
+from support.places import ROOT
+
+RUN = ['simulate', '-p', 'duration_s:=1.0']
+# what may come with a folder that an older command, or somebody else, has made
+PRECIOUS = {'summary.json': '[]', 'main.c': 'int main;', 'bag_0.mcap': 'mine',
+            'metadata.yaml': 'rosbag2_bagfile_information: {}', 'comparison.json': '[]',
+            'allan.json': '[]', 'parameters.yaml': '', 'nav.npz': ''}
+KILLED = """
+import os
+from pathlib import Path
+import sys
+from ins_sim.own_folders import OwnFolder
+folder = OwnFolder(sys.argv[1])
+(folder.work / 'half').write_text('x')
+(folder.work / 'more').mkdir()
+os.kill(os.getpid(), 9)
+"""
+
+
+def contents(folder):
+    """Return {name: bytes} of the files of a folder."""
+    return {p.name: p.read_bytes() for p in folder.iterdir() if p.is_file()}
+
+
+def imu_csv(path):
+    """Write the readings of an IMU at rest."""
+    rows = np.column_stack([np.arange(200) * 0.01, np.zeros((200, 5)), np.full(200, 9.8)])
+    np.savetxt(path, rows, delimiter=',', comments='', header='t_s,gx_rps,gy_rps,gz_rps,ax_mps2,'
+               'ay_mps2,az_mps2')
+    return path
+
+
+@pytest.mark.parametrize('words', [
+    [*RUN, '-o', 'OUT', '--force'], [*RUN, '-o', 'run', '--bag', 'OUT', '--force'],
+    ['allan', '--duration', '30', '-o', 'OUT', '--force', '--params-file', 'imu_tactical_fog'],
+    ['compare-filters', '--runs', '1', '-p', 'duration_s:=10.0', '-o', 'OUT', '--force'],
+    ['navigate', 'imu.csv', '-o', 'OUT', '--force'], ['dtg-study', '-o', 'OUT'],
+    ['convert', 'imu.csv', 'OUT', '--force']])
+def test_a_folder_of_others_stays(words, tmp_path, monkeypatch, capsys):
+    """Whatever names the files have that are in it: exit code 2, and all is there."""
+    monkeypatch.chdir(tmp_path)
+    imu_csv(tmp_path / 'imu.csv')
+    (tmp_path / 'OUT').mkdir()
+    for name, text in PRECIOUS.items():
+        (tmp_path / 'OUT' / name).write_text(text)
+    before = contents(tmp_path / 'OUT')
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert f'OUT: it has no marker {MARKER} of ins_sim; --force replaces only what the same ' \
+        'command wrote' in said and said.count('\n') == 1
+    assert contents(tmp_path / 'OUT') == before
+
+
+@pytest.mark.parametrize('inner', [False, True])
+def test_a_run_with_a_file_of_somebody_stays(inner, tmp_path, capsys):
+    """Beside the files of the run, or in a folder in it."""
+    out = tmp_path / 'run'
+    assert main([*RUN, '-o', str(out)]) == 0
+    mine = out / 'src' / 'main.c' if inner else out / 'main.c'
+    mine.parent.mkdir(exist_ok=True)
+    mine.write_text('int main;')
+    before = contents(out)
+    assert main([*RUN, '-o', str(out), '--force']) == 2
+    assert f'it holds {"src" if inner else "main.c"}, which ins_sim did not write' in \
+        capsys.readouterr().err
+    assert contents(out) == before and mine.read_text() == 'int main;'
+    mine.unlink()
+    if inner:
+        mine.parent.rmdir()
+    assert main([*RUN, '-o', str(out), '--force']) == 0
+    assert [p.name for p in tmp_path.iterdir()] == ['run']
+
+
+def test_what_comes_while_it_is_computed_stays(tmp_path):
+    """What was put into the old folder in the meantime keeps it where it is."""
+    out = tmp_path / 'out'
+    with whole_folder(out) as work:
+        (work / 'a').write_text('old')
+    with pytest.raises(ValueError, match='it holds notes, which ins_sim did not write'):
+        with whole_folder(out, replace=True) as work:
+            (work / 'a').write_text('new')
+            (out / 'notes').write_text('mine')
+    assert contents(out) == {MARKER: (out / MARKER).read_bytes(), 'a': b'old', 'notes': b'mine'}
+    assert [p.name for p in tmp_path.iterdir()] == ['out']
+
+
+def test_the_current_folder_and_the_root_are_refused(tmp_path, monkeypatch, capsys):
+    """``cd run && ins_sim simulate -o . --force`` loses neither the old run nor the new one."""
+    out = tmp_path / 'run'
+    assert main([*RUN, '-o', str(out)]) == 0
+    before = contents(out)
+    (out / 'inner').mkdir()
+    for here, name in ((out, '.'), (out / 'inner', '..')):
+        monkeypatch.chdir(here)
+        assert main([*RUN, '-o', name, '--force']) == 2
+        said = capsys.readouterr().err
+        assert f'simulate: {name} holds the current folder, ' in said
+        assert 'call from outside it' in said and contents(out) == before
+    for words in ([*RUN, '-o', '/'], [*RUN, '-o', '/', '--force'], ['dtg-study', '-o', '/'],
+                  [*RUN, '-o', str(tmp_path / 'new'), '--bag', '/']):
+        assert main(words) == 2
+        assert '/ is the root of all folders' in (said := capsys.readouterr().err) or \
+            '/ exists; expected a new path for the bag' in said
+
+
+def test_the_second_of_two_at_once_is_refused(tmp_path, capsys):
+    """Before it has computed anything; the first one ends as if it were alone."""
+    out = tmp_path / 'run'
+    for force in ([], ['--force']):
+        with whole_folder(out, bool(force), 'summary.json') as work:
+            assert main([*RUN, '-o', str(out), *force]) == 2
+            assert f'{out} is being written by another process' in capsys.readouterr().err
+            (work / 'summary.json').write_text('first')
+        assert (out / 'summary.json').read_text() == 'first'
+    bag = BagWriter(tmp_path / 'bag')
+    with pytest.raises(ValueError, match='is being written by another process'):
+        OwnFolder(tmp_path / 'bag', replace=True)
+    bag.close()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ['bag', 'run']
+
+
+def test_what_a_killed_process_left_is_in_nobodys_way(tmp_path):
+    """It falls with the next one; a folder of that name which is not ours does not."""
+    out = tmp_path / 'out'
+    subprocess.run([sys.executable, '-c', KILLED, out],
+                   env={**os.environ, 'PYTHONPATH': str(ROOT)})
+    assert (tmp_path / '.out.part' / 'half').exists()
+    with whole_folder(out) as work:
+        assert [p.name for p in work.iterdir()] == [MARKER]
+    (tmp_path / '.out.part').mkdir()
+    (tmp_path / '.out.part' / 'mine').write_text('x')
+    with pytest.raises(ValueError, match='is in the way and not of ins_sim'):
+        with whole_folder(out, replace=True):
+            pass
+    assert (tmp_path / '.out.part' / 'mine').exists() and out.exists()
+
+
+def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
+    """The link stays."""
+    for _ in range(2):
+        with whole_folder(tmp_path / 'link' if (tmp_path / 'link').exists() else tmp_path / 'out',
+                          replace=True) as work:
+            (work / 'file').write_text('x')
+        if not (tmp_path / 'link').exists():
+            (tmp_path / 'link').symlink_to('out')
+    assert (tmp_path / 'link').is_symlink() and not (tmp_path / 'out').is_symlink()
+    assert (tmp_path / 'out' / 'file').exists()
+
+
+def test_a_marker_leads_nowhere_else(tmp_path):
+    """A marker that names what lies outside its folder is none."""
+    with whole_folder(tmp_path / 'out') as work:
+        (work / 'file').write_text('x')
+    (tmp_path / 'victim').write_text('x')
+    with open(tmp_path / 'out' / MARKER, 'a') as marker:
+        marker.write('"../victim"\n')
+    with pytest.raises(ValueError, match='has no marker'):
+        with whole_folder(tmp_path / 'out', replace=True):
+            pass
+    assert (tmp_path / 'victim').exists()
+
+
+def test_parents_that_were_made_go_again(tmp_path):
+    """A run that is refused or fails leaves no folder behind."""
+    with pytest.raises(RuntimeError):
+        with whole_folder(tmp_path / 'a' / 'b' / 'c'):
+            raise RuntimeError
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,46 @@
+"""What stands on the command line of a node beside its ROS arguments."""
+
+import pytest
+
+from ins_sim.ros.process.arguments import answer
+
+
+@pytest.mark.parametrize('name', ['strapdown', 'recorder', 'player'])
+def test_help(name, capsys):
+    """The usage and the parameters with unit and default; exit code 0."""
+    assert answer(name, [name, '--help']) == 0
+    said = capsys.readouterr().out
+    assert said.startswith(f'usage: {name} [--ros-args')
+    assert ('record.depth: queue depth of each subscription [messages] (default: 10000)' in said) \
+        == (name == 'recorder')
+
+
+@pytest.mark.parametrize('words, bad', [
+    (['strapdown', '--bogus'], '--bogus'), (['strapdown', '--ros-args', '--', 'more'], 'more'),
+    (['strapdown', 'x\x1b[2J'], r'x\x1b[2J')])
+def test_what_is_no_ros_argument(words, bad, capsys):
+    """One sentence, exit code 2."""
+    assert answer('strapdown', words) == 2
+    said = capsys.readouterr().err
+    assert f'strapdown: unknown argument {bad}; expected ROS arguments behind --ros-args' in said
+    assert said.count('\n') == 1
+
+
+def test_ros_arguments_are_left_to_ros():
+    """With the name of the program before them, or without."""
+    assert answer('strapdown', ['strapdown', '--ros-args', '-p', 'rate_hz:=5.0', '--']) is None
+    assert answer('recorder', ['--ros-args', '-p', 'x:=1']) is None
+    assert answer('recorder', []) is None
+
+
+@pytest.mark.live
+@pytest.mark.parametrize('words, sentence', [
+    (['-p', 'use_sim_time:=3'], "parameter 'use_sim_time' to '3' of type 'INTEGER', expecting"),
+    (['--bogus'], "unknown ROS argument ['--bogus']")])
+def test_what_ros_refuses(words, sentence, chain):
+    """One line, exit code 2, no traceback."""
+    pytest.importorskip('rclpy')
+    node = chain.start('strapdown', {}, words)
+    assert node.wait(60.0) == 2
+    said = chain.text(node)
+    assert sentence in said and said.count('\n') == 1
