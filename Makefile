@@ -4,7 +4,7 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow figures bench bits lint lock clean
+.PHONY: help setup demo test test-slow figures bench bits fuzz soak lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
@@ -14,6 +14,8 @@ help:
 	@echo 'make figures    compute the long studies and render docs/validation.md'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
 	@echo 'make bits       compare the bits of runs between processors and versions of NumPy'
+	@echo 'make fuzz       try 50000 hostile files and two million hostile messages; takes hours'
+	@echo 'make soak       run the live chain and the recorder at 1 kHz for an hour'
 	@echo 'make lint       check the style and the types'
 	@echo 'make lock       write requirements.lock again (UPGRADE=--upgrade: newest versions)'
 	@echo 'make clean      remove .venv, builds and caches'
@@ -39,6 +41,13 @@ bench:
 
 bits:
 	$(RUN) python tools/bits.py
+
+fuzz:
+	$(RUN) python tools/fuzz_files.py
+	$(RUN) python tools/fuzz_nodes.py
+
+soak:
+	$(RUN) python tools/soak.py
 
 lint:
 	$(RUN) python -m flake8

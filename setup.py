@@ -56,7 +56,7 @@ setup(
             'gnss = ins_sim.ros.main:gnss',
             'aided_navigator = ins_sim.ros.main:aided_navigator',
             'recorder = ins_sim.ros.main:recorder',
-            'ins_sim = ins_sim.cli.main:main',
+            'ins_sim = ins_sim.entry:command',
         ],
     },
 )

@@ -8,14 +8,18 @@ Where ROS 2 is sourced its own rclpy and libraries are used, which a fixed set o
 overlay; elsewhere all comes from PyPI, in the versions and with the hashes of requirements.lock.
 """
 
-import fcntl
-import hashlib
-import json
-import os
-import platform
-import shutil
-import subprocess
 import sys
+try:
+    import fcntl
+    import hashlib
+    import json
+    import os
+    import platform
+    import shutil
+    import signal
+    import subprocess
+except KeyboardInterrupt:
+    sys.exit(130)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 VENV = os.path.join(ROOT, '.venv')
@@ -172,8 +176,16 @@ def install(facts, with_ros, fresh):
 
 def run(command, with_ros, doing):
     """Run a step of the set-up, or end with a sentence."""
-    code = subprocess.call(command, env=venv_environment(with_ros), stdin=subprocess.DEVNULL,
-                           cwd=ROOT)
+    # In a group of its own, so that Ctrl-C reaches this process alone: the step would print a
+    # traceback.
+    step = subprocess.Popen(command, env=venv_environment(with_ros), stdin=subprocess.DEVNULL,
+                            cwd=ROOT, start_new_session=True)
+    try:
+        code = step.wait()
+    except KeyboardInterrupt:
+        os.killpg(step.pid, signal.SIGKILL)
+        step.wait()
+        raise
     if code != 0:
         sys.exit('ins_sim: {} failed, see above; the next call starts over'.format(doing))
 
@@ -215,5 +227,15 @@ def main():
         sys.exit('ins_sim: cannot run {}: {}'.format(command[0], error.strerror))
 
 
+def started():
+    """Run ``main``, and end with one sentence where it is interrupted."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        main()
+    except KeyboardInterrupt:
+        say('interrupted; the next call goes on or starts over')
+        sys.exit(130)
+
+
 if __name__ == '__main__':
-    main()
+    started()

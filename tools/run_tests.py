@@ -37,4 +37,7 @@ def main(kind):
 if __name__ == '__main__':
     if len(sys.argv) != 2 or sys.argv[1] not in CALLS:
         sys.exit(__doc__.strip())
-    sys.exit(main(sys.argv[1]))
+    try:
+        sys.exit(main(sys.argv[1]))
+    except KeyboardInterrupt:
+        sys.exit(130)

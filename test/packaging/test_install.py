@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -190,6 +191,27 @@ def test_sourced_ros_without_rclpy_is_refused(source, tmp_path, clean_environmen
     assert result.returncode == 1
     assert 'install ros-jazzy-rclpy' in result.stderr
     assert not (source / '.venv').exists()
+
+
+def test_an_interrupted_set_up_says_so_in_one_sentence(source, clean_environment, tmp_path):
+    """Ctrl-C while a step of the set-up runs; the step is an interpreter that makes no .venv."""
+    mark = tmp_path / 'started'
+    (source / 'tools' / 'slow.py').write_text(
+        'import os, pathlib, sys, time\nsys.path.insert(0, os.path.dirname(__file__))\n'
+        'import bootstrap\n'
+        f'code = "import pathlib, time; pathlib.Path({str(mark)!r}).touch(); time.sleep(600)"\n'
+        'bootstrap.main = lambda: bootstrap.run([sys.executable, "-c", code], False, "waiting")\n'
+        'bootstrap.started()\n')
+    process = subprocess.Popen([sys.executable, source / 'tools' / 'slow.py'], text=True,
+                               env=clean_environment, stderr=subprocess.PIPE)
+    while not mark.exists():
+        assert process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    error = process.communicate()[1]
+    assert process.returncode == 130
+    assert error == 'ins_sim: interrupted; the next call goes on or starts over\n'
+
 
 
 @pytest.mark.slow
