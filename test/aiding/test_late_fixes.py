@@ -126,7 +126,7 @@ NAN = math.nan
     (METER, replace(METER_FIX, start_ns=METER_FIX.start_ns + 10_000_000,
                     end_ns=METER_FIX.end_ns + 10_000_000), 'ends inside a window; expected a '
      'multiple of 0.5 s of motion time'),
-    (METER, replace(METER_FIX, velocity=(NAN, 0.0)), 'has a velocity of (nan, 0.0); expected '
+    (METER, replace(METER_FIX, velocity=(NAN, 0.0)), 'has a velocity of (nan, 0.0, nan); expected '
      'finite numbers'),
     (METER, replace(METER_FIX, sigma=(0.0, 1.0)), 'has standard deviations of velocity (0.0, '
      '1.0); expected positive ones'),

@@ -169,7 +169,7 @@ def test_frames_of_any_length_nan_and_equal_stamps(tmp_path):
         bag.add_topic('/odom', topics.ODOMETRY)
         for frame, value in zip(frames, values.tolist()):
             writer = Writer(topics.ODOMETRY, frame, frame + 'x', runs=((0, 85),))
-            bag.write('/odom', 7, writer.pack(7, (value,) * 85))
+            bag.write('/odom', 7, writer.pack_block([7], np.full((1, 85), value))[0])
     with open_bag(tmp_path / 'bag') as bag:
         array = bag.arrays('/odom')
         assert np.array_equal(array['twist_covariance'][:, 35], values, equal_nan=True)

@@ -186,13 +186,16 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
     dtype = columns.column_dtype(type_name, [name for name, _ in columns.DOUBLES[type_name]])
     out = np.zeros(len(data), dtype=dtype)
     try:
-        columns.read_columns(type_name,
-                             np.frombuffer(b''.join(data) + b'\x00' * 64, dtype=np.uint8),
-                             starts, sizes, out)
+        odd = columns.read_columns(type_name, np.frombuffer(b''.join(data) + b'\x00' * 64,
+                                                            dtype=np.uint8),
+                                   starts, sizes, out)
     except ValueError:
         assert refused
         return
-    assert not refused
+    # stamps of too many nanoseconds, which the reader of single messages refuses, are counted
+    assert refused == bool(odd)
+    if refused:
+        return
     assert out['stamp_ns'].tolist() == [stamp for stamp, _ in expected]
     doubles = np.concatenate([out[n].reshape(len(out), -1) for n in dtype.names[2:]]
                              or [np.zeros((len(out), 0))], axis=1)

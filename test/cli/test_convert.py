@@ -193,7 +193,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, capsys):
     (tmp_path / 'data').mkdir()
     (tmp_path / 'data' / 'thesis.txt').write_text('years')
     assert convert(tmp_path / 'imu.csv', tmp_path / 'data', '--force') == 2
-    assert 'only a bag is replaced' in capsys.readouterr().err
+    assert 'has no marker .ins_sim' in capsys.readouterr().err
     assert sorted(p.name for p in tmp_path.iterdir()) == ['bag', 'data', 'folder.csv', 'imu.csv']
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ins_sim.cli.main import main
+from ins_sim import own_folders
 from ins_sim.report import figure, storage
 
 
@@ -66,7 +67,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run')]) == 2
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(ValueError, match='exists'):
-        storage.check_free(tmp_path, force=False)
+        own_folders.check_free(tmp_path)
 
 
 @pytest.mark.parametrize('arguments, sentence', [

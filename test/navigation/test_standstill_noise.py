@@ -12,7 +12,7 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
 from ins_sim.core.navigation.alignment import standard_error
 from ins_sim.core.postprocessing.imu_record import RecordedImu
-from ins_sim.core.postprocessing.initial_state import Sources
+from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.postprocessing.navigate import navigate
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.navigate import AlignmentSettings, NavigateSettings

@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as ElementTree
 
 from ins_sim import __version__, graph, resources
@@ -211,7 +212,6 @@ def test_an_interrupted_set_up_says_so_in_one_sentence(source, clean_environment
     error = process.communicate()[1]
     assert process.returncode == 130
     assert error == 'ins_sim: interrupted; the next call goes on or starts over\n'
-
 
 
 @pytest.mark.slow
