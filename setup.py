@@ -40,7 +40,7 @@ setup(
                  'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
                  # what results are compared with
                  'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12'],
-        'bench': ['python-ins<2', 'rosbags<0.12'],
+        'bench': ['python-ins<2', 'inu<3', 'rosbags<0.12'],
     },
     zip_safe=False,
     maintainer='The ins_sim developers',

@@ -1,12 +1,12 @@
 """
-What a step of each stage of an offline run costs, plain and compiled, against pyins, in one run.
+What a step of each stage of an offline run costs, plain and compiled, against peers, in one run.
 
 Run: python benchmarks/steps.py [steps, by default 360000]
 
 CPU time of one thread, ns a step, the best of a few runs in turns. Plain: the same loops without
 Numba, over a twentieth of the steps. Truth and ideal readings are made before the clock starts,
-except that an IMU on a motion evaluates it. pyins (from PyPI: python-ins, extra bench) generates
-increments and integrates them.
+except that an IMU on a motion evaluates it. Peers (extra bench): pyins
+(from PyPI: python-ins) generates increments and integrates them, inu generates readings.
 """
 
 from dataclasses import replace
@@ -100,20 +100,34 @@ def stages(steps):
     yield 'navigation with errors, drift and solution', 260, navigate
 
 
-def peers(steps):
-    """Yield name, None and a function, of pyins."""
-    from pyins import sim, strapdown
+def turning(steps):
+    """Return t and the angles roll, pitch, yaw of a turning bench, deg, at steps + 1 instants."""
     t = 0.01 * np.arange(steps + 1)
-    angles = np.stack([np.degrees(0.5 * t), np.full(len(t), -30.0), np.degrees(t)], axis=-1)
+    return t, np.stack([np.degrees(0.5 * t), np.full(len(t), -30.0), np.degrees(t)], axis=-1)
+
+
+def pyins(steps):
+    """Yield name and function, of pyins."""
+    from pyins import sim, strapdown
+    t, angles = turning(steps)
 
     def generate():
         return sim.generate_imu(t, [55.75, 37.5, 0.0], angles, np.zeros((len(t), 3)), 'increment')
 
     truth, imu = generate()
     increments = strapdown.compute_increments_from_imu(imu, 'increment')
-    yield 'pyins: generation of an IMU without delays', None, generate
-    yield 'pyins: strapdown alone', None, lambda: strapdown.Integrator(
+    yield 'pyins: generation of an IMU without delays', generate
+    yield 'pyins: strapdown alone', lambda: strapdown.Integrator(
         truth.iloc[0]).integrate(increments)
+
+
+def inu(steps):
+    """Yield name and function, of inu."""
+    from inu import mech_inv
+    t, angles = turning(steps)
+    places = np.tile([np.radians(55.75), np.radians(37.5), 0.0], (len(t), 1))
+    yield 'inu: generation of an IMU without delays', lambda: mech_inv(
+        places, np.radians(angles), 0.01)
 
 
 def best_ns(work, steps):
@@ -137,12 +151,13 @@ def main(steps=360000):
     for name, goal, work in stages(steps):
         work()  # compiles
         print(f'{name:50} {best_ns(work, steps):9.0f} {plain[name]:9.0f} {goal:6}', flush=True)
-    try:
-        for name, _, work in peers(steps):
-            work()
-            print(f'{name:50} {best_ns(work, steps):9.0f}', flush=True)
-    except ImportError as error:
-        print(f'pyins is not installed ({error}): pip install python-ins')
+    for peer, package in ((pyins, 'python-ins'), (inu, 'inu')):
+        try:
+            for name, work in peer(steps):
+                work()
+                print(f'{name:50} {best_ns(work, steps):9.0f}', flush=True)
+        except ImportError as error:
+            print(f'{peer.__name__} is not installed ({error}): pip install {package}')
 
 
 if __name__ == '__main__':
