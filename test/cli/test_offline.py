@@ -7,7 +7,7 @@ import pytest
 
 from ins_sim.cli.main import main
 from ins_sim import own_folders
-from ins_sim.report import figure, storage
+from ins_sim.report import figure
 
 
 def test_simulate_writes_a_run(tmp_path, capsys):
