@@ -40,7 +40,7 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
     folder = tmp_path / 'run'
     assert {path.name for path in folder.iterdir()} == {
         '.ins_sim', 'run.npz', 'summary.json',
-            'parameters.yaml', 'manifest.yaml', 'errors.png', 'aided.png'}
+        'parameters.yaml', 'manifest.yaml', 'errors.png', 'aided.png'}
     for name in ('errors.png', 'aided.png'):
         assert (folder / name).read_bytes().startswith(b'\x89PNG')
     with np.load(folder / 'run.npz') as arrays:
