@@ -5,8 +5,8 @@ Run: python benchmarks/steps.py [steps, by default 360000]
 
 CPU time of one thread, ns a step, the best of a few runs in turns. Plain: the same loops without
 Numba, over a twentieth of the steps. Truth and ideal readings are made before the clock starts,
-except that an IMU on a motion evaluates it. Peers (extra bench): pyins
-(from PyPI: python-ins) generates increments and integrates them, inu generates readings.
+except that an IMU on a motion evaluates it. Peers (extra bench): pyins (from PyPI: python-ins)
+generates increments and integrates them, inu generates readings.
 """
 
 from dataclasses import replace

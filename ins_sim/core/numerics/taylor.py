@@ -33,15 +33,6 @@ class Series:
             c[1] = 1.0
         return cls(c)
 
-    @classmethod
-    def of_derivatives(cls, *derivatives):
-        """Return the series with the given value, first, second, ... derivative, each (n,)."""
-        factorial, rows = 1.0, []
-        for k, derivative in enumerate(derivatives):
-            factorial *= max(k, 1)
-            rows.append(np.asarray(derivative, dtype=float) / factorial)
-        return cls(np.array(rows))
-
     def constant(self, value):
         """Return the series of a constant at the same instants and order."""
         c = np.zeros_like(self.c)

@@ -114,13 +114,6 @@ def navigate_blocks(settings, motion, blocks, faults=None):
             yield truth[first:first + len(states)][due], states[due], errors[due]
 
 
-def samples_with_truth(imu, t_ns, truth):
-    """Return an iterable of t_ns, omega, f and (lat, lon, height, v_n, q_nb) of the samples."""
-    poses = zip(truth.lat.tolist(), truth.lon.tolist(), truth.height.tolist(),
-                truth.v_n.tolist(), truth.q_nb.tolist())
-    return zip(t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()), poses)
-
-
 class _RecentTruth:
     """The truth of a motion; what was asked for last is not computed again."""
 

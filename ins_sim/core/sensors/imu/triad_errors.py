@@ -214,7 +214,7 @@ class AdditiveNoise:
             self._add(Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s))
 
     def _add(self, made):
-        """Add Processes of which every third belongs to the same axis."""
+        """Add Processes whose columns are those of axes x, y, z, x, y, z and so on."""
         self.processes.append(lambda first, count: made.sums(first, count, 3))
 
     def __call__(self, first, count):
@@ -229,7 +229,7 @@ class AdditiveNoise:
 
 
 def make_noise(model, seed, run, name, dt_s):
-    """Return the AdditiveNoise, or None where there is none."""
+    """Return the AdditiveNoise of a triad, or None if all its terms are zero."""
     noise = AdditiveNoise(model, seed, run, name, dt_s)
     if noise.white is None and not noise.processes and not noise.fixed.any():
         return None
