@@ -5,7 +5,7 @@ from itertools import chain
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.cdr import SECOND, STAMP_END_NS
 from .run_clock import is_stamped
 
 CLOCK = topics.CLOCK_TOPIC.name
@@ -80,7 +80,17 @@ class Playing:
                              f'{(end - begin) / SECOND:g} s, the length of {path}')
         self._last_ns = end if options.duration_s is None else \
             self.first_ns + round(options.duration_s * SECOND)
+        if options.clock_hz is not None:
+            self._check_clock(self.first_ns, min(end, self._last_ns))
         self.driver = self._find_driver() if options.required else None
+
+    def _check_clock(self, *log_ns):
+        """Raise ValueError where a log time is none that /clock can hold."""
+        for t_ns in log_ns:
+            if not -STAMP_END_NS <= t_ns < STAMP_END_NS:
+                raise ValueError(f'a message of {self.bag.path} was logged at {t_ns // SECOND} s; '
+                                 f'expected less than {STAMP_END_NS // SECOND} s, the end of the '
+                                 f'stamps of {CLOCK}: leave --clock out')
 
     def _find_driver(self):
         present = [n for n, count in self.counts.items()

@@ -117,6 +117,22 @@ def test_options_that_are_refused(options, sentence, bag):
     assert sentence in str(error.value) and '\n' not in str(error.value)
 
 
+def test_log_times_that_clock_cannot_say(tmp_path):
+    """Beyond 2038 they are played, but not with /clock: refused before the first message."""
+    path = tmp_path / 'bag'
+    with BagWriter(path) as writer:
+        writer.add_topic('imu', topics.IMU)
+        for t_s in (5, 2**31 + 7):
+            writer.write('imu', t_s * SECOND, imu(5 * SECOND))
+    playing = Playing(path, Options())
+    assert [t // SECOND for _, t, _ in playing.messages()] == [5, 2**31 + 7]
+    playing.close()
+    with pytest.raises(ValueError, match='was logged at 2147483655 s; expected less than '
+                                         '2147483648 s, the end of the stamps of /clock'):
+        Playing(path, Options(clock_hz=100.0))
+    Playing(path, Options(clock_hz=100.0, duration_s=10.0)).close()
+
+
 def test_start_and_duration(bag):
     """Both count from the first message of the topics that are played; the ends are in."""
     playing = Playing(bag, Options(topics=('imu/data_raw',), start_s=1.0, duration_s=3.0))
