@@ -1,6 +1,7 @@
 """Write the CSV files that ``csv_flight`` and ``csv_imu`` read, without losing a bit."""
 
 import gzip
+import os
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,8 @@ def _write(path, t_ns, names, values):
     if path.name.endswith('.gz'):
         data = gzip.compress(data, mtime=0)
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f'.{path.name}.part')
+    # a name of this process: of two that write at once the last one's file stands, whole
+    part = path.with_name(f'.{path.name}.{os.getpid()}.part')
     try:
         part.write_bytes(data)
         part.replace(path)

@@ -270,3 +270,11 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
     with pytest.raises(TypeError):
         csv_writer.write_imu(path, imu_of(20))
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_part_of_another_process_is_left_alone(tmp_path):
+    """Two that write one file at once: each has a part of its own, and the last one stands."""
+    other = tmp_path / '.imu.csv.part'
+    other.write_text('of another process')
+    csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
+    assert other.read_text() == 'of another process' and len(list(tmp_path.iterdir())) == 2
