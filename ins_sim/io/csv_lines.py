@@ -5,7 +5,7 @@ Fields are separated by commas, semicolons or tabs; where it is not commas, a co
 decimal point. Lines that begin with # or % are comments, but the last one before the numbers is
 the header if it has as many fields as they (ROS 1: ``%time,field...``; EuRoC: ``#timestamp
 [ns],...``). A header that is repeated amid the rows, as where files were put together, is left
-out.
+out. Without a header the columns are called ``column 1``, ``column 2`` and so on.
 """
 
 import csv
@@ -26,7 +26,8 @@ class CsvLines:
     """
     A table of texts.
 
-    header: names of the columns; header_line: the line it stands in; lines: that of each row;
+    header: names of the columns; header_line: the line it stands in, where headless the first
+    line of numbers; headless: whether the columns have no names; lines: that of each row;
     rows: lists of texts, not yet known to be as long as the header; notes: what was left out or
     taken for something else, in sentences.
     """
@@ -36,6 +37,7 @@ class CsvLines:
     lines: list
     rows: list
     notes: tuple
+    headless: bool
 
 
 def read_lines(path):
@@ -55,20 +57,23 @@ def read_lines(path):
                          f'fields separated by {DELIMITERS[delimiter]}') from error
     if not rows:
         raise ValueError(f'{path} holds comments only; expected a header line and rows')
-    header = [name.strip() for name in rows[0]]
+    headless, header_line = _is_row(rows[0], delimiter), lines[0]
+    header = [f'column {k}' for k in range(1, len(rows[0]) + 1)] if headless else [
+        name.strip() for name in rows[0]]
     notes = [] if not source.comments else [f'{path}: {source.comments} lines of comment left out']
     repeated = [k for k, row in enumerate(rows) if k and row[0] == rows[0][0] and row == rows[0]
-                and not is_number(row[0])]
+                and not headless]
     if repeated:
         notes.append(f'{path}: the header stands in {len(repeated)} more lines, the first of them '
                      f'line {lines[repeated[0]]}: left out')
         for k in reversed(repeated):
             del rows[k], lines[k]
-    if delimiter != ',' and any(',' in field for row in rows[1:3] for field in row):
+    first = 0 if headless else 1
+    if delimiter != ',' and any(',' in field for row in rows[first:3] for field in row):
         notes.append(f'{path}: fields are separated by {DELIMITERS[delimiter]}, so a comma is '
                      'taken for the decimal point')
         rows = [[field.replace(',', '.') for field in row] for row in rows]
-    return CsvLines(header, lines[0], lines[1:], rows[1:], tuple(notes))
+    return CsvLines(header, header_line, lines[first:], rows[first:], tuple(notes), headless)
 
 
 class _Numbered:
@@ -98,13 +103,21 @@ def _layout(text):
             seen.append(line)
     first = seen[0] if seen else comment
     second = seen[1] if len(seen) > 1 else first
-    for delimiter in DELIMITERS:
-        count = len(_fields(first, delimiter))
-        if count > 1 and count == len(_fields(second, delimiter)):
-            headed = comment and is_number(_fields(first, delimiter)[0]) and (
-                len(_fields(comment, delimiter)) == count)
-            return delimiter, number if headed else 0
-    return ',', 0
+    counts = {mark: len(_fields(first, mark)) for mark in DELIMITERS}
+    found = [mark for mark, count in counts.items()
+             if count > 1 and count == len(_fields(second, mark))]
+    if not found:
+        return ',', 0
+    # Decimal commas part a line of numbers as well as what separates the numbers does.
+    delimiter = found[-1] if _is_row(_fields(first, found[-1]), found[-1]) else found[0]
+    headed = comment and _is_row(_fields(first, delimiter), delimiter) and (
+        len(_fields(comment, delimiter)) == counts[delimiter])
+    return delimiter, number if headed else 0
+
+
+def _is_row(fields, delimiter):
+    """Return whether fields begin with a number, as those of a header do not."""
+    return is_number(fields[0] if delimiter == ',' else fields[0].replace(',', '.'))
 
 
 def _is_comment(line):

@@ -6,7 +6,7 @@ import difflib
 import numpy as np
 
 from ins_sim.settings.shown import listed, shown
-from .csv_lines import is_number, number, read_lines
+from .csv_lines import number, read_lines
 from .csv_names import ColumnFinder
 
 # int64 nanoseconds end at 9.22e9 s.
@@ -27,7 +27,7 @@ class CsvTable:
         table = read_lines(path)
         where = f'{path}, line {table.header_line}'
         self._finder = ColumnFinder(where, table.header, columns, units, key)
-        self._check_header(where, table.header, required, optional, key)
+        self._check_header(where, table, required, optional, key)
         found = {name: self._finder.find(name) for name in (*required, *optional)}
         self._found = {name: place for name, place in found.items() if place is not None}
         self.lines, self.rows = table.lines, table.rows
@@ -52,19 +52,21 @@ class CsvTable:
                      factor != 1.0)]
         return [f'{self.path}: {listed(other, 10)}'] if other else []
 
-    def _check_header(self, where, header, required, optional, key):
-        expected = f'expected {", ".join(required)}'
+    def _check_header(self, where, table, required, optional, key):
+        header, expected = table.header, f'expected {", ".join(required)}'
         if len(header) == 1:
             raise ValueError(f'{where}: {shown(header[0])} is a single column; {expected}, '
                              'separated by commas, semicolons or tabs')
-        if is_number(header[0]):
-            raise ValueError(f'{where}: found numbers where the column names belong; {expected}')
         missing = [name for name in required if not self._finder.is_known(name)]
         known = (*required, *optional)
         twice = [f'column {name} stands {header.count(name)} times'
                  for name in known if header.count(name) > 1]
         if not missing and not twice:
             return
+        if table.headless:
+            raise ValueError(f'{where}: found numbers where the column names belong; {expected}, '
+                             f'or {key}.{missing[0]} "column 1" and so on, which gives each '
+                             'column by its number')
         unknown = [name for name in header if name not in known]
         found = [_unknown(name, known) for name in unknown[:4] if missing]
         if missing and len(unknown) > 4:

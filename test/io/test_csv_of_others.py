@@ -97,6 +97,23 @@ def test_a_repeated_header_and_capital_letters(tmp_path):
         assert main(['convert', str(tmp_path / name), str(tmp_path / name[:-4])]) == 0
 
 
+@pytest.mark.parametrize('shape', ['plain', 'semicolons', 'tabs'])
+def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
+    """The refusal names the way; nothing of the first line is lost."""
+    text = SHAPES[shape][0].partition('\n')[2]
+    with pytest.raises(ValueError, match='line 1: found numbers where the column names belong; '
+                       'expected t_s, .*, or columns.t_s "column 1" and so on'):
+        read(tmp_path, text)
+    columns = {name: f'column {k}' for k, name in enumerate(PLAIN, 1)}
+    t_ns, values, notes = read(tmp_path, text, columns=columns, units={'rate': 'deg/s'})
+    assert np.array_equal(t_ns, T_NS)
+    assert np.allclose(values[:, :3], np.radians(VALUES[:, :3]), rtol=1e-15, atol=0.0)
+    assert np.array_equal(values[:, 3:], VALUES[:, 3:])
+    assert any('t_s from column 1' in note for note in notes)
+    with pytest.raises(ValueError, match="no column 'column 8', which is columns.az_mps2"):
+        read(tmp_path, text, columns={**columns, 'az_mps2': 'column 8'})
+
+
 @pytest.mark.parametrize('text, sentence', [
     (table(PLAIN, ['1e300'] * N), "t_s is '1e300'; expected a number of seconds within"),
     (table(PLAIN, ['9300000000'] * N), "t_s is '9300000000'; expected"),
