@@ -156,3 +156,16 @@ def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsy
     assert twin['predicted'] == pytest.approx(twin['measured'], rel=0.02)
     assert off['max |dN|']['predicted'] == pytest.approx(off['max |dN|']['measured'], rel=0.02)
     assert off['max |dN - twin|']['predicted'] is None
+
+
+@pytest.mark.parametrize('more, count', [
+    ((), 1), (('source:=motion',), 0), (('history:=frozen',), 0), (('gyro.delay_us.y:=0.0',), 1),
+    (('gyro.delay_us.x:=5e4',), 0)])
+def test_a_delay_beyond_what_a_stream_is_continued_by_is_said_once(more, count, tmp_path, capsys):
+    """60 ms, of the 50 that a stream with its analytic history is continued backwards."""
+    words = ['gyro.delay_us.x:=6e4', 'duration_s:=1.0', *more]
+    assert main(['simulate', '--params-file', 'motion_2', '-o', str(tmp_path / 'run'),
+                 *(word for a in words for word in ('-p', a))]) == 0
+    said = capsys.readouterr().err
+    assert said.count('a channel is delayed by 60 ms, but a stream is continued backwards by 50 '
+                      'ms only') == count

@@ -2,12 +2,13 @@
 
 from functools import partial
 import math
+import warnings
 
 import numpy as np
 
 from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.core.numerics.instants import seconds
-from ins_sim.core.streams.before_truth import BeforeTruth
+from ins_sim.core.streams.before_truth import BeforeTruth, LINE_S
 from ins_sim.core.streams.faults import (check_finite, check_periods, MOST_PERIODS,
                                          StreamFault)
 from ins_sim.core.streams.truth_buffer import FORCE_B, FORCE_M, RATE, TruthBuffer
@@ -61,6 +62,13 @@ class StreamImu(Sensor):
         self._node_ns = [round(dt_ns * (s - 1.0)) for s in NODES]
         self._rate_node_ns = [round(dt_ns * (s - 1.0)) for s in self._triads.rate_nodes]
         self._lead_ns = max(0, -min(delays))
+        longest_s = 1e-9 * max(delays)
+        if longest_s > LINE_S and not self._frozen:
+            warnings.warn(f'a channel is delayed by {longest_s * 1e3:.6g} ms, but a stream is '
+                          f'continued backwards by {LINE_S * 1e3:g} ms only and is constant '
+                          f'before that, so that the first {longest_s - LINE_S:.6g} s of its '
+                          'readings hold an error of the start; source motion knows what was '
+                          'before', stacklevel=2)
 
     def reset(self):
         """Forget everything; the next sample is the first."""
