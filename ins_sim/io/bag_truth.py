@@ -17,24 +17,26 @@ SIBLINGS = {topics.TRUTH_FIX: ('latitude', 'longitude', 'altitude'),
             topics.TRUTH_ATTITUDE: ('quaternion',)}
 
 
-def read_poses(path, topic, datum, key=KEY):
+def read_poses(path, topic, datum, key=KEY, origin='fix'):
     """
     Return the RecordedPoses of an Odometry topic of a bag.
 
     topic: its name, or 'auto' for the only one that ends in truth/odometry; key: what the name is
     the value of.  Position and attitude are those of truth/fix and truth/attitude beside it where
     both are there; else the origin of its frame is that of ``map_origin``, for which datum is the
-    one given.  Raises ValueError in one sentence where the topic is missing, of another type, or
-    holds what is no motion, and where the origin is unknown.
+    one given; origin: 'datum' to put it there in any case.  Raises ValueError in one sentence
+    where the topic is missing, of another type, or holds what is no motion, and where the origin
+    is unknown.
     """
     with open_bag(path) as bag:
         name = choose_topic(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name,
                             needed=True)
         table = bag.arrays(name, ('position', 'orientation', 'linear', 'angular'))
-        beside = _beside(bag, name)
+        given = origin == 'datum'
+        beside = None if given else _beside(bag, name)
         notes = ()
         if beside is None and len(table):
-            datum, note = map_origin(bag, name, datum)
+            datum, note = map_origin(bag, name, datum, given)
             notes = (note,)
     where = f'{path}: {name}'
     if not len(table):

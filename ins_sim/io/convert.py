@@ -50,7 +50,7 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
                          'expected a bag and a CSV file')
     if from_bag:
         _check_file(target, force)
-        return _to_csv(source, target, settings.datum, topic, imu)
+        return _to_csv(source, target, settings, topic, imu)
     check_target(target, storage, compression, force)
     how = dict(storage=storage, compression=compression, replace=force)
     if csv_imu.is_imu(source, imu.columns):
@@ -68,7 +68,7 @@ def _check_file(path, force):
         raise ValueError(f'{path} is no file; --force replaces only a file')
 
 
-def _to_csv(source, target, datum, topic, chosen):
+def _to_csv(source, target, settings, topic, chosen):
     with open_bag(source) as bag:
         types = [topics.ODOMETRY, topics.IMU]
         wanted = 'auto' if topic is None else topic
@@ -86,7 +86,7 @@ def _to_csv(source, target, datum, topic, chosen):
             imu, more = stamped_samples(imu, chosen.stamps)
             csv_writer.write_imu(target, imu)
             return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes, *more])
-    poses = read_poses(source, name, datum, '--topic')
+    poses = read_poses(source, name, settings.datum, '--topic', settings.motion.recording.origin)
     csv_writer.write_flight(target, poses)
     return '\n'.join([f'{target} with {len(poses.t_ns)} rows of {name}', *poses.notes])
 

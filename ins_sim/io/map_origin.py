@@ -19,16 +19,16 @@ STEADY_M = 1.0
 ROUNDS = 100
 
 
-def map_origin(bag, name, given):
+def map_origin(bag, name, given, certain=False):
     """
     Return the Datum of the frame of an Odometry topic, and a sentence about it.
 
     bag: BagReader; name: of the topic; given: Datum of the settings, which counts as given where
-    it is not the default one.  Its origin is where a NavSatFix of the same stamps puts it: that
-    of the same solution, or of another one in the same namespace.  Raises ValueError where there
-    is none and none is given.
+    it is not the default one; certain: whether it is the origin, default or not.  Else the origin
+    is where a NavSatFix of the same stamps puts it: that of the same solution, or of another one
+    in the same namespace.  Raises ValueError where there is none and none is given.
     """
-    for odometry, fix in _pairs(bag, name):
+    for odometry, fix in () if certain else _pairs(bag, name):
         origins = _origins(bag, odometry, fix)
         if origins is None:
             continue
@@ -36,15 +36,17 @@ def map_origin(bag, name, given):
         apart = max(math.dist(_ecef(*origins[0]), _ecef(*other)) for other in origins)
         if apart > STEADY_M:
             raise ValueError(f'{bag.path}: {odometry} and {fix} put the origin of the map frame '
-                             f'at places {apart:.3g} m apart; expected one place')
+                             f'at places {apart:.3g} m apart; expected one place, or '
+                             'motion.recording.origin datum')
         datum = Datum(*(float(round(math.degrees(a), 12)) for a in (lat, lon)), height)
         return datum, (f'{bag.path}: the origin of the frame of {name} is at '
                        f'{datum.latitude_deg:.9g}, {datum.longitude_deg:.9g} deg, '
                        f'{datum.height_m:.6g} m, by {fix}')
-    if given == Datum():
+    if given == Datum() and not certain:
         raise ValueError(f'{bag.path} has no NavSatFix beside {name}, so that the place of its '
                          'frame is unknown; expected datum.latitude_deg, datum.longitude_deg and '
-                         'datum.height_m of its origin (the default datum is not assumed)')
+                         'datum.height_m of its origin (the default datum is not assumed '
+                         'unless motion.recording.origin is datum)')
     return given, (f'{bag.path}: the origin of the frame of {name} is taken to be the datum '
                    f'given, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
                    f'{given.height_m:.6g} m')

@@ -31,9 +31,12 @@ def read_motion(settings) -> Motion:
 def _read_poses(recording, datum):
     if is_bag(recording.path):
         from .bag_truth import read_poses
-        return read_poses(recording.path, recording.topic, datum)
+        return read_poses(recording.path, recording.topic, datum, origin=recording.origin)
     from .csv_flight import read_poses
     if recording.topic != 'auto':
         raise ValueError(f'motion.recording.topic is {recording.topic!r}, but {recording.path} is '
                          'no bag; expected auto')
+    if recording.origin != 'fix':
+        raise ValueError(f'motion.recording.origin is {recording.origin}, but {recording.path} is '
+                         'no bag; expected fix')
     return read_poses(recording.path, values_of(recording.columns))

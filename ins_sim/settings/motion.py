@@ -110,6 +110,10 @@ class Recording(SettingsGroup):
 
     path: str = setting('', 'CSV file, plain or gzip, or rosbag2 bag (folder or file)')
     topic: str = setting('auto', 'odometry in the bag; auto: the one that ends in truth/odometry')
+    origin: str = setting('fix', 'origin of the map frame of an odometry in the bag. fix: where a '
+                          'NavSatFix beside it puts it; without one, datum.* if it is not the '
+                          'default; datum: datum.*, whatever else the bag holds',
+                          choices=('fix', 'datum'))
     start_s: float = setting(3.0, 'recorder time of motion time zero, from the first row', 's',
                              3.0, 1e7)
     smoothing_s: float = setting(0.0, 'window of the boxcar smoothing; 0 = none', 's', 0.0, 60.0)

@@ -66,6 +66,28 @@ def test_no_datum_is_assumed(tmp_path, capsys):
     assert apart_m(read_poses(tmp_path / 'x.csv'), 55.0, 37.0) < 1e-6
 
 
+def test_the_default_datum_can_be_meant(tmp_path, capsys):
+    """Whoever flew from the default place says so, against a fix of another place as well."""
+    flown(tmp_path / 'bag', 55.75, 37.62, 'ins/odometry')
+    flown(tmp_path / 'other', 55.0, 37.0)
+    origin = ['-p', 'motion.recording.origin:=datum']
+    for name, topic in (('bag', 'ins'), ('other', 'ins'), ('other', 'truth')):
+        capsys.readouterr()
+        target = tmp_path / f'{name}_{topic}.csv'
+        assert main(['convert', str(tmp_path / name), str(target), '--topic',
+                     f'{topic}/odometry', *origin]) == 0
+        assert 'taken to be the datum given, 55.75, 37.62 deg, 0 m' in capsys.readouterr().out
+        assert apart_m(read_poses(target), 55.75, 37.62) < 1e-6
+
+
+def test_a_flight_in_degrees_has_no_origin(tmp_path):
+    """What would not be used is refused."""
+    (tmp_path / 'x.csv').write_text('t_s\n')
+    values = {'motion.recording.origin': 'datum'}
+    with pytest.raises(ValueError, match='origin is datum, but .*x.csv is no bag; expected fix'):
+        read_motion(recorded(tmp_path / 'x.csv', {}, **values).motion_generator)
+
+
 def test_an_origin_that_wanders_is_refused(tmp_path):
     """A fix that is none of the odometry beside it tells no origin."""
     def shifted(window):
