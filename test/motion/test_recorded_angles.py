@@ -25,6 +25,22 @@ def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
     assert np.abs(motion.at([0]).q_nb - plain.at([0]).q_nb).max() < 1e-12
 
 
+@pytest.mark.parametrize('start', [179.9995, -0.0005])
+def test_longitudes_of_0_to_360_are_those_of_180_west_to_east(folder, start):
+    """Over the meridian where either jumps by a turn, and over that of Greenwich."""
+    table, column = rows(), COLUMNS.index('lon_deg')
+    motions = []
+    for name, low in (('west', -180.0), ('east', 0.0)):
+        for k, row in enumerate(table):
+            row[column] = f'{(start + 1e-4 * k - low) % 360.0 + low:.9f}'
+        motions.append(accepted(save(folder / f'{name}.csv', table)))
+    t_ns = 1_000_000_000 * np.arange(int(motions[0].end_s))
+    a, b = (motion.at(t_ns) for motion in motions)
+    # 9 decimals of a degree, and 360 degrees of 16 digits
+    assert np.abs((a.lon - b.lon + 1.0) % (2.0 * np.pi) - 1.0).max() < 1e-12
+    assert np.abs(a.v_n - b.v_n).max() < 1e-4
+
+
 @pytest.mark.parametrize('name, text', [('roll_deg', '-9999'), ('heading_deg', '99999'),
                                         ('pitch_deg', '100'), ('pitch_deg', '-9999')])
 def test_sentinels_and_pitches_beyond_the_vertical_are_refused(folder, name, text):
