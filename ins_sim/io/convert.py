@@ -12,7 +12,7 @@ from ins_sim.bags.windows import write_windows
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.postprocessing.sample_checks import stamped_samples
+from ins_sim.core.postprocessing.sample_checks import odd_samples, stamped_samples
 from ins_sim.messages import convert as blocks
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -85,7 +85,8 @@ def _to_csv(source, target, settings, topic, chosen):
             imu, _, notes = bag_imu.read_imu_messages(bag, name, chosen)
             imu, more = stamped_samples(imu, chosen.stamps)
             csv_writer.write_imu(target, imu)
-            return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes, *more])
+            return '\n'.join([f'{target} with {len(imu)} samples of {name}', *notes, *more,
+                              *odd_samples(imu)])
     poses = read_poses(source, name, settings.datum, '--topic', settings.motion.recording.origin)
     csv_writer.write_flight(target, poses)
     return '\n'.join([f'{target} with {len(poses.t_ns)} rows of {name}', *poses.notes])
@@ -101,7 +102,7 @@ def _imu_to_bag(source, target, settings, topic, how, chosen):
     counts = write_windows(target, {topics.IMU_RAW: written}, (
         {topics.IMU_RAW: (stamps_ns[k:k + WINDOW], values[k:k + WINDOW])}
         for k in range(0, len(imu), WINDOW)), **how)
-    return _told(target, counts, *notes, *more)
+    return _told(target, counts, *notes, *more, *odd_samples(imu))
 
 
 def _flight_to_bag(source, target, settings, how):

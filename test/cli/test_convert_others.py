@@ -4,6 +4,7 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
 from ins_sim.io import csv_imu
 import numpy as np
+import pytest
 
 
 def convert(*words):
@@ -44,3 +45,26 @@ def test_a_flight_of_others_by_a_map_of_its_columns(tmp_path):
         fix = bag.arrays('truth/fix')
     assert np.allclose(fix['altitude'], 304.8, atol=1e-6)
     assert np.allclose(fix['latitude'][[0, -1]], [55.0, 55.0036], atol=1e-9)
+
+
+@pytest.mark.parametrize('spoil, says', [
+    ({7: '0.06,0,0,0,0,0,9.8'}, '1 with the stamp of the one before'),
+    ({7: '0.015,0,0,0,0,0,9.8'}, '1 with a stamp that goes back'),
+    ({7: '0.07,nan,0,0,0,0,9.8', 8: '0.08,0,0,0,3.2e6,0,9.8'},
+     '1 that are not finite, 1 beyond 1e+06 m/s^2 or 10000 rad/s'),
+    ({k: f'0.{k:02d},1,0,0,0,0,0' for k in range(10, 20, 2)},
+     '5 whose specific force is exactly zero'),
+    ({}, '')])
+def test_odd_samples_are_kept_and_said(spoil, says, tmp_path, capsys):
+    """A conversion leaves nothing out, and does not pass over it in silence, either way."""
+    rows = [spoil.get(k, f'0.{k:02d},0,0,0,0,0,9.8') for k in range(30)]
+    (tmp_path / 'imu.csv').write_text('\n'.join(['t_s,' + ','.join(csv_imu.IMU), *rows, '']))
+    for words in (['imu.csv', 'bag'], ['bag', 'back.csv']):
+        if words[0] == 'bag' and 'goes back' in says:
+            # its time of logging is its stamp, by which a bag is in order
+            says = ''
+        assert main(['convert', *(str(tmp_path / word) for word in words)]) == 0
+        said = capsys.readouterr().out
+        assert says == '' or f'kept as they are: of 30 samples {says}\n' in said
+        assert ('kept as they are' in said) == bool(says)
+    assert len((tmp_path / 'back.csv').read_text().splitlines()) == 31

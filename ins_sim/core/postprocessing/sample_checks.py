@@ -38,6 +38,21 @@ def stamped_samples(imu, stamps):
     return imu, notes
 
 
+def odd_samples(imu):
+    """Return notes on the samples of a RecordedImu that a conversion keeps and no one expects."""
+    steps, both = np.diff(imu.t_ns), np.concatenate([imu.f, imu.omega], axis=1)
+    finite, no_force = np.isfinite(both).all(axis=1), (imu.f == 0.0).all(axis=1)
+    in_part = _PART <= np.count_nonzero(no_force) / max(len(imu), 1) <= 1.0 - _PART
+    large = np.abs(both) > np.repeat([MOST_FORCE, MOST_RATE], 3)
+    odd = {'that are not finite': ~finite,
+           f'beyond {MOST_FORCE:g} m/s^2 or {MOST_RATE:g} rad/s': finite & large.any(axis=1),
+           'whose specific force is exactly zero': no_force if in_part else False,
+           'with the stamp of the one before': steps == 0,
+           'with a stamp that goes back': steps < 0}
+    found = [f'{np.count_nonzero(which)} {what}' for what, which in odd.items() if np.any(which)]
+    return [f'kept as they are: of {len(imu)} samples {", ".join(found)}'] if found else []
+
+
 def _spread(imu, notes):
     """Return the samples, those of one stamp spread up to the next stamp."""
     t_ns = imu.t_ns
