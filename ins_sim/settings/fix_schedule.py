@@ -14,9 +14,9 @@ class Window(SettingsGroup):
 
     cycles: int = setting(1000, 'navigation cycles that a fix averages over, N (the same in '
                           'velocity_meter and aided_navigator)', 'cycles', 1, 100000)
-    slide_cycles: int = setting(0, 'cycles from the end of a window to that of the next, a divisor '
-                                'of N: windows overlap, which of the filters conventional alone '
-                                'takes; 0 or N: they follow one another (the same in both)',
+    slide_cycles: int = setting(0, 'cycles from the end of a window to that of the next, a '
+                                'divisor of N: windows overlap, which of the filters conventional '
+                                'alone takes; 0 or N: they follow one another (the same in both)',
                                 'cycles', 0, 100000)
     latency_ms: float = setting(0.0, 'a fix is there this long after the end of its window (the '
                                 'same in velocity_meter and aided_navigator)', 'ms', 0.0, 60000.0)

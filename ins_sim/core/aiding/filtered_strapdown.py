@@ -12,8 +12,8 @@ class FilteredStrapdown:
     A CorrectedStrapdown, an AidingFilter and the start of the open window; a copy is a snapshot.
 
     window_ns, step_ns: length of the windows of the velocity meter, and from end to end; of those
-    that overlap no filter has sums, and each step counts as one.  takes_segments: whether the filter
-    can take many samples at once, because it does not follow every one itself.
+    that overlap no filter has sums, and each step counts as one.  takes_segments: whether the
+    filter can take many samples at once, because it does not follow every one itself.
     """
 
     def __init__(self, ins, filter_, window_ns, step_ns):

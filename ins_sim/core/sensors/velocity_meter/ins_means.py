@@ -22,8 +22,8 @@ class InsMeans:
     """
     Sums of the velocities by part of a window, and which run of the truth they belong to.
 
-    dt_ns: navigation cycle; span_ns: window; part_ns: from end to end of windows.  A stamp of the INS that jumps back begins a new
-    history, unless the one before it was a stray.
+    dt_ns: navigation cycle; span_ns: window; part_ns: from end to end of windows.  A stamp of the
+    INS that jumps back begins a new history, unless the one before it was a stray.
     """
 
     def __init__(self, dt_ns, span_ns, part_ns):

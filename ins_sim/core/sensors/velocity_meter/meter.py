@@ -34,10 +34,10 @@ class VelocityMeter:
     on settings that do not go together.
 
     Windows have N cycles and end every ``window.slide_cycles`` of them, or every N, at whole
-    multiples in motion time; one that was not seen from its start is not reported.  With attack_angle ``ins`` a fix comes when the INS has reached the
-    end of its window, with tan(alpha) = -mean(V_y1)/mean(V_x1) of its samples inside (equation
-    8), however many; without one the fix is invalid, and so it is, 60 s of motion time later,
-    when the INS never gets there.
+    multiples in motion time; one that was not seen from its start is not reported.  With
+    attack_angle ``ins`` a fix comes when the INS has reached the end of its window, with
+    tan(alpha) = -mean(V_y1)/mean(V_x1) of its samples inside (equation 8), however many; without
+    one the fix is invalid, and so it is, 60 s of motion time later, when the INS never gets there.
     """
 
     def __init__(self, settings, run=0):

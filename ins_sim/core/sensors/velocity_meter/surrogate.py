@@ -68,7 +68,7 @@ class SurrogateWindows:
 
     def whole(self, total, index, cycles):
         """
-        Return the sum of cycles, the last of which ends at index periods, with that of their noise.
+        Return the sum of cycles, of which the last ends at index periods, and that of their noise.
 
         Each cycle has its own, so that long windows average that of the short ones, and windows
         that overlap have that of their common cycles in common.
@@ -84,8 +84,8 @@ class SurrogateWindows:
         """
         Return the Reading of the window that ends at index periods.
 
-        total: as of ``whole``; tan_alpha: tangent of what is taken for the angle of attack.  A wrong one scales both
-        components by (cos taken / cos true)^2, as with signals.
+        total: as of ``whole``; tan_alpha: tangent of what is taken for the angle of attack.  A
+        wrong one scales both components by (cos taken / cos true)^2, as with signals.
         """
         v_x, v_y, v_z = (part / self._cycles for part in total[:3])
         ratio = secant(v_y / v_x) / secant(tan_alpha)

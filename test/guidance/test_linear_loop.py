@@ -1,0 +1,168 @@
+"""Limits of stability of the closed loop: against published ones, and against eigenvalues."""
+
+import math
+
+from hypothesis import given, settings as hypothesis_settings, strategies as st
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from support.lateral_loops import block, loop, paper, PERIOD_S, sliding
+
+from ins_sim.core.guidance.linear_loop import growth, limits
+from ins_sim.core.guidance.linear_plant import after_period
+from ins_sim.core.guidance.phase_margin import phase_margin
+
+INF = math.inf
+# K_v: k_z and rad/s at N = 10, 100, 1000, as published; held commands, which the study has
+SLIDING = {0.1: (('.819', '.336'), ('.899', '.248'), ('1.31', '.095')),
+           0.5: (('.203', '.526'), ('.232', '.326'), ('.534', '.118')),
+           1.0: (('.141', '.614'), ('.158', '.345'), ('.440', '.122')),
+           5.0: (('.102', '.758'), ('.101', '.364'), ('.366', '.126'))}
+# K: positive limit, rad/s, negative limit
+PAPER = {0.1: (('.134', '.720', '-4.39'), ('.734', '.364', '-1.95'), ('inf', None, '-3.17')),
+         0.344: (('.104', '.965', '-1.59'), ('.200', '.549', '-.536'), ('1.63', '.092', '-.804')),
+         1.0: (('.101', '1.11', '-.717'), ('.086', '.812', '-.160'), ('.382', '.138', '-.167'))}
+LENGTHS = (10, 100, 1000)
+
+
+def meets(value, printed):
+    """
+    Return whether a number is the printed one, within 0.6 of its last digit.
+
+    Half of it is rounding, and the mean over a window, trapezoids or exact, makes 4e-4 of it.
+    """
+    digits = len(printed.split('.')[1])
+    return abs(value - float(printed)) <= 0.6 * 10.0 ** -digits
+
+
+@pytest.mark.parametrize('k_v', SLIDING)
+def test_published_limits_with_windows_that_slide(k_v, figures):
+    """All to the digits printed, with a command that is held; that of the house is near them."""
+    for cycles, (k_z, omega) in zip(LENGTHS, SLIDING[k_v]):
+        held, ramped = (limits(loop(ramps=r), sliding(cycles, k_v)) for r in (False, True))
+        print(f'N {cycles}, K_v {k_v}: {held.positive}, linear command {ramped.positive}')
+        assert meets(held.positive.k_z, k_z) and meets(held.positive.frequency, omega)
+        assert held.unstable == ramped.unstable == 0
+        assert ramped.positive.k_z == pytest.approx(held.positive.k_z, rel=0.01)
+        figures.record(f'loop_limit.sliding.{cycles}.{k_v:g}', ramped.positive.k_z, '',
+                       float(k_z), 'simulation and theory of the specification')
+
+
+@pytest.mark.parametrize('gain', PAPER)
+def test_published_limits_of_paper_corrected(gain):
+    """
+    Positive and negative ones.
+
+    At N = 1000, K = 0.1, published as none, there is one at 7.3, far beyond any meter.
+    """
+    for cycles, (k_z, omega, negative) in zip(LENGTHS, PAPER[gain]):
+        found = limits(loop(ramps=False), paper(cycles, gain))
+        print(f'N {cycles}, K {gain}: {found}')
+        assert meets(found.negative.k_z, negative) and found.unstable == 0
+        if k_z == 'inf':
+            assert found.positive.k_z > 5.0
+        else:
+            assert meets(found.positive.k_z, k_z) and meets(found.positive.frequency, omega)
+
+
+@pytest.mark.parametrize('latency, k_z, unstable', [(0, '.158', 0), (5, '.156', 0),
+                                                    (20, '.151', 2)])
+def test_published_limits_with_latency(latency, k_z, unstable):
+    """
+    N = 100, K_v = 1, latency 0, 0.05 and 0.2 s.
+
+    At 0.2 s the slow mode's limit is as published, but a fast one grows whatever k_z is: what
+    steers is corrected against a mean of the past.
+    """
+    found = limits(loop(latency, ramps=False), sliding(100, 1.0))
+    assert meets(found.positive.k_z, k_z) and found.unstable == unstable
+    assert (growth(loop(latency), sliding(100, 1.0), 0.0).growth > 0.0) is bool(unstable)
+
+
+def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
+    """Limit 0.153 for 0.158; every 50 cycles the loop is unstable without any error."""
+    assert meets(limits(loop(ramps=False), sliding(100, 1.0, 10)).positive.k_z, '.153')
+    assert limits(loop(ramps=False), sliding(100, 1.0, 50)).unstable == 1
+
+
+@pytest.mark.parametrize('cycles, gain', [(10, '1.02'), (50, '.417'), (100, '.354'),
+                                          (200, '.369'), (500, '.339'), (1000, '.932')])
+def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gain, figures):
+    """At k_z = 0, as published, by bisection; it is quiet below."""
+    low, high = 0.0, 2.0
+    assert growth(loop(ramps=False), block(cycles, 0.05), 0.0).growth < 0.0
+    while high - low > 1e-5:
+        middle = 0.5 * (low + high)
+        if growth(loop(ramps=False), block(cycles, middle), 0.0).growth < 0.0:
+            low = middle
+        else:
+            high = middle
+    figures.record(f'loop_limit.block_gain.{cycles}', low, '', float(gain))
+    assert meets(low, gain)
+
+
+def test_growth_just_inside_the_limit():
+    """k_z 0.15 decays with 0.0048 1/s at 0.345 rad/s, as published."""
+    mode = growth(loop(ramps=False), sliding(100, 1.0), 0.15)
+    assert meets(mode.growth, '-.0048') and meets(mode.frequency, '.345')
+
+
+@hypothesis_settings(deadline=None, max_examples=10)
+@given(cycles=st.sampled_from([10, 40]), step=st.sampled_from([1, 2, 10]),
+       k_v=st.floats(0.05, 10.0), kind=st.sampled_from(['sliding', 'paper']),
+       latency=st.integers(0, 12), ramps=st.booleans())
+def test_limits_are_where_eigenvalues_leave_the_unit_circle(cycles, step, k_v, kind, latency,
+                                                            ramps):
+    """A small step inside all decays, outside something grows; so says the count at zero."""
+    aiding = sliding(cycles, k_v, step) if kind == 'sliding' else paper(cycles, min(1.9, k_v))
+    lateral = loop(latency, ramps)
+    found = limits(lateral, aiding)
+    assert (growth(lateral, aiding, 0.0).growth > 0.0) is (found.unstable > 0)
+    if found.unstable:
+        return
+    for limit in (found.positive, found.negative):
+        if limit is not None and abs(limit.k_z) < 50.0:
+            inside, outside = (growth(lateral, aiding, part * limit.k_z) for part in (0.999,
+                                                                                      1.001))
+            assert inside.growth < 0.0 < outside.growth
+            assert inside.frequency == pytest.approx(limit.frequency, rel=0.01)
+
+
+@pytest.mark.parametrize('ramps', [True, False])
+def test_a_period_of_the_plant(ramps):
+    """Against integration: sideslip, rate and offset under a command that runs or is held."""
+    lateral = loop(ramps=ramps)._replace(period_s=0.3)
+    z, v, beta, old, new = 3.0, -2.0, 0.05, 0.1, -0.07
+
+    def slopes(t, x):
+        command = old + (new - old) * t / 0.3 if ramps else new
+        return x[1], -lateral.side_force * x[2], (command - x[2]) / lateral.lag_s
+
+    found = solve_ivp(slopes, (0.0, 0.3), (z, v, beta), rtol=1e-11, atol=1e-12).y[:, -1]
+    np.testing.assert_allclose(after_period(lateral) @ (z, v, beta, old, new), found, atol=1e-9)
+
+
+@pytest.mark.parametrize('k_v', [0.3, 1.0, 10.0])
+def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
+    """Latency from stable to unstable, to a period, by the margin and by the count of modes."""
+    aiding = sliding(100, k_v)
+    margin = phase_margin(loop(), aiding)
+    most = math.floor(margin.delay_s / PERIOD_S)
+    print(f'K_v {k_v}: {margin}, {most} periods')
+    assert not growth(loop(most), aiding, 0.0).growth > 0.0
+    assert growth(loop(most + 1), aiding, 0.0).growth > 0.0
+    assert phase_margin(loop(most), aiding).margin > 0.0
+    assert phase_margin(loop(most + 1), aiding).margin < 0.0
+
+
+def test_the_phase_margin_with_a_perfect_navigator():
+    """At the crossover of (k2 + k1/s) Z_b/(s (tau s + 1)), by hand, less a period of the ramp."""
+    margin = phase_margin(loop())
+    s = 1j * margin.crossover
+    lateral = loop()
+    value = (lateral.k2 + lateral.k1 / s) * lateral.side_force / (s * (lateral.lag_s * s + 1.0))
+    late = margin.crossover * PERIOD_S
+    assert abs(value) == pytest.approx(1.0, abs=1e-4)
+    assert margin.margin == pytest.approx(math.pi + np.angle(value) - late, abs=1e-3)
+    assert str(margin).startswith('50 deg at 0.81 rad/s')
+    assert phase_margin(loop()._replace(k1=1e-12, k2=1e-12)) is None
