@@ -129,3 +129,20 @@ class AidedErrors(History):
     position_sigma: np.ndarray
     estimates: np.ndarray
     estimates_sigma: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SteeredStates(History):
+    """
+    How a guided motion is steered, at instants.
+
+    t_ns (n,) int64; z (n,) m, offset to the right of the track; v_z (n,) m/s, its rate; beta (n,)
+    rad, sideslip in the air, positive with the track to the right of the nose; command (n,) rad,
+    the commanded sideslip.
+    """
+
+    t_ns: np.ndarray
+    z: np.ndarray
+    v_z: np.ndarray
+    beta: np.ndarray
+    command: np.ndarray

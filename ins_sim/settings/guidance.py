@@ -1,0 +1,61 @@
+"""Settings of the steering: the vehicle that takes commands, and the autopilot that gives them."""
+
+from collections import namedtuple
+
+from .field import group, setting, settings_class, SettingsGroup
+
+# An autopilot: where its class is, 'module:class'.
+AutopilotEntry = namedtuple('AutopilotEntry', 'location')
+_FOLDER = 'ins_sim.core.guidance'
+# The one table of the autopilots. Classes are named by text and imported when one is made,
+# because settings need nothing but Python.
+AUTOPILOTS = {
+    'lateral': AutopilotEntry(f'{_FOLDER}.lateral:LateralAutopilot'),
+    'hold_course': AutopilotEntry(f'{_FOLDER}.lateral:CourseHold'),
+}
+
+
+@settings_class
+class GuidedSettings(SettingsGroup):
+    """The vehicle of kind guided: beside the legs of motion.route, steered by its sideslip."""
+
+    offset_m: float = setting(100.0, 'offset to the right of the first leg at the start', 'm',
+                              -1e5, 1e5)
+    offset_rate_m_s: float = setting(0.0, 'its rate', 'm/s', -100.0, 100.0)
+    side_force_m_s2_rad: float = setting(20.0, 'acceleration to the side of the nose, for each '
+                                         'rad of sideslip in the air', 'm/s^2/rad', 0.1, 1000.0)
+    lag_s: float = setting(0.4, 'time constant with which the sideslip follows the command', 's',
+                           0.01, 100.0)
+    control_rate_hz: float = setting(100.0, 'rate of the commands; between two the command runs '
+                                     'linearly', 'Hz', 0.1, 1000.0)
+
+
+@settings_class
+class Lateral(SettingsGroup):
+    """Autopilots lateral and hold_course: command = k1 offset + k2 its rate, both estimated."""
+
+    offset_gain_rad_m: float = setting(0.0125, 'k1: sideslip for each metre of offset (lateral)',
+                                       'rad/m', 0.0, 10.0)
+    rate_gain_rad_s_m: float = setting(0.04, 'k2: sideslip for each m/s of its rate', 'rad s/m',
+                                       0.0, 10.0)
+
+
+@settings_class
+class GuidanceSettings(SettingsGroup):
+    """The autopilot that steers a motion of kind guided by the navigation solution."""
+
+    autopilot: str = setting('lateral', 'lateral: back to the leg; hold_course: along it, at '
+                             'whatever offset', choices=AUTOPILOTS)
+    lateral: Lateral = group(Lateral)
+    limit_deg: float = setting(8.0, 'largest commanded sideslip', 'deg', 0.0, 30.0)
+    engage_after_s: float = setting(0.0, 'engaged this long after the start of the run; until '
+                                    'then it flies straight', 's', 0.0, 1e7)
+    latency_s: float = setting(0.0, 'age of the solution that it uses', 's', 0.0, 10.0)
+    timeout_s: float = setting(1.0, 'how much older than latency_s a solution may become before '
+                               'the vehicle flies straight', 's', 0.0, 1e4)
+    jump_m: float = setting(1000.0, 'jump of the estimated offset at which the solution is not '
+                            'steered by', 'm', 1.0, 1e6)
+
+    def in_ns(self):
+        """Return latency and timeout, ns."""
+        return round(1e9 * self.latency_s), round(1e9 * self.timeout_s)
