@@ -1,0 +1,1 @@
+"""Guidance: autopilots, and the steering that gives them a navigation solution."""
