@@ -59,3 +59,30 @@ class GuidanceSettings(SettingsGroup):
     def in_ns(self):
         """Return latency and timeout, ns."""
         return round(1e9 * self.latency_s), round(1e9 * self.timeout_s)
+
+
+def check_guided(generator, sensor, lead_ns):
+    """
+    Raise ValueError, in one sentence, where a loop cannot be closed.
+
+    generator: MotionGeneratorSettings; sensor: ImuSensorSettings; lead_ns: how far a channel of
+    negative delay reads ahead, ns.
+    """
+    guided, latency_s = generator.motion.guided, generator.guidance.latency_s
+    control_ns = round(1e9 / guided.control_rate_hz)
+    for node, rate_hz in (('motion_generator', generator.rate_hz), ('imu_sensor', sensor.rate_hz)):
+        if control_ns % round(1e9 / rate_hz):
+            raise ValueError(f'motion_generator: motion.guided.control_rate_hz is '
+                             f'{guided.control_rate_hz:g} Hz; expected a whole part of rate_hz of '
+                             f'{node}, {rate_hz:g} Hz: a control instant needs its sample')
+    for key in ('jitter_us', 'latency_us'):
+        value = getattr(sensor.sampling, key)
+        if value:
+            raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
+                             'motion.kind guided, which is steered by the solution of an instant')
+    least_s = (lead_ns + control_ns) * 1e-9
+    if lead_ns and round(1e9 * latency_s) < lead_ns + control_ns:
+        raise ValueError(f'motion_generator: guidance.latency_s is {latency_s:g} s with a channel '
+                         f'of imu_sensor that reads {lead_ns * 1e-9:g} s ahead; expected at least '
+                         f'{least_s:g} s, a control period more: a guided motion is known one '
+                         'period ahead')

@@ -146,3 +146,20 @@ class SteeredStates(History):
     v_z: np.ndarray
     beta: np.ndarray
     command: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SteeringEstimates(History):
+    """
+    What an autopilot saw and commanded, at the control instants.
+
+    t_ns (n,) int64; z (n,) m and v_z (n,) m/s, estimated, zero without a solution; command (n,)
+    rad, the sideslip to be flown at the end of the next control period; steers (n,) bool: whether
+    the autopilot commanded it, or the vehicle flew straight.
+    """
+
+    t_ns: np.ndarray
+    z: np.ndarray
+    v_z: np.ndarray
+    command: np.ndarray
+    steers: np.ndarray

@@ -131,8 +131,10 @@ class GuidedMotion(RouteMotion):
         """
         Return what does not depend on the commands, Series of the instants.
 
-        lat, lon, height of the track; lat and lon of one metre to its right; heading; components
-        of the unit vector to the right of the track, along and to the right of the heading; bank.
+        lat, lon, height of the track; lat and lon of one metre to its right; heading, and by how
+        much that of a parallel track one metre to the right differs (convergence of meridians);
+        components of the unit vector to the right of the track, along and to the right of the
+        heading; bank.
         """
         t = t_ns * 1e-9
         lat, lon, psi = self._track.at(t)
@@ -154,12 +156,12 @@ class GuidedMotion(RouteMotion):
             east, north, up = self.gusts.displacement(t)
             by_lat, by_lon = ellipsoid.level_angles(east, north, sin_lat, cos_lat, self._height)
             lat, lon, height = lat + by_lat, lon + by_lon, height + up
-        return (lat, lon, height, d_lat, d_lon, *(x.to_order(1) for x in (psi, along, aside)),
-                bank)
+        return (lat, lon, height, d_lat, d_lon,
+                *(x.to_order(1) for x in (psi, d_lon * sin_lat, along, aside)), bank)
 
     def _pose(self, flow, steered, series):
         """Return lat, lon, height and q_nb; series: makes a Series of its coefficients."""
-        lat, lon, height, d_lat, d_lon, psi, along, aside, bank = flow
+        lat, lon, height, d_lat, d_lon, psi, converged, along, aside, bank = flow
         z, v_z, beta, command, _ = steered
         force = beta * -self._force
         offset = series((z, v_z, 0.5 * force))
@@ -168,7 +170,8 @@ class GuidedMotion(RouteMotion):
         slip = taylor.atan2(rate * aside, rate * along + self._airspeed) - series(
             (beta, (command - beta) * (1.0 / self._lag_s)))
         q_nb = quaternion.multiply(
-            angles.from_angles(-(psi + slip), psi.constant(0.0), bank), self._nose_up)
+            angles.from_angles(-(psi + offset * converged + slip), psi.constant(0.0), bank),
+            self._nose_up)
         return lat, lon, height, q_nb
 
 
