@@ -1,1 +1,6 @@
-"""Guidance of a vehicle: autopilots, and the linear theory of the loop that they close."""
+"""
+Guidance: autopilots, and the steering that gives them a navigation solution.
+
+``linear_loop`` tells where the loop with an aided navigator is stable, ``error_loop`` flies it in
+a reduced form.
+"""

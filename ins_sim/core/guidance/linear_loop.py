@@ -49,22 +49,22 @@ class Mode(NamedTuple):
     frequency: float
 
 
-class Limit(NamedTuple):
+class StabilityLimit(NamedTuple):
     """A lateral scale error k_z at which a mode neither grows nor decays; frequency, rad/s."""
 
     k_z: float
     frequency: float
 
 
-class Limits(NamedTuple):
+class StabilityLimits(NamedTuple):
     """
-    The least positive and the least negative Limit, or None where there is none.
+    The least positive and the least negative StabilityLimit, or None where there is none.
 
     unstable: how many modes grow at k_z = 0; only without any are these limits of the stable loop.
     """
 
-    positive: Limit | None
-    negative: Limit | None
+    positive: StabilityLimit | None
+    negative: StabilityLimit | None
     unstable: int
 
 
@@ -96,7 +96,7 @@ def growth(loop, aiding, k_z):
 
 def limits(loop, aiding):
     """
-    Return the Limits of k_z of a LateralLoop and an Aiding.
+    Return the StabilityLimits of k_z of a LateralLoop and an Aiding.
 
     Frequencies are those seen at the corrections, at most pi over the time between them.
     """
@@ -116,9 +116,9 @@ def limits(loop, aiding):
     # at the highest frequency all is real
     places = np.append(low, highest)
     real = _read(step, n, places * step_s).real
-    found = [Limit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
+    found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
              if abs(x) > ROUNDING]
-    return Limits(min((one for one in found if one.k_z > 0.0), default=None),
+    return StabilityLimits(min((one for one in found if one.k_z > 0.0), default=None),
                   max((one for one in found if one.k_z < 0.0), default=None),
                   _unstable(step, values))
 

@@ -1,4 +1,4 @@
-"""What latency the loop of vehicle, autopilot and navigator bears."""
+"""What latency the loop bears whose navigator is corrected by sliding windows."""
 
 import math
 from typing import NamedTuple
@@ -30,14 +30,14 @@ class PhaseMargin(NamedTuple):
                 f'{max(0.0, self.delay_s):.2g} s use up')
 
 
-def phase_margin(loop, aiding=None, k_z=0.0):
+def aided_margin(loop, aiding, k_z=0.0):
     """
     Return the PhaseMargin of a LateralLoop, the loop being opened at the command.
 
-    aiding: an Aiding of kind conventional with windows that slide, as if they did every period;
-    None: a navigator whose errors the steering does not change, or changes far slower than the
-    loop, as the filters of contiguous windows do.  k_z: lateral scale error of the meter.  Of
-    several crossovers it is the one with the least latency; None where the gain never is one.
+    aiding: an Aiding of kind conventional with windows that slide, as if they did every period.
+    The navigators of contiguous windows are slower than the loop: theirs is that of exact
+    navigation, ``margin.phase_margin``.  k_z: lateral scale error of the meter.  Of several
+    crossovers it is the one with the least latency; None where the gain never is one.
     """
     omega = np.geomspace(1e-4, 1.0, POINTS) * math.pi / loop.period_s
     found = _returned(loop, aiding, k_z, np.exp(1j * omega * loop.period_s))
@@ -62,9 +62,8 @@ def _returned(loop, aiding, k_z, q):
     x = np.linalg.solve(q[:, None, None] * np.eye(4) - a,
                         np.broadcast_to(b[:, None], (len(q), 4, 1)))[..., 0]
     z, v, beta = x[:, 0], x[:, 1], x[:, 2]
-    if aiding is not None:
-        gain = aiding.gain / aiding.step
-        read = (1.0 + k_z) * 0.5 * (1.0 + 1.0 / q) * window_mean(q, aiding.cycles)
-        error = -gain * loop.speed * beta * (1.0 - read) / (1.0 - (1.0 - gain) / q)
-        z, v = z + loop.period_s * error / (q - 1.0), v + error
+    gain = aiding.gain / aiding.step
+    read = (1.0 + k_z) * 0.5 * (1.0 + 1.0 / q) * window_mean(q, aiding.cycles)
+    error = -gain * loop.speed * beta * (1.0 - read) / (1.0 - (1.0 - gain) / q)
+    z, v = z + loop.period_s * error / (q - 1.0), v + error
     return -(loop.k1 * z + loop.k2 * v) * q ** -loop.latency
