@@ -162,4 +162,4 @@ def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
     alone = phase_margin((lateral.k1, lateral.k2), lateral.side_force, lateral.lag_s, PERIOD_S)
     # the crossover is between two of 20001 frequencies, and K_v lowers it by its part
     assert slow.margin == pytest.approx(alone, abs=5e-3)
-    assert str(slow).startswith('50 deg at 0.81 rad/s')
+    assert str(slow).startswith('51 deg at 0.82 rad/s')

@@ -118,9 +118,9 @@ def limits(loop, aiding):
     real = _read(step, n, places * step_s).real
     found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
              if abs(x) > ROUNDING]
-    return StabilityLimits(min((one for one in found if one.k_z > 0.0), default=None),
-                  max((one for one in found if one.k_z < 0.0), default=None),
-                  _unstable(step, values))
+    positive = min((one for one in found if one.k_z > 0.0), default=None)
+    negative = max((one for one in found if one.k_z < 0.0), default=None)
+    return StabilityLimits(positive, negative, _unstable(step, values))
 
 
 def _unstable(step, values):
