@@ -29,6 +29,12 @@ class GuidedResult:
     notes: tuple = ()
     counts: tuple = ()
 
+    def amplitude(self, part=0.3):
+        """Return half the peak-to-peak of the true sideslip over the last part of the run, rad."""
+        beta = self.states.beta
+        last = beta[len(beta) - max(1, round(part * len(beta))):]
+        return 0.5 * float(last.max() - last.min())
+
 
 def fly(settings, motion, aided=None, progress=None, run=0):
     """

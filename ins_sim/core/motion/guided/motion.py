@@ -134,7 +134,7 @@ class GuidedMotion(RouteMotion):
         lat, lon, height of the track; lat and lon of one metre to its right; heading, and by how
         much that of a parallel track one metre to the right differs (convergence of meridians);
         components of the unit vector to the right of the track, along and to the right of the
-        heading; bank.
+        heading; attitude relative to level axes along the nose, by bank and angle of attack.
         """
         t = t_ns * 1e-9
         lat, lon, psi = self._track.at(t)
@@ -157,11 +157,12 @@ class GuidedMotion(RouteMotion):
             by_lat, by_lon = ellipsoid.level_angles(east, north, sin_lat, cos_lat, self._height)
             lat, lon, height = lat + by_lat, lon + by_lon, height + up
         return (lat, lon, height, d_lat, d_lon,
-                *(x.to_order(1) for x in (psi, d_lon * sin_lat, along, aside)), bank)
+                *(x.to_order(1) for x in (psi, d_lon * sin_lat, along, aside)),
+                *quaternion.multiply(angles.about_axis(0, bank), self._nose_up))
 
     def _pose(self, flow, steered, series):
         """Return lat, lon, height and q_nb; series: makes a Series of its coefficients."""
-        lat, lon, height, d_lat, d_lon, psi, converged, along, aside, bank = flow
+        lat, lon, height, d_lat, d_lon, psi, converged, along, aside, *level = flow
         z, v_z, beta, command, _ = steered
         force = beta * -self._force
         offset = series((z, v_z, 0.5 * force))
@@ -169,10 +170,10 @@ class GuidedMotion(RouteMotion):
         rate = series((v_z, force))
         slip = taylor.atan2(rate * aside, rate * along + self._airspeed) - series(
             (beta, (command - beta) * (1.0 / self._lag_s)))
-        q_nb = quaternion.multiply(
-            angles.from_angles(-(psi + offset * converged + slip), psi.constant(0.0), bank),
-            self._nose_up)
-        return lat, lon, height, q_nb
+        sin, cos = taylor.sincos((0.5 * math.pi - (psi + offset * converged + slip)) * 0.5)
+        x, y, z, w = level
+        return lat, lon, height, (cos * x - sin * y, cos * y + sin * x, cos * z + sin * w,
+                                  cos * w - sin * z)
 
 
 def _series(coefficients):
