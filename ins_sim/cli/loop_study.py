@@ -5,11 +5,11 @@ import json
 
 from . import arguments
 
-HELP = 'the closed loop of the velocity meter\'s paper'
+HELP = 'a vehicle steered by its own aided solution: the study of the loop'
 DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lateral scale error '
-               'aids: the table of the paper\'s study by flights of the whole chain, limits of '
-               'stability beside those of the linear theory, the map of stability, and the same '
-               'with noise, wind, gusts and the signals of the meter.')
+               'aids: a table of flights of the whole chain, limits of stability beside those of '
+               'the linear theory, the map of stability, and flights with noise, wind, gusts and '
+               'the signals of the meter.')
 SHIPPED = ('guided_flight',)
 MARK = 'loop_study.json'
 PARTS = ('table', 'limits', 'conditions', 'map')
@@ -22,8 +22,8 @@ def add_arguments(parser):
     arguments.add_settings(parser, ' and '.join(SHIPPED))
     parser.add_argument('--parts', nargs='+', choices=PARTS, default=list(PARTS), metavar='PART',
                         help=f'of {", ".join(PARTS)} (default: all)')
-    parser.add_argument('--gains', type=int, default=15, metavar='N', help='gains of each panel of '
-                        'the map (default: %(default)s)')
+    parser.add_argument('--gains', type=int, default=15, metavar='N', help='gains of each panel '
+                        'of the map (default: %(default)s)')
     parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
                         'as many as cores)')
     arguments.add_output(parser, 'ins_sim_loop', 'folder of figures and numbers')
@@ -54,11 +54,12 @@ def run(chosen):
 
 def _table(chosen, settings, loop, console, folder):
     from ins_sim.report import loop_study as report
-    from ins_sim.studies.closed_loop import fly_case, TABLE
+    from ins_sim.studies.closed_loop import fly_case, lateral_flight, TABLE
     from .workers import run_all
     flights = run_all([(fly_case, settings, case) for case in TABLE], chosen.jobs, console,
                       'flights')
-    rows = [report.loop_row(case, flight) for case, flight in zip(TABLE, flights)]
+    rows = [report.loop_row(case, flight, lateral_flight(settings, loop, case))
+            for case, flight in zip(TABLE, flights)]
     report.show_flights('Closed loop', rows, console)
     shown = [k for k, case in enumerate(TABLE) if case.k_z == 0.15 and case.duration_s <= 300.0]
     report.save_histories(folder / 'histories.png', 'Closed loop, k_z = 0.15',
@@ -102,7 +103,8 @@ def _conditions(chosen, settings, loop, console, folder):
              for name, more in CONDITIONS.items() for case in VARIED]
     flights = run_all([(fly_case, one, case) for _, case, one in flown], chosen.jobs, console,
                       'flights')
-    rows = [report.loop_row(case, flight, name) for (name, case, _), flight in zip(flown, flights)]
+    rows = [report.loop_row(case, flight, condition=name)
+            for (name, case, _), flight in zip(flown, flights)]
     report.show_flights('Closed loop under conditions', rows, console)
     for case in VARIED:
         shown = [k for k, (_, other, _) in enumerate(flown) if other is case]

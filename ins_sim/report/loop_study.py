@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 from rich import box
 from rich.table import Table
 
@@ -15,7 +16,8 @@ class LoopRow:
     """
     One flight: half the range of beta, deg, and of z, m, over the last 30 %, and z at the end, m.
 
-    frequency: rad/s, None where nothing oscillates; published: by the names of the figures.
+    frequency: rad/s, None where nothing oscillates; lateral: the same figures of the lateral
+    channel alone, published: what is published of them, both by their names.
     """
 
     condition: str
@@ -28,6 +30,7 @@ class LoopRow:
     frequency: float | None
     swing_m: float
     end_m: float
+    lateral: dict
     published: dict
 
 
@@ -41,21 +44,27 @@ class LimitRow:
     flown: float
 
 
-def loop_row(case, flight, condition=''):
-    """Return the LoopRow of a LoopCase and its LoopFlight."""
-    quiet = flight.beta_deg < QUIET_DEG
+def loop_row(case, flight, lateral=None, condition=''):
+    """Return the LoopRow of a LoopCase and its LoopFlight; lateral: that of the channel alone."""
     published = {} if case.published is None else {
         name: value for name, value in vars(case.published).items() if value is not None}
     return LoopRow(condition, case.label, case.k_z, case.offset_m, case.engage_s, case.duration_s,
-                   flight.beta_deg, None if quiet else flight.frequency, flight.swing_m,
-                   float(flight.z[-1]), published)
+                   **_figures(flight), lateral={} if lateral is None else _figures(lateral),
+                   published=published)
+
+
+def _figures(flight):
+    quiet = flight.beta_deg < QUIET_DEG
+    return {'beta_deg': flight.beta_deg, 'frequency': None if quiet else flight.frequency,
+            'swing_m': flight.swing_m, 'end_m': float(flight.z[-1])}
 
 
 def show_flights(title, rows, console):
-    """Print the table of LoopRows; what is published stands in brackets."""
+    """Print the table of LoopRows: the whole chain, the lateral channel alone, and published."""
     table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
                   caption='half the range of beta, deg, and of z, m, over the last 30 %; rad/s; z '
-                  f'at the end, m; in brackets what is published (<{QUIET_DEG}: quiet)')
+                  'at the end, m; second the same of the lateral channel alone, in brackets what '
+                  f'is published (<{QUIET_DEG}: quiet)')
     if any(r.condition for r in rows):
         table.add_column('with')
     table.add_column('filter')
@@ -63,20 +72,19 @@ def show_flights(title, rows, console):
         table.add_column(head, justify='right')
     for r in rows:
         cells = [r.case, f'{r.k_z:g}', f'{r.offset_m:g}', f'{r.engage_s:g}',
-                 f'{r.beta_deg:.3g}' + _bracket(r, 'beta_deg'),
-                 ('-' if r.frequency is None else f'{r.frequency:.3f}')
-                 + _bracket(r, 'frequency'),
-                 f'{r.swing_m:.3g}' + _bracket(r, 'swing_m'),
-                 f'{r.end_m:.4g}' + _bracket(r, 'end_m')]
+                 *(_cell(r, name) for name in ('beta_deg', 'frequency', 'swing_m', 'end_m'))]
         table.add_row(*([r.condition] if any(q.condition for q in rows) else []), *cells)
     console.print(table)
 
 
-def _bracket(row, name):
+def _cell(row, name):
+    values = [getattr(row, name)] + [row.lateral[name]] * bool(row.lateral)
+    text = ' '.join('-' if value is None else f'{value:.3g}' for value in values)
     if name not in row.published:
-        return ''
+        return text
     value = row.published[name]
-    return f' (<{QUIET_DEG})' if name == 'beta_deg' and value == 0.0 else f' ({value:g})'
+    published = f'<{QUIET_DEG}' if name == 'beta_deg' and value == 0.0 else f'{value:g}'
+    return f'{text} ({published})'
 
 
 def show_limits(rows, console):
@@ -119,7 +127,7 @@ def save_histories(path, title, names, flights):
     figure = new_figure(10, 8)
     top, bottom = figure.subplots(2, 1, sharex=True)
     for name, flight in zip(names, flights):
-        line, = top.plot(flight.t_s, flight.beta * (180.0 / 3.141592653589793), lw=0.9, label=name)
+        line, = top.plot(flight.t_s, np.degrees(flight.beta), lw=0.9, label=name)
         bottom.plot(flight.t_s, flight.z, lw=0.9, color=line.get_color(), label=name)
     top.set_ylabel('sideslip [deg]')
     bottom.set_ylabel('offset from the leg [m]')

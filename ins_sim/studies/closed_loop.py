@@ -12,7 +12,8 @@ import math
 import numpy as np
 
 from ins_sim.core.guidance.autopilot import make_autopilot
-from ins_sim.core.guidance.linear_loop import Aiding
+from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
+from ins_sim.core.guidance.linear_loop import Aiding, KINDS
 from ins_sim.core.guidance.linear_plant import LateralLoop
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.guided_flight import fly
@@ -167,7 +168,24 @@ def fly_case(settings, case):
                       states.beta[::every], flown.estimates.z[::every])
 
 
-def lateral_loop(settings, ramps=True):
+def lateral_flight(settings, loop, case):
+    """
+    Return the LoopFlight of the lateral channel alone of a LoopCase; None for a Kalman filter.
+
+    settings: AidedSimulationSettings; loop: their LateralLoop.
+    """
+    if case.filter not in KINDS:
+        return None
+    cases = ReducedCases(*(np.array([x]) for x in (aiding_of(case, 1.0 / loop.period_s).gain,
+                                                   case.k_z, case.offset_m)))
+    most = math.radians(settings.simulation.motion_generator.guidance.limit_deg)
+    flown = fly_reduced(loop, aiding_of(case, 1.0 / loop.period_s), cases, case.duration_s, most,
+                        case.engage_s, forward=False)
+    return LoopFlight(flown.t_s, flown.z[:, 0], flown.beta[:, 0],
+                      flown.z[:, 0] + flown.error_z[:, 0])
+
+
+def lateral_loop(settings):
     """
     Return the LateralLoop of AidedSimulationSettings, in still air.
 
@@ -186,7 +204,7 @@ def lateral_loop(settings, ramps=True):
                          f'expected rate_hz, {rate_hz:g} Hz, in the study')
     return LateralLoop(generator.motion.route.airspeed_m_s, guided.side_force_m_s2_rad,
                        guided.lag_s, *gains, 1.0 / rate_hz,
-                       round(guidance.latency_s * rate_hz), ramps)
+                       round(guidance.latency_s * rate_hz))
 
 
 def aiding_of(case, rate_hz):

@@ -32,10 +32,10 @@ def paper(cycles, gain):
     return Aiding('paper_corrected', cycles, cycles, gain)
 
 
-def flown(aiding, k_z, offset=100.0, duration_s=300.0, engaged_s=0.0, latency=0, ramps=True):
-    """Return the ReducedFlights of one case."""
+def flown(aiding, k_z, offset=100.0, duration_s=300.0, engaged_s=0.0, latency=0):
+    """Return the ReducedFlights, the lateral channel alone, of one case."""
     cases = ReducedCases(np.array([aiding.gain]), np.array([k_z]), np.array([offset]))
-    return fly_reduced(loop(latency, ramps), aiding, cases, duration_s, MOST, engaged_s)
+    return fly_reduced(loop(latency), aiding, cases, duration_s, MOST, engaged_s, forward=False)
 
 
 def half_range(values, part=0.3):

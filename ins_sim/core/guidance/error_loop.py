@@ -1,10 +1,9 @@
 """
 The loop of vehicle, autopilot and aided navigator, reduced to what matters in it, many at once.
 
-The plant of ``linear_plant`` with a command that is limited, and the errors of the estimates: the
-meter reads (1 + k_z) V sin(beta), the navigator has V sin(beta) + e_v cos(beta), and e_z' = e_v.
-Neither the Earth nor the readings of an IMU are in it, which is why it flies a thousand flights in
-the time of one; ``linear_loop`` is what it is for small angles.
+The plant of ``linear_plant`` with a command that is limited, and the errors of the estimates.
+Neither the Earth nor the readings of an IMU are in it, which is why it flies a hundred flights in
+a fraction of the time of one; ``linear_loop`` is what it is for small angles.
 """
 
 from collections import deque
@@ -37,9 +36,9 @@ class ReducedFlights(NamedTuple):
     error_v: np.ndarray
 
 
-def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, every=10):
+def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, forward=True):
     """
-    Return the ReducedFlights of cases.
+    Return the ReducedFlights of cases, ten periods from instant to instant.
 
     Parameters
     ----------
@@ -52,37 +51,45 @@ def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, every=
         The command is limited to plus and minus this.
     engaged_s : float
         The autopilot steers from then on; before, the command is zero.
-    every : int
-        Periods between the instants of the histories.
+    forward : bool
+        Whether conventional corrects the forward velocity too, as the filter does.  Its error, of
+        the second order in beta, goes into the lateral one where the nose is off the leg.
 
     """
-    flight = _Flight(loop, aiding, cases, most_rad)
-    kept = [flight.seen()]
+    channels = aiding.kind == 'conventional' and forward
+    flight = (_Conventional if channels else _Lateral)(loop, aiding, cases, most_rad)
+    kept = [flight.shown()]
     count, engaged = round(duration_s / loop.period_s), round(engaged_s / loop.period_s)
     for k in range(1, count + 1):
         flight.advance(k > engaged)
         if k % aiding.step == 0:
             flight.end_step(k)
-        if k % every == 0:
-            kept.append(flight.seen())
-    t_s = every * loop.period_s * np.arange(len(kept))
+        if k % 10 == 0:
+            kept.append(flight.shown())
+    t_s = 10 * loop.period_s * np.arange(len(kept))
     return ReducedFlights(t_s, *(np.array(columns) for columns in zip(*kept)))
 
 
-class _Flight:
+class _Lateral:
+    """
+    The lateral channel alone, at the speed V.
+
+    The meter reads (1 + k_z) V sin(beta), the navigator has V sin(beta) + e_v cos(beta).
+    """
+
     def __init__(self, loop, aiding, cases, most_rad):
         self._loop, self._aiding, self._cases, self._most = loop, aiding, cases, most_rad
         self._step = after_period(loop)
         zero = np.zeros(len(cases.k_z))
         self._state = np.array((cases.offset + zero, zero, zero))
-        self._errors = self._velocity = self._acceleration = zero
+        self._errors = self._velocity = self._acceleration = self._along = zero
         self._command, self._late = zero, deque([zero] * loop.latency)
         # what is now, its sum since the start, and that at the ends of the last steps
-        self._seen = self._seen_by_meter()
+        self._now = self._of_means()
         self._sums = np.zeros((2, len(zero)))
         self._ends, self._last = deque([self._sums], aiding.cycles // aiding.step + 1), None
 
-    def seen(self):
+    def shown(self):
         """Return z, beta and the errors of z and its rate."""
         return self._state[0], self._state[2], self._errors, self._velocity
 
@@ -94,41 +101,64 @@ class _Flight:
         command = np.minimum(np.maximum(command, -self._most), self._most) if engaged else 0.0 * z
         self._late.append(command)
         new = self._late.popleft()
-        before = self._velocity
         self._state = self._step @ np.array((z, v, beta, self._command, new))
         self._command = new
-        self._errors = self._errors + h * before + 0.5 * h * h * a
-        self._velocity = before + h * a
-        now = self._seen_by_meter()
-        self._sums = self._sums + 0.5 * (self._seen + now)
-        self._seen = now
-
-    def _seen_by_meter(self):
-        """Return the lateral velocity V sin(beta), and the error e_v cos(beta) of the computed."""
-        beta = self._state[2]
-        return np.array((self._loop.speed * np.sin(beta), self._velocity * np.cos(beta)))
+        self._errors = self._errors + h * self._velocity + 0.5 * h * h * a
+        self._velocity = self._velocity + h * a
+        now = self._of_means()
+        self._sums = self._sums + 0.5 * (self._now + now)
+        self._now = now
 
     def end_step(self, k):
         """Correct the estimates, if a whole window ends after k periods."""
-        aiding = self._aiding
         self._ends.append(self._sums)
-        if k < aiding.cycles:
-            return
-        mean, mean_error = (self._sums - self._ends[0]) / aiding.cycles
+        if k >= self._aiding.cycles:
+            self._correct(*(self._sums - self._ends[0]) / self._aiding.cycles)
+            self._now = self._of_means()
+
+    def _of_means(self):
+        """Return V sin(beta), and the error of the computed one."""
+        beta = self._state[2]
+        return np.array((self._loop.speed * np.sin(beta), self._velocity * np.cos(beta)))
+
+    def _correct(self, mean, mean_error):
         read = (1.0 + self._cases.k_z) * mean
-        if aiding.kind == 'conventional':
-            computed = self._seen.sum(axis=0)
+        if self._aiding.kind == 'conventional':
+            computed = self._now.sum(axis=0)
             self._velocity = self._velocity - self._cases.gain * (computed - read)
-            self._seen = self._seen_by_meter()
             return
         residual, last = mean + mean_error - read, self._last
         if last is None:
             self._last = residual
             return
-        span = aiding.cycles * self._loop.period_s
+        span = self._aiding.cycles * self._loop.period_s
         change = self._cases.gain * (residual - last) / span
         self._acceleration = self._acceleration - change
         self._velocity = self._velocity - span * change
         self._errors = self._errors - 0.5 * span * span * change
         self._last = residual - 0.5 * span * change
-        self._seen = self._seen_by_meter()
+
+
+class _Conventional(_Lateral):
+    """
+    Both channels of conventional.
+
+    V along the leg is constant; the nose is off it by atan(v_z/V) - beta.
+    """
+
+    def _of_means(self):
+        """Return the velocity over ground along the nose and to its right."""
+        _, v, beta = self._state
+        speed = np.sqrt(self._loop.speed * self._loop.speed + v * v)
+        return np.array((speed * np.cos(beta), speed * np.sin(beta)))
+
+    def _correct(self, along, aside):
+        _, v, beta = self._state
+        off = np.arctan2(v, self._loop.speed) - beta
+        sin, cos = np.sin(off), np.cos(off)
+        x, y = self._loop.speed + self._along, v + self._velocity
+        forward = x * cos + y * sin - along
+        right = y * cos - x * sin - (1.0 + self._cases.k_z) * aside
+        gain = self._cases.gain
+        self._along = self._along - gain * (forward * cos - right * sin)
+        self._velocity = self._velocity - gain * (forward * sin + right * cos)
