@@ -52,12 +52,11 @@ def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, forwar
     engaged_s : float
         The autopilot steers from then on; before, the command is zero.
     forward : bool
-        Whether conventional corrects the forward velocity too, as the filter does.  Its error, of
-        the second order in beta, goes into the lateral one where the nose is off the leg.
+        Whether the forward velocity is aided too, as the filters do.  Its error, of the second
+        order in beta, goes into the lateral one where the nose is off the leg.
 
     """
-    channels = aiding.kind == 'conventional' and forward
-    flight = (_Conventional if channels else _Lateral)(loop, aiding, cases, most_rad)
+    flight = (_TwoChannels if forward else _Lateral)(loop, aiding, cases, most_rad)
     kept = [flight.shown()]
     count, engaged = round(duration_s / loop.period_s), round(engaged_s / loop.period_s)
     for k in range(1, count + 1):
@@ -82,11 +81,11 @@ class _Lateral:
         self._step = after_period(loop)
         zero = np.zeros(len(cases.k_z))
         self._state = np.array((cases.offset + zero, zero, zero))
-        self._errors = self._velocity = self._acceleration = self._along = zero
+        self._errors = self._velocity = self._acceleration = zero
         self._command, self._late = zero, deque([zero] * loop.latency)
         # what is now, its sum since the start, and that at the ends of the last steps
         self._now = self._of_means()
-        self._sums = np.zeros((2, len(zero)))
+        self._sums = np.zeros_like(self._now)
         self._ends, self._last = deque([self._sums], aiding.cycles // aiding.step + 1), None
 
     def shown(self):
@@ -139,26 +138,61 @@ class _Lateral:
         self._last = residual - 0.5 * span * change
 
 
-class _Conventional(_Lateral):
+class _TwoChannels(_Lateral):
     """
-    Both channels of conventional.
+    Both channels, which the nose mixes where it is off the leg.
 
-    V along the leg is constant; the nose is off it by atan(v_z/V) - beta.
+    Complex: along the leg, or the nose, and i times to the right of it.  V along the leg is
+    constant; the nose is off it by atan(v_z/V) - beta.
     """
+
+    def __init__(self, loop, aiding, cases, most_rad):
+        zero = np.zeros(len(cases.k_z), dtype=complex)
+        # errors of the velocity along the leg, and corrections of the acceleration along the nose
+        self._both = self._corrections = zero
+        self._a1 = self._b2 = zero
+        super().__init__(loop, aiding, cases, most_rad)
+
+    def advance(self, engaged):
+        """Fly one period."""
+        before, h = self._nose(), self._loop.period_s
+        super().advance(engaged)
+        if self._aiding.kind == 'conventional':
+            return
+        middle = np.exp(0.5j * (before + self._nose()))
+        change = -h * middle * self._corrections
+        self._errors = self._errors + 0.5 * h * change.imag
+        self._set(self._both + change)
+        a1 = self._a1 + h * middle
+        self._b2 = self._b2 + 0.5 * h * np.conj(middle) * (a1 + self._a1)
+        self._a1 = a1
+        now = self._of_means()
+        self._sums = self._sums + 0.5 * (now - self._now)
+        self._now = now
+
+    def _set(self, both):
+        self._both, self._velocity = both, both.imag
+
+    def _nose(self):
+        _, v, beta = self._state
+        return np.arctan2(v, self._loop.speed) - beta
 
     def _of_means(self):
-        """Return the velocity over ground along the nose and to its right."""
-        _, v, beta = self._state
-        speed = np.sqrt(self._loop.speed * self._loop.speed + v * v)
-        return np.array((speed * np.cos(beta), speed * np.sin(beta)))
+        """Return the velocity over ground, and the error of the computed one, along the nose."""
+        turn = np.exp(-1j * self._nose())
+        return np.array(((self._loop.speed + 1j * self._state[1]) * turn, self._both * turn))
 
-    def _correct(self, along, aside):
-        _, v, beta = self._state
-        off = np.arctan2(v, self._loop.speed) - beta
-        sin, cos = np.sin(off), np.cos(off)
-        x, y = self._loop.speed + self._along, v + self._velocity
-        forward = x * cos + y * sin - along
-        right = y * cos - x * sin - (1.0 + self._cases.k_z) * aside
-        gain = self._cases.gain
-        self._along = self._along - gain * (forward * cos - right * sin)
-        self._velocity = self._velocity - gain * (forward * sin + right * cos)
+    def _correct(self, mean, mean_error):
+        read = mean + 1j * self._cases.k_z * mean.imag
+        if self._aiding.kind == 'conventional':
+            residual = self._now.sum(axis=0) - read
+            self._set(self._both - self._cases.gain * residual * np.exp(1j * self._nose()))
+            return
+        residual, last = mean + mean_error - read, self._last
+        span = self._aiding.cycles * self._loop.period_s
+        change = 0.0 if last is None else self._cases.gain * (residual - last) / span
+        self._corrections = self._corrections + change
+        self._set(self._both - self._a1 * change)
+        self._errors = self._errors - 0.5 * span * (self._a1 * change).imag
+        self._last = residual - self._b2 / span * change
+        self._a1 = self._b2 = 0.0 * self._a1
