@@ -8,7 +8,8 @@ from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
 from ins_sim.core.guidance.linear_loop import Aiding, limits
 
 MOST_K_Z = 1.0
-HALVINGS = 9
+# k_z is looked for among so many values, and then between two of them
+STEPS, STAGES = 32, 2
 # A flight of which the last quarter swings by this part of the one before does not decay, unless
 # it is as quiet as this, rad.
 DECAYS, QUIET_RAD = 0.99, 1e-7
@@ -79,16 +80,23 @@ def _linear(found):
 
 
 def flown_limits(loop, panel, gains, start_m, most_rad):
-    """Return the k_z (n,) beyond which reduced flights from an offset do not calm down."""
-    low, high = np.zeros(len(gains)), np.full(len(gains), MOST_K_Z)
-    ends = _restless(loop, panel, np.concatenate([gains, gains]), np.concatenate([low, high]),
-                     start_m, most_rad)
-    never, always = ~ends[len(gains):], ends[:len(gains)]
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        restless = _restless(loop, panel, gains, middle, start_m, most_rad)
-        low, high = np.where(restless, low, middle), np.where(restless, middle, high)
-    return np.where(always, 0.0, np.where(never, MOST_K_Z, 0.5 * (low + high)))
+    """
+    Return the least k_z (n,) at which reduced flights from an offset do not calm down.
+
+    0: none does; MOST_K_Z: all do.
+    """
+    low, width = np.zeros(len(gains)), MOST_K_Z
+    for stage in range(STAGES):
+        width /= STEPS
+        # the first value of the second stage is known to calm down, the last not to
+        k_z = low + width * np.arange(STEPS + 1)[:, None]
+        restless = _restless(loop, panel, np.tile(gains, STEPS + 1), k_z.ravel(), start_m,
+                             most_rad).reshape(k_z.shape)
+        first = np.where(restless.any(axis=0), restless.argmax(axis=0), STEPS + 1)
+        if stage == 0:
+            always, never = first == 0, first == STEPS + 1
+        low = low + width * (np.clip(first, 1, STEPS) - 1)
+    return np.where(always, 0.0, np.where(never, MOST_K_Z, low + 0.5 * width))
 
 
 def _restless(loop, panel, gains, k_z, start_m, most_rad):
