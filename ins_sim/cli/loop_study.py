@@ -61,15 +61,17 @@ def _table(chosen, settings, loop, console, folder):
     rows = [report.loop_row(case, flight, lateral_flight(settings, loop, case))
             for case, flight in zip(TABLE, flights)]
     report.show_flights('Closed loop', rows, console)
-    shown = [k for k, case in enumerate(TABLE) if case.k_z == 0.15 and case.duration_s <= 300.0]
-    report.save_histories(folder / 'histories.png', 'Closed loop, k_z = 0.15',
-                          [_name(TABLE[k]) for k in shown], [flights[k] for k in shown])
+    for k_z in dict.fromkeys(case.k_z for case in TABLE):
+        shown = [k for k, case in enumerate(TABLE) if case.k_z == k_z and case.duration_s <= 300.0]
+        report.save_histories(folder / f'histories_{k_z:g}.png', f'Closed loop, k_z = {k_z:g}',
+                              [_name(TABLE[k]) for k in shown], [flights[k] for k in shown])
     return [asdict(row) for row in rows]
 
 
 def _name(case):
     engaged = f', engaged at {case.engage_s:g} s' if case.engage_s else ''
-    return case.label + engaged
+    offset = f', from {case.offset_m:g} m' if case.offset_m != 100.0 else ''
+    return case.label + engaged + offset
 
 
 def _limits(chosen, settings, loop, console, folder):

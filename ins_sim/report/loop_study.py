@@ -78,7 +78,7 @@ def show_flights(title, rows, console):
 
 
 def _cell(row, name):
-    values = [getattr(row, name)] + [row.lateral[name]] * bool(row.lateral)
+    values = [getattr(row, name), *([row.lateral[name]] if row.lateral else [])]
     text = ' '.join('-' if value is None else f'{value:.3g}' for value in values)
     if name not in row.published:
         return text

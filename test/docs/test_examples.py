@@ -18,6 +18,8 @@ COMMANDS = [[line for line in text.splitlines() if line.startswith('ins_sim ')]
 # verbs that simulate or predict are shortened; those that need live nodes are tested with them
 SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters'}
 LIVE = {'record', 'play'}
+# takes a quarter of an hour whatever its flights are; test_loop_study shortens it
+LONG = {'loop-study'}
 DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
 
 
@@ -30,7 +32,7 @@ def test_commands_of_the_readme(lines, tmp_path, monkeypatch, request):
         (tmp_path / 'flight.csv.gz').symlink_to(data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
     for line in lines:
         words = shlex.split(line)[1:]
-        if words[0] in LIVE:
+        if words[0] in LIVE | LONG:
             # the words are those of the parser
             assert parser().parse_args(words).verb == words[0]
         else:
