@@ -52,7 +52,7 @@ class GuidedMotion(RouteMotion):
         self.period_ns = self._steered.period_ns
         half = elementary.sincos(-0.5 * self._attack)
         self._nose_up = (0.0, half[0], 0.0, half[1])
-        self._ahead = {}
+        self._ahead, self._behind, self._asked_ns = {}, {}, None
         self.begin(0)
 
     @property
@@ -63,7 +63,7 @@ class GuidedMotion(RouteMotion):
     def begin(self, t_ns):
         """Forget all commands; the first one will be given at motion time t_ns."""
         self._steered.begin(t_ns)
-        self._last_ns = None
+        self._asked_ns = None
         self.end_s = t_ns / 1e9
 
     def command(self, t_ns, beta_c):
@@ -110,22 +110,25 @@ class GuidedMotion(RouteMotion):
             lat, lon (rad), height (m), v_n (m/s), q_nb, omega_ib_b (rad/s), f_ib_b (m/s^2),
             floats and tuples of floats.
         """
-        flow = self._ahead.get(t_ns)
-        if flow is None:
-            flow = self._look_ahead(t_ns)
+        flow = self._ahead.get(t_ns) or self._behind.get(t_ns) or self._look_ahead(t_ns)
+        self._asked_ns = t_ns
         lat, lon, height, q_nb = self._pose(flow, self._steered.one(t_ns), taylor.InstantSeries)
         v_n, omega_in_n, f_n = translation(lat, lon, height, self._rotation, self._gravity)
         return (lat.value, lon.value, height.value, v_n, *in_body(omega_in_n, f_n, q_nb))
 
     def _look_ahead(self, t_ns):
-        """Evaluate the track at instants like those asked for last; return that of t_ns."""
-        step_ns = self.period_ns if self._last_ns is None else t_ns - self._last_ns
-        self._last_ns = t_ns + max(0, step_ns) * (AHEAD - 1)
-        stamps = t_ns + max(1, step_ns) * np.arange(AHEAD, dtype=np.int64)
+        """Evaluate the track at t_ns and the instants that follow it in the step of the last."""
+        last_ns, step_ns = self._asked_ns, self.period_ns
+        if last_ns is not None and 0 < t_ns - last_ns < step_ns:
+            step_ns = t_ns - last_ns
+        back = last_ns is not None and t_ns < last_ns
+        stamps = t_ns + step_ns * np.arange(1 if back else AHEAD, dtype=np.int64)
         columns = [series.c.T.tolist() for series in self._flow_at(stamps)]
-        self._ahead = dict(zip(stamps.tolist(), (
+        flows = dict(zip(stamps.tolist(), (
             tuple(taylor.InstantSeries(tuple(c)) for c in row) for row in zip(*columns))))
-        return self._ahead[t_ns]
+        if not back:
+            self._ahead, self._behind = flows, self._ahead
+        return flows[t_ns]
 
     def _flow_at(self, t_ns):
         """
