@@ -95,10 +95,10 @@ def test_differences_of_the_pose(route):
     """
     Velocity, force and rate are those of the pose, by central differences within the periods.
 
-    Control periods of 0.5 s, and steps of 25 ms, three to either side: latitude, longitude and an ECEF coordinate round to
-    2^-30 m each, which the first difference takes 1.84 times over h and the second 6.1 times over
-    h^2; v_z and beta change by exp(-t/0.4), whose seventh derivatives times h^6/140 are below
-    1e-9.
+    Control periods of 0.5 s, and steps of 25 ms, three to either side: latitude, longitude and an
+    ECEF coordinate round to 2^-30 m each, which the first difference takes 1.84 times over h and
+    the second 6.1 times over h^2; v_z and beta change by exp(-t/0.4), whose seventh derivatives
+    times h^6/140 are below 1e-9.
     """
     motion, h_ns = fly(guided(route, control_rate_hz=2.0), 40.0), 25_000_000
     h_s = h_ns * 1e-9
@@ -112,7 +112,8 @@ def test_differences_of_the_pose(route):
     truth, spin = around[3], (0.0, 0.0, ellipsoid.ROTATION_RATE)
     q_en = frames.level_frame(truth.lat, truth.lon)
     v = np.abs(np.array(quaternion.rotate(q_en, truth.v_n.T)) - v_e).max()
-    f_n = np.array(quaternion.rotate_back(q_en, a_e + 2.0 * np.array(quaternion.cross(spin, v_e))))
+    coriolis = 2.0 * np.array(quaternion.cross(spin, v_e))
+    f_n = np.array(quaternion.rotate_back(q_en, a_e + coriolis))
     f_n[2] += ellipsoid.gravity(np.sin(truth.lat), truth.height)
     f = np.abs(np.array(quaternion.rotate(truth.q_nb.T, truth.f_ib_b.T)) - f_n).max()
     q_eb = [quaternion.multiply(frames.level_frame(x.lat, x.lon), x.q_nb.T) for x in around]
@@ -128,7 +129,7 @@ def test_differences_of_the_pose(route):
 
 
 def test_pose_and_its_first_derivatives_are_continuous():
-    """At control instants with jumps of the command a nanosecond changes rate and force by less."""
+    """Over control instants at which the command turns or jumps."""
     motion = fly(guided(), 30.0)
     edges = instants(25.0)[1:]
     before, after = motion.at(edges), motion.at(edges + 1)

@@ -1,4 +1,4 @@
-"""The closed loop offline: same bits as the open one on the truth as flown, and what it refuses."""
+"""The closed loop offline: the bits of the open one on the truth as flown, and refusals."""
 
 from dataclasses import replace
 import math
@@ -69,17 +69,17 @@ def test_the_strapdown_steers_without_aiding():
 
 
 def test_rates_of_truth_and_control_may_differ():
-    """Truth and IMU at 200 Hz, commands at 50 Hz, 10 ms later: the same flight within 0.5 %."""
+    """200 Hz, and commands at 50 Hz, 10 ms later: the same flight within 0.5 %."""
     fast = flown(settings(False, rate_hz=200.0, motion__guided__control_rate_hz=50.0))[1]
     usual = flown(settings(False))[1]
     assert len(fast.states) == 301
     assert fast.states.z[-1] == pytest.approx(usual.states.z[-1], rel=5e-3)
-    assert math.degrees(usual.amplitude()) > 1.0
+    assert math.degrees(usual.amplitude()) > 0.1
 
 
 def test_turns_are_flown_straight_and_left_behind():
     """The autopilot is off in the turn; on the next leg it brings the offset to zero."""
-    chosen = settings(False, duration_s=50.0, start_s=260.0,
+    chosen = settings(False, duration_s=42.0, start_s=270.0, motion__route__turn_rate_deg_s=3.0,
                       motion__route__points__latitude_deg=[55.0, 55.5, 55.6],
                       motion__route__points__longitude_deg=[37.0, 37.3, 38.2],
                       motion__guided__offset_m=5.0)
@@ -87,8 +87,9 @@ def test_turns_are_flown_straight_and_left_behind():
     (start, end), = motion.turns
     t = result.estimates.t_ns * 1e-9
     turning = (t >= start) & (t < end)
-    assert 260.0 < start and end < 309.0
-    assert not result.estimates.command[turning].any() and not result.estimates.steers[turning].any()
+    assert 271.0 < start and end < 311.0
+    assert not result.estimates.command[turning].any()
+    assert not result.estimates.steers[turning].any()
     assert result.estimates.steers[~turning].all()
     assert dict(result.counts)['in a turn'] == np.count_nonzero(turning)
     assert result.estimates.z[~turning] == pytest.approx(result.states.z[~turning], abs=5e-3)
@@ -157,7 +158,7 @@ def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
 @pytest.mark.parametrize('command, sentence', [
     (['predict'], 'up to which the guided motion has been steered: its flight depends on the '
      'navigation'),
-    (['simulate', '-p', 'duration_s:=5000.0'], 'start_s + duration_s is 5000 s; expected at most '),
+    (['simulate', '-p', 'duration_s:=5000.0'], 'duration_s is 5000 s; expected at most '),
     (['simulate', '-p', 'duration_s:=0.0'], 'duration_s is 0, endless')], ids=lambda v: v[0])
 def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):
     """With exit code 2."""
