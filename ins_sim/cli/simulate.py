@@ -70,7 +70,8 @@ def run(chosen):
                               steered=steered)
         table.show_table(title, rows, console)
         for line in (*coverage.coverage_lines(settings, prediction),
-                     *guided.guided_lines(steered), *summary.gap_lines(result.faults), *summary.withheld_lines(settings),
+                     *guided.guided_lines(steered), *summary.gap_lines(result.faults),
+                     *summary.withheld_lines(settings),
                      *summary.parity_lines(settings.imu_sensor, result.imu)):
             console.print(line)
         if report is not None:

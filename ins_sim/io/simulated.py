@@ -61,7 +61,8 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
 
     settings: SimulationSettings; chosen: Topics of ``select_topics``; the rest as of BagWriter;
     progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
-    this run, or None; motion: that of the run, None for the one of the settings.  A message is logged at its own stamp.
+    this run, or None; motion: that of the run, None for the one of the settings.  A message is
+    logged at its own stamp.
     """
     aiding = None
     if aided is not None:

@@ -20,11 +20,12 @@ def guided_rows(result):
     if result is None:
         return []
     states, estimates = result.states, result.estimates
-    return [SummaryRow(f'steered: {name}', unit, None, value, None, None) for name, unit, value in (
-        ('beta, half range of the last 30 %', 'deg', math.degrees(result.amplitude())),
-        ('z at the end', 'm', float(states.z[-1])),
-        ('z at the end, estimated', 'm', float(estimates.z[-1])),
-        ('max |z|', 'm', float(abs(states.z).max())))]
+    figures = (('beta, half range of the last 30 %', 'deg', math.degrees(result.amplitude())),
+               ('z at the end', 'm', float(states.z[-1])),
+               ('z at the end, estimated', 'm', float(estimates.z[-1])),
+               ('max |z|', 'm', float(abs(states.z).max())))
+    return [SummaryRow(f'steered: {name}', unit, None, value, None, None)
+            for name, unit, value in figures]
 
 
 def guided_lines(result):

@@ -98,14 +98,14 @@ class AidedSimulationSettings:
                                  'aided_navigator, which needs the truth of the same stamp')
 
     def _check_steering(self):
-        """Refuse a strapdown that would keep a fix waiting, and with it the solution to steer by."""
+        """Refuse a strapdown for which a fix, and the solution to steer by, would wait."""
         simulation = self.simulation
         if (simulation.motion_generator.motion.kind == 'guided'
                 and self.velocity_meter.attack_angle == 'ins'
                 and simulation.strapdown.output_every != 1):
-            raise ValueError(f'strapdown: output_every is {simulation.strapdown.output_every} with '
-                             'motion.kind guided and attack_angle ins; expected 1: the fix of a '
-                             'window waits for the strapdown')
+            raise ValueError(f'strapdown: output_every is {simulation.strapdown.output_every} '
+                             'with motion.kind guided and attack_angle ins; expected 1: the fix '
+                             'of a window waits for the strapdown')
 
     def _check_route(self):
         """Refuse a route for the orthodromic coordinates that is not the one flown."""

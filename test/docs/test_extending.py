@@ -86,5 +86,6 @@ def test_every_motion_of_the_table_is_a_motion(kind):
     motion = ins_sim.open_motion(ins_sim.read_settings(
         'route_flight' if kind == 'route' else [], {'motion.kind': kind}))
     assert isinstance(motion, Motion)
-    assert all(np.isfinite(values).all()
-               for values in motion.at(np.array([10 ** 9])).arrays().values())
+    # A guided motion is known up to where it has been steered.
+    instant = np.array([0 if kind == 'guided' else 10 ** 9])
+    assert all(np.isfinite(values).all() for values in motion.at(instant).arrays().values())

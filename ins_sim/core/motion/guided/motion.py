@@ -14,14 +14,16 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary, taylor
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
-from ins_sim.core.timeseries.histories import SteeredStates
+from ins_sim.core.timeseries.histories import SteeredStates, Truth
 import numpy as np
 from ..route.motion import RouteMotion
 from ..truth import in_body, translation, truth_from_pose
 from .steered import SteeredHistory
 
-# Instants at which the track is evaluated at once for ``one``.
-AHEAD = 256
+# Instants at which the track is evaluated at once for ``one``, in so many parts of a period.
+AHEAD, PHASES = 256, 64
+# So many instants, and no more, are faster one by one.
+FEW = 2
 
 
 class GuidedMotion(RouteMotion):
@@ -52,6 +54,7 @@ class GuidedMotion(RouteMotion):
         self.period_ns = self._steered.period_ns
         half = elementary.sincos(-0.5 * self._attack)
         self._nose_up = (0.0, half[0], 0.0, half[1])
+        # By the part of a control period, ns: its number, and the flows from there on.
         self._ahead = {}
         self.begin(0)
 
@@ -63,7 +66,6 @@ class GuidedMotion(RouteMotion):
     def begin(self, t_ns):
         """Forget all commands; the first one will be given at motion time t_ns."""
         self._steered.begin(t_ns)
-        self._last_ns = None
         self.end_s = t_ns / 1e9
 
     def command(self, t_ns, beta_c):
@@ -97,6 +99,8 @@ class GuidedMotion(RouteMotion):
     def at(self, t_ns):
         """Return the Truth at motion times t_ns (n,) int64; ValueError where it is not known."""
         t_ns = np.asarray(t_ns)
+        if 0 < len(t_ns) <= FEW:
+            return Truth(t_ns, *map(np.array, zip(*map(self.one, t_ns.tolist()))))
         pose = self._pose(self._flow_at(t_ns), self._steered.at(t_ns), _series)
         return truth_from_pose(t_ns, *pose, self._rotation, self._gravity)
 
@@ -110,22 +114,25 @@ class GuidedMotion(RouteMotion):
             lat, lon (rad), height (m), v_n (m/s), q_nb, omega_ib_b (rad/s), f_ib_b (m/s^2),
             floats and tuples of floats.
         """
-        flow = self._ahead.get(t_ns)
-        if flow is None:
-            flow = self._look_ahead(t_ns)
-        lat, lon, height, q_nb = self._pose(flow, self._steered.one(t_ns), taylor.InstantSeries)
+        lat, lon, height, q_nb = self._pose(self._flow(t_ns), self._steered.one(t_ns),
+                                            taylor.InstantSeries)
         v_n, omega_in_n, f_n = translation(lat, lon, height, self._rotation, self._gravity)
         return (lat.value, lon.value, height.value, v_n, *in_body(omega_in_n, f_n, q_nb))
 
-    def _look_ahead(self, t_ns):
-        """Evaluate the track at instants like those asked for last; return that of t_ns."""
-        step_ns = self.period_ns if self._last_ns is None else t_ns - self._last_ns
-        self._last_ns = t_ns + max(0, step_ns) * (AHEAD - 1)
-        stamps = t_ns + max(1, step_ns) * np.arange(AHEAD, dtype=np.int64)
-        columns = [series.c.T.tolist() for series in self._flow_at(stamps)]
-        self._ahead = dict(zip(stamps.tolist(), (
-            tuple(taylor.InstantSeries(tuple(c)) for c in row) for row in zip(*columns))))
-        return self._ahead[t_ns]
+    def _flow(self, t_ns):
+        """Return what ``_flow_at`` returns of one instant; it is evaluated some periods ahead."""
+        # Truth and sensors ask for the same parts of every period.
+        period, phase = divmod(t_ns, self.period_ns)
+        first, flows = self._ahead.get(phase, (0, ()))
+        if not 0 <= period - first < len(flows):
+            stamps = t_ns + self.period_ns * np.arange(AHEAD, dtype=np.int64)
+            columns = [series.c.T.tolist() for series in self._flow_at(stamps)]
+            flows = [tuple(taylor.InstantSeries(tuple(c)) for c in row)
+                     for row in zip(*columns)]
+            if len(self._ahead) >= PHASES:
+                self._ahead.clear()
+            self._ahead[phase] = first, flows = period, flows
+        return flows[period - first]
 
     def _flow_at(self, t_ns):
         """
