@@ -123,12 +123,13 @@ def save_map(path, panels, curves):
 
 
 def save_histories(path, title, names, flights):
-    """Save sideslip and offset over time of LoopFlights with these names."""
+    """Save sideslip and offset, dotted the estimated one, of LoopFlights with these names."""
     figure = new_figure(10, 8)
     top, bottom = figure.subplots(2, 1, sharex=True)
     for name, flight in zip(names, flights):
         line, = top.plot(flight.t_s, np.degrees(flight.beta), lw=0.9, label=name)
         bottom.plot(flight.t_s, flight.z, lw=0.9, color=line.get_color(), label=name)
+        bottom.plot(flight.t_s, flight.z_estimated, lw=0.9, ls=':', color=line.get_color())
     top.set_ylabel('sideslip [deg]')
     bottom.set_ylabel('offset from the leg [m]')
     bottom.set_xlabel('time [s]')
