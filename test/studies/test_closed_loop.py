@@ -102,21 +102,18 @@ def test_the_table(figures):
                            row.published.get(figure), f'{case.label}, k_z {case.k_z:g}')
         if case.published is None:
             continue
-        held = row.lateral or vars(row)
         if case.published.beta_deg == 0.0:
-            assert row.beta_deg < QUIET_DEG and held['beta_deg'] < QUIET_DEG
-        else:
-            assert held['beta_deg'] == pytest.approx(case.published.beta_deg, rel=0.03)
-            both = reduced(loop, case)
-            assert row.beta_deg == pytest.approx(both.beta_deg, rel=0.03)
-        for figure in ('frequency', 'swing_m'):
-            if getattr(case.published, figure) is not None:
-                assert held[figure] == pytest.approx(getattr(case.published, figure), rel=0.03)
-        if case.published.end_m is not None:
-            # off the leg to 1 cm is on it
-            assert abs(held['end_m']) == pytest.approx(abs(case.published.end_m), rel=0.03,
-                                                       abs=0.05)
-            assert abs(row.end_m) == pytest.approx(abs(case.published.end_m), rel=0.03, abs=0.05)
+            assert row.beta_deg < QUIET_DEG
+        if lateral is None:
+            continue
+        both = loop_row(case, reduced(loop, case))
+        for figure, value in row.published.items():
+            if value == 0.0 and figure == 'beta_deg':
+                assert row.lateral[figure] < QUIET_DEG
+                continue
+            # to 5 cm the vehicle is on the leg
+            assert abs(row.lateral[figure]) == pytest.approx(abs(value), rel=0.03, abs=0.05)
+            assert getattr(row, figure) == pytest.approx(getattr(both, figure), rel=0.03, abs=0.05)
 
 
 @pytest.mark.figures
