@@ -110,12 +110,13 @@ def save_map(path, panels, curves):
             axes.plot(found.gains, limits, mark, ms=5, mfc='none',
                       label=f'flown from z0 = {start:g} m')
         axes.set_xscale('log')
+        axes.xaxis.set_major_formatter('{x:g}')
         axes.set_ylim(0.0, MOST_K_Z)
         axes.set_title(panel.label, fontsize='medium')
         axes.set_xlabel('K_v [1/s]' if panel.slides else
                         'K' if panel.kind == 'paper_corrected' else 'gain of a fix')
         axes.grid(which='both', alpha=0.3)
-        axes.legend(fontsize='x-small', loc='upper right')
+    figure.axes[min(2, len(panels) - 1)].legend(fontsize='small', loc='lower left')
     for row in figure.axes[::3]:
         row.set_ylabel('lateral scale error of the meter, k_z')
     figure.suptitle('Stability of the loop: unstable above (shaded)')
