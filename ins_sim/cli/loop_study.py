@@ -34,7 +34,7 @@ def run(chosen):
     """Fly, show and save; return the exit code."""
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.console import PlainConsole
-    from ins_sim.studies.closed_loop import lateral_loop
+    from ins_sim.studies.closed_loop import study_loop
     if chosen.gains < 1 or chosen.jobs < 0:
         raise ValueError(f'--gains is {chosen.gains} and --jobs {chosen.jobs}; expected 1 or more '
                          'gains, and 0 (every core) or more jobs')
@@ -42,7 +42,7 @@ def run(chosen):
     kind = settings.simulation.motion_generator.motion.kind
     if kind != 'guided':
         raise ValueError(f'motion.kind is {kind}; expected guided, which the solution steers')
-    loop, console = lateral_loop(settings), PlainConsole()
+    loop, console = study_loop(settings), PlainConsole()
     found = {}
     with whole_folder(chosen.output, chosen.force, MARK) as folder:
         for part in dict.fromkeys(chosen.parts):

@@ -11,10 +11,9 @@ import math
 
 import numpy as np
 
-from ins_sim.core.guidance.autopilot import make_autopilot
 from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
 from ins_sim.core.guidance.linear_loop import Aiding, KINDS
-from ins_sim.core.guidance.linear_plant import LateralLoop
+from ins_sim.core.guidance.linear_plant import lateral_loop
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.guided_flight import fly
 from .oscillations import frequency, growth_rate, half_range
@@ -185,26 +184,23 @@ def lateral_flight(settings, loop, case):
                       flown.z[:, 0] + flown.error_z[:, 0])
 
 
-def lateral_loop(settings):
+def study_loop(settings):
     """
-    Return the LateralLoop of AidedSimulationSettings, in still air.
+    Return the LateralLoop of AidedSimulationSettings.
 
     Raises ValueError where it is none: an autopilot without gains, or control instants that are
     not the meter's cycles.
     """
     generator = settings.simulation.motion_generator
-    guided, guidance = generator.motion.guided, generator.guidance
-    gains = make_autopilot(guidance).gains()
-    if gains is None:
-        raise ValueError(f'guidance.autopilot is {guidance.autopilot}; expected one with gains, '
-                         'for the linear limits of the study')
-    rate_hz = settings.velocity_meter.rate_hz
-    if guided.control_rate_hz != rate_hz:
-        raise ValueError(f'motion.guided.control_rate_hz is {guided.control_rate_hz:g} Hz; '
-                         f'expected rate_hz, {rate_hz:g} Hz, in the study')
-    return LateralLoop(generator.motion.route.airspeed_m_s, guided.side_force_m_s2_rad,
-                       guided.lag_s, *gains, 1.0 / rate_hz,
-                       round(guidance.latency_s * rate_hz))
+    loop, rate_hz = lateral_loop(generator), settings.velocity_meter.rate_hz
+    if loop is None:
+        raise ValueError(f'guidance.autopilot is {generator.guidance.autopilot}; expected one '
+                         'with gains, for the linear limits of the study')
+    control_hz = generator.motion.guided.control_rate_hz
+    if control_hz != rate_hz:
+        raise ValueError(f'motion.guided.control_rate_hz is {control_hz:g} Hz; expected rate_hz, '
+                         f'{rate_hz:g} Hz, in the study')
+    return loop
 
 
 def aiding_of(case, rate_hz):

@@ -1,5 +1,6 @@
 """Limits of stability of the closed loop: against published ones, and against eigenvalues."""
 
+from dataclasses import replace
 import math
 
 from hypothesis import given, settings as hypothesis_settings, strategies as st
@@ -8,10 +9,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from support.lateral_loops import block, loop, paper, PERIOD_S, sliding
 
-from ins_sim.core.guidance.aided_margin import aided_margin
+from ins_sim import parameter_files, resources
+from ins_sim.core.guidance.aided_margin import aided_margin, aided_margin_sentence
 from ins_sim.core.guidance.linear_loop import growth, limits
 from ins_sim.core.guidance.linear_plant import after_period
 from ins_sim.core.guidance.margin import phase_margin
+from ins_sim.core.guidance.steering import margin_sentence
 
 INF = math.inf
 # K_v: k_z and rad/s at N = 10, 100, 1000, as published; held commands, which the study has
@@ -162,4 +165,22 @@ def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
     alone = phase_margin((lateral.k1, lateral.k2), lateral.side_force, lateral.lag_s, PERIOD_S)
     # the crossover is between two of 20001 frequencies, and K_v lowers it by its part
     assert slow.margin == pytest.approx(alone, abs=5e-3)
-    assert str(slow).startswith('51 deg at 0.82 rad/s')
+
+
+@pytest.mark.parametrize('latency_s, gain, said', [(0.15, 1.0, False), (0.2, 1.0, True),
+                                                   (0.2, 0.2, False)])
+def test_a_latency_that_the_corrections_do_not_bear_is_said(latency_s, gain, said):
+    """One sentence, where exact navigation would bear a second more."""
+    settings = parameter_files.read_aided([resources.config('guided_flight')], [
+        'filter:=conventional', 'window.cycles:=100', 'window.slide_cycles:=1',
+        f'gain_per_s:={gain}', f'guidance.latency_s:={latency_s}'])
+    generator = settings.simulation.motion_generator
+    assert margin_sentence(generator.guidance, generator.motion.guided) is None
+    sentence = aided_margin_sentence(generator, settings.aided_navigator)
+    assert (sentence is not None) is said
+    if said:
+        assert sentence.startswith('guidance.latency_s is 0.2 s, which with filter conventional '
+                                   'and gain_per_s 1 leaves the loop a phase margin of -1')
+        assert 'as with 0.15 s or less' in sentence and '\n' not in sentence
+    other = replace(settings.aided_navigator, filter='free')
+    assert aided_margin_sentence(generator, other) is None

@@ -18,8 +18,9 @@ from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
 from ins_sim.core.guidance.linear_loop import limits
 from ins_sim.report.loop_study import loop_row
 from ins_sim.studies.closed_loop import (aiding_of, AT_THE_LIMIT, CONDITIONS, fly_case,
-                                         growth_of_flight, lateral_flight, lateral_loop, LoopCase,
-                                         LoopFlight, QUIET_DEG, TABLE, VARIED)
+                                         growth_of_flight, lateral_flight, LoopCase,
+                                         LoopFlight, QUIET_DEG, study_loop, TABLE,
+                                         VARIED)
 from ins_sim.studies.oscillations import frequency, growth_rate, half_range
 from ins_sim.studies.stability_map import map_curves, MapPanel
 
@@ -51,7 +52,7 @@ def test_the_chain_is_the_reduced_loop(case, bound):
     acceleration by paper_corrected, ten times as much.
     """
     settings = chosen()
-    flight, other = fly_case(settings, case), reduced(lateral_loop(settings), case)
+    flight, other = fly_case(settings, case), reduced(study_loop(settings), case)
     beta, z = (np.abs(a - b).max() for a, b in ((flight.beta, other.beta), (flight.z, other.z)))
     print(f'{case.label}: beta within {beta:.1e} rad, z within {1e3 * z:.1f} mm')
     assert len(flight.t_s) == len(other.t_s) == 201
@@ -62,7 +63,7 @@ def test_the_chain_is_the_reduced_loop(case, bound):
 def test_the_map_is_that_of_the_linear_theory_where_nothing_saturates():
     """Within 1 % from 1 m; from 100 m, where the command saturates, no higher than that."""
     panel = MapPanel('conventional', 100, True, 0.5, 5.0)
-    curves = map_curves(lateral_loop(chosen()), panel, 3, MOST)
+    curves = map_curves(study_loop(chosen()), panel, 3, MOST)
     print(curves)
     np.testing.assert_allclose(curves.flown[1.0], curves.linear, rtol=0.01, atol=2.0 ** -9)
     assert (curves.flown[100.0] <= 1.02 * curves.linear).all()
@@ -90,7 +91,7 @@ def test_the_table(figures):
     chain is held to the reduced flight with both channels.
     """
     settings = chosen()
-    loop = lateral_loop(settings)
+    loop = study_loop(settings)
     flights = spread(partial(fly_case, settings), TABLE)
     for number, (case, flight) in enumerate(zip(TABLE, flights)):
         lateral = lateral_flight(settings, loop, case)
@@ -120,7 +121,7 @@ def test_the_table(figures):
 def test_limits_of_the_chain_are_the_linear_ones(figures):
     """Within 1 %, from 1 m, by the growth of flights 2 % on either side."""
     settings = chosen()
-    loop = lateral_loop(settings)
+    loop = study_loop(settings)
     linear = [limits(loop, aiding_of(case, 100.0)).positive.k_z for case in AT_THE_LIMIT]
     cases = [replace(case, k_z=part * k_z, offset_m=1.0)
              for case, k_z in zip(AT_THE_LIMIT, linear) for part in (0.98, 1.02)]

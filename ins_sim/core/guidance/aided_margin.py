@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ins_sim.core.numerics.units import DEG
-from .linear_loop import window_mean
-from .linear_plant import after_period
+from .linear_loop import Aiding, window_mean
+from .linear_plant import after_period, lateral_loop
 
 # frequencies at which the gain is looked at
 POINTS = 20001
@@ -23,11 +23,6 @@ class PhaseMargin(NamedTuple):
     crossover: float
     margin: float
     delay_s: float
-
-    def __str__(self):
-        """Return what a warning says of it."""
-        return (f'{self.margin / DEG:.0f} deg at {self.crossover:.2g} rad/s, which '
-                f'{max(0.0, self.delay_s):.2g} s use up')
 
 
 def aided_margin(loop, aiding, k_z=0.0):
@@ -52,6 +47,30 @@ def aided_margin(loop, aiding, k_z=0.0):
         margin = float(math.pi + angle[k] + part * (angle[k + 1] - angle[k]))
         margins.append(PhaseMargin(crossover, margin, margin / crossover))
     return min(margins, key=lambda m: m.delay_s, default=None)
+
+
+def aided_margin_sentence(generator, navigator):
+    """
+    Return what is to be said of a loop that cannot be stable for its latency, or None.
+
+    generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.  Of filters other than
+    conventional on sliding windows, and where control instants are no cycles of the meter, None.
+    """
+    window, rate_hz = navigator.window, navigator.rate_hz
+    if navigator.filter != 'conventional' or not (window.slides and navigator.meter_model.use):
+        return None
+    loop = lateral_loop(generator)
+    if loop is None or generator.motion.guided.control_rate_hz != rate_hz:
+        return None
+    margin = aided_margin(loop, Aiding('conventional', window.cycles, window.step_cycles,
+                                       navigator.gain_per_s * window.step_cycles / rate_hz))
+    if margin is None or margin.margin > 0.0:
+        return None
+    return (f'guidance.latency_s is {generator.guidance.latency_s:g} s, which with filter '
+            f'conventional and gain_per_s {navigator.gain_per_s:g} leaves the loop a phase margin '
+            f'of {margin.margin / DEG:.1f} deg; expected more than 0, as with '
+            f'{max(0.0, generator.guidance.latency_s + margin.delay_s):.2g} s or less: it is '
+            'unstable whatever the meter reads')
 
 
 def _returned(loop, aiding, k_z, q):

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .autopilot import make_autopilot
+
 
 class LateralLoop(NamedTuple):
     """
@@ -29,6 +31,21 @@ class LateralLoop(NamedTuple):
     period_s: float
     latency: int = 0
     ramps: bool = True
+
+
+def lateral_loop(generator):
+    """
+    Return the LateralLoop of MotionGeneratorSettings, in still air.
+
+    None for an autopilot without gains.
+    """
+    guided, guidance = generator.motion.guided, generator.guidance
+    gains = make_autopilot(guidance).gains()
+    if gains is None:
+        return None
+    return LateralLoop(generator.motion.route.airspeed_m_s, guided.side_force_m_s2_rad,
+                       guided.lag_s, *gains, 1.0 / guided.control_rate_hz,
+                       round(guidance.latency_s * guided.control_rate_hz))
 
 
 def after_period(loop):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ins_sim.core.guidance.aided_margin import aided_margin_sentence
 from ins_sim.core.guidance.steering import margin_sentence, Steering
 from ins_sim.core.motion.guided.motion import GuidedMotion
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
@@ -71,6 +72,8 @@ def fly(settings, motion, aided=None, progress=None, run=0):
                          f'{motion.arrival_s:g} s, the arrival at the last turning point')
     steering = Steering(generator.guidance, motion.route.legs, motion.turns)
     sentence = margin_sentence(generator.guidance, generator.motion.guided)
+    if sentence is None and aided is not None:
+        sentence = aided_margin_sentence(generator, aided.aided_navigator)
     if sentence:
         steering.notes.append(sentence)
     commands = []
