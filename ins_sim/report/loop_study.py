@@ -1,7 +1,9 @@
 """The study of the closed loop: its table, its limits and its figures."""
 
 from dataclasses import dataclass
+from itertools import cycle
 
+from matplotlib import colormaps
 import numpy as np
 from rich import box
 from rich.table import Table
@@ -127,10 +129,10 @@ def save_histories(path, title, names, flights):
     """Save sideslip and offset, dotted the estimated one, of LoopFlights with these names."""
     figure = new_figure(10, 8)
     top, bottom = figure.subplots(2, 1, sharex=True)
-    for name, flight in zip(names, flights):
-        line, = top.plot(flight.t_s, np.degrees(flight.beta), lw=0.9, label=name)
-        bottom.plot(flight.t_s, flight.z, lw=0.9, color=line.get_color(), label=name)
-        bottom.plot(flight.t_s, flight.z_estimated, lw=0.9, ls=':', color=line.get_color())
+    for name, flight, colour in zip(names, flights, cycle(colormaps['tab20'].colors)):
+        top.plot(flight.t_s, np.degrees(flight.beta), lw=0.9, color=colour)
+        bottom.plot(flight.t_s, flight.z, lw=0.9, color=colour, label=name)
+        bottom.plot(flight.t_s, flight.z_estimated, lw=0.9, ls=':', color=colour)
     top.set_ylabel('sideslip [deg]')
     bottom.set_ylabel('offset from the leg [m]')
     bottom.set_xlabel('time [s]')
