@@ -1,4 +1,4 @@
-"""The lateral loop of the velocity meter's study, and what is measured of its flights."""
+"""The lateral loop of the velocity meter's study, and its reduced flights."""
 
 import math
 
@@ -36,18 +36,3 @@ def flown(aiding, k_z, offset=100.0, duration_s=300.0, engaged_s=0.0, latency=0)
     """Return the ReducedFlights, the lateral channel alone, of one case."""
     cases = ReducedCases(np.array([aiding.gain]), np.array([k_z]), np.array([offset]))
     return fly_reduced(loop(latency), aiding, cases, duration_s, MOST, engaged_s, forward=False)
-
-
-def half_range(values, part=0.3):
-    """Return half the peak-to-peak value over the last part of a history (m, n)."""
-    last = values[round((1.0 - part) * len(values)):]
-    return 0.5 * (last.max(axis=0) - last.min(axis=0))
-
-
-def frequency(t_s, values):
-    """Return the frequency of a history (m,), rad/s, between rising zeros of its last half."""
-    half = slice(len(t_s) // 2, None)
-    t, x = t_s[half], values[half] - values[half].mean()
-    k = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
-    zeros = t[k] - x[k] * (t[k + 1] - t[k]) / (x[k + 1] - x[k])
-    return 2.0 * math.pi * (len(zeros) - 1) / (zeros[-1] - zeros[0])
