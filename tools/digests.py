@@ -86,6 +86,9 @@ def aided_simulations():
         *FLIGHT, 'aided_navigator:input:=integrated', 'sampling.drop_out_probability:=0.0005'])
     yield 'aided-straight', words(['gnss_outage_flight', 'grade_mid'], [
         'duration_s:=60.0', 'filter:=paper', 'window.cycles:=100', 'motion.route.weave_deg:=0.0'])
+    yield 'aided-guided', words(['guided_flight', 'grade_mid'], [
+        'duration_s:=20.0', 'filter:=paper_corrected', 'window.cycles:=100',
+        'surrogate.k_z:=0.15'])
 
 
 def with_gaps(source, target):

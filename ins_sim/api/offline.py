@@ -9,7 +9,7 @@ import numpy as np
 
 from ins_sim.core.motion.motion import Motion
 from ins_sim.core.prediction.predict import predict as predict_errors, Prediction
-from ins_sim.core.simulation import aided as aided_simulation, inertial
+from ins_sim.core.simulation import aided as aided_simulation, guided_flight, inertial
 from ins_sim.io.motion import read_motion
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from .results import AidedRun, Run
@@ -54,9 +54,16 @@ def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress
     True
     """
     _check_settings(settings, SimulationSettings)
+    return _simulate(settings, None, twin, progress, motion)
+
+
+def _simulate(settings: SimulationSettings, aided: AidedSimulationSettings | None, twin: bool,
+              progress: Progress, motion: Motion | None) -> Run:
+    """Steer a guided motion by the aided solution, or that of the strapdown, and simulate it."""
     flown = _motion(settings, motion)
+    steered = guided_flight.fly(settings, flown, aided, progress)
     result = inertial.simulate(settings, flown, twin, progress)
-    return Run(settings, flown, result, motion is not None)
+    return Run(settings, flown, result, motion is not None, steered)
 
 
 def predict(settings: SimulationSettings, motion: Motion | None = None) -> Prediction:
@@ -105,7 +112,8 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     twin : bool, optional
         Whether to simulate the zero-delay twin of the unaided part as well.
     progress : callable, optional
-        Called with the fraction done, 0 to 1: first by the unaided part, then by the aided one.
+        Called with the fraction done, 0 to 1: first by the unaided part, then by the aided one
+        (before both by the steering of a guided motion).
     motion : Motion, optional
         A motion of your own, in place of the one that the settings name.
 
@@ -129,7 +137,7 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     """
     _check_settings(settings, AidedSimulationSettings)
     instruments = aided_simulation.make_instruments(settings)
-    run = simulate(settings.simulation, twin, progress, motion)
+    run = _simulate(settings.simulation, settings, twin, progress, motion)
     result = aided_simulation.simulate_aided(settings, instruments, run.motion, run.result,
                                              progress)
     return AidedRun(settings, run, result)

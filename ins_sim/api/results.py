@@ -11,6 +11,7 @@ from ins_sim.core.motion.motion import Motion
 from ins_sim.core.prediction.drift import NoPrediction
 from ins_sim.core.prediction.predict import predict
 from ins_sim.core.simulation.aided_run import AidedResult
+from ins_sim.core.simulation.guided_flight import GuidedResult
 from ins_sim.core.simulation.inertial import SimulationResult
 from ins_sim.core.timeseries.fixes import GnssFix, VelocityFix
 from ins_sim.core.timeseries.histories import (AidedErrors, ImuSamples, NavErrors, NavStates,
@@ -39,12 +40,16 @@ class Run:
         The arrays; the properties below give its fields.
     own_motion : bool
         Whether the motion was given as an object, so that the settings do not describe it.
+    steered : GuidedResult
+        How a guided motion was steered: ``estimates`` and ``states`` at the control instants;
+        None of any other motion.
     """
 
     settings: SimulationSettings
     motion: Motion
     result: SimulationResult
     own_motion: bool = False
+    steered: GuidedResult | None = None
 
     def __repr__(self) -> str:
         """Return one line; a notebook shows it."""
@@ -127,7 +132,7 @@ class Run:
 
     def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
         from ins_sim.own_folders import existing_parent, whole_folder
-        from ins_sim.report import storage, summary
+        from ins_sim.report import guided, storage, summary
         from ins_sim.report.spool import Spool
         checked_path('folder', folder)
         with Spool(existing_parent(folder)) as spool, whole_folder(
@@ -142,8 +147,9 @@ class Run:
                 # Published figures belong to the motion of the settings.
                 rows = [replace(row, published=None) for row in rows]
                 title = f'{type(self.motion).__name__} given as an object'
-            storage.write_run(work, self.settings, self.result, rows, prediction, title, report,
-                              self.own_motion)
+            storage.write_run(work, self.settings, self.result,
+                              [*rows, *guided.guided_rows(self.steered)], prediction, title,
+                              report, self.own_motion, self.steered)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -2,8 +2,6 @@
 
 from dataclasses import asdict
 import json
-import os
-import signal
 
 from ins_sim.settings.aided_navigator import FILTERS
 from . import arguments
@@ -38,7 +36,8 @@ def run(chosen):
     from ins_sim.own_folders import whole_folder
     from ins_sim.report import filter_study as report
     from ins_sim.report.console import PlainConsole
-    from ins_sim.studies.filters import run_settings
+    from ins_sim.studies.filters import fly_filters, run_settings
+    from .workers import run_all
     settings = arguments.read_aided_settings(chosen, SHIPPED)
     if chosen.runs < 1 or chosen.jobs < 0:
         raise ValueError(f'--runs is {chosen.runs} and --jobs {chosen.jobs}; expected 1 or more '
@@ -51,7 +50,8 @@ def run(chosen):
     title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
              + ', '.join(chosen.params_file or SHIPPED))
     with whole_folder(chosen.output, chosen.force, MARK) as folder:
-        flights = _fly_all(settings, cases, chosen.runs, chosen.jobs or os.cpu_count(), console)
+        flights = run_all([(fly_filters, settings, cases, k) for k in range(chosen.runs)],
+                          chosen.jobs, console, 'flights')
         flown = list(zip(*flights))
         rows = [report.filter_row(case, list(f)) for case, f in zip(cases, flown)]
         report.save_figure(folder / 'comparison.png', title, cases, flown)
@@ -72,34 +72,3 @@ def _cases(chosen, cycles):
     # All filters use the first window; the others are for the eskf alone.
     cases = [FilterCase(name, windows[0]) for name in filters]
     return cases + [FilterCase('eskf', n) for n in windows[1:] if 'eskf' in filters]
-
-
-def _fly_all(settings, cases, runs, jobs, console):
-    """Return the list of Flown of each run, in their order."""
-    from concurrent.futures import as_completed, ProcessPoolExecutor
-    from multiprocessing import active_children
-    from ins_sim.studies.filters import fly_filters
-    from .progress import progress_bars
-    flights = [None] * runs
-    with progress_bars(console, 'flights') as add_bar:
-        show = add_bar('flying', runs)
-        with ProcessPoolExecutor(min(jobs, runs), initializer=_begin_worker) as pool:
-            futures = {pool.submit(fly_filters, settings, cases, k): k for k in range(runs)}
-            try:
-                for done, future in enumerate(as_completed(futures), 1):
-                    flights[futures[future]] = future.result()
-                    show(done)
-            except BaseException:
-                # Running flights are not waited for: each takes minutes.
-                for worker in active_children():
-                    worker.kill()
-                raise
-    return flights
-
-
-def _begin_worker():
-    """Leave the signals of a terminal to the process that started this one, and end with it."""
-    from ins_sim.ros.process.tied import end_with_parent
-    end_with_parent(os.getppid(), signal.SIGKILL)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
-               info, navigate, play, predict, record, simulate)
+               info, loop_study, navigate, play, predict, record, simulate)
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
@@ -18,7 +18,7 @@ LONGEST = 2000
 VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'record': record, 'play': play,
          'predict': predict, 'navigate': navigate, 'demo': demo, 'dtg-study': dtg_study,
          'dtg-report': dtg_report, 'compare-orientation': compare_orientation,
-         'compare-filters': compare_filters, 'allan': allan}
+         'compare-filters': compare_filters, 'loop-study': loop_study, 'allan': allan}
 NODE_VERBS = ('record', 'play')
 
 

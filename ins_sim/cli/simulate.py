@@ -28,11 +28,12 @@ def run(chosen):
     """Run, write and show; return the exit code."""
     from ins_sim.core.prediction.drift import NoPrediction
     from ins_sim.core.prediction.predict import predict
+    from ins_sim.core.simulation.guided_flight import fly
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
     from ins_sim.own_folders import existing_parent, whole_folder
-    from ins_sim.report import coverage, spool, storage, summary, table
+    from ins_sim.report import coverage, guided, spool, storage, summary, table
     from ins_sim.report.console import PlainConsole
     from .progress import progress_bars
     if chosen.aided:
@@ -47,6 +48,10 @@ def run(chosen):
     instruments = None if aided is None else make_instruments(aided)
     with spool.Spool(existing_parent(chosen.output)) as spooled:
         with whole_folder(chosen.output, chosen.force, storage.MARK) as work:
+            steered = None
+            if settings.motion_generator.motion.kind == 'guided':
+                with progress_bars(console) as add_bar:
+                    steered = fly(settings, motion, aided, add_bar('steering'))
             try:
                 prediction = predict(settings, motion, spooled.store)
             except NoPrediction as reason:
@@ -58,19 +63,22 @@ def run(chosen):
                                   spooled.store if aided is None else Collected)
                 flown = None if aided is None else simulate_aided(aided, instruments, motion,
                                                                   result, add_bar('aiding'))
-            rows = summary.summary_rows(settings, result.errors, result.twin, prediction)
+            rows = [*summary.summary_rows(settings, result.errors, result.twin, prediction),
+                    *guided.guided_rows(steered)]
             report = None if aided is None else _report(aided, flown, result)
-            storage.write_run(work, settings, result, rows, prediction, title, report)
+            storage.write_run(work, settings, result, rows, prediction, title, report,
+                              steered=steered)
         table.show_table(title, rows, console)
         for line in (*coverage.coverage_lines(settings, prediction),
-                     *summary.gap_lines(result.faults), *summary.withheld_lines(settings),
+                     *guided.guided_lines(steered), *summary.gap_lines(result.faults),
+                     *summary.withheld_lines(settings),
                      *summary.parity_lines(settings.imu_sensor, result.imu)):
             console.print(line)
         if report is not None:
             report.show(console)
         console.print(f'written: {chosen.output}')
         if write_bag is not None:
-            write_bag(result, console, None if aided is None else (aided, flown))
+            write_bag(result, motion, console, None if aided is None else (aided, flown))
     return 0
 
 
@@ -92,9 +100,10 @@ def _bag_writer(chosen, settings):
     wanted = simulated.select_topics(settings, chosen.topics, chosen.aided)
     bag_writer.check_target(chosen.bag, chosen.storage, chosen.compression, chosen.force)
 
-    def write_bag(result, console, aided):
+    def write_bag(result, motion, console, aided):
         counts = simulated.write_bag(chosen.bag, settings, result, wanted, chosen.storage,
-                                     chosen.compression, chosen.force, aided=aided)
+                                     chosen.compression, chosen.force, aided=aided,
+                                     motion=motion)
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):

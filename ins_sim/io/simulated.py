@@ -54,21 +54,23 @@ def select_topics(settings, names, aided=False):
 
 
 def write_bag(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
-              progress=None, aided=None):
+              progress=None, aided=None, motion=None):
     """
     Write a SimulationResult into a bag that appears only if it is whole; return {topic: message
     count}.
 
     settings: SimulationSettings; chosen: Topics of ``select_topics``; the rest as of BagWriter;
     progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
-    this run, or None.  A message is logged at its own stamp.
+    this run, or None; motion: that of the run, None for the one of the settings.  A message is
+    logged at its own stamp.
     """
     aiding = None
     if aided is not None:
         aided_settings, flown = aided
         aiding = AidingSource(aided_settings, flown, _rates_at(
             flown.states.t_ns, run.imu.t_ns, run.imu.omega))
-    source = _Source(settings, run, aiding)
+    source = _Source(settings, run, aiding,
+                     read_motion(settings.motion_generator) if motion is None else motion)
 
     def windows():
         for first in range(0, source.count, WINDOW):
@@ -90,9 +92,9 @@ def _as_published(topic, settings, aiding):
 class _Source:
     """The records of a run, and the truth at every sample of the generator, by windows."""
 
-    def __init__(self, settings, run, aiding):
+    def __init__(self, settings, run, aiding, motion):
         generator = settings.motion_generator
-        self._motion = read_motion(generator)
+        self._motion = motion
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
         strapdown = settings.strapdown
         self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)

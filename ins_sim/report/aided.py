@@ -93,7 +93,8 @@ def _described(settings, source):
     if source == GNSS:
         return f'GNSS at {settings.gnss.gnss.rate_hz:g} Hz'
     meter = settings.velocity_meter
-    return f'velocity meter ({meter.mode}), N {meter.window.cycles}'
+    slide = f', every {meter.window.step_cycles} cycles' if meter.window.slides else ''
+    return f'velocity meter ({meter.mode}), N {meter.window.cycles}{slide}'
 
 
 def aided_rows(settings, flown, states, errors):

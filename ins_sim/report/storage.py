@@ -11,6 +11,7 @@ from numpy.lib import format as npy_format
 from ins_sim import parameter_files
 from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
 from . import coverage, figure
+from .guided import guided_arrays
 from .manifest import manifest
 from .stored_arrays import read_arrays
 
@@ -22,15 +23,17 @@ _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f'
         'imu_parity': ('f', (None,))}
 
 
-def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False):
+def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False,
+              steered=None):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
-    own_motion: whether the motion is not that of the settings.
+    own_motion: whether the motion is not that of the settings; steered: GuidedResult of a guided
+    motion, or None.
     """
-    arrays = run_arrays(run)
+    arrays = {**run_arrays(run), **guided_arrays(steered)}
     if prediction is not None:
         arrays['predicted_t_s'] = prediction.t_s
         arrays['predicted_position'] = prediction.position

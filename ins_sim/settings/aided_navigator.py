@@ -8,15 +8,17 @@ from .node import Time, Topics
 from .place import Datum, Earth
 from .route import RouteSettings
 
-# A filter: where its class is ('module:class'), and the instruments whose fixes it processes.
-FilterEntry = namedtuple('FilterEntry', 'location takes_velocity takes_gnss',
-                         defaults=(True, False))
+# A filter: where its class is ('module:class'), the instruments whose fixes it processes, and
+# whether windows of the velocity meter may overlap.
+FilterEntry = namedtuple('FilterEntry', 'location takes_velocity takes_gnss takes_sliding',
+                         defaults=(True, False, False))
 _FOLDER = 'ins_sim.core.aiding.filters'
 # The one table of the aiding filters. Classes are named by text and imported when an
 # AidedNavigator is made, because settings need nothing but Python.
 FILTERS = {
-    'free': FilterEntry(f'{_FOLDER}.base:NoCorrection', takes_velocity=False),
-    'conventional': FilterEntry(f'{_FOLDER}.fixed_gain:ConventionalFilter'),
+    'free': FilterEntry(f'{_FOLDER}.base:NoCorrection', takes_velocity=False,
+                        takes_sliding=True),
+    'conventional': FilterEntry(f'{_FOLDER}.fixed_gain:ConventionalFilter', takes_sliding=True),
     'paper': FilterEntry(f'{_FOLDER}.fixed_gain:PaperFilter'),
     'paper_corrected': FilterEntry(f'{_FOLDER}.fixed_gain:PaperCorrectedFilter'),
     'window_kf': FilterEntry(f'{_FOLDER}.window_kalman:WindowFilter'),
@@ -124,6 +126,9 @@ class AidedNavigatorSettings(SettingsGroup):
     gain: float = setting(0.4, 'conventional: part of the velocity error that a fix takes away; '
                           'paper (0 to 1) and paper_corrected (0 to 2): gain of the acceleration',
                           '', 0.0, 2.0)
+    gain_per_s: float = setting(1.0, 'conventional with windows that overlap (window.slide_cycles)'
+                                ', in place of gain: part of the velocity error that is taken '
+                                'away in a second, K_v', '1/s', 0.0, 1e4)
     gate_probability: float = setting(1e-6, 'a fix less likely than this by its innovation is not '
                                       'taken; 0 = all are', '', 0.0, 0.5)
     buffer_s: float = setting(10.0, 'how late a fix may be', 's', 0.0, 600.0)
@@ -137,6 +142,7 @@ class AidedNavigatorSettings(SettingsGroup):
         if self.gnss_model.use and self.filter not in takes_gnss:
             raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected a '
                              f'filter that takes GNSS: {", ".join(takes_gnss)}')
+        self._check_windows()
         if self.filter == 'paper' and self.gain > 1.0:
             raise ValueError(f'gain is {self.gain:g} with filter paper; expected at most 1, '
                              'beyond which it is unstable')
@@ -145,3 +151,18 @@ class AidedNavigatorSettings(SettingsGroup):
             if latency_ms > 1e3 * self.buffer_s:
                 raise ValueError(f'{name}.latency_ms is {latency_ms:g} ms; expected at most '
                                  f'buffer_s, {self.buffer_s:g} s: such fixes come too late')
+
+    def _check_windows(self):
+        """Refuse windows that overlap with a filter that follows one, and a gain too high."""
+        if not self.window.slides:
+            return
+        slide = f'window.slide_cycles is {self.window.slide_cycles}'
+        if not FILTERS[self.filter].takes_sliding:
+            takes = [name for name, entry in FILTERS.items() if entry.takes_sliding]
+            raise ValueError(f'{slide} with filter {self.filter}, which needs windows that do not '
+                             f'overlap; expected 0, or filter {" or ".join(takes)}')
+        most = 2.0 * self.rate_hz / self.window.slide_cycles
+        if self.filter == 'conventional' and self.gain_per_s >= most:
+            raise ValueError(f'gain_per_s is {self.gain_per_s:g} 1/s, and {slide}; expected less '
+                             f'than {most:g} 1/s, two over the time between fixes, beyond which '
+                             'conventional is unstable')

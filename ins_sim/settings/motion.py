@@ -1,6 +1,7 @@
 """Settings of the motions and of the node motion_generator."""
 
 from .field import column, group, setting, settings_class, SettingsGroup
+from .guidance import GuidanceSettings, GuidedSettings
 from .node import Pacing, Time, Topics
 from .place import Datum, Earth
 from .route import FlownRouteSettings
@@ -132,7 +133,8 @@ MOTIONS = {
     'static': _BENCH, 'rocking': _BENCH, 'two_axis': _BENCH, 'coning': _BENCH,
     'sculling': _BENCH, 'sinusoids': _BENCH, 'harmonics': _BENCH,
     'cruise': _FLIGHT, 'racetrack': _FLIGHT, 'aggressive': _FLIGHT,
-    'route': f'{_FOLDER}.route.motion:route_motion', 'recording': None}
+    'route': f'{_FOLDER}.route.motion:route_motion',
+    'guided': f'{_FOLDER}.guided.motion:guided_motion', 'recording': None}
 
 
 @settings_class
@@ -153,6 +155,7 @@ class MotionSettings(SettingsGroup):
     sinusoids: Sinusoids = group(Sinusoids)
     harmonics: Harmonics = group(Harmonics)
     route: FlownRouteSettings = group(FlownRouteSettings)
+    guided: GuidedSettings = group(GuidedSettings)
     recording: Recording = group(Recording)
 
     @property
@@ -175,6 +178,7 @@ class MotionGeneratorSettings(SettingsGroup):
     earth: Earth = group(Earth)
     time: Time = group(Time)
     motion: MotionSettings = group(MotionSettings)
+    guidance: GuidanceSettings = group(GuidanceSettings)
     pacing: Pacing = group(Pacing)
     topics: Topics = group(Topics)
     rate_hz: float = setting(100.0, 'rate of the truth', 'Hz', 0.01, 20000.0)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from .aided_navigator import AidedNavigatorSettings
 from .gnss import GnssSettings
+from .guidance import check_guided
 from .imu import DelaysUs, ImuSensorSettings
 from .motion import MotionGeneratorSettings
 from .strapdown import StrapdownSettings
@@ -24,6 +25,14 @@ class SimulationSettings:
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
                              f'{sends:g} Hz')
+        if self.motion_generator.motion.kind == 'guided':
+            check_guided(self.motion_generator, self.imu_sensor, self.lead_ns)
+
+    @property
+    def lead_ns(self):
+        """Return how far ahead a channel of negative delay reads the motion, ns."""
+        imu = self.imu_sensor
+        return -min(0, *imu.gyro.delay_us.in_ns(), *imu.accelerometer.delay_us.in_ns())
 
     def without_delays(self):
         """Return the settings of the zero-delay twin; it has the same instrument errors."""
@@ -69,6 +78,7 @@ class AidedSimulationSettings:
                              f'of imu_sensor, {sensor.output}')
         self._check_streams()
         self._check_route()
+        self._check_steering()
 
     def _check_streams(self):
         """Refuse streams that the live stages would report with every message."""
@@ -87,11 +97,21 @@ class AidedSimulationSettings:
                 raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
                                  'aided_navigator, which needs the truth of the same stamp')
 
+    def _check_steering(self):
+        """Refuse a strapdown for which a fix, and the solution to steer by, would wait."""
+        simulation = self.simulation
+        if (simulation.motion_generator.motion.kind == 'guided'
+                and self.velocity_meter.attack_angle == 'ins'
+                and simulation.strapdown.output_every != 1):
+            raise ValueError(f'strapdown: output_every is {simulation.strapdown.output_every} '
+                             'with motion.kind guided and attack_angle ins; expected 1: the fix '
+                             'of a window waits for the strapdown')
+
     def _check_route(self):
         """Refuse a route for the orthodromic coordinates that is not the one flown."""
         points, motion = self.aided_navigator.motion.route.points, \
             self.simulation.motion_generator.motion
-        if motion.kind == 'route' and points != motion.route.points:
+        if motion.kind in ('route', 'guided') and points != motion.route.points:
             raise ValueError('aided_navigator: motion.route.points are not those of '
                              'motion_generator; expected the route that is flown: name it under '
                              '"/**", for both')

@@ -45,6 +45,7 @@ def imu_csv(path):
     [*RUN, '-o', 'OUT', '--force'], [*RUN, '-o', 'run', '--bag', 'OUT', '--force'],
     ['allan', '--duration', '30', '-o', 'OUT', '--force', '--params-file', 'imu_tactical_fog'],
     ['compare-filters', '--runs', '1', '-p', 'duration_s:=10.0', '-o', 'OUT', '--force'],
+    ['loop-study', '-o', 'OUT', '--force'],
     ['navigate', 'imu.csv', '-o', 'OUT', '--force'], ['dtg-study', '-o', 'OUT'],
     ['convert', 'imu.csv', 'OUT', '--force']])
 def test_a_folder_of_others_stays(words, tmp_path, monkeypatch, capsys):

@@ -18,6 +18,8 @@ COMMANDS = [[line for line in text.splitlines() if line.startswith('ins_sim ')]
 # verbs that simulate or predict are shortened; those that need live nodes are tested with them
 SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters'}
 LIVE = {'record', 'play'}
+# takes a quarter of an hour whatever its flights are; test_loop_study shortens it
+LONG = {'loop-study'}
 DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
 
 
@@ -30,7 +32,7 @@ def test_commands_of_the_readme(lines, tmp_path, monkeypatch, request):
         (tmp_path / 'flight.csv.gz').symlink_to(data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
     for line in lines:
         words = shlex.split(line)[1:]
-        if words[0] in LIVE:
+        if words[0] in LIVE | LONG:
             # the words are those of the parser
             assert parser().parse_args(words).verb == words[0]
         else:
@@ -77,7 +79,7 @@ def test_the_arrays_of_a_run_are_documented(tmp_path, monkeypatch):
     found = set()
     for words in ('--params-file motion_2', '--params-file motion_2 --params-file '
                   'imu_tactical_dtg', '--aided --params-file route_flight --params-file grade_mid '
-                  '-p window.cycles:=100'):
+                  '-p window.cycles:=100', '--params-file guided_flight'):
         assert main(['simulate', *words.split(), '-p', 'duration_s:=3.0', '-o', 'run',
                      '--force']) == 0
         with np.load('run/run.npz') as arrays:

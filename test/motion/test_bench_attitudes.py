@@ -70,6 +70,6 @@ def test_the_truth_where_nothing_moves_is_that_of_any_motion(name):
 def test_all_motions_at_a_bench_are_here():
     """Every kind of the table that a bench has."""
     kinds = [kind for kind in ins_sim.settings.motion.MOTIONS if kind not in (
-        'recording', 'route', 'cruise', 'racetrack', 'aggressive')]
+        'recording', 'route', 'guided', 'cruise', 'racetrack', 'aggressive')]
     assert all(isinstance(bench(kind), BenchMotion) for kind in kinds)
     assert {bench(name)._attitude for name in MOTIONS} == set(bench_attitudes.ROWS)

@@ -10,6 +10,7 @@ from ins_sim.settings.motion import MotionSettings, MOTIONS
 from ins_sim.settings.place import Datum, Earth
 import numpy as np
 import pytest
+from support.guided import fly, guided
 
 T_NS = 10_000_000 * np.arange(1000, 1300)
 
@@ -35,6 +36,8 @@ def test_every_motion_of_the_table(kind):
     """At some instants, asked alone or with others."""
     if kind == 'route':
         motion = ins_sim.open_motion(ins_sim.read_settings('route_flight'))
+    elif kind == 'guided':
+        motion = fly(guided(), 14.0)
     else:
         motion = make_motion(MotionSettings(kind=kind), Datum(), Earth())
     check(motion)

@@ -56,8 +56,8 @@ EAGER = {name: imports(name, tree, eager(tree)) for name, tree in TREES.items()}
 EARTH = {'core.numerics', 'core.attitude', 'core.earth'}
 STREAMS = EARTH | {'core.timeseries', 'core.streams'}
 CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
-        'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.postprocessing',
-        'core.prediction', 'core.simulation', 'core.ensemble'}
+        'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.guidance',
+        'core.postprocessing', 'core.prediction', 'core.simulation', 'core.ensemble'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
                          'graph', 'studies', 'report', 'regular_file', 'own_folders',
                          'ros_parameters', 'visible_text', 'yaml_text'}
@@ -72,6 +72,7 @@ MAY_IMPORT = {
     'core.sensors': STREAMS | {'settings'},
     'core.navigation': STREAMS,
     'core.aiding': STREAMS | {'settings', 'core.navigation'},
+    'core.guidance': EARTH | {'settings'},
     'core.postprocessing': EARTH | {'settings', 'core.timeseries', 'core.navigation'},
     'core.prediction': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
                                 'core.sensors'},

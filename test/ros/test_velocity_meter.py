@@ -34,15 +34,16 @@ def records(stream):
     return [velocity_record.read_fix(data, 0) for data in stream.raw[Record.name].values()]
 
 
-@pytest.mark.parametrize('mode', ['surrogate', 'signal'])
-def test_the_records_are_the_fixes_of_the_core(mode, ros_domain, tmp_path):
+@pytest.mark.parametrize('mode, slide, count', [('surrogate', 0, 6), ('signal', 0, 6),
+                                                ('surrogate', 20, 28)])
+def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, tmp_path):
     """
     Every window, each when the truth has reached its arrival, with the angle of the INS.
 
     A window waits for the INS: truth alone, however far, brings no record and no answer.
     """
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT, BOTH)
-    values = {**VALUES, 'mode': mode}
+    values = {**VALUES, 'mode': mode, 'window.slide_cycles': slide}
     try:
         node = stream.chain.start('velocity_meter', values)
         stream.begin(node)
@@ -59,11 +60,11 @@ def test_the_records_are_the_fixes_of_the_core(mode, ros_domain, tmp_path):
         stream.wait_ack(303 * DT)
         assert 3 * SECOND not in stream.heard[Record.name]
         stream.send(stamps[304:])
-        stream.wait_counts({Record: 6, topics.METER_VELOCITY: 6})
+        stream.wait_counts({Record: count, topics.METER_VELOCITY: count})
         expected = offline_fixes(stream, stamps, values)
-        assert repr(records(stream)) == repr(expected) and len(expected) == 6
+        assert repr(records(stream)) == repr(expected) and len(expected) == count
         assert all(f.valid and f.arrival_ns == f.end_ns + 50_000_000 for f in expected)
-        assert len({f.tan_alpha for f in expected}) == 6
+        assert len({f.tan_alpha for f in expected}) == count
         pack = topics.METER_VELOCITY.writer().pack
         for fix in expected:
             t_ns, *runs = velocity_record.velocity_one(fix)

@@ -35,11 +35,13 @@ def chosen_settings(values):
 
 
 @lru_cache(maxsize=None)
-def scene():
+def scene(*more):
     """
     Return (AidedSimulationSettings, AidedResult offline, events by stream) of a short flight.
+
+    more: pairs (dotted name, value) beside those of VALUES.
     """
-    chosen = chosen_settings(VALUES)
+    chosen = chosen_settings({**VALUES, **dict(more)})
     simulation = chosen.simulation
     generator = simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -84,9 +86,14 @@ def mixed(streams, rng):
         places[name] += 1
 
 
-def run_stream(streams, rng):
-    """Return outputs, faults and the stream after events in random order."""
-    stream, outputs, faults = AidedStream(scene()[0].aided_navigator), [], []
+def run_stream(streams, rng, chosen=None):
+    """
+    Return outputs, faults and the stream after events in random order.
+
+    chosen: AidedSimulationSettings, if not those of ``scene()``.
+    """
+    chosen = scene()[0] if chosen is None else chosen
+    stream, outputs, faults = AidedStream(chosen.aided_navigator), [], []
     for name, event in mixed(streams, rng):
         outputs += push(stream, name, event, faults)
     return outputs, faults + [str(fault) for fault in stream.faults], stream

@@ -12,6 +12,7 @@ from ins_sim.core.prediction.predict import predict
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.io.motion import read_motion
 from ins_sim.settings.by_node import NODES
+from ins_sim.core.simulation.guided_flight import fly
 from ins_sim.core.simulation.inertial import imu_blocks, simulate
 from ins_sim.settings.simulation import SimulationSettings
 
@@ -48,7 +49,9 @@ def streamed(s):
 
 def run_offline(chosen, twin=True):
     """Return the SimulationResult of SimulationSettings."""
-    return simulate(chosen, read_motion(chosen.motion_generator), twin)
+    motion = read_motion(chosen.motion_generator)
+    fly(chosen, motion)
+    return simulate(chosen, motion, twin)
 
 
 def prediction_of(chosen):

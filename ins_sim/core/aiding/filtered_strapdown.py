@@ -11,24 +11,31 @@ class FilteredStrapdown:
     """
     A CorrectedStrapdown, an AidingFilter and the start of the open window; a copy is a snapshot.
 
-    window_ns: length of the windows of the velocity meter.  takes_segments: whether the filter
-    can take many samples at once, because it does not follow every one itself.
+    window_ns, step_ns: length of the windows of the velocity meter, and from end to end; of those
+    that overlap no filter has sums, and each step counts as one.  takes_segments: whether the
+    filter can take many samples at once, because it does not follow every one itself.
     """
 
-    def __init__(self, ins, filter_, window_ns):
-        self.ins, self.filter, self._window_ns = ins, filter_, window_ns
+    def __init__(self, ins, filter_, window_ns, step_ns):
+        self.ins, self.filter, self._step_ns = ins, filter_, step_ns
+        self._start_ns = ins.t_ns if step_ns < window_ns else None
         self._open_window()
         self.takes_segments = type(filter_).step is AidingFilter.step
 
     def _open_window(self):
-        self.window_start_ns = t_ns = self.ins.t_ns
-        self._window_end_ns = (t_ns // self._window_ns + 1) * self._window_ns
+        self._window_start_ns = t_ns = self.ins.t_ns
+        self._window_end_ns = (t_ns // self._step_ns + 1) * self._step_ns
 
     def copy(self):
         """Return a snapshot."""
         snapshot = copy.copy(self)
         snapshot.ins, snapshot.filter = self.ins.copy(), self.filter.copy()
         return snapshot
+
+    @property
+    def covers_from_ns(self):
+        """Return the earliest start of a window that may end now."""
+        return self._window_start_ns if self._start_ns is None else self._start_ns
 
     @property
     def is_finite(self):
@@ -47,7 +54,7 @@ class FilteredStrapdown:
         end_ns = self._window_end_ns
         if self.ins.carry[0] >= end_ns:
             # It is over: the samples are of the next one.
-            end_ns += self._window_ns
+            end_ns += self._step_ns
         event_ns = min(event_ns, end_ns)
         left = self.filter.samples_left()
         if left is not None:

@@ -7,18 +7,19 @@ from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.timeseries import bounds
 
 
-def check_velocity(fix, cycles, dt_ns):
-    """Raise StreamFault (fix dropped) unless a VelocityFix covers a window of these cycles."""
-    where = f'velocity_meter: fix at {seconds(fix.end_ns)}'
-    window_ns = cycles * dt_ns
+def check_velocity(fix, window, dt_ns):
+    """Raise StreamFault (fix dropped) unless a VelocityFix covers a window of these settings."""
+    where, cycles = f'velocity_meter: fix at {seconds(fix.end_ns)}', window.cycles
+    window_ns, step_ns = cycles * dt_ns, window.step_cycles * dt_ns
     if fix.cycles != cycles or fix.end_ns - fix.start_ns != window_ns:
         length = (fix.end_ns - fix.start_ns) * 1e-9
         raise _dropped(f'{where} averages {fix.cycles} cycles in {length:.9g} s; expected '
                        f'{cycles} cycles in {window_ns * 1e-9:.9g} s (window.cycles and rate_hz '
                        'must be the same in velocity_meter and aided_navigator)')
-    if fix.end_ns % window_ns:
+    if fix.end_ns % step_ns:
         raise _dropped(f'{where} ends inside a window; expected a multiple of '
-                       f'{window_ns * 1e-9:.9g} s of motion time')
+                       f'{step_ns * 1e-9:.9g} s of motion time (window.slide_cycles must be the '
+                       'same in velocity_meter and aided_navigator)')
     _check_arrival(where, fix)
     if fix.valid:
         _check(where, 'velocity', (*fix.velocity, fix.up), fix.sigma, bounds.SPEED_M_S)

@@ -26,10 +26,11 @@ class FixSchedule:
     """Which fixes are due; settings: AidedNavigatorSettings; sources: that are waited for."""
 
     def __init__(self, settings, sources):
-        window_ns = settings.window.cycles * period_ns(settings.rate_hz)
+        window, dt_ns = settings.window, period_ns(settings.rate_hz)
         gnss_ns = period_ns(settings.gnss.rate_hz)
         # period; how long after the first sample the first fix may be; latency
-        periods = {METER: (window_ns, window_ns, round(1e6 * settings.window.latency_ms)),
+        periods = {METER: (window.step_cycles * dt_ns, window.cycles * dt_ns,
+                           round(1e6 * window.latency_ms)),
                    GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
         # runs: the samples are the first, a source the second
@@ -184,7 +185,7 @@ class AidedStream(MatchedStreams):
             # with other windows there is none to wait for
             self._schedule.silent.add(source)
         if source == METER:
-            check_velocity(fix, self._settings.window.cycles, self._dt_ns)
+            check_velocity(fix, self._settings.window, self._dt_ns)
         else:
             check_gnss(fix)
         insort(self._fixes, (fix.arrival_ns, source, fix), key=lambda entry: entry[:2])

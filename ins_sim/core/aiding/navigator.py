@@ -59,6 +59,7 @@ class AidedNavigator:
         self._settings, self._run = settings, run
         self._dt_ns = period_ns(settings.rate_hz)
         self._window_ns = settings.window.cycles * self._dt_ns
+        self._step_ns = settings.window.step_cycles * self._dt_ns
         self._buffer_ns = round(settings.buffer_s * 1e9)
         self._after_ns = round(settings.initial.after_s * 1e9)
         self._filter_class, entry = filter_class(settings.filter), FILTERS[settings.filter]
@@ -163,7 +164,7 @@ class AidedNavigator:
         one: from the future, with another window, without a positive variance, NaN.
         """
         if source == METER:
-            check_velocity(fix, self._settings.window.cycles, self._dt_ns)
+            check_velocity(fix, self._settings.window, self._dt_ns)
         else:
             check_gnss(fix)
         if self.navigates:
@@ -196,7 +197,7 @@ class AidedNavigator:
         ins.correct(position=(-p * draw[0], -p * draw[1], 0.0),
                     velocity=(-s * draw[2], -s * draw[3], 0.0))
         self._flight = FilteredStrapdown(ins, self._filter_class(self._settings, ins),
-                                         self._window_ns)
+                                         self._window_ns, self._step_ns)
 
     def _keep(self):
         """Take a snapshot now and then, before the fixes of now."""
@@ -262,7 +263,7 @@ class AidedNavigator:
         if entry.source == GNSS:
             return self.filter.update_gnss(ins, fix, ins.rate_to_earth,
                                            self._settings.gnss_model.lever_arm_m)
-        if self._flight.window_start_ns > fix.start_ns or ins.t_ns != fix.end_ns:
+        if self._flight.covers_from_ns > fix.start_ns or ins.t_ns != fix.end_ns:
             return refused_fix('the solution does not cover its window')
         forward, left = fix.velocity
         known = self._settings.meter_model.bias_x_m_s / fix.cycles

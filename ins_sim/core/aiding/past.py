@@ -2,6 +2,7 @@
 
 from bisect import bisect_right, insort
 from collections import deque
+from itertools import takewhile
 import math
 from typing import Any, NamedTuple
 
@@ -64,8 +65,8 @@ class Past:
 
     def knows(self, entry):
         """Return whether a fix of that source and instant has come before."""
-        return any(_instant(other) == _instant(entry) for other in reversed(self._fixes)
-                   if other.fix.t_ns >= entry.fix.t_ns)
+        newer = takewhile(lambda other: other.fix.t_ns >= entry.fix.t_ns, reversed(self._fixes))
+        return any(_instant(other) == _instant(entry) for other in newer)
 
     def add_snapshot(self, flight):
         """Remember a copy of a FilteredStrapdown."""

@@ -18,8 +18,8 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 from . import ellipsoid
+from .sphere_metric import FLATTENING2
 
-FLATTENING2 = 1.0 - ellipsoid.ECCENTRICITY2
 # Two points less than this apart, or from opposite, rad, have no great circle to speak of (6 m).
 LEAST_ANGLE = 1e-6
 

@@ -27,12 +27,7 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
     place: lat, lon, height.  Components are arrays (n,), or floats where nothing moves; q_nb:
     tuple of four Series of order >= 1.
     """
-    q = tuple(x.value for x in q_nb)
-    q_rate = tuple(x.derivative().value for x in q_nb)
-    half_rate = quaternion.multiply(quaternion.conjugate(q), q_rate)
-    omega_nb_b = tuple(2.0 * x for x in half_rate[:3])
-    omega_in_b = quaternion.rotate_back(q, omega_in_n)
-    omega_ib_b = tuple(a + b for a, b in zip(omega_in_b, omega_nb_b))
+    q, omega_ib_b, f_ib_b = in_body(omega_in_n, f_n, q_nb)
 
     def table(components):
         found = np.empty((len(q[0]), len(components)))
@@ -42,7 +37,23 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
 
     lat, lon, height = (np.full(len(q[0]), x) for x in place)
     return Truth(t_ns=t_ns, lat=lat, lon=lon, height=height, v_n=table(v_n), q_nb=table(q),
-                 omega_ib_b=table(omega_ib_b), f_ib_b=table(quaternion.rotate_back(q, f_n)))
+                 omega_ib_b=table(omega_ib_b), f_ib_b=table(f_ib_b))
+
+
+def in_body(omega_in_n, f_n, q_nb):
+    """
+    Return q_nb, omega_ib_b and f_ib_b of what ``translation`` returns and an attitude.
+
+    q_nb: tuple of four Series of order >= 1; the result has their values, or floats of
+    InstantSeries.
+    """
+    q = tuple(x.value for x in q_nb)
+    q_rate = tuple(x.derivative().value for x in q_nb)
+    half_rate = quaternion.multiply(quaternion.conjugate(q), q_rate)
+    omega_nb_b = tuple(2.0 * x for x in half_rate[:3])
+    omega_in_b = quaternion.rotate_back(q, omega_in_n)
+    return (q, tuple(a + b for a, b in zip(omega_in_b, omega_nb_b)),
+            quaternion.rotate_back(q, f_n))
 
 
 def translation(lat, lon, height, earth_rotation, gravity='free_air'):
@@ -55,7 +66,7 @@ def translation(lat, lon, height, earth_rotation, gravity='free_air'):
     """
     lat_rate, lon_rate = lat.derivative(), lon.derivative()
     # The second derivatives are in the rates.
-    lat, near_height = taylor.Series(lat.c[:2]), taylor.Series(height.c[:2])
+    lat, near_height = lat.to_order(1), height.to_order(1)
     s, c = taylor.sincos(lat)
     meridian, transverse = ellipsoid.radii(s)
     v = ((transverse + near_height) * c * lon_rate, (meridian + near_height) * lat_rate,

@@ -39,6 +39,10 @@ class Series:
         c[0] = value
         return Series(c)
 
+    def to_order(self, order):
+        """Return the series cut to a lower order."""
+        return type(self)(self.c[:order + 1])
+
     @property
     def value(self):
         """Return f, shape (n,)."""
@@ -103,6 +107,96 @@ class Series:
         raise ValueError(f'Series has no power {exponent}, only 0.5')
 
 
+class InstantSeries(Series):
+    """
+    A Series at one instant, of order 2 at most: c is a tuple of floats.
+
+    Its operations are those of Series in the same order, so that the bits are the same; arrays of
+    one element take ten times as long.
+    """
+
+    __slots__ = ()
+
+    def constant(self, value):
+        """Return the series of a constant of the same order."""
+        return InstantSeries((value, 0.0, 0.0)[:len(self.c)])
+
+    def derivative(self):
+        """Return the series of f', one order lower."""
+        c = self.c
+        return InstantSeries((c[1], c[2] * 2) if len(c) == 3 else c[1:])
+
+    def integral(self, value):
+        """Return the series whose derivative this is and whose value is given, a float."""
+        c = self.c
+        return InstantSeries((value, c[0], c[1] / 2) if len(c) > 1 else (value, *c))
+
+    def __neg__(self):
+        return InstantSeries(tuple([-x for x in self.c]))
+
+    def __add__(self, other):
+        a = self.c
+        if isinstance(other, Series):
+            b = other.c
+            if len(a) == len(b) == 2:
+                return InstantSeries((a[0] + b[0], a[1] + b[1]))
+            return InstantSeries(tuple([x + y for x, y in zip(a, b)]))
+        return InstantSeries((a[0] + other, *a[1:]))
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        if isinstance(other, Series):
+            return InstantSeries(tuple([x - y for x, y in zip(self.c, other.c)]))
+        return self + (-other)
+
+    def __mul__(self, other):
+        a = self.c
+        if isinstance(other, Series):
+            b = other.c
+            if len(a) == 3 == len(b):
+                return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0],
+                                      a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
+            if len(a) > 1 < len(b):
+                return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0]))
+            return InstantSeries((a[0] * b[0],))
+        if len(a) == 2:
+            return InstantSeries((a[0] * other, a[1] * other))
+        return InstantSeries(tuple([x * other for x in a]))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        a = self.c
+        if not isinstance(other, Series):
+            return InstantSeries(tuple([x / other for x in a]))
+        b, q = other.c, []
+        for k in range(min(len(a), len(b))):
+            q.append((a[k] - _cauchy(b, q, k, 1)) / b[0])
+        return InstantSeries(tuple(q))
+
+    def sincos(self):
+        """Return sin and cos of the series."""
+        u = self.c
+        s, c = elementary.sincos(u[0])
+        if len(u) == 1:
+            return InstantSeries((s,)), InstantSeries((c,))
+        s1, c1 = u[1] * c, -(u[1] * s)
+        if len(u) == 2:
+            return InstantSeries((s, s1)), InstantSeries((c, c1))
+        twice = u[2] * 2
+        return (InstantSeries((s, s1, (u[1] * c1 + twice * c) / 2)),
+                InstantSeries((c, c1, -(u[1] * s1 + twice * s) / 2)))
+
+    def sqrt(self):
+        """Return the square root of the series, which is positive."""
+        r = []
+        for k, x in enumerate(self.c):
+            r.append((x - _cauchy(r[1:], r[1:], k - 2, 0)) / (2.0 * r[0]) if r
+                     else elementary.sqrt(x))
+        return InstantSeries(tuple(r))
+
+
 def _cauchy(a, b, k, first):
     """Return sum over j = first..k of a[j] b[k - j]."""
     total = a[first] * b[k - first] if first <= k else 0.0
@@ -113,6 +207,8 @@ def _cauchy(a, b, k, first):
 
 def sincos(u):
     """Return sin u and cos u of a series, or of a float or an array."""
+    if isinstance(u, InstantSeries):
+        return u.sincos()
     if not isinstance(u, Series):
         return elementwise.sincos(u) if isinstance(u, np.ndarray) else elementary.sincos(u)
     s, c = np.empty_like(u.c), np.empty_like(u.c)
@@ -143,6 +239,8 @@ def tanh(u):
 
 def sqrt(u):
     """Return the series of the square root of u > 0."""
+    if isinstance(u, InstantSeries):
+        return u.sqrt()
     r = np.empty_like(u.c)
     r[0] = np.sqrt(u.c[0])
     for k in range(1, len(u.c)):
@@ -154,6 +252,8 @@ def sqrt(u):
 def atan2(y, x):
     """Return the series of the angle of (x, y), from a' = (x y' - y x') / (x^2 + y^2)."""
     rate = (x * y.derivative() - y * x.derivative()) / (x * x + y * y)
+    if isinstance(rate, InstantSeries):
+        return rate.integral(elementary.atan2(y.c[0], x.c[0]))
     return rate.integral(elementwise.atan2(y.c[0], x.c[0]))
 
 

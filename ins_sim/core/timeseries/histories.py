@@ -129,3 +129,37 @@ class AidedErrors(History):
     position_sigma: np.ndarray
     estimates: np.ndarray
     estimates_sigma: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SteeredStates(History):
+    """
+    How a guided motion is steered, at instants.
+
+    t_ns (n,) int64; z (n,) m, offset to the right of the track; v_z (n,) m/s, its rate; beta (n,)
+    rad, sideslip in the air, positive with the track to the right of the nose; command (n,) rad,
+    the commanded sideslip.
+    """
+
+    t_ns: np.ndarray
+    z: np.ndarray
+    v_z: np.ndarray
+    beta: np.ndarray
+    command: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class SteeringEstimates(History):
+    """
+    What an autopilot saw and commanded, at the control instants.
+
+    t_ns (n,) int64; z (n,) m and v_z (n,) m/s, estimated, zero without a solution; command (n,)
+    rad, the sideslip to be flown at the end of the next control period; steers (n,) bool: whether
+    the autopilot commanded it, or the vehicle flew straight.
+    """
+
+    t_ns: np.ndarray
+    z: np.ndarray
+    v_z: np.ndarray
+    command: np.ndarray
+    steers: np.ndarray

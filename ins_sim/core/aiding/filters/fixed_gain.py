@@ -18,14 +18,22 @@ class ConventionalFilter(AidingFilter):
     Velocity correction with a fixed gain, as if the fix were the velocity at the window's end.
 
     It is in fact the mean over the window, so that this filter errs whenever the velocity in body
-    axes changes (docs/theory.md, "Aided navigation").
+    axes changes (docs/theory.md, "Aided navigation").  With windows that slide by T_s it is the
+    scheme of Ivanov (2015), section 1: a fix takes away the part ``gain_per_s`` T_s of the error,
+    in place of ``gain``.
     """
 
+    def __init__(self, settings, ins):
+        super().__init__(settings, ins)
+        window = settings.window
+        self._gain = settings.gain
+        if window.slides:
+            self._gain = settings.gain_per_s * (window.step_cycles / settings.rate_hz)
+
     def update_velocity(self, ins, fix):
-        """Remove the part ``gain`` of the velocity error that the fix shows."""
+        """Remove a part of the velocity error that the fix shows."""
         z = ins.v_b[0] - fix.velocity[0], ins.v_b[1] - fix.velocity[1]
-        gain = self.settings.gain
-        e, n, _ = quaternion.rotate(ins.q_nb, (gain * z[0], gain * z[1], 0.0))
+        e, n, _ = quaternion.rotate(ins.q_nb, (self._gain * z[0], self._gain * z[1], 0.0))
         ins.correct(velocity=(e, n, 0.0))
         return FixOutcome(z)
 

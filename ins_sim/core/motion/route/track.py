@@ -2,13 +2,10 @@
 The track of a vehicle in a steady wind, along great circles and in turns.
 
 State: geodetic latitude and longitude, and the heading of the air velocity, whose size and height
-are constant.  On the sphere of ``orthodrome`` the velocity V = (V_E, V_N) has the components
-
-    p = m_E V_E,  q = m_N V_N,  m_E = 1/((R_E + h) D),  m_N = (1 - e^2)/((R_N + h) D^2),
-    D^2 = cos^2 lat + (1 - e^2)^2 sin^2 lat                                        (rad/s)
-
-and a great circle is flown where the course atan2(p, q) turns by sin(lat_c) lon'.  The heading
-that does it, and any turn beyond it, follow by differentiating p and q.
+are constant.  On the sphere of the great circles the velocity V = (V_E, V_N) has the components
+p = m_E V_E and q = m_N V_N (``core.earth.sphere_metric``), and a great circle is flown where the
+course atan2(p, q) turns by sin(lat_c) lon'.  The heading that does it, and any turn beyond it,
+follow by differentiating p and q.
 """
 
 import math
@@ -16,7 +13,8 @@ import math
 import numpy as np
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.great_circle import FLATTENING2
+from ins_sim.core.earth.sphere_metric import (direction_on_earth, FLATTENING2, sphere_metric,
+                                              SQUASH)
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 
@@ -28,18 +26,6 @@ _NODES = (-0.9602898564975363, -0.7966664774136267, -0.525532409916329, -0.18343
           0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363)
 _WEIGHTS = (0.10122853629037626, 0.22238103445337448, 0.31370664587788727, 0.362683783378362,
             0.362683783378362, 0.31370664587788727, 0.22238103445337448, 0.10122853629037626)
-_K = 1.0 - FLATTENING2 * FLATTENING2
-
-
-def _metric(sin_lat, cos_lat, height):
-    """Return m_E, m_N (1/m), and how their logarithms change with latitude."""
-    r_n, r_e = ellipsoid.radii(sin_lat)
-    d2 = 1.0 - _K * (sin_lat * sin_lat)
-    w2 = 1.0 - ellipsoid.ECCENTRICITY2 * (sin_lat * sin_lat)
-    sc = sin_lat * cos_lat
-    bend, slope = sc * (ellipsoid.ECCENTRICITY2 / w2), sc * (_K / d2)
-    return (1.0 / ((r_e + height) * sqrt(d2)), FLATTENING2 / ((r_n + height) * d2),
-            slope - bend * r_e / (r_e + height), 2.0 * slope - 3.0 * bend * r_n / (r_n + height))
 
 
 class Flow:
@@ -57,16 +43,16 @@ class Flow:
         a_e, a_n = sin_psi * self.airspeed, cos_psi * self.airspeed
         v_e, v_n = a_e + self.wind[0], a_n + self.wind[1]
         lat_rate, lon_rate = ellipsoid.level_angles(v_e, v_n, sin_lat, cos_lat, self.height)
-        m_e, m_n, by_e, by_n = _metric(sin_lat, cos_lat, self.height)
+        m_e, m_n, by_e, by_n = sphere_metric(sin_lat, cos_lat, self.height)
         p, q = v_e * m_e, v_n * m_n
-        sin_c = sin_lat * FLATTENING2 / sqrt(1.0 - _K * (sin_lat * sin_lat))
+        sin_c = sin_lat * FLATTENING2 / sqrt(1.0 - SQUASH * (sin_lat * sin_lat))
         straight = ((p * p + q * q) * sin_c * lon_rate - p * q * (by_e - by_n) * lat_rate) / (
             m_e * q * a_n + m_n * p * a_e)
         return lat_rate, lon_rate, straight + turn
 
     def course(self, lat, psi):
         """Return the course on the sphere, rad, floats."""
-        m_e, m_n, _, _ = _metric(*sincos(lat), self.height)
+        m_e, m_n, _, _ = sphere_metric(*sincos(lat), self.height)
         sin_psi, cos_psi = sincos(psi)
         return atan2((self.airspeed * sin_psi + self.wind[0]) * m_e,
                      (self.airspeed * cos_psi + self.wind[1]) * m_n)
@@ -75,11 +61,8 @@ class Flow:
         """Return lat, lon, heading (rad) and X' (m/s) on an orthodrome.Leg at x (n,), m."""
         lat, lon = leg.from_xz(x, np.zeros_like(x))
         chi = leg.course(lat, lon)
-        m_e, m_n, _, _ = _metric(*sincos(lat), self.height)
-        sin_chi, cos_chi = sincos(chi)
-        east, north = sin_chi / m_e, cos_chi / m_n
-        size = sqrt(east * east + north * north)
-        east, north = east / size, north / size
+        m_e, m_n, _, _ = sphere_metric(*sincos(lat), self.height)
+        east, north, size = direction_on_earth(m_e, m_n, chi)
         w_e, w_n = self.wind
         # wind triangle: the air velocity takes off what the wind has across the track
         across, along = w_e * north - w_n * east, w_e * east + w_n * north

@@ -31,6 +31,9 @@ def make_imu(settings, motion=None):
     """
     if settings.source == 'stream':
         imu = StreamImu(settings)
+    elif settings.motion.kind == 'guided':
+        raise ValueError('source is motion with motion.kind guided; expected stream: a guided '
+                         'motion is known only to what steers it')
     else:
         check_turning(settings, motion, 0.0, min(NODE_S, motion.end_s))
         imu = PacedImu(settings, motion)

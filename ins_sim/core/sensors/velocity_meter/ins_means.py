@@ -1,5 +1,8 @@
 """Velocities of the INS as the velocity meter uses them: their means over its windows."""
 
+from functools import reduce
+from operator import add
+
 import numpy as np
 
 from ins_sim.core.numerics.elementary import atan2
@@ -17,14 +20,15 @@ WAIT_NS = 60_000_000_000
 
 class InsMeans:
     """
-    Sums of the velocities by window, and which run of the truth they belong to.
+    Sums of the velocities by part of a window, and which run of the truth they belong to.
 
-    dt_ns: navigation cycle; span_ns: window.  A stamp of the INS that jumps back begins a new
-    history, unless the one before it was a stray.
+    dt_ns: navigation cycle; span_ns: window; part_ns: from end to end of windows.  A stamp of the
+    INS that jumps back begins a new history, unless the one before it was a stray.
     """
 
-    def __init__(self, dt_ns, span_ns):
-        self._dt_ns, self._span_ns = dt_ns, span_ns
+    def __init__(self, dt_ns, span_ns, part_ns):
+        self._dt_ns, self._span_ns, self._part_ns = dt_ns, span_ns, part_ns
+        self._kept_ns = max(WAIT_NS, span_ns) + span_ns - part_ns
         self.forget()
 
     def forget(self):
@@ -76,12 +80,12 @@ class InsMeans:
         end_ns, sums = self._end_of(t_ns), self._sums
         last = sums.get(end_ns, (0.0, 0.0, 0.0))
         sums[end_ns] = tuple(a + b for a, b in zip(last, v_b))
-        while next(iter(sums)) < end_ns - max(WAIT_NS, self._span_ns):
+        while next(iter(sums)) < end_ns - self._kept_ns:
             del sums[next(iter(sums))]
 
     def _jump_back(self, t_ns):
         if self._stamps.was_ahead(t_ns):
-            # of a stray nothing stays, at most its part in the mean of its window
+            # of a stray nothing stays, at most its share in the mean of its window
             end_ns = self._end_of(t_ns)
             self._sums = {end: total for end, total in self._sums.items() if end <= end_ns}
         else:
@@ -89,8 +93,8 @@ class InsMeans:
             self._sums = {}
 
     def _end_of(self, t_ns):
-        """Return the end of the window of an instant."""
-        return -(-(t_ns - self._dt_ns // 2) // self._span_ns) * self._span_ns
+        """Return the end of the part of an instant."""
+        return -(-(t_ns - self._dt_ns // 2) // self._part_ns) * self._part_ns
 
     def advance(self, t_ns, v_b, push):
         """
@@ -101,7 +105,7 @@ class InsMeans:
         found, half_ns = [], self._dt_ns // 2
         ends = self._end_of(t_ns)
         for a, b in pieces(np.diff(ends, append=0) != 0):
-            # Those before the window can be over are added at once.
+            # Those before the part can be over are added at once.
             end_ns = int(ends[a])
             inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
             rising = (np.diff(t_ns[a:inside]) > 0).all() and (
@@ -125,9 +129,12 @@ class InsMeans:
         reached_ns = self.reached_ns
         if reached_ns is None or reached_ns < end_ns - self._dt_ns // 2:
             return UNSEEN if now_ns >= end_ns + WAIT_NS else None
-        if end_ns not in self._sums:
+        first_ns = end_ns - self._span_ns + self._part_ns
+        parts = [self._sums[t_ns] for t_ns in range(first_ns, end_ns + 1, self._part_ns)
+                 if t_ns in self._sums]
+        if not parts:
             return UNSEEN
-        forward, left, up = self._sums[end_ns]
+        forward, left, up = (reduce(add, values) for values in zip(*parts))
         if abs(up) >= forward:
             return NO_ANGLE, 0.0, None
         return VALID, -up / forward, atan2(-left, forward)

@@ -20,6 +20,7 @@ from .ins_means import InsMeans, UNSEEN
 from .limits import all_measurable, why_not_measurable
 from .reading import Reading
 from .surrogate import reported_sigmas, SurrogateWindows
+from .windows import OpenWindows
 
 NOTHING = (math.nan, math.nan)
 CALM = 'drop-out over calm water'
@@ -32,17 +33,17 @@ class VelocityMeter:
     settings: VelocityMeterSettings; run: which of an ensemble.  Raises ValueError, one sentence,
     on settings that do not go together.
 
-    Window m is ((m - 1) N dt, m N dt] in motion time, m = 1, 2, ...; one that was not seen from
-    its start is not reported.  With attack_angle ``ins`` a fix comes when the INS has reached the
-    end of its window, with tan(alpha) = -mean(V_y1)/mean(V_x1) of its samples inside (equation
-    8), however many; without one the fix is invalid, and so it is, 60 s of motion time later,
-    when the INS never gets there.
+    Windows have N cycles and end every ``window.slide_cycles`` of them, or every N, at whole
+    multiples in motion time; one that was not seen from its start is not reported.  With
+    attack_angle ``ins`` a fix comes when the INS has reached the end of its window, with
+    tan(alpha) = -mean(V_y1)/mean(V_x1) of its samples inside (equation 8), however many; without
+    one the fix is invalid, and so it is, 60 s of motion time later, when the INS never gets there.
     """
 
     def __init__(self, settings, run=0):
         self._settings = settings
         self._dt_ns = period_ns(settings.rate_hz)
-        self._cycles = settings.window.cycles
+        self._cycles, self._step = settings.window.cycles, settings.window.step_cycles
         self._span_ns = self._cycles * self._dt_ns
         self._latency_ns = round(settings.window.latency_ms * 1e6)
         self._sin, self._cos = sincos(math.radians(settings.antennas.mounting_yaw_arcmin / 60.0))
@@ -54,7 +55,8 @@ class VelocityMeter:
             self._method = SignalWindows(settings, run)
         else:
             self._method = SurrogateWindows(settings, run)
-        self._ins = InsMeans(self._dt_ns, self._span_ns)
+        self._open = OpenWindows(self._method, self._cycles, self._step)
+        self._ins = InsMeans(self._dt_ns, self._span_ns, self._step * self._dt_ns)
         self.reset()
 
     def reset(self):
@@ -62,7 +64,7 @@ class VelocityMeter:
         self._last = None
         self._waiting = deque()
         self._repeatable = False
-        self._open(None)
+        self._open.forget()
 
     def push_truth(self, t_ns, v_b, height):
         """
@@ -89,9 +91,9 @@ class VelocityMeter:
             self._repeatable = False
             self._cycle(index, self._last, v, height)
         self._last = (t_ns, v, height)
-        if index >= 0 and index % self._cycles == 0:
+        if index >= 0 and index % self._step == 0:
             self._close(index)
-            self._open(index)
+            self._open.begin()
         return self._complete()
 
     def _in_antennas(self, v_b):
@@ -153,7 +155,7 @@ class VelocityMeter:
         """
         fixes = []
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
-        for a, b in pieces(index % self._cycles == 0):
+        for a, b in pieces(index % self._step == 0):
             fixes += self._advance_truth(t_ns[a:b], v_b[a:b], height[a:b])
             if ins_v_b is not None:
                 fixes += self.advance_ins(t_ns[a:b], ins_v_b[a:b])
@@ -181,11 +183,11 @@ class VelocityMeter:
                 and (abs(off) <= most_ns).all() and np.isfinite(v).all()
                 and np.isfinite(height).all()):
             return False
-        if self._start is not None and self._why_not == VALID:
-            if not (hasattr(self._method, 'add_cycles')
+        if self._open.measures:
+            if not (self._open.adds_blocks
                     and all_measurable(self._settings.limits, v, height)):
                 return False
-            self._sum = self._method.add_cycles(self._sum, v)
+            self._open.add_cycles(v)
         self._last = int(t_ns[-1]), tuple(v[:, -1].tolist()), float(height[-1])
         self._ins.skip_truth(self._last[0])
         self._repeatable = False
@@ -199,30 +201,27 @@ class VelocityMeter:
         """
         return self._ins.advance(t_ns, v_b, self.push_ins) if self._waits else []
 
-    def _open(self, index):
-        """Begin the window that starts at index periods; None: no window, until one starts."""
-        self._start, self._why_not = index, VALID
-        self._sum = None
-
     def _cycle(self, index, last, v, height):
-        """Add the cycle that ends at index periods to the open window."""
-        if self._start is None or self._why_not != VALID:
+        """Add the cycle that ends at index periods to the open windows."""
+        if not self._open.measures:
             return
         _, v_last, height_last = last
-        self._why_not = why_not_measurable(self._settings.limits, v_last, height_last)
-        if self._why_not == VALID:
-            self._why_not = why_not_measurable(self._settings.limits, v, height)
-        if self._why_not == VALID:
-            self._sum = self._method.add(self._sum, index, v_last, v)
+        why_not = why_not_measurable(self._settings.limits, v_last, height_last)
+        if why_not == VALID:
+            why_not = why_not_measurable(self._settings.limits, v, height)
+        if why_not == VALID:
+            self._open.add(index, v_last, v)
+        self._open.why_not = why_not
 
     def _close(self, index):
-        """End the window at index periods, if one was open; it waits for its angle."""
-        if self._start is None:
+        """End the window at index periods, if one was seen; it waits for its angle."""
+        window = self._open.end(index)
+        if window is None:
             return
         end_ns = index * self._dt_ns
         start_ns = end_ns - self._span_ns
         calm = any(a < end_ns and b > start_ns for a, b in self._calm_ns)
-        self._waiting.append((index, CALM if calm else self._why_not, self._sum))
+        self._waiting.append((index, CALM if calm else window.why_not, window.total))
 
     def _complete(self):
         """Return the fixes of the windows that need not wait any longer."""

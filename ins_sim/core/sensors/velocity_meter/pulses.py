@@ -213,7 +213,15 @@ class SignalWindows:
         signals = self._field.signals(self._normals.normal_block(index)[0],
                                       math.sqrt(x * x + y * y), z, -y / x)
         one = self._correlator.sums(signals)
-        return one if total is None else Sums(*(a + b for a, b in zip(total, one)))
+        return one if total is None else self.joined(total, one)
+
+    def whole(self, total, index, cycles):
+        """Return the sum of cycles: it is whole."""
+        return total
+
+    def joined(self, first, then):
+        """Return the Sums of two."""
+        return Sums(*(a + b for a, b in zip(first, then)))
 
     def read(self, total, index, tan_alpha):
         """Return the Reading of a window."""

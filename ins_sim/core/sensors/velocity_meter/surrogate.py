@@ -66,20 +66,32 @@ class SurrogateWindows:
         """Return the sum with cycles, as ``add`` gives it; v (3, n + 1): at their ends, m/s."""
         return in_order(total or (0.0, 0.0, 0.0), 0.5 * (v[:, :-1] + v[:, 1:]))
 
+    def whole(self, total, index, cycles):
+        """
+        Return the sum of cycles, of which the last ends at index periods, and that of their noise.
+
+        Each cycle has its own, so that long windows average that of the short ones, and windows
+        that overlap have that of their common cycles in common.
+        """
+        noise = self._normals.normals(index - cycles + 1, cycles)
+        return (*total, *in_order((0.0, 0.0), noise.T))
+
+    def joined(self, first, then):
+        """Return the sum of two ``whole`` ones."""
+        return tuple(a + b for a, b in zip(first, then))
+
     def read(self, total, index, tan_alpha):
         """
         Return the Reading of the window that ends at index periods.
 
-        tan_alpha: tangent of what is taken for the angle of attack.  A wrong one scales both
-        components by (cos taken / cos true)^2, as with signals.
+        total: as of ``whole``; tan_alpha: tangent of what is taken for the angle of attack.  A
+        wrong one scales both components by (cos taken / cos true)^2, as with signals.
         """
-        v_x, v_y, v_z = (part / self._cycles for part in total)
+        v_x, v_y, v_z = (part / self._cycles for part in total[:3])
         ratio = secant(v_y / v_x) / secant(tan_alpha)
         scale = ratio * ratio
         sigma_x, sigma_z = velocity_sigmas(self._surrogate, self._cycles, atan2(v_z, v_x))
-        # each cycle has its own noise, so that long windows average that of the short ones
-        cycles = self._normals.normals(index - self._cycles + 1, self._cycles)
-        n_x, n_z = (x / math.sqrt(self._cycles) for x in in_order((0.0, 0.0), cycles.T))
+        n_x, n_z = (x / math.sqrt(self._cycles) for x in total[3:])
         return Reading(VALID, self._scale_x * scale * v_x
                        + self._surrogate.bias_x_m_s / self._cycles + sigma_x * n_x,
                        self._scale_z * scale * v_z + sigma_z * n_z)

@@ -1,0 +1,134 @@
+"""Verb loop-study: what the filters do to the loop in which their solution steers."""
+
+from dataclasses import asdict
+import json
+
+from . import arguments
+
+HELP = 'a vehicle steered by its own aided solution: the study of the loop'
+DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lateral scale error '
+               'aids: a table of flights of the whole chain, limits of stability beside those of '
+               'the linear theory, the map of stability, and flights with noise, wind, gusts and '
+               'the signals of the meter.')
+SHIPPED = ('guided_flight',)
+MARK = 'loop_study.json'
+PARTS = ('table', 'limits', 'conditions', 'map')
+# The limits of flights are between these parts of the linear ones.
+NEAR = (0.98, 1.02)
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb to its parser."""
+    arguments.add_settings(parser, ' and '.join(SHIPPED))
+    parser.add_argument('--parts', nargs='+', choices=PARTS, default=list(PARTS), metavar='PART',
+                        help=f'of {", ".join(PARTS)} (default: all)')
+    parser.add_argument('--gains', type=int, default=15, metavar='N', help='gains of each panel '
+                        'of the map (default: %(default)s)')
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
+                        'as many as cores)')
+    arguments.add_output(parser, 'ins_sim_loop', 'folder of figures and numbers')
+    arguments.add_force(parser, 'what is in DIR')
+
+
+def run(chosen):
+    """Fly, show and save; return the exit code."""
+    from ins_sim.own_folders import whole_folder
+    from ins_sim.report.console import PlainConsole
+    from ins_sim.studies.closed_loop import study_loop
+    if chosen.gains < 1 or chosen.jobs < 0:
+        raise ValueError(f'--gains is {chosen.gains} and --jobs {chosen.jobs}; expected 1 or more '
+                         'gains, and 0 (every core) or more jobs')
+    settings = arguments.read_aided_settings(chosen, SHIPPED)
+    kind = settings.simulation.motion_generator.motion.kind
+    if kind != 'guided':
+        raise ValueError(f'motion.kind is {kind}; expected guided, which the solution steers')
+    loop, console = study_loop(settings), PlainConsole()
+    found = {}
+    with whole_folder(chosen.output, chosen.force, MARK) as folder:
+        for part in dict.fromkeys(chosen.parts):
+            found[part] = _MAKERS[part](chosen, settings, loop, console, folder)
+        (folder / MARK).write_text(json.dumps(found, indent=1) + '\n', encoding='utf-8')
+    console.print(f'figures and numbers: {chosen.output}')
+    return 0
+
+
+def _table(chosen, settings, loop, console, folder):
+    from ins_sim.report import loop_study as report
+    from ins_sim.studies.closed_loop import fly_case, lateral_flight, TABLE
+    from .workers import run_all
+    flights = run_all([(fly_case, settings, case) for case in TABLE], chosen.jobs, console,
+                      'flights')
+    rows = [report.loop_row(case, flight, lateral_flight(settings, loop, case))
+            for case, flight in zip(TABLE, flights)]
+    report.show_flights('Closed loop', rows, console)
+    for k_z in dict.fromkeys(case.k_z for case in TABLE):
+        shown = [k for k, case in enumerate(TABLE) if case.k_z == k_z and case.duration_s <= 300.0]
+        report.save_histories(folder / f'histories_{k_z:g}.png', f'Closed loop, k_z = {k_z:g}',
+                              [_name(TABLE[k]) for k in shown], [flights[k] for k in shown])
+    return [asdict(row) for row in rows]
+
+
+def _name(case):
+    engaged = f', engaged at {case.engage_s:g} s' if case.engage_s else ''
+    offset = f', from {case.offset_m:g} m' if case.offset_m != 100.0 else ''
+    return case.label + engaged + offset
+
+
+def _limits(chosen, settings, loop, console, folder):
+    from dataclasses import replace
+    from ins_sim.core.guidance.linear_loop import limits
+    from ins_sim.report import loop_study as report
+    from ins_sim.studies.closed_loop import aiding_of, AT_THE_LIMIT, growth_of_flight
+    from .workers import run_all
+    linear = [limits(loop, aiding_of(case, 1.0 / loop.period_s)).positive
+              for case in AT_THE_LIMIT]
+    cases = [replace(case, k_z=part * limit.k_z, offset_m=1.0)
+             for case, limit in zip(AT_THE_LIMIT, linear) for part in NEAR]
+    growths = run_all([(growth_of_flight, settings, case) for case in cases], chosen.jobs,
+                      console, 'flights')
+    rows = []
+    for k, (case, limit) in enumerate(zip(AT_THE_LIMIT, linear)):
+        low, high = growths[2 * k:2 * k + 2]
+        part = NEAR[0] - low * (NEAR[1] - NEAR[0]) / (high - low)
+        rows.append(report.LimitRow(case.label, limit.k_z, limit.frequency, part * limit.k_z))
+    report.show_limits(rows, console)
+    return [asdict(row) for row in rows]
+
+
+def _conditions(chosen, settings, loop, console, folder):
+    from ins_sim import parameter_files
+    from ins_sim.report import loop_study as report
+    from ins_sim.studies.closed_loop import CONDITIONS, fly_case, VARIED
+    from .workers import run_all
+    paths = arguments.parameter_paths(chosen, SHIPPED)
+    flown = [(name, case, parameter_files.read_aided(paths, [*chosen.param, *more]))
+             for name, more in CONDITIONS.items() for case in VARIED]
+    flights = run_all([(fly_case, one, case) for _, case, one in flown], chosen.jobs, console,
+                      'flights')
+    rows = [report.loop_row(case, flight, condition=name)
+            for (name, case, _), flight in zip(flown, flights)]
+    report.show_flights('Closed loop under conditions', rows, console)
+    for case in VARIED:
+        shown = [k for k, (_, other, _) in enumerate(flown) if other is case]
+        report.save_histories(folder / f'{case.filter}_{case.cycles}_{case.gain:g}.png',
+                              f'{case.label}, k_z = {case.k_z:g}', [flown[k][0] for k in shown],
+                              [flights[k] for k in shown])
+    return [asdict(row) for row in rows]
+
+
+def _map(chosen, settings, loop, console, folder):
+    import math
+    from ins_sim.report import loop_study as report
+    from ins_sim.studies.stability_map import map_curves, PANELS
+    from .workers import run_all
+    most = math.radians(settings.simulation.motion_generator.guidance.limit_deg)
+    curves = run_all([(map_curves, loop, panel, chosen.gains, most) for panel in PANELS],
+                     chosen.jobs, console, 'panels')
+    report.save_map(folder / 'map.png', PANELS, curves)
+    return [{'filter': panel.label, 'gains': found.gains.tolist(),
+             'linear': found.linear.tolist(),
+             'flown': {f'{start:g} m': values.tolist() for start, values in found.flown.items()}}
+            for panel, found in zip(PANELS, curves)]
+
+
+_MAKERS = {'table': _table, 'limits': _limits, 'conditions': _conditions, 'map': _map}

@@ -1,0 +1,210 @@
+"""
+Where the loop of vehicle, autopilot and aided navigator is stable, exactly in discrete time.
+
+From one correction of the navigator to the next all is linear.  In x, which holds the estimates of
+z and of its rate, beta, the command, those of the latency, and what the navigator keeps, with w
+what the meter reads,
+
+    x+ = A x + b w,   w = (1 + k_z) D p,   p = c x
+
+p is the mean lateral velocity V beta since the last correction, and D makes the mean of a window
+of it: 1, or with windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), Q being a step later.  Absolute
+errors of position, and for paper_corrected of velocity, which nobody observes, are not in x.
+So (1 + k_z) D(Q) c (Q - A)^-1 b = 1, which on the unit circle gives the limits of k_z.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .linear_plant import after_period
+
+# how finely the unit circle is searched for where k_z is real
+POINTS = 2000
+# a response smaller than this is none
+ROUNDING = 1e-9
+KINDS = ('conventional', 'paper_corrected')
+
+
+class Aiding(NamedTuple):
+    """
+    A navigator aided by a meter of windows of N cycles, a cycle being a control period.
+
+    kind: of KINDS; cycles: N; step: cycles from end to end of windows, a divisor of N, and N for
+    paper_corrected; gain: of conventional the part of the error that a fix takes away (K_v times
+    the step when windows slide), of paper_corrected K.
+    """
+
+    kind: str
+    cycles: int
+    step: int
+    gain: float
+
+
+class Mode(NamedTuple):
+    """Growth, 1/s, and frequency, rad/s, of the mode that grows fastest."""
+
+    growth: float
+    frequency: float
+
+
+class StabilityLimit(NamedTuple):
+    """A lateral scale error k_z at which a mode neither grows nor decays; frequency, rad/s."""
+
+    k_z: float
+    frequency: float
+
+
+class StabilityLimits(NamedTuple):
+    """
+    The least positive and the least negative StabilityLimit, or None where there is none.
+
+    unstable: how many modes grow at k_z = 0; only without any are these limits of the stable loop.
+    """
+
+    positive: StabilityLimit | None
+    negative: StabilityLimit | None
+    unstable: int
+
+
+class _Step(NamedTuple):
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+
+
+def growth(loop, aiding, k_z):
+    """
+    Return the Mode of a LateralLoop and an Aiding at a lateral scale error k_z.
+
+    Takes the cube of N/step operations: a second for some hundred steps in a window.
+    """
+    a, b, c = _step(loop, aiding)
+    n, size = aiding.cycles // aiding.step, len(a)
+    # behind x the means of the n - 1 steps before
+    whole = np.zeros((size + n - 1,) * 2)
+    whole[:size, :size] = a + (1.0 + k_z) / n * np.outer(b, c)
+    whole[:size, size:] = (1.0 + k_z) / n * b[:, None]
+    if n > 1:
+        whole[size, :size] = c
+        whole[size + 1:, size:-1] = np.eye(n - 2)
+    roots = np.linalg.eigvals(whole)
+    root, step_s = roots[np.argmax(np.abs(roots))], aiding.step * loop.period_s
+    return Mode(float(np.log(abs(root)) / step_s), float(abs(np.angle(root)) / step_s))
+
+
+def limits(loop, aiding):
+    """
+    Return the StabilityLimits of k_z of a LateralLoop and an Aiding.
+
+    Frequencies are those seen at the corrections, at most pi over the time between them.
+    """
+    step = _step(loop, aiding)
+    step_s, n = aiding.step * loop.period_s, aiding.cycles // aiding.step
+    highest = math.pi / step_s
+    omega = np.union1d(np.geomspace(1e-4 * highest, highest, POINTS),
+                       np.linspace(0.0, highest, POINTS + 8 * n + 1)[1:])
+    values = _read(step, n, omega * step_s)
+    crossings = np.flatnonzero(values.imag[:-1] * values.imag[1:] < 0.0)
+    low, high = omega[crossings], omega[crossings + 1]
+    sign = values.imag[crossings]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        same = _read(step, n, middle * step_s).imag * sign > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    # at the highest frequency all is real
+    places = np.append(low, highest)
+    real = _read(step, n, places * step_s).real
+    found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
+             if abs(x) > ROUNDING]
+    positive = min((one for one in found if one.k_z > 0.0), default=None)
+    negative = max((one for one in found if one.k_z < 0.0), default=None)
+    return StabilityLimits(positive, negative, _unstable(step, values))
+
+
+def _unstable(step, values):
+    """
+    Return how many modes grow at k_z = 0.
+
+    By the principle of the argument: values are what is read along the upper half circle, from
+    near 1 to -1, where they are real.
+    """
+    around = np.unwrap(np.angle(1.0 - values))
+    turns = 2.0 * (around[-1] - around[0]) / (2.0 * math.pi)
+    outside = int((np.abs(np.linalg.eigvals(step.a)) > 1.0).sum())
+    return outside - round(turns)
+
+
+def _read(step, n, angles):
+    """Return D(Q) c (Q - A)^-1 b at Q = exp(i angles)."""
+    a, b, c = step
+    q = np.exp(1j * angles)
+    right = np.broadcast_to(b[:, None], (len(q), len(b), 1))
+    found = np.linalg.solve(q[:, None, None] * np.eye(len(a)) - a, right)[..., 0] @ c
+    return found * window_mean(q, n)
+
+
+def window_mean(q, n):
+    """Return D(Q), the mean of n values of which each is a factor Q later than the one before."""
+    return 1.0 if n == 1 else (1.0 - q ** -n) / (n * (1.0 - 1.0 / q))
+
+
+def _step(loop, aiding):
+    """Return the _Step from one correction to the next."""
+    names = ('z', 'v', 'beta', 'command', *(f'latency_{k}' for k in range(loop.latency)),
+             'sum_beta', 'acceleration', 'error', 'sum_error')
+    e = dict(zip(names, np.eye(len(names))))
+    rows = {name: e[name].copy() for name in names}
+    h = loop.period_s
+    command = loop.k1 * e['z'] + loop.k2 * e['v']
+    for k in range(loop.latency):
+        rows[f'latency_{k}'], command = command, e[f'latency_{k}']
+    rows['command'] = command
+    before = np.array((e['z'], e['v'], e['beta'], e['command'], command))
+    rows['z'], rows['v'], rows['beta'] = after_period(loop) @ before
+    rows['sum_beta'] += 0.5 * (e['beta'] + rows['beta'])
+    # an error of the acceleration is integrated
+    rows['z'] += 0.5 * h * h * e['acceleration']
+    rows['v'] += h * e['acceleration']
+    rows['error'] += h * e['acceleration']
+    rows['sum_error'] += e['error'] + 0.5 * h * e['acceleration']
+    x = np.linalg.matrix_power(np.array([rows[name] for name in names]), aiding.step)
+    now = dict(zip(names, x))
+    mean = loop.speed / aiding.step * now['sum_beta']
+    # less what is read, 1 for w
+    read = {name: 0.0 for name in names}
+    correct = _conventional if aiding.kind == 'conventional' else _paper_corrected
+    correct(loop, aiding, now, mean, read)
+    for name in ('sum_beta', 'sum_error'):
+        now[name] = 0.0 * mean
+    return _Step(np.array([now[name] for name in names]),
+                 np.array([read[name] for name in names]), mean)
+
+
+def _conventional(loop, aiding, now, mean, read):
+    """
+    Take the part gain of the innovation off the velocity.
+
+    error: e_v.  The fix stands for the velocity at the end of its window.
+    """
+    innovation = loop.speed * now['beta'] + now['error']
+    for name in ('v', 'error'):
+        now[name] = now[name] - aiding.gain * innovation
+        read[name] = aiding.gain
+    now['acceleration'] = 0.0 * mean
+
+
+def _paper_corrected(loop, aiding, now, mean, read):
+    """
+    Take dW = K nu off the acceleration, T dW off the velocity, T^2/2 dW off the position.
+
+    error: e_v less z' of the last window, so that nu = (mean of it + mean of V beta - w)/T.
+    """
+    span = aiding.cycles * loop.period_s
+    nu, by_read = (now['sum_error'] / aiding.cycles + mean) / span, -1.0 / span
+    for name, part in (('z', 0.5 * span * span * aiding.gain), ('v', span * aiding.gain),
+                       ('acceleration', aiding.gain),
+                       ('error', span + 0.5 * span * aiding.gain)):
+        now[name] = now[name] - part * nu
+        read[name] = -part * by_read

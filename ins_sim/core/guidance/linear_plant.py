@@ -1,0 +1,66 @@
+"""
+Vehicle and autopilot of a lateral loop, linear, from one control instant to the next.
+
+z to the right of the leg, its rate v and the sideslip beta under a command u:
+
+    z' = v,  v' = -Z_b beta,  beta' = (u - beta)/tau_b,  u = k1 z_est + k2 v_est
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .autopilot import make_autopilot
+
+
+class LateralLoop(NamedTuple):
+    """
+    A vehicle that an autopilot holds on its leg.
+
+    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b; k1: rad/m; k2: rad/(m/s);
+    period_s: between control instants; latency: in whole periods; ramps: the command runs from
+    its last value to the new one over a period, and does not jump.
+    """
+
+    speed: float
+    side_force: float
+    lag_s: float
+    k1: float
+    k2: float
+    period_s: float
+    latency: int = 0
+    ramps: bool = True
+
+
+def lateral_loop(generator):
+    """
+    Return the LateralLoop of MotionGeneratorSettings, in still air.
+
+    None for an autopilot without gains.
+    """
+    guided, guidance = generator.motion.guided, generator.guidance
+    gains = make_autopilot(guidance).gains()
+    if gains is None:
+        return None
+    return LateralLoop(generator.motion.route.airspeed_m_s, guided.side_force_m_s2_rad,
+                       guided.lag_s, *gains, 1.0 / guided.control_rate_hz,
+                       round(guidance.latency_s * guided.control_rate_hz))
+
+
+def after_period(loop):
+    """Return the matrix (3, 5) of z, v, beta a period later by z, v, beta, old and new command."""
+    h, lag, force = loop.period_s, loop.lag_s, loop.side_force
+    left = math.exp(-h / lag)
+
+    def flown(z, v, beta, old, new):
+        if not loop.ramps:
+            old = new
+        slope = (new - old) / h
+        c = beta - old + slope * lag
+        return (z + v * h - force * (old * h * h / 2.0 + slope * h * h * (h / 6.0 - lag / 2.0)
+                                     + c * lag * (h - lag * (1.0 - left))),
+                v - force * (old * h + slope * h * (h / 2.0 - lag) + c * lag * (1.0 - left)),
+                old + slope * (h - lag) + c * left)
+
+    return np.array([flown(*unit) for unit in np.eye(5)]).T

@@ -1,0 +1,200 @@
+"""Steering: which solution an autopilot sees when, and when the vehicle flies straight."""
+
+from bisect import bisect_right
+from collections import deque
+import math
+from typing import NamedTuple
+
+from ins_sim.core.earth.sphere_metric import across_leg
+from ins_sim.core.numerics.instants import seconds
+from .autopilot import make_autopilot
+from .margin import phase_margin
+
+# Why an autopilot does not steer, and what is said at the first time.
+NOT_ENGAGED, TURN, NO_SOLUTION = 'not engaged', 'in a turn', 'no solution'
+NO_NUMBER, JUMP, OLD, NO_COMMAND = 'no number', 'jump', 'old', 'no command'
+
+
+class SteeringCommand(NamedTuple):
+    """
+    What is commanded at a control instant, and by what.
+
+    t_ns: the instant; beta: sideslip, rad; z, v_z: the estimate, m and m/s, zero without one; why:
+    '' where the autopilot steers, else why the vehicle flies straight.
+    """
+
+    t_ns: int
+    beta: float
+    z: float
+    v_z: float
+    why: str
+
+
+class Steering:
+    """
+    An autopilot with the solutions that it steers by.
+
+    Solutions are given by ``take``; ``command`` answers a control instant from the newest one that
+    is ``latency_s`` old.  The vehicle flies straight (command zero) until the autopilot is
+    engaged, in turns, and where the solution is missing, no number, too old or jumps.
+
+    Parameters
+    ----------
+    settings : GuidanceSettings
+    legs : sequence of great_circle.Leg
+    turns : sequence of (start, end)
+        Motion times of the turns between the legs, s.
+
+    Attributes
+    ----------
+    engaged : bool
+    notes : list of str
+        Sentences about what was met for the first time; the owner empties it.
+    counts : dict
+        {why: number of control instants} at which the vehicle flew straight, and 'limited'.
+    """
+
+    def __init__(self, settings, legs, turns=()):
+        self._legs = legs
+        self._turns = [(round(1e9 * start), round(1e9 * end)) for start, end in turns]
+        self._ends = [end for _, end in self._turns]
+        self._latency_ns, self._timeout_ns = settings.in_ns()
+        self._after_ns = round(1e9 * settings.engage_after_s)
+        self._limit, self._jump = math.radians(settings.limit_deg), settings.jump_m
+        self.autopilot = make_autopilot(settings)
+        self.reset()
+
+    def reset(self):
+        """Forget everything; the next control instant is the first of a run."""
+        self._solutions, self._used = deque(), None
+        self._engage_ns, self.engaged, self._steers = None, False, False
+        self._scheduled = True
+        self.notes, self.counts = [], {}
+
+    def engage(self, t_ns):
+        """Engage the autopilot; in a turn it takes over at the end of the turn, and says so."""
+        self.engaged, self._scheduled = True, False
+        if self.in_turn(t_ns):
+            self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '
+                              'steers from the end of the turn on')
+
+    def disengage(self):
+        """Disengage the autopilot: the vehicle flies straight."""
+        self.engaged = self._scheduled = False
+
+    def in_turn(self, t_ns):
+        """Return whether the route turns at a motion time."""
+        k = self._leg_index(t_ns)
+        return k < len(self._turns) and self._turns[k][0] <= t_ns
+
+    def _leg_index(self, t_ns):
+        return bisect_right(self._ends, t_ns)
+
+    def take(self, t_ns, solution):
+        """
+        Take a solution of motion time t_ns, ns.
+
+        solution: (lat, lon, height, v_n, ...), rad, m and m/s.  A stamp that is not later than the
+        last one takes the place of those from there on.
+        """
+        solutions = self._solutions
+        while solutions and solutions[-1][0] >= t_ns:
+            solutions.pop()
+        if self._used is not None and self._used[0] >= t_ns:
+            self._used = None
+        solutions.append((t_ns, solution))
+
+    def command(self, t_ns):
+        """Return the SteeringCommand at a control instant, motion time in ns."""
+        if self._engage_ns is None:
+            self._engage_ns = t_ns + self._after_ns
+        if self._scheduled and t_ns >= self._engage_ns:
+            self.engage(t_ns)
+        z, v_z, why = self._estimate(t_ns)
+        if not self.engaged:
+            why = NOT_ENGAGED
+        elif self.in_turn(t_ns):
+            why = TURN
+        beta = 0.0
+        if not why:
+            if not self._steers:
+                self.autopilot.reset()
+            beta = self.autopilot.command(t_ns, z, v_z)
+            if not abs(beta) < math.inf:
+                why = NO_COMMAND
+                self._say(why, f'the autopilot commands {beta} at {seconds(t_ns)}; expected a '
+                          'number: the vehicle flies straight')
+                beta = 0.0
+        self._steers = not why
+        if why:
+            self._count(why)
+        elif abs(beta) > self._limit:
+            beta = math.copysign(self._limit, beta)
+            self._count('limited')
+        return SteeringCommand(t_ns, beta, z, v_z, why)
+
+    def _estimate(self, t_ns):
+        """Return z, v_z and why they are not to be steered by, or ''."""
+        wanted_ns, solutions = t_ns - self._latency_ns, self._solutions
+        while len(solutions) > 1 and solutions[1][0] <= wanted_ns:
+            solutions.popleft()
+        if solutions and solutions[0][0] <= wanted_ns:
+            self._use(t_ns, *solutions.popleft())
+        if self._used is None:
+            return 0.0, 0.0, NO_SOLUTION
+        stamp_ns, z, v_z, why = self._used[:4]
+        age_ns = wanted_ns - stamp_ns
+        if not why and age_ns > self._timeout_ns:
+            why = OLD
+            self._say(why, f'the solution that the autopilot steers by is that of '
+                      f'{seconds(stamp_ns)} at {seconds(t_ns)}; expected one at most '
+                      f'{(self._latency_ns + self._timeout_ns) * 1e-9:g} s old: the vehicle flies '
+                      'straight until one comes')
+        return z, v_z, why
+
+    def _use(self, t_ns, stamp_ns, solution):
+        """Make a solution the one to steer by."""
+        lat, lon, height, v_n = solution[:4]
+        index = self._leg_index(t_ns)
+        last, why = self._used, ''
+        if not math.isfinite(lat + lon + height + v_n[0] + v_n[1]):
+            self._say(NO_NUMBER, f'the solution at {seconds(stamp_ns)} is no number; expected one '
+                      'to steer by: the vehicle flies straight until it is one')
+            self._used = stamp_ns, 0.0, 0.0, NO_NUMBER, index
+            return
+        z, v_z = across_leg(self._legs[index], lat, lon, height, v_n)
+        if last is not None and last[3] != NO_NUMBER and last[4] == index:
+            expected = last[1] + last[2] * ((stamp_ns - last[0]) * 1e-9)
+            if abs(z - expected) > self._jump:
+                why = JUMP
+                self._say(why, f'the solution jumps by {z - expected:.4g} m to the right at '
+                          f'{seconds(stamp_ns)}; expected at most guidance.jump_m, '
+                          f'{self._jump:g} m: the vehicle flies straight until it goes on from '
+                          'where it is')
+        self._used = stamp_ns, z, v_z, why, index
+
+    def _say(self, why, sentence):
+        if why not in self.counts:
+            self.notes.append(sentence)
+
+    def _count(self, why):
+        self.counts[why] = self.counts.get(why, 0) + 1
+
+
+def margin_sentence(settings, guided):
+    """
+    Return what is to be said of a loop that cannot be stable for its latency, or None.
+
+    settings: GuidanceSettings; guided: GuidedSettings.  The navigation is taken to be exact.
+    """
+    gains = make_autopilot(settings).gains()
+    if gains is None:
+        return None
+    period_s = 1.0 / guided.control_rate_hz
+    margin = phase_margin(gains, guided.side_force_m_s2_rad, guided.lag_s,
+                          settings.latency_s + period_s)
+    if margin is None or margin > 0.0:
+        return None
+    return (f'guidance.latency_s is {settings.latency_s:g} s, which leaves the loop a phase '
+            f'margin of {math.degrees(margin):.1f} deg; expected more than 0: it is unstable '
+            'with exact navigation already')

@@ -1,0 +1,1 @@
+"""Flight along a route beside its legs, steered sideways by commands from outside."""

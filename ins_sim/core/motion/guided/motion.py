@@ -1,0 +1,192 @@
+"""
+Flight beside the legs of a route, steered by commands of the sideslip.
+
+The track of ``route`` gives the legs, the turns and the wind; the vehicle is z metres to the right
+of it.  Its nose is off its velocity relative to the air by the sideslip: with the course chi of
+the track the heading is chi + atan(v_z/V) - beta where there is no wind.  The bank is that of the
+track; on a leg the vehicle steers without bank.
+"""
+
+import math
+
+from ins_sim.core.attitude import angles, quaternion
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.numerics import elementary, taylor
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.numerics.units import STANDARD_GRAVITY
+from ins_sim.core.timeseries.histories import SteeredStates, Truth
+import numpy as np
+from ..route.motion import RouteMotion
+from ..truth import in_body, translation, truth_from_pose
+from .steered import SteeredHistory
+
+# Instants at which the track is evaluated at once for ``one``, in so many parts of a period.
+AHEAD, PHASES = 256, 64
+# So many instants, and no more, are faster one by one.
+FEW = 2
+
+
+class GuidedMotion(RouteMotion):
+    """
+    The flight of settings.FlownRouteSettings and settings.GuidedSettings.
+
+    It is known up to the end of the control period that was commanded last, ``known_ns`` of motion
+    time (``end_s`` in s), and knows nothing of what commands it.  ``begin`` starts it anew,
+    ``command`` flies one more period.  Before the first command it flies straight, at any time.
+
+    arrival_s: when the track reaches the last turning point; route and turns: as of RouteMotion.
+    Raises ValueError in one sentence on a flight that cannot be flown.
+    """
+
+    end_name = ('up to which the guided motion has been steered: its flight depends on the '
+                'navigation, and only simulate and the live nodes fly it')
+
+    def __init__(self, settings, guided, earth_settings):
+        if settings.weave_deg:
+            raise ValueError(f'motion.route.weave_deg is {settings.weave_deg:g} deg with '
+                             'motion.kind guided; expected 0: the vehicle is steered')
+        super().__init__(settings, earth_settings)
+        self.arrival_s = self.end_s
+        self._steered = SteeredHistory(
+            guided.side_force_m_s2_rad, guided.lag_s, period_ns(guided.control_rate_hz),
+            (guided.offset_m, guided.offset_rate_m_s))
+        self._force, self._lag_s = guided.side_force_m_s2_rad, guided.lag_s
+        self.period_ns = self._steered.period_ns
+        half = elementary.sincos(-0.5 * self._attack)
+        self._nose_up = (0.0, half[0], 0.0, half[1])
+        # By the part of a control period, ns: its number, and the flows from there on.
+        self._ahead = {}
+        self.begin(0)
+
+    @property
+    def known_ns(self):
+        """Return the motion time up to which the motion is known."""
+        return self._steered.known_ns
+
+    def begin(self, t_ns):
+        """Forget all commands; the first one will be given at motion time t_ns."""
+        self._steered.begin(t_ns)
+        self.end_s = t_ns / 1e9
+
+    def command(self, t_ns, beta_c):
+        """
+        Fly the control period that begins at t_ns.
+
+        Parameters
+        ----------
+        t_ns : int
+            Motion time, the end of the period before: ``known_ns``.
+        beta_c : float
+            Commanded sideslip at the end of the period, rad; it runs there linearly.
+
+        Raises
+        ------
+        ValueError
+            At another time, and on a command that is no number.
+        """
+        self._steered.command(t_ns, beta_c)
+        self.end_s = self.known_ns / 1e9
+
+    def forget(self, t_ns):
+        """Forget the motion before t_ns; a node needs no more than its sensors look back."""
+        self._steered.forget(t_ns)
+
+    def states(self, t_ns):
+        """Return the SteeredStates at motion times t_ns (n,) int64."""
+        z, v_z, beta, command, _ = self._steered.at(t_ns)
+        return SteeredStates(np.asarray(t_ns), z, v_z, beta, command)
+
+    def at(self, t_ns):
+        """Return the Truth at motion times t_ns (n,) int64; ValueError where it is not known."""
+        t_ns = np.asarray(t_ns)
+        if 0 < len(t_ns) <= FEW:
+            return Truth(t_ns, *map(np.array, zip(*map(self.one, t_ns.tolist()))))
+        pose = self._pose(self._flow_at(t_ns), self._steered.at(t_ns), _series)
+        return truth_from_pose(t_ns, *pose, self._rotation, self._gravity)
+
+    def one(self, t_ns):
+        """
+        Return the truth at one instant, to the bit that of ``at``, in less time.
+
+        Returns
+        -------
+        tuple
+            lat, lon (rad), height (m), v_n (m/s), q_nb, omega_ib_b (rad/s), f_ib_b (m/s^2),
+            floats and tuples of floats.
+        """
+        lat, lon, height, q_nb = self._pose(self._flow(t_ns), self._steered.one(t_ns),
+                                            taylor.InstantSeries)
+        v_n, omega_in_n, f_n = translation(lat, lon, height, self._rotation, self._gravity)
+        return (lat.value, lon.value, height.value, v_n, *in_body(omega_in_n, f_n, q_nb))
+
+    def _flow(self, t_ns):
+        """Return what ``_flow_at`` returns of one instant; it is evaluated some periods ahead."""
+        # Truth and sensors ask for the same parts of every period.
+        period, phase = divmod(t_ns, self.period_ns)
+        first, flows = self._ahead.get(phase, (0, ()))
+        if not 0 <= period - first < len(flows):
+            stamps = t_ns + self.period_ns * np.arange(AHEAD, dtype=np.int64)
+            columns = [series.c.T.tolist() for series in self._flow_at(stamps)]
+            flows = [tuple(taylor.InstantSeries(tuple(c)) for c in row)
+                     for row in zip(*columns)]
+            if len(self._ahead) >= PHASES:
+                self._ahead.clear()
+            self._ahead[phase] = first, flows = period, flows
+        return flows[period - first]
+
+    def _flow_at(self, t_ns):
+        """
+        Return what does not depend on the commands, Series of the instants.
+
+        lat, lon, height of the track; lat and lon of one metre to its right; heading, and by how
+        much that of a parallel track one metre to the right differs (convergence of meridians);
+        components of the unit vector to the right of the track, along and to the right of the
+        heading; attitude relative to level axes along the nose, by bank and angle of attack.
+        """
+        t = t_ns * 1e-9
+        lat, lon, psi = self._track.at(t)
+        sin_lat, cos_lat = taylor.sincos(lat)
+        sin_psi, cos_psi = taylor.sincos(psi)
+        east, north = (sin_psi * self._airspeed + self.wind[0],
+                       cos_psi * self._airspeed + self.wind[1])
+        size = taylor.sqrt(east * east + north * north)
+        # to the right of the velocity over ground
+        right_e, right_n = north / size, -east / size
+        d_lat, d_lon = ellipsoid.level_angles(right_e, right_n, sin_lat, cos_lat, self._height)
+        along = right_e * sin_psi + right_n * cos_psi
+        aside = right_e * cos_psi - right_n * sin_psi
+        # The bank also balances the Coriolis force, as in ``route``.
+        turn = psi.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
+        bank = taylor.atan2(turn * self._airspeed, turn.constant(STANDARD_GRAVITY))
+        height = psi.constant(self._height)
+        if self.gusts:
+            east, north, up = self.gusts.displacement(t)
+            by_lat, by_lon = ellipsoid.level_angles(east, north, sin_lat, cos_lat, self._height)
+            lat, lon, height = lat + by_lat, lon + by_lon, height + up
+        return (lat, lon, height, d_lat, d_lon,
+                *(x.to_order(1) for x in (psi, d_lon * sin_lat, along, aside)),
+                *quaternion.multiply(angles.about_axis(0, bank), self._nose_up))
+
+    def _pose(self, flow, steered, series):
+        """Return lat, lon, height and q_nb; series: makes a Series of its coefficients."""
+        lat, lon, height, d_lat, d_lon, psi, converged, along, aside, *level = flow
+        z, v_z, beta, command, _ = steered
+        force = beta * -self._force
+        offset = series((z, v_z, 0.5 * force))
+        lat, lon = lat + offset * d_lat, lon + offset * d_lon
+        rate = series((v_z, force))
+        slip = taylor.atan2(rate * aside, rate * along + self._airspeed) - series(
+            (beta, (command - beta) * (1.0 / self._lag_s)))
+        sin, cos = taylor.sincos((0.5 * math.pi - (psi + offset * converged + slip)) * 0.5)
+        x, y, z, w = level
+        return lat, lon, height, (cos * x - sin * y, cos * y + sin * x, cos * z + sin * w,
+                                  cos * w - sin * z)
+
+
+def _series(coefficients):
+    return taylor.Series(np.stack(coefficients))
+
+
+def guided_motion(motion, datum, earth):
+    """Return the GuidedMotion of MotionSettings, which needs no Datum; earth: Earth."""
+    return GuidedMotion(motion.route, motion.guided, earth)

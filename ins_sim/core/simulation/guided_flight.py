@@ -1,0 +1,110 @@
+"""The closed loop offline: motion, sensors, navigation and autopilot, period by period."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ins_sim.core.guidance.aided_margin import aided_margin_sentence
+from ins_sim.core.guidance.steering import margin_sentence, Steering
+from ins_sim.core.motion.guided.motion import GuidedMotion
+from ins_sim.core.numerics.garbage_collection import paused_in_blocks
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.timeseries.histories import SteeredStates, SteeringEstimates
+from .guided_chain import SteeringChain
+
+# Control periods between two calls of progress.
+PIECE = 1024
+
+
+@dataclass(frozen=True)
+class GuidedResult:
+    """
+    How a guided motion was steered, at the control instants.
+
+    estimates: what the autopilot saw; states: where the vehicle was; notes: a sentence for each
+    kind of event; counts: {why: number of control instants without the autopilot}, and 'limited'.
+    """
+
+    estimates: SteeringEstimates
+    states: SteeredStates
+    notes: tuple = ()
+    counts: tuple = ()
+
+    def amplitude(self, part=0.3):
+        """Return half the peak-to-peak of the true sideslip over the last part of the run, rad."""
+        beta = self.states.beta
+        last = beta[len(beta) - max(1, round(part * len(beta))):]
+        return 0.5 * float(last.max() - last.min())
+
+
+def fly(settings, motion, aided=None, progress=None, run=0):
+    """
+    Steer a guided motion through a whole run; return the GuidedResult.
+
+    Afterwards the motion is known as it was flown, and the usual simulations of it, which give
+    the bits of the loop, follow without steering.
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+        That of the settings. One that is not guided needs no steering: the result is None.
+    aided : AidedSimulationSettings, optional
+        With them the aided solution steers, else that of the strapdown.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1.
+    run : int
+        Number of the realization in an ensemble.
+
+    Raises
+    ------
+    ValueError
+        Where the run ends behind the last turning point, or as the stages do.
+    """
+    if not isinstance(motion, GuidedMotion):
+        return None
+    generator = settings.motion_generator
+    if generator.duration_s == 0.0:
+        raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
+    end_s = generator.start_s + generator.duration_s
+    if end_s > motion.arrival_s:
+        raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most '
+                         f'{motion.arrival_s:g} s, the arrival at the last turning point')
+    steering = Steering(generator.guidance, motion.route.legs, motion.turns)
+    sentence = margin_sentence(generator.guidance, generator.motion.guided)
+    if sentence is None and aided is not None:
+        sentence = aided_margin_sentence(generator, aided.aided_navigator)
+    if sentence:
+        steering.notes.append(sentence)
+    commands = []
+    for done in _periods(settings, motion, SteeringChain(settings, motion, aided, run), steering,
+                         commands):
+        if progress is not None:
+            progress(done)
+    t_ns, beta, z, v_z, why = (np.array(column) for column in zip(*commands))
+    return GuidedResult(SteeringEstimates(t_ns, z, v_z, beta, why == ''), motion.states(t_ns),
+                        tuple(steering.notes), tuple(steering.counts.items()))
+
+
+@paused_in_blocks
+def _periods(settings, motion, chain, steering, commands):
+    """Fly the run, append the SteeringCommands to commands, and yield the part done."""
+    generator = settings.motion_generator
+    dt_ns, period = period_ns(generator.rate_hz), motion.period_ns
+    first_ns = round(generator.start_s * 1e9)
+    # A channel of negative delay looks so far beyond the last instant.
+    span_ns = round(generator.duration_s * 1e9) // dt_ns * dt_ns + settings.lead_ns
+    count = -(-span_ns // period)
+    motion.begin(first_ns)
+    per_period = period // dt_ns
+    for step in range(count * per_period + 1):
+        t_ns = first_ns + step * dt_ns
+        for stamp_ns, solution in chain.push(t_ns, motion.one(t_ns)):
+            steering.take(stamp_ns, solution)
+        if step % per_period == 0:
+            commands.append(steering.command(t_ns))
+            if step < count * per_period:
+                motion.command(t_ns, commands[-1].beta)
+            if len(commands) % PIECE == 0:
+                yield step / (count * per_period)
+    yield 1.0

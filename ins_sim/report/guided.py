@@ -1,0 +1,40 @@
+"""What a run says of the steering of a guided motion; nothing of any other motion."""
+
+import math
+
+from .summary import SummaryRow
+
+ARRAYS = {'states': 'steered', 'estimates': 'steering'}
+
+
+def guided_arrays(result):
+    """Return {name: array} of a GuidedResult: steered_<field>, true, and steering_<field>."""
+    if result is None:
+        return {}
+    return {f'{prefix}_{name}': values for record, prefix in ARRAYS.items()
+            for name, values in getattr(result, record).arrays().items()}
+
+
+def guided_rows(result):
+    """Return the SummaryRows of a GuidedResult."""
+    if result is None:
+        return []
+    states, estimates = result.states, result.estimates
+    figures = (('beta, half range of the last 30 %', 'deg', math.degrees(result.amplitude())),
+               ('z at the end', 'm', float(states.z[-1])),
+               ('z at the end, estimated', 'm', float(estimates.z[-1])),
+               ('max |z|', 'm', float(abs(states.z).max())))
+    return [SummaryRow(f'steered: {name}', unit, None, value, None, None)
+            for name, unit, value in figures]
+
+
+def guided_lines(result):
+    """Return what is to be said of a GuidedResult: its notes, and how often what was met."""
+    if result is None:
+        return []
+    lines, total = list(result.notes), len(result.estimates)
+    if result.counts:
+        told = ', '.join(f'{name} at {count}' for name, count in result.counts)
+        lines.append(f'of {total} control instants: {told}; elsewhere the autopilot steered '
+                     'within its limit')
+    return lines

@@ -1,0 +1,180 @@
+"""The closed loop offline: the bits of the open one on the truth as flown, and refusals."""
+
+from dataclasses import replace
+import math
+
+import ins_sim
+from ins_sim.cli.main import main
+from ins_sim.core.guidance.steering import Steering
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.prediction.predict import predict
+from ins_sim.core.simulation.guided_flight import fly
+from ins_sim.core.simulation.inertial import simulate
+import numpy as np
+import pytest
+from support.guided import fly as commanded, stirring
+
+FILE = 'guided_flight'
+
+
+def settings(aided=True, **more):
+    """Return the settings of the shipped flight; double underscores in keywords are dots."""
+    values = {'duration_s': 6.0, 'window.cycles': 100,
+              **{k.replace('__', '.'): v for k, v in more.items()}}
+    return ins_sim.read_settings(FILE, values, aided=aided)
+
+
+def flown(chosen, aided=None):
+    """Return the motion of SimulationSettings, steered, and the GuidedResult."""
+    generator = chosen.motion_generator
+    motion = make_motion(generator.motion, generator.datum, generator.earth)
+    return motion, fly(chosen, motion, aided)
+
+
+@pytest.mark.parametrize('more', [
+    {}, {'filter': 'paper_corrected', 'surrogate__k_z': 0.15},
+    {'velocity_meter:attack_angle': 'ins', 'surrogate__sigma_z_m_s': 8.7,
+     'gyro__errors__angle_random_walk_deg_sqrt_h': [0.01] * 3, 'gnss_model__use': True},
+    {'source': 'motion', 'accelerometer__delay_us__x': -30.0, 'guidance__latency_s': 0.02},
+    {'sampling__drop_out_probability': 0.01, 'filter': 'window_kf'}],
+    ids=('eskf', 'paper_corrected', 'noise and gnss', 'from the motion, ahead', 'drop-outs'))
+def test_the_loop_steers_by_the_solution_of_the_open_run(more):
+    """Its estimates are, bit for bit, those of ``simulate_aided`` on the motion as flown."""
+    run = ins_sim.simulate_aided(settings(**more), twin=False)
+    seen, motion = run.run.steered.estimates, run.run.motion
+    states, generator = run.states, run.run.settings.motion_generator
+    latency_ns = round(1e9 * generator.guidance.latency_s)
+    steering = Steering(generator.guidance, motion.route.legs)
+    known = dict(zip(states.t_ns.tolist(), zip(states.lat.tolist(), states.lon.tolist(),
+                                               states.height.tolist(), states.v_n.tolist())))
+    checked = 0
+    for k, t_ns in enumerate(seen.t_ns.tolist()):
+        if t_ns - latency_ns in known:
+            steering.take(t_ns - latency_ns, known[t_ns - latency_ns])
+            command = steering.command(t_ns)
+            assert (command.z, command.v_z, command.beta) == (
+                seen.z[k], seen.v_z[k], seen.command[k])
+            checked += 1
+    assert checked > 580
+    assert np.array_equal(run.run.steered.states.command[1:], seen.command[:-1])
+
+
+def test_the_strapdown_steers_without_aiding():
+    """By its solution, which drifts by less than a millimetre in these seconds."""
+    run = ins_sim.simulate(settings(False))
+    seen, states = run.steered.estimates, run.steered.states
+    assert seen.steers.all()
+    assert seen.z == pytest.approx(states.z, abs=2e-3)
+    assert run.truth.t_ns[-1] == 6_000_000_000
+
+
+def test_rates_of_truth_and_control_may_differ():
+    """200 Hz, and commands at 50 Hz, 10 ms later: the same flight within 0.5 %."""
+    fast = flown(settings(False, rate_hz=200.0, motion__guided__control_rate_hz=50.0))[1]
+    usual = flown(settings(False))[1]
+    assert len(fast.states) == 301
+    assert fast.states.z[-1] == pytest.approx(usual.states.z[-1], rel=5e-3)
+    assert math.degrees(usual.amplitude()) > 0.1
+
+
+def test_turns_are_flown_straight_and_left_behind():
+    """The autopilot is off in the turn; on the next leg it brings the offset to zero."""
+    chosen = settings(False, duration_s=42.0, start_s=270.0, motion__route__turn_rate_deg_s=3.0,
+                      motion__route__points__latitude_deg=[55.0, 55.5, 55.6],
+                      motion__route__points__longitude_deg=[37.0, 37.3, 38.2],
+                      motion__guided__offset_m=5.0)
+    motion, result = flown(chosen)
+    (start, end), = motion.turns
+    t = result.estimates.t_ns * 1e-9
+    turning = (t >= start) & (t < end)
+    assert 271.0 < start and end < 311.0
+    assert not result.estimates.command[turning].any()
+    assert not result.estimates.steers[turning].any()
+    assert result.estimates.steers[~turning].all()
+    assert dict(result.counts)['in a turn'] == np.count_nonzero(turning)
+    assert result.estimates.z[~turning] == pytest.approx(result.states.z[~turning], abs=5e-3)
+
+
+def test_delays_are_predicted_on_the_truth_as_flown():
+    """
+    Twin and prediction of 3, 6, 9 us on a motion stirred by jumps of the command.
+
+    The strapdown turns the velocity increment of an interval by the attitude at its start, the
+    theory is continuous: the position error is half an interval of exp(-t/0.4) behind, 5 ms of 400
+    at 100 Hz; it falls with the interval.  The attitude error has no such part.
+    """
+    off = {}
+    for rate_hz in (100.0, 500.0):
+        chosen = settings(False, source='motion', gyro__delay_us__x=3.0, gyro__delay_us__y=6.0,
+                          gyro__delay_us__z=9.0, duration_s=60.0)
+        chosen = replace(chosen, imu_sensor=replace(chosen.imu_sensor, rate_hz=rate_hz),
+                         strapdown=replace(chosen.strapdown, rate_hz=rate_hz))
+        generator = chosen.motion_generator
+        motion = commanded(make_motion(generator.motion, generator.datum, generator.earth), 60.0,
+                           stirring)
+        run, predicted = simulate(chosen, motion), predict(chosen, motion)
+        rows = slice(None, None, round(0.1 * rate_hz))
+        for name in ('attitude', 'position'):
+            added = (getattr(run.errors, name) - getattr(run.twin, name))[rows]
+            wanted = getattr(predicted, name)
+            off[name, rate_hz] = (np.abs(added - wanted)[:, :2].max()
+                                  / np.abs(added)[:, :2].max())
+    print(f'\n{off}')
+    assert off['attitude', 500.0] < 1e-3
+    assert off['position', 500.0] < 0.25 * off['position', 100.0] < 0.25 * 0.02
+
+
+@pytest.mark.slow
+def test_closure_of_an_hour(figures):
+    """Ideal readings of the motion itself at 100 Hz: within 1e-2 m; through the stream: noted."""
+    for source in ('motion', 'stream'):
+        chosen = settings(False, duration_s=3600.0, source=source,
+                          motion__route__points__latitude_deg=[55.0, 60.0],
+                          motion__route__points__longitude_deg=[37.0, 50.0])
+        generator = chosen.motion_generator
+        motion = commanded(make_motion(generator.motion, generator.datum, generator.earth), 3600.0)
+        closure = np.abs(simulate(chosen, motion).errors.position[:, :2]).max()
+        print(f'\nsource {source}: closure {closure:.2e} m')
+        figures.record(f'closure.guided.{source}', closure, 'm',
+                       *((1e-2, 'asked') if source == 'motion' else ()))
+        assert source == 'stream' or closure <= 1e-2
+
+
+@pytest.mark.parametrize('values, sentence', [
+    ({'accelerometer.delay_us.x': -20.0}, 'guidance.latency_s is 0 s with a channel of imu_sensor '
+     'that reads 2e-05 s ahead; expected at least 0.01002 s'),
+    ({'motion.guided.control_rate_hz': 30.0}, 'control_rate_hz is 30 Hz; expected a whole part of '
+     'rate_hz of motion_generator, 100 Hz'),
+    ({'sampling.latency_us': 100.0}, 'sampling.latency_us is 100 us; expected 0 with motion.kind '
+     'guided'),
+    ({'velocity_meter:attack_angle': 'ins', 'strapdown:output_every': 2}, 'output_every is 2 with '
+     'motion.kind guided and attack_angle ins; expected 1')], ids=lambda v: '')
+def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
+    """Before the start, in one sentence."""
+    with pytest.raises(ValueError, match=sentence):
+        ins_sim.read_settings(FILE, values, aided=True)
+
+
+@pytest.mark.parametrize('command, sentence', [
+    (['predict'], 'up to which the guided motion has been steered: its flight depends on the '
+     'navigation'),
+    (['simulate', '-p', 'duration_s:=5000.0'], 'duration_s is 5000 s; expected at most '),
+    (['simulate', '-p', 'duration_s:=0.0'], 'duration_s is 0, endless')], ids=lambda v: v[0])
+def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):
+    """With exit code 2."""
+    folder = ['-o', str(tmp_path / 'run')] if command[0] == 'simulate' else []
+    assert main([*command[:1], '--params-file', FILE, *command[1:], *folder]) == 2
+    assert sentence in capsys.readouterr().err.replace('\n', ' ')
+
+
+def test_the_command_writes_the_histories(tmp_path, capsys):
+    """With the truth as flown, and what is to be said of the loop."""
+    assert main(['simulate', '--aided', '--params-file', FILE, '-p', 'duration_s:=3.0', '-p',
+                 'window.cycles:=100', '-p', 'guidance.latency_s:=2.0', '-o',
+                 str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag')]) == 0
+    told = capsys.readouterr().out
+    assert 'phase margin of -' in told and 'no solution at 200' in told
+    arrays = np.load(tmp_path / 'run' / 'run.npz')
+    assert arrays['steered_t_ns'].shape == arrays['steering_z'].shape == (301,)
+    assert arrays['steered_z'][0] == 100.0 and arrays['steering_steers'].dtype == bool
+    assert ins_sim.open_motion(ins_sim.read_settings(FILE)).known_ns == 0

@@ -1,0 +1,169 @@
+"""What an autopilot is given to steer by, and when the vehicle flies straight."""
+
+import math
+
+from ins_sim.core.earth.great_circle import Leg
+from ins_sim.core.guidance.autopilot import Autopilot
+from ins_sim.core.guidance.margin import phase_margin
+from ins_sim.core.guidance.steering import margin_sentence, Steering
+from ins_sim.settings import guidance
+from ins_sim.settings.catalogue import build
+from ins_sim.settings.guidance import AutopilotEntry, GuidanceSettings, GuidedSettings
+import numpy as np
+import pytest
+from support.guided import fly, guided
+
+LEGS = (Leg(0.96, 0.64, 0.98, 0.68), Leg(0.98, 0.68, 1.0, 0.66))
+TICK_NS = 10_000_000
+
+
+def steering(turns=(), **values):
+    """Return a Steering on two legs."""
+    return Steering(build(GuidanceSettings, values), LEGS, turns)
+
+
+def beside(z=0.0, leg=LEGS[0]):
+    """Return a solution at rest z metres on the sphere to the right of a leg."""
+    lat, lon = leg.from_xz(10_000.0, z)
+    return lat, lon, 500.0, (0.0, 0.0, 0.0)
+
+
+def test_the_command_is_that_of_the_estimate():
+    """k1 z + k2 v_z of a true motion, without anything in between, and limited."""
+    motion = fly(guided(offset_m=5.0), 0.5)
+    made = Steering(GuidanceSettings(), motion.route.legs, motion.turns)
+    truth, states = motion.one(500_000_000), motion.states(np.array([500_000_000]))
+    made.take(500_000_000, truth[:4])
+    command = made.command(500_000_000)
+    assert not command.why
+    assert command.z == pytest.approx(states.z[0], abs=1e-5)
+    assert command.v_z == pytest.approx(states.v_z[0], abs=1e-5)
+    assert command.beta == pytest.approx(0.0125 * states.z[0] + 0.04 * states.v_z[0], abs=1e-6)
+    made.take(510_000_000, beside(50.0, motion.route.legs[0]))
+    assert made.command(510_000_000).beta == math.radians(8.0)
+    assert made.counts == {'limited': 1}
+
+
+def test_hold_course_leaves_the_offset():
+    """Only the rate of the offset is steered."""
+    made = steering(autopilot='hold_course')
+    lat, lon, height, _ = beside(80.0)
+    made.take(0, (lat, lon, height, (0.0, 0.0, 0.0)))
+    assert made.command(0).beta == 0.0
+    made.take(1, (lat, lon, height, (1.0, 0.0, 0.0)))
+    command = made.command(1)
+    assert command.beta == 0.04 * command.v_z != 0.0
+
+
+def test_the_solution_is_as_old_as_the_latency():
+    """The newest one that is at least that old; before there is one the vehicle flies straight."""
+    made = steering(latency_s=0.03)
+    for k in range(10):
+        made.take(k * TICK_NS, beside(float(k)))
+        command = made.command(k * TICK_NS)
+        assert command.why == ('no solution' if k < 3 else '')
+        assert command.z == pytest.approx(max(0.0, k - 3.0), rel=0.01, abs=1e-8)
+
+
+def test_engaged_after_a_time_and_by_hand():
+    """The schedule, and calls that take its place."""
+    made = steering(engage_after_s=0.02)
+    made.take(0, beside(5.0))
+    assert [made.command(k * TICK_NS).why for k in range(4)] == ['not engaged'] * 2 + [''] * 2
+    made.disengage()
+    assert made.command(5 * TICK_NS).why == 'not engaged' and not made.engaged
+    made.engage(6 * TICK_NS)
+    assert made.command(6 * TICK_NS).beta > 0.0
+    assert not made.notes
+
+
+def test_turns_are_flown_without_the_autopilot():
+    """Behind a turn it steers on the next leg; engaged in one it says when it takes over."""
+    made = steering(turns=[(1.0, 2.0)])
+    made.disengage()
+    made.engage(1_500_000_000)
+    assert len(made.notes) == 1 and 'engaged at 1.500000000 s in a turn' in made.notes[0]
+    for t_ns, leg, why in ((999_999_999, 0, ''), (1_000_000_000, 0, 'in a turn'),
+                           (1_999_999_999, 0, 'in a turn'), (2_000_000_000, 1, '')):
+        made.take(t_ns, beside(5.0, LEGS[leg]))
+        command = made.command(t_ns)
+        assert command.why == why and bool(command.beta) == (not why)
+    assert command.z == pytest.approx(5.0, rel=0.01)
+    assert made.counts == {'in a turn': 2}
+
+
+@pytest.mark.parametrize('spoil, why', [
+    (lambda s: (math.nan, *s[1:]), 'no number'), (lambda s: (*s[:3], (math.inf, 0.0, 0.0)),
+                                                  'no number'),
+    (lambda s: beside(3000.0), 'jump')], ids=('nan', 'inf', 'jump'))
+def test_bad_solutions_are_not_steered_by(spoil, why):
+    """One sentence and a count; the next good one is steered by again."""
+    made = steering()
+    for k in range(12):
+        solution = beside(5.0)
+        made.take(k * TICK_NS, spoil(solution) if k in (4, 8) else solution)
+        command = made.command(k * TICK_NS)
+        bad = (4, 8) if why == 'no number' else (4, 5, 8, 9)
+        assert command.why == (why if k in bad else '')
+        assert math.isfinite(command.beta + command.z + command.v_z)
+        assert (command.beta == 0.0) == bool(command.why)
+    assert len(made.notes) == 1 and 'flies straight' in made.notes[0]
+    assert made.counts == {why: len(bad)}
+
+
+def test_two_publishers_that_alternate_never_steer():
+    """Every solution jumps; the vehicle flies straight."""
+    made = steering()
+    for k in range(20):
+        made.take(k * TICK_NS, beside(2000.0 * (k % 2)))
+        assert made.command(k * TICK_NS).why == ('jump' if k else '')
+    assert len(made.notes) == 1
+
+
+def test_a_solution_that_stops_is_held_and_then_left():
+    """For timeout_s, then one sentence; a new one is steered by again."""
+    made = steering(timeout_s=0.05)
+    made.take(0, beside(5.0))
+    whys = [made.command(k * TICK_NS).why for k in range(12)]
+    assert whys == [''] * 6 + ['old'] * 6
+    made.take(12 * TICK_NS, beside(5.0))
+    assert not made.command(12 * TICK_NS).why
+    assert len(made.notes) == 1 and 'at most 0.05 s old' in made.notes[0]
+
+
+class Spoilt(Autopilot):
+    """An autopilot of somebody's own that fails."""
+
+    def command(self, t_ns, z, v_z):
+        """Return no number."""
+        return math.nan
+
+
+def test_an_autopilot_of_ones_own(monkeypatch):
+    """By an entry in the table; what it commands is checked."""
+    monkeypatch.setitem(guidance.AUTOPILOTS, 'spoilt', AutopilotEntry(f'{__name__}:Spoilt'))
+    monkeypatch.setitem(__import__('sys').modules, __name__, __import__('types').SimpleNamespace(
+        Spoilt=Spoilt))
+    made = steering(autopilot='spoilt')
+    made.take(0, beside(5.0))
+    command = made.command(0)
+    assert command.beta == 0.0 and command.why == 'no command'
+    assert made.notes == ['the autopilot commands nan at 0.000000000 s; expected a number: the '
+                          'vehicle flies straight']
+
+
+def test_phase_margin_is_that_of_the_characteristic_equation():
+    """With the delay that takes the margin, s = i w solves it; and a sentence says so."""
+    gains, force, lag_s = (0.0125, 0.04), 20.0, 0.4
+    w = np.array([1e-3 * k for k in range(1, 5000)])
+    loop = force * (gains[0] + 1j * w * gains[1]) / ((1j * w) ** 2 * (1.0 + 1j * w * lag_s))
+    crossover = w[np.argmin(np.abs(np.abs(loop) - 1.0))]
+    margin = phase_margin(gains, force, lag_s, 0.0)
+    assert margin == pytest.approx(math.pi + np.angle(loop[w == crossover])[0] % (-2.0 * math.pi),
+                                   abs=2e-3)
+    delay_s = margin / crossover
+    assert phase_margin(gains, force, lag_s, delay_s) == pytest.approx(0.0, abs=2e-3)
+    assert margin_sentence(build(GuidanceSettings, {'latency_s': delay_s - 0.05}),
+                           GuidedSettings()) is None
+    assert 'phase margin of -' in margin_sentence(build(
+        GuidanceSettings, {'latency_s': delay_s + 0.05}), GuidedSettings())
