@@ -2,8 +2,9 @@
 Start the motion generator, the IMU and the strapdown; end when one of them ends.
 
 Example: ros2 launch ins_sim simulation.launch.py params_file:=motion_2 real_time_factor:=10.0
-With aided:=true velocity meter, GNSS and aided navigator run too.  With record:=DIR a recorder
-writes their topics into a bag.  Lock-step waits for all of them.
+With aided:=true velocity meter, GNSS and aided navigator run too; with params_file:=guided_flight
+besides, the aided solution steers the vehicle.  With record:=DIR a recorder writes their topics
+into a bag.  Lock-step waits for all of them.
 """
 
 from ins_sim import graph, resources
@@ -40,7 +41,7 @@ def _overrides(process, value):
         if _added(value):
             parameters['pacing.required'] = ['strapdown', *(p.name for p in _added(value))]
     elif process is graph.RECORDER:
-        recorded = (*topics.DATA, *(topics.AIDING if value['aided'] else ()))
+        recorded = (*topics.DATA, *((*topics.AIDING, *topics.GUIDANCE) if value['aided'] else ()))
         parameters['record.topics'] = [topic.name for topic in recorded]
         parameters['storage.path'] = value['record']
     return parameters

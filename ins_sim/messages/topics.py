@@ -86,6 +86,9 @@ AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('enu',))
                      for name in ('attitude', 'velocity', 'position'))
 # x: along the leg, y: height, z: right of it; m
 AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
+# at a control instant, x: commanded sideslip, rad; y and z: estimated offset to the right of the
+# leg, m, and its rate, m/s, zero without an estimate
+GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
 ACK = Topic('sim/ack', HEADER)
 STATUS = Topic('sim/status', STRING)
 CLOCK_TOPIC = Topic('/clock', CLOCK)
@@ -96,8 +99,10 @@ DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
 # of velocity_meter, gnss and aided_navigator
 AIDING = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, AIDED_ODOMETRY, AIDED_FIX,
           *AIDED_ERRORS, *AIDED_SIGMAS, AIDED_ORTHODROME)
+# of motion_generator with a guided motion
+GUIDANCE = (GUIDANCE_COMMAND,)
 # of which nothing may come with the first sample, nor ever
-SELDOM = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, *AIDED_SIGMAS)
+SELDOM = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, *AIDED_SIGMAS, *GUIDANCE)
 
 
 def imu_raw(rate_variance, force_variance):

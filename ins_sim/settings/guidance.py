@@ -55,10 +55,21 @@ class GuidanceSettings(SettingsGroup):
                                'the vehicle flies straight', 's', 0.0, 1e4)
     jump_m: float = setting(1000.0, 'jump of the estimated offset at which the solution is not '
                             'steered by', 'm', 1.0, 1e6)
+    topic: str = setting('aided/odometry', 'live, the nav_msgs/Odometry that steers: of '
+                         'aided_navigator, ins/odometry of strapdown, or one of an estimator of '
+                         'your own, its pose in map and its twist in base_link')
 
     def in_ns(self):
         """Return latency and timeout, ns."""
         return round(1e9 * self.latency_s), round(1e9 * self.timeout_s)
+
+
+def check_control_rate(guided, node, rate_hz):
+    """Raise ValueError unless every control instant has a sample of a node at rate_hz."""
+    if round(1e9 / guided.control_rate_hz) % round(1e9 / rate_hz):
+        raise ValueError(f'motion_generator: motion.guided.control_rate_hz is '
+                         f'{guided.control_rate_hz:g} Hz; expected a whole part of rate_hz of '
+                         f'{node}, {rate_hz:g} Hz: a control instant needs its sample')
 
 
 def check_guided(generator, sensor, lead_ns):
@@ -70,11 +81,8 @@ def check_guided(generator, sensor, lead_ns):
     """
     guided, latency_s = generator.motion.guided, generator.guidance.latency_s
     control_ns = round(1e9 / guided.control_rate_hz)
-    for node, rate_hz in (('motion_generator', generator.rate_hz), ('imu_sensor', sensor.rate_hz)):
-        if control_ns % round(1e9 / rate_hz):
-            raise ValueError(f'motion_generator: motion.guided.control_rate_hz is '
-                             f'{guided.control_rate_hz:g} Hz; expected a whole part of rate_hz of '
-                             f'{node}, {rate_hz:g} Hz: a control instant needs its sample')
+    check_control_rate(guided, 'motion_generator', generator.rate_hz)
+    check_control_rate(guided, 'imu_sensor', sensor.rate_hz)
     for key in ('jitter_us', 'latency_us'):
         value = getattr(sensor.sampling, key)
         if value:

@@ -84,11 +84,12 @@ class Listener:
     """
     Hears Topics as {topic name: {stamp_ns: doubles}} in a context of its own; raw: their bytes.
 
-    It acknowledges as 'listener' what it has heard on all of them.  ``repeats`` counts messages
+    It acknowledges as 'listener' what it has heard on all of them, later ones apart, which come
+    when sample 0 is answered; their publishers are there by then.  ``repeats`` counts messages
     whose stamp was heard before.
     """
 
-    def __init__(self, domain, wanted, namespace=''):
+    def __init__(self, domain, wanted, namespace='', later=()):
         import rclpy
         from ins_sim.ros.transport.qos import ack_publisher
         from ins_sim.ros.transport.backlog import HandQueue
@@ -96,9 +97,10 @@ class Listener:
         self.context.init(domain_id=domain)
         self.node = rclpy.create_node('listener', context=self.context, namespace=namespace)
         self._queues = [(HandQueue(self.node, topic, 100000), topic.reader(), topic.name)
-                        for topic in wanted]
-        self.heard = {topic.name: {} for topic in wanted}
-        self.raw = {topic.name: {} for topic in wanted}
+                        for topic in (*later, *wanted)]
+        self.heard = {topic.name: {} for topic in (*later, *wanted)}
+        self.raw = {name: {} for name in self.heard}
+        self._later = {topic.name for topic in later}
         self.repeats = 0
         self._ack, self._publisher = Writer(topics.HEADER, 'listener'), ack_publisher(self.node)
 
@@ -111,8 +113,9 @@ class Listener:
                 self.repeats += self.heard[name].pop(stamp_ns, None) is not None
                 self.heard[name][stamp_ns] = sum(runs, ())
                 self.raw[name][stamp_ns] = data
-        if all(self.heard.values()):
-            common = min(next(reversed(stamps)) for stamps in self.heard.values())
+        answered = [stamps for name, stamps in self.heard.items() if name not in self._later]
+        if all(answered) and all(map(self.node.count_publishers, self._later)):
+            common = min(next(reversed(stamps)) for stamps in answered)
             self._publisher.publish(self._ack.pack(common))
 
     def poll_until(self, condition, timeout_s=GUARD_S):

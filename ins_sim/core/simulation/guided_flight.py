@@ -66,10 +66,7 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     generator = settings.motion_generator
     if generator.duration_s == 0.0:
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
-    end_s = generator.start_s + generator.duration_s
-    if end_s > motion.arrival_s:
-        raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most '
-                         f'{motion.arrival_s:g} s, the arrival at the last turning point')
+    motion.length_s(generator.start_s, generator.duration_s)
     steering = Steering(generator.guidance, motion.route.legs, motion.turns)
     sentence = margin_sentence(generator.guidance, generator.motion.guided)
     if sentence is None and aided is not None:

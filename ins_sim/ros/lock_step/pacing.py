@@ -85,10 +85,14 @@ class LockStep:
         slowest = self.slowest
         return 1 if slowest == STARTING else slowest + 1 + self._window
 
-    def repeat_due(self, sent):
-        """Return whether sample 0 is to be sent again, at most every REPEAT_S."""
+    def repeat_due(self, sent, heard=True):
+        """
+        Return whether sample 0 is to be sent again, at most every REPEAT_S.
+
+        heard: whether what else has to answer it has done so.
+        """
         now = time.monotonic()
-        if sent != 1 or self.slowest != STARTING or now - self._repeated < REPEAT_S:
+        if sent != 1 or (self.slowest != STARTING and heard) or now - self._repeated < REPEAT_S:
             return False
         self._repeated = now
         return True

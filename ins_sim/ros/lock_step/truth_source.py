@@ -1,4 +1,4 @@
-"""The truth of a run as ready messages, computed a block ahead."""
+"""The truth of a run as ready messages, computed a block ahead where it is known."""
 
 import math
 
@@ -11,6 +11,7 @@ from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.convert import truth_blocks
+from ins_sim.settings.guidance import check_control_rate
 
 BLOCK = 256
 STAMP_END_S = 2**31
@@ -25,23 +26,28 @@ class TruthSource:
     Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
 
     count: number of samples; endless: whether only the stamps of ROS end the run; dt_ns: the
-    sampling period.  Raises ValueError on settings that name no motion or a run longer than it.
+    sampling period; guided: the GuidedMotion, which has to be commanded before it is known, or
+    None.  Raises ValueError on settings that name no motion or a run longer than it.
     """
 
     def __init__(self, settings):
-        self._motion = read_motion(settings)
+        self._motion = motion = read_motion(settings)
+        self.guided = motion if settings.motion.kind == 'guided' else None
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._writers = [(topic, topic.writer()) for topic in topics.TRUTH]
         self._epoch_ns = settings.time.epoch_s * SECOND
-        self._first_ns = round(settings.start_s * SECOND)
+        self.first_ns = round(settings.start_s * SECOND)
         self.dt_ns = period_ns(settings.rate_hz)
         length_s = settings.duration_s
-        if length_s:
-            check_length(settings, self._motion)
-        elif self._motion.end_s < math.inf:
-            length_s = self._motion.end_s - settings.start_s
+        if self.guided:
+            check_control_rate(settings.motion.guided, 'motion_generator', settings.rate_hz)
+            length_s = motion.length_s(settings.start_s, length_s)
+        elif length_s:
+            check_length(settings, motion)
+        elif motion.end_s < math.inf:
+            length_s = motion.end_s - settings.start_s
         else:
-            check_places(self._motion, settings.start_s, LOOK_S)
+            check_places(motion, settings.start_s, LOOK_S)
         last_s = settings.time.epoch_s + settings.start_s + length_s
         if last_s >= STAMP_END_S:
             raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '
@@ -54,21 +60,34 @@ class TruthSource:
             raise ValueError(f'the first stamp is {last_s:g} s; expected less than '
                              f'{STAMP_END_S - END_NS // SECOND} s in a run without duration_s: '
                              'there the stamps of ROS end')
+        self.restart()
+
+    def restart(self):
+        """Go back to the start of the run; a guided motion forgets its commands."""
         self._block, self._start = [], 0
+        if self.guided:
+            self.guided.begin(self.first_ns)
+
+    @property
+    def known(self):
+        """Return of how many samples the truth is known."""
+        if not self.guided:
+            return self.count
+        return min(self.count, (self.guided.known_ns - self.first_ns) // self.dt_ns + 1)
 
     def stamp_ns(self, k):
         """Return the stamp of sample k."""
-        return self._epoch_ns + self._first_ns + k * self.dt_ns
+        return self._epoch_ns + self.first_ns + k * self.dt_ns
 
     def messages(self, k):
-        """Return the messages of sample k."""
+        """Return the messages of sample k, which must be known."""
         if not 0 <= k - self._start < len(self._block):
             self._fill(k)
         return self._block[k - self._start]
 
     def _fill(self, start):
-        k = np.arange(start, min(start + BLOCK, self.count), dtype=np.int64)
-        truth = self._motion.at(self._first_ns + k * self.dt_ns)
+        k = np.arange(start, min(start + BLOCK, self.known), dtype=np.int64)
+        truth = self._motion.at(self.first_ns + k * self.dt_ns)
         values = truth_blocks(self._frame, truth)
         stamps = self._epoch_ns + truth.t_ns
         self._block = list(zip(*[writer.pack_block(stamps, values[topic])

@@ -11,10 +11,11 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ..lock_step.pacing import LockStep, Pace
+from ..lock_step.steerer import Steerer
 from ..lock_step.truth_source import STAMP_END_S, TruthSource
 from ..process.diagnostics import Monitor
 from ..process.parameters import declare_settings
-from ..process.publishers import SolePublishers
+from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
 from ..transport import qos
 from ..transport.backlog import HandQueue
@@ -26,7 +27,11 @@ CLOCK_HZ = 100.0
 
 
 class MotionGeneratorNode(Node):
-    """Publishes truth/*, /clock and sim/status; paces by the clock or by sim/ack."""
+    """
+    Publishes truth/*, /clock and sim/status; paces by the clock or by sim/ack.
+
+    A guided motion it steers by the Odometry of guidance.topic, and publishes guidance/command.
+    """
 
     NAME = 'motion_generator'
 
@@ -51,11 +56,30 @@ class MotionGeneratorNode(Node):
             self._clock_writer = topics.CLOCK_TOPIC.writer()
         self._status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
         self.monitor = Monitor(self)
-        self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None}).describe)
+        self._queues, self._steerer = {}, None
+        if self._source.guided:
+            self._make_steerer()
+        self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None,
+                                               **self._queues}).describe)
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self._paused, self._single, self._next = False, 0, 0
+
+    def _make_steerer(self):
+        name, depth = self.settings.guidance.topic, self.settings.topics.depth
+        queue = HandQueue(self, topics.Topic(name, topics.ODOMETRY), depth)
+        self._queues[name] = queue
+        publisher = qos.make_publisher(self, topics.GUIDANCE_COMMAND, depth)
+        self._steerer = Steerer(self.settings, self._source, queue, publisher.publish,
+                                self.monitor.fault)
+        self.monitor.add(self._steerer.describe)
+        self.monitor.add(MessageLosses(self._queues, depth).describe)
+        self.create_service(SetBool, '~/engage', self._on_engage)
+
+    def hand_queues(self):
+        """Return {topic name: HandQueue} of what steers, nothing where nothing does."""
+        return self._queues
 
     def run(self, executor, stop):
         """Publish until the end or until stop is set."""
@@ -89,13 +113,15 @@ class MotionGeneratorNode(Node):
                 self.monitor.fault(lock.complaint(late, 'the consumers of pacing.required'),
                                    fatal=True)
                 stop.request(EXIT_CONSUMER)
-            if lock.repeat_due(self._next):
+            if lock.repeat_due(self._next, self._steerer is None or self._steerer.heard):
                 self._send(0)
         if self._next >= source.count:
             if not lock or lock.done(source.count):
                 self._finish(stop)
             return POLL_S
         allowed = min(allowed, source.count)
+        if self._steerer:
+            allowed = self._steerer.reach(self._next, allowed, waits=lock is not None)
         if self._next >= allowed:
             due_s = self._pace.wait_s(self._next)
             quiet = lock is None or self._paused or time.monotonic() - lock.moved > 0.05
@@ -156,8 +182,15 @@ class MotionGeneratorNode(Node):
         self._single += response.success
         return response
 
+    def _on_engage(self, request, response):
+        response.success, response.message = True, self._steerer.engage(request.data)
+        self.get_logger().info(response.message)
+        return response
+
     def _on_reset(self, request, response):
         self._next = self._single = 0
+        if self._steerer:
+            self._steerer.restart()
         if self._lock:
             self._lock.restart()
         self._restart_clocks()
@@ -167,5 +200,7 @@ class MotionGeneratorNode(Node):
 
     def _restart_clocks(self):
         self._pace.anchor(self._next)
+        if self._steerer:
+            self._steerer.wait_anew()
         if self._lock:
             self._lock.moved = time.monotonic()

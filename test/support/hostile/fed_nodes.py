@@ -17,7 +17,8 @@ from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.cdr import LAYOUTS, Reader, stamp_of
 
 TOPICS = {topic.name: topic for topic in (
-    *topics.DATA, *topics.AIDING, topics.IMU_PARITY, topics.ACK, topics.CLOCK_TOPIC)}
+    *topics.DATA, *topics.AIDING, *topics.GUIDANCE, topics.IMU_PARITY, topics.ACK,
+    topics.CLOCK_TOPIC)}
 
 
 class ToldClock:
@@ -185,7 +186,7 @@ class FedNodes:
     def __enter__(self):
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
-        from ins_sim.ros.lock_step import pacing
+        from ins_sim.ros.lock_step import pacing, steerer
         from ins_sim.ros.process import diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
         # as in a node process
@@ -193,7 +194,7 @@ class FedNodes:
         self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
-        for module in (diagnostics, said, backlog, patience, pacing):
+        for module in (diagnostics, said, backlog, patience, pacing, steerer):
             self._patch(module, 'time', self.clock)
         for module in (diagnostics, patience):
             self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
@@ -217,6 +218,7 @@ class FedNodes:
         node.get_logger = lambda: self.logs[name]
         if hasattr(node, '_queue'):
             self.bus.join(node._queue, node.DRIVER.name, True)
+        if hasattr(node, 'hand_queues'):
             for topic, queue in node.hand_queues().items():
                 self.bus.join(queue, topic, False)
         if hasattr(node, 'recorder'):

@@ -1,6 +1,12 @@
-"""A flight of all nodes amid hostile messages: what must hold whatever comes, and what came."""
+"""
+A flight of all nodes amid hostile messages: what must hold whatever comes, and what came.
+
+The truth is sent by the flight itself, or where the motion is guided by the generator, steered by
+the aided solution.
+"""
 
 from collections import Counter
+from types import SimpleNamespace
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -42,9 +48,10 @@ VARIANTS = (
               [1.0, 2.0, 3.0]}, 'aided_navigator': {'gnss.latency_ms': 100.0}},
     *({'aided_navigator': {'filter': name, 'gnss_model.use': False}}
       for name in ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf')),
+    {'motion_generator': {'motion.kind': 'guided', 'pacing.lock_step': False, 'duration_s': 0.0}},
 )
-# which of them has stamps that the aided navigator finds no truth for
-JITTERED = 4
+# which of them has stamps that the aided navigator finds no truth for, and which is steered
+JITTERED, STEERED = 4, len(VARIANTS) - 1
 ATTACKED = (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.IMU_RAW, topics.INS_ODOMETRY,
             topics.METER_RECORD, topics.GNSS_FIX, topics.GNSS_VELOCITY, topics.ACK)
 # What every node must have said of the last seconds of a calm stretch: topic, and how late, s.
@@ -77,7 +84,11 @@ class HostileFlight:
                                 for node, parameters in NODES.items()}, **(more or {})})
         self._alive = [(topic, late_s) for topic, late_s in ALIVE
                        if variant % len(VARIANTS) != JITTERED or topic != topics.AIDED_ODOMETRY]
-        self.hostile = HostileMessages(seed, ATTACKED)
+        self._steered = variant % len(VARIANTS) == STEERED
+        if self._steered:
+            self._alive.append((topics.GUIDANCE_COMMAND, 0.05))
+        self.hostile = HostileMessages(seed, (*ATTACKED, topics.AIDED_ODOMETRY) if self._steered
+                                       else ATTACKED)
         self.tried, self.rescued, self._k = Counter(), Counter(), 0
         self._source = TruthSource(build(MotionGeneratorSettings, FLIGHT))
         self.most_sent = self.most_bytes = 0
@@ -110,19 +121,39 @@ class HostileFlight:
         """Send good samples of the truth."""
         bus = self.fed.bus
         for _ in range(count):
-            messages = dict(zip((topic.name for topic in topics.TRUTH),
-                                self._source.messages(self._k)))
-            for topic in (topics.TRUTH_ODOMETRY, topics.TRUTH_IMU):
-                self.hostile.heard(topic.name, messages[topic.name])
-                bus.put(topic.name, messages[topic.name])
-            self._k += 1
+            if self._steered:
+                self._generate()
+            else:
+                messages = dict(zip((topic.name for topic in topics.TRUTH),
+                                    self._source.messages(self._k)))
+                for topic in (topics.TRUTH_ODOMETRY, topics.TRUTH_IMU):
+                    self.hostile.heard(topic.name, messages[topic.name])
+                    bus.put(topic.name, messages[topic.name])
+                self._k += 1
             self.fed.clock.pass_by(DT_S)
             self._drive()
+
+    def _generate(self):
+        """Let the generator send the next sample: it is due."""
+        generator = self.fed.nodes['motion_generator']
+        # half a period late, whatever the clock rounds
+        generator._pace.anchor(self._k + 0.5)
+        generator._advance(None)
+        self._k += 1
+        if generator._next != self._k:
+            raise Finding(f'the generator has sent {generator._next} samples; expected {self._k}')
+
+    def start_anew(self):
+        """Let the generator start anew."""
+        self._k = 0
+        if self._steered:
+            self.fed.nodes['motion_generator']._on_reset(None, SimpleNamespace())
 
     def _drive(self):
         before = sum(self.fed.bus.sent.values())
         self.fed.bus.drive()
-        self.fed.nodes['motion_generator']._take_acks()
+        if not self._steered:
+            self.fed.nodes['motion_generator']._take_acks()
         recorder = self.fed.nodes.get('recorder')
         if recorder is not None:
             recorder.recorder.poll()
@@ -138,8 +169,7 @@ class HostileFlight:
         while left > 0:
             self.good(choose.randint(1, 6))
             if choose.random() < 0.002:
-                # the generator starts anew
-                self._k = 0
+                self.start_anew()
             for _ in range(choose.randint(1, 12)):
                 message = self.hostile.message()
                 if message is None:

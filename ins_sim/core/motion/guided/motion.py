@@ -63,6 +63,17 @@ class GuidedMotion(RouteMotion):
         """Return the motion time up to which the motion is known."""
         return self._steered.known_ns
 
+    def length_s(self, start_s, duration_s):
+        """
+        Return the length of a run from start_s on, s; duration_s: 0 = up to the arrival.
+
+        Raises ValueError where it ends, or begins, behind the last turning point.
+        """
+        if start_s + duration_s > self.arrival_s:
+            raise ValueError(f'start_s + duration_s is {start_s + duration_s:g} s; expected at '
+                             f'most {self.arrival_s:g} s, the arrival at the last turning point')
+        return duration_s or self.arrival_s - start_s
+
     def begin(self, t_ns):
         """Forget all commands; the first one will be given at motion time t_ns."""
         self._steered.begin(t_ns)
