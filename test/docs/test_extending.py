@@ -1,4 +1,4 @@
-"""The motion and the sensor of docs/extending.md are complete: they run, and they are right."""
+"""Motion, autopilot and sensor of docs/extending.md are complete: they run, and are right."""
 
 import re
 
@@ -7,6 +7,7 @@ from ins_sim.core.motion.motion import Motion
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.core.sensors.imu.stream import ImuWithErrors, PacedImu, StreamImu
 from ins_sim.core.sensors.sensor import Sensor
+from ins_sim.settings.guidance import AUTOPILOTS
 from ins_sim.settings.motion import MOTIONS
 import numpy as np
 import pytest
@@ -57,6 +58,16 @@ def test_a_motion_of_ones_own_is_flown_and_saved_without_published_figures(examp
     np.testing.assert_array_equal(run.errors.position, names['run'].errors.position)
     run.save(tmp_path / 'run')
     assert '"published": null' in (tmp_path / 'run' / 'summary.json').read_text()
+
+
+def test_the_autopilot_of_the_page_steers(example, monkeypatch):
+    """It takes the vehicle back to the leg, and overshoots by its integral."""
+    monkeypatch.setitem(AUTOPILOTS, 'integral', None)
+    steered = example('An autopilot', 'integral.py')['run'].steered
+    assert steered.estimates.steers.all()
+    assert steered.states.z.min() < -0.03 and abs(steered.states.z[-1]) < 0.1
+    commanded = 0.0125 * steered.estimates.z + 0.04 * steered.estimates.v_z
+    assert abs(steered.estimates.command - commanded).max() > 5e-4
 
 
 def test_the_sensor_of_the_page_reads(example):

@@ -109,7 +109,7 @@ class Steering:
         if self._engage_ns is None:
             self._engage_ns = t_ns + self._after_ns
         if self._scheduled and t_ns >= self._engage_ns:
-            self.engaged, self._scheduled = True, False
+            self.engage(t_ns)
         z, v_z, why = self._estimate(t_ns)
         if not self.engaged:
             why = NOT_ENGAGED

@@ -135,10 +135,13 @@ class InstantSeries(Series):
         return InstantSeries(tuple([-x for x in self.c]))
 
     def __add__(self, other):
+        a = self.c
         if isinstance(other, Series):
-            return InstantSeries(tuple([x + y for x, y in zip(self.c, other.c)]))
-        c = self.c
-        return InstantSeries((c[0] + other, *c[1:]))
+            b = other.c
+            if len(a) == len(b) == 2:
+                return InstantSeries((a[0] + b[0], a[1] + b[1]))
+            return InstantSeries(tuple([x + y for x, y in zip(a, b)]))
+        return InstantSeries((a[0] + other, *a[1:]))
 
     __radd__ = __add__
 
@@ -149,16 +152,17 @@ class InstantSeries(Series):
 
     def __mul__(self, other):
         a = self.c
-        if not isinstance(other, Series):
-            return InstantSeries(tuple([x * other for x in a]))
-        b = other.c
-        n = min(len(a), len(b))
-        if n == 2:
-            return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0]))
-        if n == 3:
-            return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0],
-                                  a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
-        return InstantSeries((a[0] * b[0],))
+        if isinstance(other, Series):
+            b = other.c
+            if len(a) == 3 == len(b):
+                return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0],
+                                      a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
+            if len(a) > 1 < len(b):
+                return InstantSeries((a[0] * b[0], a[0] * b[1] + a[1] * b[0]))
+            return InstantSeries((a[0] * b[0],))
+        if len(a) == 2:
+            return InstantSeries((a[0] * other, a[1] * other))
+        return InstantSeries(tuple([x * other for x in a]))
 
     __rmul__ = __mul__
 
