@@ -41,7 +41,8 @@ def lock_step(domain, folder, order):
         listener.poll_until(lambda: last_ns in listener.heard[topics.AIDED_ODOMETRY.name])
         texts = [chain.text(process) for process in nodes.values()]
         assert set(chain.end().values()) == {0}, texts
-        assert not any('WARN' in text for text in texts), texts
+        warnings = [line for text in texts for line in text.splitlines() if 'WARN' in line]
+        assert not warnings, warnings
     finally:
         chain.end()
         listener.close()
