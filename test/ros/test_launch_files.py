@@ -108,7 +108,7 @@ def test_aided_simulation(started):
     parameters = nodes[graph.MASTER].parameters[-1]
     assert set(parameters['pacing.required']) == {'strapdown', 'recorder', *aiding}
     recorded = nodes['recorder'].parameters[-1]['record.topics']
-    assert recorded == [t.name for t in (*topics.DATA, *topics.AIDING)]
+    assert recorded == [t.name for t in (*topics.DATA, *topics.AIDING, *topics.GUIDANCE)]
     with pytest.raises(ValueError, match="aided is 'yes'; expected true or false"):
         started('simulation', aided='yes')
 

@@ -1,5 +1,7 @@
 """Node aided_navigator: readings of an IMU and fixes in, aided solution and its errors out."""
 
+import time
+
 from ins_sim.core.aiding.live import AidedStream
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.earth.great_circle import GreatCircleRoute
@@ -44,12 +46,29 @@ class AidedNavigatorNode(NavigatorNode):
             self._queues += [(HandQueue(self, topic, self.depth), GNSS, push) for topic, push in (
                 (topics.GNSS_VELOCITY, self._pairs.push_velocity),
                 (topics.GNSS_FIX, self._pairs.push_fix))]
+        self._joined, self._asked_s = not self._queues, None
         self._health = AidingHealth(self.stage)
         self.monitor.add(self._health.describe)
 
     def hand_queues(self):
         """Return the queues of truth and fixes."""
         return {**super().hand_queues(), **{queue.topic: queue for queue, *_ in self._queues}}
+
+    def on_drained(self):
+        """
+        Acknowledge, but for the first time only when those whose fixes are waited for are there.
+
+        Lock-step repeats sample 0 until then; what a node sends before DDS has made it known is
+        lost.  Who does not come within MISSING_S runs elsewhere, or not at all.
+        """
+        if not self._joined:
+            now = time.monotonic()
+            self._asked_s = now if self._asked_s is None else self._asked_s
+            self._joined = now - self._asked_s > MISSING_S or all(
+                self.count_publishers(self.resolve_topic_name(queue.topic))
+                for queue, *_ in self._queues)
+        if self._joined:
+            super().on_drained()
 
     def begin_run(self):
         """Begin on the first leg."""
