@@ -14,6 +14,7 @@ from pathlib import Path
 import shutil
 import signal
 import tempfile
+import threading
 
 MARKER = '.ins_sim'
 HEAD = '# written by ins_sim; a folder that holds more than these names is never replaced\n'
@@ -273,12 +274,25 @@ def _real(path):
 
 @contextmanager
 def _signals_held():
-    """Put off what would break a step in two until the block is through."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, HELD)
+    """
+    Put off what would break a step in two until the block is through.
+
+    Not by a mask: threads of NumPy's libraries take signals too, and Python handles them here.
+    """
+    # in another thread than the main one Python handles none, and lets none be set
+    main = threading.current_thread() is threading.main_thread()
+    # a handler that is not of Python is given as None, and raises nothing
+    held, before = [], {number: handler for number in HELD
+                        if main and (handler := signal.getsignal(number)) is not None}
     try:
+        for number in before:
+            signal.signal(number, lambda number, frame: held.append(number))
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for number in held:
+            signal.raise_signal(number)
 
 
 def _write_marker(folder, mode, head, names):

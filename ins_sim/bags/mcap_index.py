@@ -153,11 +153,11 @@ class McapIndex:
         number, schema = fields.numbers('HH')
         name, encoding, metadata = fields.text(), fields.text(), fields.text_map()
         type_name, definition_encoding, definition = self._schemas.get(schema, ('', '', ''))
-        channel = Channel(number, name, type_name, encoding, definition, definition_encoding,
-                          metadata.get('topic_type_hash', ''),
-                          metadata.get('offered_qos_profiles', ''))
+        channel = Channel.as_read(number, name, type_name, encoding, definition,
+                                  definition_encoding, metadata.get('topic_type_hash', ''),
+                                  metadata.get('offered_qos_profiles', ''))
         if self.channels.setdefault(number, channel) != channel:
-            raise ValueError(f'channel {number} is declared twice, as {name} and as '
+            raise ValueError(f'channel {number} is declared twice, as {channel.name} and as '
                              f'{self.channels[number].name}')
 
     def _read_summary(self):

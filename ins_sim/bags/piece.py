@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ins_sim.visible_text import visible
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -23,6 +25,11 @@ class Channel:
     definition_encoding: str = 'ros2msg'
     type_hash: str = ''
     qos: str = ''
+
+    @classmethod
+    def as_read(cls, number, name, type_name, encoding, *more):
+        """Return the Channel of a file, escapes in its names in place of what cannot be seen."""
+        return cls(number, visible(name), visible(type_name), visible(encoding), *more)
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,8 @@ class SqliteReader:
             if [type(x) for x in (*row, *definition)] != [int] + 7 * [str]:
                 raise self._corrupt(f'its topic {row[0]!r} is no number with texts')
             number, name, type_name, encoding, type_hash, qos = row
-            yield Channel(number, name, type_name, encoding, *definition, type_hash, qos)
+            yield Channel.as_read(number, name, type_name, encoding, *definition, type_hash,
+                                  qos)
 
     def spans(self):
         """Return {channel id: (count, first, last log time)} of the channels with messages."""

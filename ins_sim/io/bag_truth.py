@@ -8,7 +8,7 @@ from ins_sim.core.motion.recorded.poses import poses_of_truth
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
 from .csv_flight import USED
-from .map_origin import map_origin
+from .map_origin import given_origin, map_origin
 from .topic_choice import choose_topic
 
 KEY = 'motion.recording.topic'
@@ -32,11 +32,11 @@ def read_poses(path, topic, datum, key=KEY, origin='fix'):
         name = choose_topic(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name,
                             needed=True)
         table = bag.arrays(name, ('position', 'orientation', 'linear', 'angular'))
-        given = origin == 'datum'
-        beside = None if given else _beside(bag, name)
+        beside = None if origin == 'datum' else _beside(bag, name)
         notes = ()
         if beside is None and len(table):
-            datum, note = map_origin(bag, name, datum, given)
+            find = given_origin if origin == 'datum' else map_origin
+            datum, note = find(bag, name, datum)
             notes = (note,)
     where = f'{path}: {name}'
     if not len(table):

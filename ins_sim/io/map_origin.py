@@ -19,16 +19,16 @@ STEADY_M = 1.0
 ROUNDS = 100
 
 
-def map_origin(bag, name, given, certain=False):
+def map_origin(bag, name, given):
     """
     Return the Datum of the frame of an Odometry topic, and a sentence about it.
 
     bag: BagReader; name: of the topic; given: Datum of the settings, which counts as given where
-    it is not the default one; certain: whether it is the origin, default or not.  Else the origin
-    is where a NavSatFix of the same stamps puts it: that of the same solution, or of another one
-    in the same namespace.  Raises ValueError where there is none and none is given.
+    it is not the default one.  The origin is where a NavSatFix of the same stamps puts it: that of
+    the same solution, or of another one in the same namespace; without such a fix it is the given
+    datum.  Raises ValueError if the bag has no such fix and the datum is the default one.
     """
-    for odometry, fix in () if certain else _pairs(bag, name):
+    for odometry, fix in _pairs(bag, name):
         origins = _origins(bag, odometry, fix)
         if origins is None:
             continue
@@ -42,11 +42,16 @@ def map_origin(bag, name, given, certain=False):
         return datum, (f'{bag.path}: the origin of the frame of {name} is at '
                        f'{datum.latitude_deg:.9g}, {datum.longitude_deg:.9g} deg, '
                        f'{datum.height_m:.6g} m, by {fix}')
-    if given == Datum() and not certain:
+    if given == Datum():
         raise ValueError(f'{bag.path} has no NavSatFix beside {name}, so that the place of its '
                          'frame is unknown; expected datum.latitude_deg, datum.longitude_deg and '
                          'datum.height_m of its origin (the default datum is not assumed '
                          'unless motion.recording.origin is datum)')
+    return given_origin(bag, name, given)
+
+
+def given_origin(bag, name, given):
+    """Return the given Datum as that of an Odometry topic, and a sentence about it."""
     return given, (f'{bag.path}: the origin of the frame of {name} is taken to be the datum '
                    f'given, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
                    f'{given.height_m:.6g} m')

@@ -6,9 +6,11 @@ import re
 import subprocess
 import sys
 
+from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli import progress
 from ins_sim.cli.main import main
+from ins_sim.io import bag_imu
 from ins_sim.messages import topics
 from ins_sim.report import table
 from ins_sim.report.console import PlainConsole
@@ -77,6 +79,17 @@ def test_names_of_a_bag_cannot_command_the_terminal(tmp_path, capsys):
     assert main(['allan', str(path), '--topic', '/b\x1b[2J', '-o', str(tmp_path / 'x')]) == 2
     said = capsys.readouterr().err
     assert '\x1b' not in said and said.count('\n') == 1
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_name_of_a_bag_does_not_part_a_sentence(storage, tmp_path):
+    """The exceptions of the API are one sentence as well, whatever the topic is called."""
+    with BagWriter(tmp_path / 'bag', storage) as bag:
+        bag.add_topic('/i\nu', topics.IMU)
+    with open_bag(tmp_path / 'bag') as bag:
+        assert list(bag.topics) == [r'/i\nu']
+        with pytest.raises(ValueError, match=r'/i\\nu is empty; expected messages'):
+            bag_imu.read_imu_messages(bag, r'/i\nu')
 
 
 @pytest.mark.parametrize('environment', [

@@ -1,8 +1,11 @@
 """Folders of results: whole or not at all, one writer at a time, and nothing of others is lost."""
 
+import fcntl
 import os
+import signal
 import subprocess
 import sys
+import threading
 
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli.main import main
@@ -178,3 +181,36 @@ def test_parents_that_were_made_go_again(tmp_path):
         with whole_folder(tmp_path / 'a' / 'b' / 'c'):
             raise RuntimeError
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize('writer', [
+    lambda folder: whole_folder(folder).__enter__(), OwnFolder, BagWriter])
+def test_an_interrupt_that_another_thread_takes_leaves_nothing(writer, tmp_path, monkeypatch):
+    """As those of NumPy's libraries do: it waits until the folder is locked and can be removed."""
+    end = threading.Event()
+    other = threading.Thread(target=end.wait)
+    other.start()
+    lock, (came, wakeup) = fcntl.flock, os.pipe()
+    os.set_blocking(wakeup, False)
+
+    def interrupted(*words):
+        signal.pthread_kill(other.ident, signal.SIGINT)
+        # the other thread has taken it: Python runs the handler next
+        os.read(came, 1)
+        return lock(*words)
+
+    monkeypatch.setattr(fcntl, 'flock', interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    before_fd = signal.set_wakeup_fd(wakeup)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            writer(tmp_path / 'run')
+        assert list(tmp_path.iterdir()) == []
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.set_wakeup_fd(before_fd)
+        signal.signal(signal.SIGINT, before)
+        os.close(came)
+        os.close(wakeup)
+        end.set()
+        other.join()

@@ -286,3 +286,10 @@ def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
     with pytest.raises(StreamFault, match='gnss: fix at 7.000000000 s has standard deviations of '
                                           'position .* expected positive ones; it was dropped'):
         check_gnss(fix)
+
+
+def test_the_bound_of_a_velocity_is_that_of_its_norm():
+    """Each component below 1e5 m/s, and together beyond it."""
+    check_gnss(replace(FIX, v_n=(5e4, 5e4, 5e4)))
+    with pytest.raises(StreamFault, match='has a velocity of .* expected less than 100000;'):
+        check_gnss(replace(FIX, v_n=(7e4, 7e4, 7e4)))

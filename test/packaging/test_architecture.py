@@ -83,7 +83,7 @@ MAY_IMPORT = {
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
-             'yaml_text'},
+             'visible_text', 'yaml_text'},
     'own_folders': set(),
     'visible_text': set(),
     'regular_file': set(),

@@ -55,7 +55,8 @@ def _check_arrival(where, fix):
 def _check(where, name, values, sigmas, bound):
     if not all(map(math.isfinite, values)):
         raise _dropped(f'{where} has a {name} of {values}; expected finite numbers')
-    if not all(abs(x) < bound for x in values):
+    x, y, z = values
+    if not x * x + y * y + z * z < bound * bound:
         raise _dropped(f'{where} has a {name} of {values}; expected less than {bound:g}')
     if not all(s > 0.0 for s in sigmas):
         raise _dropped(f'{where} has standard deviations of {name} {sigmas}; expected positive '

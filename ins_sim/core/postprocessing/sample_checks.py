@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.timeseries.bounds import FORCE_M_S2, RATE_RAD_S
 
-# No IMU measures more (shock sensors end at 1e6 m/s^2): bits that fell, or another unit.
-MOST_FORCE, MOST_RATE = 1e6, 1e4
 # Forces that are exactly zero in a part of the samples between these are sent in turns with the
 # rates; a part of zeros on all three axes does not come of rounding.
 _PART = 0.05
@@ -40,12 +39,9 @@ def stamped_samples(imu, stamps):
 
 def odd_samples(imu):
     """Return notes on the samples of a RecordedImu that a conversion keeps and no one expects."""
-    steps, both = np.diff(imu.t_ns), np.concatenate([imu.f, imu.omega], axis=1)
-    finite, no_force = np.isfinite(both).all(axis=1), (imu.f == 0.0).all(axis=1)
-    in_part = _PART <= np.count_nonzero(no_force) / max(len(imu), 1) <= 1.0 - _PART
-    large = np.abs(both) > np.repeat([MOST_FORCE, MOST_RATE], 3)
-    odd = {'that are not finite': ~finite,
-           f'beyond {MOST_FORCE:g} m/s^2 or {MOST_RATE:g} rad/s': finite & large.any(axis=1),
+    steps, (no_force, in_part) = np.diff(imu.t_ns), _zero_forces(imu)
+    odd = {'that are not finite': ~_finite(imu),
+           f'beyond {FORCE_M_S2:g} m/s^2 or {RATE_RAD_S:g} rad/s': _spikes(imu),
            'whose specific force is exactly zero': no_force if in_part else False,
            'with the stamp of the one before': steps == 0,
            'with a stamp that goes back': steps < 0}
@@ -67,9 +63,26 @@ def _spread(imu, notes):
     return replace(imu, t_ns=t_ns + (inside * np.repeat(step, count)).astype(np.int64))
 
 
+def _finite(imu):
+    """Return whether all of a sample is finite, (n,)."""
+    return np.isfinite(imu.f).all(axis=1) & np.isfinite(imu.omega).all(axis=1)
+
+
+def _spikes(imu):
+    """Return whether a sample is finite and a component of it is beyond its bound, (n,)."""
+    return _finite(imu) & ((np.abs(imu.f) > FORCE_M_S2).any(axis=1)
+                           | (np.abs(imu.omega) > RATE_RAD_S).any(axis=1))
+
+
+def _zero_forces(imu):
+    """Return where the force is exactly zero, (n,), and whether too often for rounding."""
+    zero = (imu.f == 0.0).all(axis=1)
+    return zero, _PART <= np.count_nonzero(zero) / max(len(imu), 1) <= 1.0 - _PART
+
+
 def _without_spikes(imu, notes):
-    for name, values, most, unit in (('specific force', imu.f, MOST_FORCE, 'm/s^2'),
-                                     ('angular rate', imu.omega, MOST_RATE, 'rad/s')):
+    for name, values, most, unit in (('specific force', imu.f, FORCE_M_S2, 'm/s^2'),
+                                     ('angular rate', imu.omega, RATE_RAD_S, 'rad/s')):
         # Comparisons with NaN are false; what is not finite is counted elsewhere.
         size = np.abs(values).max(axis=1, initial=0.0)
         bad = (size > most) & np.isfinite(size)
@@ -77,19 +90,15 @@ def _without_spikes(imu, notes):
             k = int(np.argmax(bad))
             notes.append(f'{np.count_nonzero(bad)} readings of the {name} beyond {most:g} {unit} '
                          f'dropped, the first at {seconds(imu.t_ns[k])}: {size[k]:.6g} {unit}')
-    keep = (np.abs(imu.f).max(axis=1, initial=0.0) <= MOST_FORCE) & (
-        np.abs(imu.omega).max(axis=1, initial=0.0) <= MOST_RATE)
-    infinite = ~(np.isfinite(imu.f).all(axis=1) & np.isfinite(imu.omega).all(axis=1))
-    return imu[keep | infinite]
+    return imu[~_spikes(imu)]
 
 
 def _without_zeros(imu, zero_readings, notes):
     """Return the samples where rates and forces are not zero in turns."""
-    count = len(imu)
-    no_force, no_rate = ((values == 0.0).all(axis=1) for values in (imu.f, imu.omega))
-    part = np.count_nonzero(no_force) / max(count, 1)
-    if zero_readings == 'keep' or not _PART <= part <= 1.0 - _PART:
+    no_force, in_part = _zero_forces(imu)
+    if zero_readings == 'keep' or not in_part:
         return imu
+    count, no_rate = len(imu), (imu.omega == 0.0).all(axis=1)
     # A gyro at rest may read zero now and then; one that reads it whenever the force does not is
     # not asked then.
     in_turns = np.count_nonzero(no_rate & ~no_force) > 0.9 * np.count_nonzero(~no_force)

@@ -9,12 +9,12 @@ from ins_sim.core.motion.motion import check_length, check_places
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.cdr import SECOND, STAMP_END_NS
 from ins_sim.messages.convert import truth_blocks
 from ins_sim.settings.guidance import check_control_rate
 
 BLOCK = 256
-STAMP_END_S = 2**31
+STAMP_END_S = STAMP_END_NS // SECOND
 # Of a run without an end, how much of it is looked at before it, s.
 LOOK_S = 86400.0
 # the stamps of readings are later than those of the truth by latency and jitter

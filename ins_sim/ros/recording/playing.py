@@ -85,7 +85,7 @@ class Playing:
         self.driver = self._find_driver() if options.required else None
 
     def _check_clock(self, *log_ns):
-        """Raise ValueError where a log time is none that /clock can hold."""
+        """Raise ValueError for a log time that is outside the range of a /clock message."""
         for t_ns in log_ns:
             if not -STAMP_END_NS <= t_ns < STAMP_END_NS:
                 raise ValueError(f'a message of {self.bag.path} was logged at {t_ns // SECOND} s; '

@@ -189,7 +189,8 @@ def test_received_times_and_repeats(talker, chain, tmp_path):
 
 
 def test_losses_are_counted(talker, chain, tmp_path):
-    """A queue of ten that is not emptied in time: recorded and lost are what was sent.
+    """
+    A queue of ten that is not emptied in time: recorded and lost are what was sent.
 
     The stamps say the same where twenty steps or more show what is usual.
     """
