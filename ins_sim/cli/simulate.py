@@ -78,7 +78,8 @@ def run(chosen):
             report.show(console)
         console.print(f'written: {chosen.output}')
         if write_bag is not None:
-            write_bag(result, motion, console, None if aided is None else (aided, flown))
+            write_bag(result, motion, steered, console,
+                      None if aided is None else (aided, flown))
     return 0
 
 
@@ -100,10 +101,10 @@ def _bag_writer(chosen, settings):
     wanted = simulated.select_topics(settings, chosen.topics, chosen.aided)
     bag_writer.check_target(chosen.bag, chosen.storage, chosen.compression, chosen.force)
 
-    def write_bag(result, motion, console, aided):
+    def write_bag(result, motion, steered, console, aided):
         counts = simulated.write_bag(chosen.bag, settings, result, wanted, chosen.storage,
                                      chosen.compression, chosen.force, aided=aided,
-                                     motion=motion)
+                                     motion=motion, steered=steered)
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):

@@ -30,7 +30,8 @@ def published_topics(settings, aided=False):
     """
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
-    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()))
+    guidance = topics.GUIDANCE if settings.motion_generator.motion.kind == 'guided' else ()
+    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()), *guidance)
 
 
 def select_topics(settings, names, aided=False):
@@ -54,15 +55,15 @@ def select_topics(settings, names, aided=False):
 
 
 def write_bag(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
-              progress=None, aided=None, motion=None):
+              progress=None, aided=None, motion=None, steered=None):
     """
     Write a SimulationResult into a bag that appears only if it is whole; return {topic: message
     count}.
 
     settings: SimulationSettings; chosen: Topics of ``select_topics``; the rest as of BagWriter;
     progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
-    this run, or None; motion: that of the run, None for the one of the settings.  A message is
-    logged at its own stamp.
+    this run, or None; motion: that of the run, None for the one of the settings; steered: the
+    GuidedResult of a guided motion.  A message is logged at its own stamp.
     """
     aiding = None
     if aided is not None:
@@ -70,7 +71,8 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
         aiding = AidingSource(aided_settings, flown, _rates_at(
             flown.states.t_ns, run.imu.t_ns, run.imu.omega))
     source = _Source(settings, run, aiding,
-                     read_motion(settings.motion_generator) if motion is None else motion)
+                     read_motion(settings.motion_generator) if motion is None else motion,
+                     None if steered is None else steered.estimates)
 
     def windows():
         for first in range(0, source.count, WINDOW):
@@ -92,9 +94,9 @@ def _as_published(topic, settings, aiding):
 class _Source:
     """The records of a run, and the truth at every sample of the generator, by windows."""
 
-    def __init__(self, settings, run, aiding, motion):
+    def __init__(self, settings, run, aiding, motion, commands):
         generator = settings.motion_generator
-        self._motion = motion
+        self._motion, self._commands = motion, commands
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
         strapdown = settings.strapdown
         self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)
@@ -131,6 +133,11 @@ class _Source:
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
             blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
+        if self._commands is not None:
+            # the last sample needs no further command
+            until = truth.t_ns[-1] if last else end
+            commands = self._commands[_between(self._commands.t_ns, begin, until)]
+            blocks[topics.GUIDANCE_COMMAND] = commands.t_ns, convert.command_block(commands)
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}

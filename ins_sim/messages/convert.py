@@ -55,6 +55,11 @@ def error_blocks(errors):
                                     errors.drift)))
 
 
+def command_block(estimates):
+    """Return the values of GUIDANCE_COMMAND (n, 3) of SteeringEstimates."""
+    return np.stack([estimates.command, estimates.z, estimates.v_z], axis=1)
+
+
 def aided_error_blocks(errors):
     """Return {Topic: values} of AidedErrors: errors, and SIGMAS standard deviations."""
     three = (errors.attitude_sigma, errors.velocity_sigma, errors.position_sigma)

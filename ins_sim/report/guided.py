@@ -2,6 +2,7 @@
 
 import math
 
+from ins_sim.studies.oscillations import half_range
 from .summary import SummaryRow
 
 ARRAYS = {'states': 'steered', 'estimates': 'steering'}
@@ -20,7 +21,7 @@ def guided_rows(result):
     if result is None:
         return []
     states, estimates = result.states, result.estimates
-    figures = (('beta, half range of the last 30 %', 'deg', math.degrees(result.amplitude())),
+    figures = (('beta, half range of the last 30 %', 'deg', math.degrees(half_range(states.beta))),
                ('z at the end', 'm', float(states.z[-1])),
                ('z at the end, estimated', 'm', float(estimates.z[-1])),
                ('max |z|', 'm', float(abs(states.z).max())))

@@ -15,6 +15,10 @@ AUTOPILOTS = {
 }
 
 
+# The Odometry of strapdown and of aided_navigator.
+INS_SOLUTION, AIDED_SOLUTION = 'ins/odometry', 'aided/odometry'
+
+
 @settings_class
 class GuidedSettings(SettingsGroup):
     """The vehicle of kind guided: beside the legs of motion.route, steered by its sideslip."""
@@ -55,9 +59,9 @@ class GuidanceSettings(SettingsGroup):
                                'the vehicle flies straight', 's', 0.0, 1e4)
     jump_m: float = setting(1000.0, 'jump of the estimated offset at which the solution is not '
                             'steered by', 'm', 1.0, 1e6)
-    topic: str = setting('aided/odometry', 'live, the nav_msgs/Odometry that steers: of '
-                         'aided_navigator, ins/odometry of strapdown, or one of an estimator of '
-                         'your own, its pose in map and its twist in base_link')
+    topic: str = setting(AIDED_SOLUTION, 'the nav_msgs/Odometry that steers: of aided_navigator, '
+                         'ins/odometry of strapdown, or, live, one of an estimator of your own, '
+                         'its pose in map and its twist in base_link')
 
     def in_ns(self):
         """Return latency and timeout, ns."""

@@ -10,6 +10,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.prediction.predict import predict
 from ins_sim.core.simulation.guided_flight import fly
 from ins_sim.core.simulation.inertial import simulate
+from ins_sim.studies.oscillations import half_range
 import numpy as np
 import pytest
 from support.guided import fly as commanded, stirring
@@ -68,13 +69,36 @@ def test_the_strapdown_steers_without_aiding():
     assert run.truth.t_ns[-1] == 6_000_000_000
 
 
+def test_the_topic_says_which_solution_steers():
+    """That of the strapdown in an aided run too; a topic that is not simulated is said."""
+    aided = settings(guidance__topic='ins/odometry', surrogate__k_z=0.5, filter='conventional',
+                     duration_s=3.0)
+    free, alone = (flown(aided.simulation, chosen)[1] for chosen in (aided, None))
+    assert free.notes == alone.notes == ()
+    assert np.array_equal(free.states.beta, alone.states.beta)
+    other = flown(settings(False, guidance__topic='fused/odometry', duration_s=3.0))[1]
+    assert np.array_equal(other.states.beta, alone.states.beta)
+    assert other.notes == ('guidance.topic is fused/odometry, which this run does not simulate: '
+                           'the vehicle is steered by ins/odometry',)
+
+
+def test_a_navigator_that_skips_steps_does_not_steer():
+    """Live, the generator would wait for solutions that are not published."""
+    chosen = settings(**{'aided_navigator:output_every': 2})
+    with pytest.raises(ValueError, match='^aided_navigator: output_every is 2 with motion.kind '
+                       'guided, steered by aided/odometry; expected 1'):
+        flown(chosen.simulation, chosen)
+    with pytest.raises(ValueError, match='^strapdown: output_every is 5 .* by ins/odometry'):
+        flown(settings(False, **{'strapdown:output_every': 5}))
+
+
 def test_rates_of_truth_and_control_may_differ():
     """200 Hz, and commands at 50 Hz, 10 ms later: the same flight within 0.5 %."""
     fast = flown(settings(False, rate_hz=200.0, motion__guided__control_rate_hz=50.0))[1]
     usual = flown(settings(False))[1]
     assert len(fast.states) == 301
     assert fast.states.z[-1] == pytest.approx(usual.states.z[-1], rel=5e-3)
-    assert math.degrees(usual.amplitude()) > 0.1
+    assert math.degrees(half_range(usual.states.beta)) > 0.1
 
 
 def test_turns_are_flown_straight_and_left_behind():
@@ -178,3 +202,9 @@ def test_the_command_writes_the_histories(tmp_path, capsys):
     assert arrays['steered_t_ns'].shape == arrays['steering_z'].shape == (301,)
     assert arrays['steered_z'][0] == 100.0 and arrays['steering_steers'].dtype == bool
     assert ins_sim.open_motion(ins_sim.read_settings(FILE)).known_ns == 0
+    with ins_sim.open_bag(tmp_path / 'bag') as bag:
+        commands = bag.arrays('guidance/command')
+    # the last sample needs no further command
+    assert np.array_equal(commands['stamp_ns'], arrays['steering_t_ns'][:-1])
+    assert np.array_equal(commands['vector'], np.stack(
+        [arrays[f'steering_{name}'][:-1] for name in ('command', 'z', 'v_z')], axis=1))

@@ -5,6 +5,7 @@ import math
 import ins_sim
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.guided_flight import fly
+from ins_sim.studies.oscillations import half_range
 import pytest
 
 QUIET_DEG = 0.05
@@ -24,7 +25,7 @@ def steered(seconds=300.0, **more):
 def test_filters_with_a_covariance_do_not_disturb(name, figures):
     """From z0 = 100 m back to the leg, the sideslip 0.000 deg and the offset zero."""
     result = steered(filter=name, window__cycles=100)
-    beta = math.degrees(result.amplitude())
+    beta = math.degrees(half_range(result.states.beta))
     print(f'\n{name}: beta {beta:.5f} deg, z {result.states.z[-1]:.4f} m')
     figures.record(f'loop.{name}.beta', beta, 'deg', 0.0, 'specified')
     assert beta < 5e-4
@@ -39,7 +40,7 @@ def test_paper_corrected_is_quiet_but_leaves_the_leg(cycles, gain, z, v_z, figur
     """k_z = 0.15, engaged at once: e_v = -k_z V mean(beta in the first window), never observed."""
     result = steered(filter='paper_corrected', gain=gain, window__cycles=cycles,
                      surrogate__k_z=0.15)
-    beta = math.degrees(result.amplitude())
+    beta = math.degrees(half_range(result.states.beta))
     e_v = result.estimates.v_z[-1] - result.states.v_z[-1]
     print(f'\nN {cycles}, K {gain}: beta {beta:.4f} deg, z {result.states.z[-1]:.1f} m, '
           f'e_v {e_v:.3f} m/s')
@@ -74,7 +75,7 @@ def test_a_large_start_diverges_where_a_small_one_is_quiet(offset_m, quiet, figu
     """k_z = 0.30 and K = 1: linearly stable, and beyond the limit of the clip, 0.28."""
     result = steered(filter='paper_corrected', gain=1.0, surrogate__k_z=0.30,
                      motion__guided__offset_m=offset_m)
-    beta = math.degrees(result.amplitude())
+    beta = math.degrees(half_range(result.states.beta))
     print(f'\nK 1, k_z 0.30, z0 {offset_m:g} m: beta {beta:.3f} deg')
     figures.record(f'loop.paper_corrected.0.30.{offset_m:g}', beta, 'deg', 0.0 if quiet else 8.0,
                    'specified')

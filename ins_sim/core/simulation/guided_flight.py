@@ -10,6 +10,7 @@ from ins_sim.core.motion.guided.motion import GuidedMotion
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.timeseries.histories import SteeredStates, SteeringEstimates
+from ins_sim.settings.guidance import AIDED_SOLUTION, INS_SOLUTION
 from .guided_chain import SteeringChain
 
 # Control periods between two calls of progress.
@@ -22,19 +23,14 @@ class GuidedResult:
     How a guided motion was steered, at the control instants.
 
     estimates: what the autopilot saw; states: where the vehicle was; notes: a sentence for each
-    kind of event; counts: {why: number of control instants without the autopilot}, and 'limited'.
+    kind of event; counts: pairs of why the autopilot did not steer, or 'limited', and the number
+    of such control instants.
     """
 
     estimates: SteeringEstimates
     states: SteeredStates
     notes: tuple = ()
     counts: tuple = ()
-
-    def amplitude(self, part=0.3):
-        """Return half the peak-to-peak of the true sideslip over the last part of the run, rad."""
-        beta = self.states.beta
-        last = beta[len(beta) - max(1, round(part * len(beta))):]
-        return 0.5 * float(last.max() - last.min())
 
 
 def fly(settings, motion, aided=None, progress=None, run=0):
@@ -50,7 +46,8 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     motion : Motion
         That of the settings. One that is not guided needs no steering: the result is None.
     aided : AidedSimulationSettings, optional
-        With them the aided solution steers, else that of the strapdown.
+        With them the aided solution steers, unless guidance.topic is that of the strapdown;
+        without them that of the strapdown.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
     run : int
@@ -59,7 +56,8 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     Raises
     ------
     ValueError
-        Where the run ends behind the last turning point, or as the stages do.
+        Where the run ends behind the last turning point, where the navigator that steers does
+        not publish every step, or as the stages do.
     """
     if not isinstance(motion, GuidedMotion):
         return None
@@ -68,6 +66,7 @@ def fly(settings, motion, aided=None, progress=None, run=0):
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
     motion.length_s(generator.start_s, generator.duration_s)
     steering = Steering(generator.guidance, motion.route.legs, motion.turns)
+    aided = _who_steers(settings, aided, steering.notes)
     sentence = margin_sentence(generator.guidance, generator.motion.guided)
     if sentence is None and aided is not None:
         sentence = aided_margin_sentence(generator, aided.aided_navigator)
@@ -81,6 +80,24 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     t_ns, beta, z, v_z, why = (np.array(column) for column in zip(*commands))
     return GuidedResult(SteeringEstimates(t_ns, z, v_z, beta, why == ''), motion.states(t_ns),
                         tuple(steering.notes), tuple(steering.counts.items()))
+
+
+def _who_steers(settings, aided, notes):
+    """Return the AidedSimulationSettings whose solution steers; None: that of the strapdown."""
+    topic = settings.motion_generator.guidance.topic
+    if topic == INS_SOLUTION:
+        aided = None
+    steers = INS_SOLUTION if aided is None else AIDED_SOLUTION
+    if topic != steers:
+        notes.append(f'guidance.topic is {topic}, which this run does not simulate: the vehicle '
+                     f'is steered by {steers}')
+    name, navigator = ('strapdown', settings.strapdown) if aided is None else (
+        'aided_navigator', aided.aided_navigator)
+    if navigator.output_every != 1:
+        raise ValueError(f'{name}: output_every is {navigator.output_every} with motion.kind '
+                         f'guided, steered by {steers}; expected 1: every control instant needs '
+                         'its solution')
+    return aided
 
 
 @paused_in_blocks
