@@ -81,6 +81,19 @@ def test_what_is_measured_of_an_oscillation():
         growth_rate(t, t)
 
 
+def case_name(case):
+    """Return filter, N and gain of a LoopCase for the name of a figure."""
+    return f'{"sliding" if case.slides else case.filter}.{case.cycles}.{case.gain:g}'
+
+
+def figure_name(case):
+    """Return the name under which the figures of a LoopCase are noted."""
+    others = (('from', case.offset_m, 100.0), ('engaged', case.engage_s, 0.0),
+              ('for', case.duration_s, 300.0))
+    return '.'.join([f'closed_loop.{case_name(case)}.k_z_{case.k_z:g}', *(
+        f'{word}_{value:g}' for word, value, usual in others if value != usual)])
+
+
 @pytest.mark.figures
 def test_the_table(figures):
     """
@@ -93,12 +106,15 @@ def test_the_table(figures):
     settings = chosen()
     loop = study_loop(settings)
     flights = spread(partial(fly_case, settings), TABLE)
-    for number, (case, flight) in enumerate(zip(TABLE, flights)):
+    for case, flight in zip(TABLE, flights):
         lateral = lateral_flight(settings, loop, case)
         row = loop_row(case, flight, lateral)
         print(row)
-        name = f'closed_loop.{number:02d}'
-        for figure, unit in (('beta_deg', 'deg'), ('end_m', 'm')):
+        name = figure_name(case)
+        if lateral is not None:
+            figures.record(f'{name}.lateral_deg', lateral.beta_deg, 'deg',
+                           row.published.get('beta_deg'), f'{case.label}, lateral channel alone')
+        for figure, unit in (('beta_deg', 'deg'), ('swing_m', 'm'), ('end_m', 'm')):
             figures.record(f'{name}.{figure}', getattr(row, figure), unit,
                            row.published.get(figure), f'{case.label}, k_z {case.k_z:g}')
         if case.published is None:
@@ -132,7 +148,7 @@ def test_limits_of_the_chain_are_the_linear_ones(figures):
     for case, k_z, low, high in zip(AT_THE_LIMIT, linear, growths[::2], growths[1::2]):
         flown = k_z * (0.98 - 0.04 * low / (high - low))
         print(f'{case.label}: linear {k_z:.4f}, flown {flown:.4f}')
-        figures.record(f'closed_loop.limit.{case.filter}.{case.cycles}', flown, '', k_z,
+        figures.record(f'closed_loop.limit.{case_name(case)}', flown / k_z, '', 1.0,
                        'linear theory')
         assert flown == pytest.approx(k_z, rel=0.01)
 
