@@ -10,7 +10,7 @@ from ins_sim.core.motion.guided.steered import SteeredHistory
 import numpy as np
 import pytest
 from support.flown import air_velocity, in_body
-from support.guided import fly, guided, instants, PERIOD_NS, stirring
+from support.guided.flights import fly, guided, instants, PERIOD_NS, stirring
 
 FORCE, LAG_S = 20.0, 0.4
 

@@ -10,7 +10,7 @@ from ins_sim.settings.motion import MotionSettings, MOTIONS
 from ins_sim.settings.place import Datum, Earth
 import numpy as np
 import pytest
-from support.guided import fly, guided
+from support.guided.flights import fly, guided
 
 T_NS = 10_000_000 * np.arange(1000, 1300)
 

@@ -25,6 +25,7 @@ PRODUCTS = {'linalg', 'fft', 'dot', 'vdot', 'inner', 'matmul', 'einsum', 'tensor
 SUMS = {'sum', 'mean', 'std', 'var', 'prod'}
 RECORDING = 'a recorded motion is splined by LAPACK: "bits: this machine" in its manifest'
 SIGNAL = 'mode signal lives in Fourier transforms: "bits: this machine" in its manifest'
+LINEAR_LOOP = 'theory of the closed loop beside flights: printed and plotted, in no array of a run'
 # File: what it uses all the same, and why it may.
 EXCEPTIONS = {
     'motion/recorded/spline.py': ({'**', 'mean', 'scipy', 'sum'}, RECORDING),
@@ -36,6 +37,12 @@ EXCEPTIONS = {
         'least squares over a whole run; printed with three digits, in no array'),
     'numerics/allan_deviation.py': ({'mean'}, 'printed and plotted, of a finished record'),
     'streams/faults.py': ({'sum'}, 'only whether it is finite counts'),
+    'guidance/aided_margin.py': (
+        {'**', 'angle', 'exp', 'geomspace', 'linalg', 'log'}, LINEAR_LOOP),
+    'guidance/error_loop.py': ({'@', 'arctan2', 'cos', 'exp', 'sin'}, LINEAR_LOOP),
+    'guidance/linear_loop.py': (
+        {'**', '@', 'angle', 'exp', 'geomspace', 'linalg', 'log', 'sum'}, LINEAR_LOOP),
+    'guidance/linear_plant.py': ({'exp'}, LINEAR_LOOP),
 }
 
 

@@ -13,7 +13,7 @@ from ins_sim.core.simulation.inertial import simulate
 from ins_sim.studies.oscillations import half_range
 import numpy as np
 import pytest
-from support.guided import fly as commanded, stirring
+from support.guided.flights import fly as commanded, stirring
 
 FILE = 'guided_flight'
 

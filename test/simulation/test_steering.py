@@ -11,7 +11,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.guidance import AutopilotEntry, GuidanceSettings, GuidedSettings
 import numpy as np
 import pytest
-from support.guided import fly, guided
+from support.guided.flights import fly, guided
 
 LEGS = (Leg(0.96, 0.64, 0.98, 0.68), Leg(0.98, 0.68, 1.0, 0.66))
 TICK_NS = 10_000_000

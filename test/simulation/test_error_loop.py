@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support.lateral_loops import flown, loop, MOST, paper, sliding
+from support.guided.lateral_loops import flown, loop, MOST, paper, sliding
 
 from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
 from ins_sim.core.guidance.linear_loop import growth

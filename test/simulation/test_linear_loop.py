@@ -7,7 +7,7 @@ from hypothesis import given, settings as hypothesis_settings, strategies as st
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.lateral_loops import block, loop, paper, PERIOD_S, sliding
+from support.guided.lateral_loops import block, loop, paper, PERIOD_S, sliding
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.guidance.aided_margin import aided_margin, aided_margin_sentence

@@ -1,0 +1,1 @@
+"""Guided flights for tests, and their lateral channel alone."""
