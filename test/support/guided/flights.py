@@ -9,7 +9,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.guidance import GuidedSettings
 from ins_sim.settings.place import Earth
 from ins_sim.settings.route import FlownRouteSettings
-from .flown import POINTS
+from ..flown import POINTS
 
 PERIOD_NS = 10_000_000
 
