@@ -13,8 +13,6 @@ DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lat
 SHIPPED = ('guided_flight',)
 MARK = 'loop_study.json'
 PARTS = ('table', 'limits', 'conditions', 'map')
-# The limits of flights are between these parts of the linear ones.
-NEAR = (0.98, 1.02)
 
 
 def add_arguments(parser):
@@ -75,22 +73,15 @@ def _name(case):
 
 
 def _limits(chosen, settings, loop, console, folder):
-    from dataclasses import replace
-    from ins_sim.core.guidance.linear_loop import limits
     from ins_sim.report import loop_study as report
-    from ins_sim.studies.closed_loop import aiding_of, AT_THE_LIMIT, growth_of_flight
+    from ins_sim.studies.closed_loop import (AT_THE_LIMIT, cases_near, flown_limits,
+                                             growth_of_flight, linear_limits)
     from .workers import run_all
-    linear = [limits(loop, aiding_of(case, 1.0 / loop.period_s)).positive
-              for case in AT_THE_LIMIT]
-    cases = [replace(case, k_z=part * limit.k_z, offset_m=1.0)
-             for case, limit in zip(AT_THE_LIMIT, linear) for part in NEAR]
-    growths = run_all([(growth_of_flight, settings, case) for case in cases], chosen.jobs,
-                      console, 'flights')
-    rows = []
-    for k, (case, limit) in enumerate(zip(AT_THE_LIMIT, linear)):
-        low, high = growths[2 * k:2 * k + 2]
-        part = NEAR[0] - low * (NEAR[1] - NEAR[0]) / (high - low)
-        rows.append(report.LimitRow(case.label, limit.k_z, limit.frequency, part * limit.k_z))
+    linear = linear_limits(loop)
+    growths = run_all([(growth_of_flight, settings, case) for case in cases_near(linear)],
+                      chosen.jobs, console, 'flights')
+    rows = [report.LimitRow(case.label, limit.k_z, limit.frequency, flown) for case, limit, flown
+            in zip(AT_THE_LIMIT, linear, flown_limits(linear, growths))]
     report.show_limits(rows, console)
     return [asdict(row) for row in rows]
 

@@ -1,7 +1,8 @@
-"""What a run says of the steering of a guided motion; nothing of any other motion."""
+"""The report of the steering of a guided motion; of other motions it is empty."""
 
 import math
 
+from ins_sim.core.guidance.steering import LIMITED
 from ins_sim.studies.oscillations import half_range
 from .summary import SummaryRow
 
@@ -33,9 +34,13 @@ def guided_lines(result):
     """Return what is to be said of a GuidedResult: its notes, and how often what was met."""
     if result is None:
         return []
-    lines, total = list(result.notes), len(result.estimates)
-    if result.counts:
-        told = ', '.join(f'{name} at {count}' for name, count in result.counts)
-        lines.append(f'of {total} control instants: {told}; elsewhere the autopilot steered '
-                     'within its limit')
-    return lines
+    lines, counts = list(result.notes), dict(result.counts)
+    steered = int(result.estimates.steers.sum())
+    told = [f'the autopilot steered at {steered} of {len(result.estimates)} control instants']
+    if LIMITED in counts:
+        told.append(f'its command was beyond guidance.limit_deg, and limited, at '
+                    f'{counts.pop(LIMITED)} of them')
+    if counts:
+        told.append('the vehicle flew straight: '
+                    + ', '.join(f'{why} at {count}' for why, count in counts.items()))
+    return [*lines, '; '.join(told)]

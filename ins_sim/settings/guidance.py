@@ -24,7 +24,7 @@ class GuidedSettings(SettingsGroup):
     """The vehicle of kind guided: beside the legs of motion.route, steered by its sideslip."""
 
     offset_m: float = setting(100.0, 'offset to the right of the first leg at the start', 'm',
-                              -1e5, 1e5)
+                              -1e4, 1e4)
     offset_rate_m_s: float = setting(0.0, 'its rate', 'm/s', -100.0, 100.0)
     side_force_m_s2_rad: float = setting(20.0, 'acceleration to the side of the nose, for each '
                                          'rad of sideslip in the air', 'm/s^2/rad', 0.1, 1000.0)
@@ -57,8 +57,8 @@ class GuidanceSettings(SettingsGroup):
     latency_s: float = setting(0.0, 'age of the solution that it uses', 's', 0.0, 10.0)
     timeout_s: float = setting(1.0, 'how much older than latency_s a solution may become before '
                                'the vehicle flies straight', 's', 0.0, 1e4)
-    jump_m: float = setting(1000.0, 'jump of the estimated offset at which the solution is not '
-                            'steered by', 'm', 1.0, 1e6)
+    jump_m: float = setting(1000.0, 'a solution whose offset jumps by more is not steered by, '
+                            'until it has gone on for timeout_s', 'm', 1.0, 1e6)
     topic: str = setting(AIDED_SOLUTION, 'the nav_msgs/Odometry that steers: of aided_navigator, '
                          'ins/odometry of strapdown, or, live, one of an estimator of your own, '
                          'its pose in map and its twist in base_link')

@@ -12,12 +12,14 @@ import math
 import numpy as np
 
 from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
-from ins_sim.core.guidance.linear_loop import Aiding, KINDS
+from ins_sim.core.guidance.linear_loop import Aiding, KINDS, limits
 from ins_sim.core.guidance.linear_plant import lateral_loop
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.guided_flight import fly
 from .oscillations import frequency, growth_rate, half_range
 
+# The growth of flights is looked at with these parts of the linear limits of k_z.
+NEAR = (0.98, 1.02)
 # Histories are kept at this step.
 KEPT_S = 0.1
 QUIET_DEG = 0.05
@@ -137,7 +139,11 @@ AT_THE_LIMIT = (_slid(0.0, 10, 1.0, None), _slid(0.0, 100, 1.0, None),
 
 
 def case_settings(settings, case):
-    """Return AidedSimulationSettings of a LoopCase; settings: all that is not of the case."""
+    """
+    Return the AidedSimulationSettings of a LoopCase; settings: all that is not of the case.
+
+    k_z is that of an elliptical beam, which the meter has in both modes.
+    """
     base, meter, navigator = settings.simulation, settings.velocity_meter, settings.aided_navigator
     generator = base.motion_generator
     motion = replace(generator.motion, guided=replace(generator.motion.guided,
@@ -151,7 +157,8 @@ def case_settings(settings, case):
                    * math.sqrt(1.0 + case.k_z))
     gain = {'gain_per_s' if case.slides else 'gain': case.gain}
     return replace(settings, simulation=base,
-                   velocity_meter=replace(meter, window=window, beam=beam),
+                   velocity_meter=replace(meter, window=window, beam=beam,
+                                          surrogate=replace(meter.surrogate, k_z=0.0)),
                    aided_navigator=replace(navigator, filter=case.filter, window=window, **gain))
 
 
@@ -175,11 +182,10 @@ def lateral_flight(settings, loop, case):
     """
     if case.filter not in KINDS:
         return None
-    cases = ReducedCases(*(np.array([x]) for x in (aiding_of(case, 1.0 / loop.period_s).gain,
-                                                   case.k_z, case.offset_m)))
+    aiding = aiding_of(case, 1.0 / loop.period_s)
+    cases = ReducedCases(*(np.array([x]) for x in (aiding.gain, case.k_z, case.offset_m)))
     most = math.radians(settings.simulation.motion_generator.guidance.limit_deg)
-    flown = fly_reduced(loop, aiding_of(case, 1.0 / loop.period_s), cases, case.duration_s, most,
-                        case.engage_s, forward=False)
+    flown = fly_reduced(loop, aiding, cases, case.duration_s, most, case.engage_s, forward=False)
     return LoopFlight(flown.t_s, flown.z[:, 0], flown.beta[:, 0],
                       flown.z[:, 0] + flown.error_z[:, 0])
 
@@ -188,14 +194,16 @@ def study_loop(settings):
     """
     Return the LateralLoop of AidedSimulationSettings.
 
-    Raises ValueError where it is none: an autopilot without gains, or control instants that are
-    not the meter's cycles.
+    Raises ValueError where the study can say nothing of it: an autopilot that does not lead back
+    to the leg, no command allowed, control instants that are not the meter's cycles.
     """
     generator = settings.simulation.motion_generator
     loop, rate_hz = lateral_loop(generator), settings.velocity_meter.rate_hz
-    if loop is None:
+    if loop is None or loop.k1 == 0.0:
         raise ValueError(f'guidance.autopilot is {generator.guidance.autopilot}; expected one '
-                         'with gains, for the linear limits of the study')
+                         'with a gain of the offset, for the linear limits of the study')
+    if generator.guidance.limit_deg == 0.0:
+        raise ValueError('guidance.limit_deg is 0 deg; expected more, or nothing is steered')
     control_hz = generator.motion.guided.control_rate_hz
     if control_hz != rate_hz:
         raise ValueError(f'motion.guided.control_rate_hz is {control_hz:g} Hz; expected rate_hz, '
@@ -208,6 +216,24 @@ def aiding_of(case, rate_hz):
     step = 1 if case.slides else case.cycles
     gain = case.gain / rate_hz if case.slides else case.gain
     return Aiding(case.filter, case.cycles, step, gain)
+
+
+def linear_limits(loop):
+    """Return the positive StabilityLimits of the cases AT_THE_LIMIT."""
+    return [limits(loop, aiding_of(case, 1.0 / loop.period_s)).positive for case in AT_THE_LIMIT]
+
+
+def cases_near(linear):
+    """Return the LoopCases, two of each of AT_THE_LIMIT, whose growths enclose the limit."""
+    return [replace(case, k_z=part * limit.k_z, offset_m=1.0)
+            for case, limit in zip(AT_THE_LIMIT, linear) for part in NEAR]
+
+
+def flown_limits(linear, growths):
+    """Return the k_z at which flights neither grow nor decay; growths: of ``cases_near``."""
+    pairs = zip(linear, growths[::2], growths[1::2])
+    return [limit.k_z * (NEAR[0] - low * (NEAR[1] - NEAR[0]) / (high - low))
+            for limit, low, high in pairs]
 
 
 def growth_of_flight(settings, case):

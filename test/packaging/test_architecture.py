@@ -72,7 +72,7 @@ MAY_IMPORT = {
     'core.sensors': STREAMS | {'settings'},
     'core.navigation': STREAMS,
     'core.aiding': STREAMS | {'settings', 'core.navigation'},
-    'core.guidance': EARTH | {'settings'},
+    'core.guidance': EARTH | {'settings', 'core.motion'},
     'core.postprocessing': EARTH | {'settings', 'core.timeseries', 'core.navigation'},
     'core.prediction': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
                                 'core.sensors'},

@@ -41,8 +41,7 @@ EXCEPTIONS = {
         {'**', 'angle', 'exp', 'geomspace', 'linalg', 'log'}, LINEAR_LOOP),
     'guidance/error_loop.py': ({'@', 'arctan2', 'cos', 'exp', 'sin'}, LINEAR_LOOP),
     'guidance/linear_loop.py': (
-        {'**', '@', 'angle', 'exp', 'geomspace', 'linalg', 'log', 'sum'}, LINEAR_LOOP),
-    'guidance/linear_plant.py': ({'exp'}, LINEAR_LOOP),
+        {'**', '@', 'angle', 'exp', 'geomspace', 'linalg', 'log', 'scipy'}, LINEAR_LOOP),
 }
 
 

@@ -82,14 +82,24 @@ def test_the_topic_says_which_solution_steers():
                            'the vehicle is steered by ins/odometry',)
 
 
-def test_a_navigator_that_skips_steps_does_not_steer():
-    """Live, the generator would wait for solutions that are not published."""
-    chosen = settings(**{'aided_navigator:output_every': 2})
-    with pytest.raises(ValueError, match='^aided_navigator: output_every is 2 with motion.kind '
-                       'guided, steered by aided/odometry; expected 1'):
-        flown(chosen.simulation, chosen)
-    with pytest.raises(ValueError, match='^strapdown: output_every is 5 .* by ins/odometry'):
-        flown(settings(False, **{'strapdown:output_every': 5}))
+@pytest.mark.parametrize('aids', [False, True])
+def test_a_navigator_that_skips_steps_steers_by_those_it_publishes(aids):
+    """Every fifth solution: what the autopilot sees changes every 50 ms."""
+    name = 'aided_navigator' if aids else 'strapdown'
+    chosen = settings(aids, duration_s=3.0, **{f'{name}:output_every': 5})
+    _, result = flown(chosen.simulation, chosen) if aids else flown(chosen)
+    seen = result.estimates
+    assert seen.steers.all()
+    assert (np.flatnonzero(np.diff(seen.z)) % 5 == 4).all() and len(set(seen.z.tolist())) > 50
+
+
+def test_a_motion_of_ones_own_fits_the_samples():
+    """Its control instants are samples of the truth."""
+    motion, _ = flown(settings(False, duration_s=1.0))
+    chosen = settings(False, duration_s=1.0, rate_hz=75.0, motion__guided__control_rate_hz=75.0)
+    with pytest.raises(ValueError, match='the control period of the motion is 10000000 ns; '
+                       'expected a multiple of that of rate_hz, 13333333 ns'):
+        fly(chosen, motion)
 
 
 def test_rates_of_truth_and_control_may_differ():
@@ -180,8 +190,8 @@ def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
 
 
 @pytest.mark.parametrize('command, sentence', [
-    (['predict'], 'up to which the guided motion has been steered: its flight depends on the '
-     'navigation'),
+    (['predict'], 'motion.kind is guided; expected another kind without a flight: the motion '
+     'depends on the navigation'),
     (['simulate', '-p', 'duration_s:=5000.0'], 'duration_s is 5000 s; expected at most '),
     (['simulate', '-p', 'duration_s:=0.0'], 'duration_s is 0, endless')], ids=lambda v: v[0])
 def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):

@@ -83,6 +83,16 @@ def test_published_limits_with_latency(latency, k_z, unstable):
     assert (growth(loop(latency), sliding(100, 1.0), 0.0).growth > 0.0) is bool(unstable)
 
 
+def test_a_long_latency_moves_limits_as_a_delay_does():
+    """One second, 100 states: with one window a correction, limits are roots of the growth."""
+    slow = loop(100, ramps=False)
+    found = limits(slow, block(1000, 0.05))
+    assert found.unstable == 0
+    at = found.positive.k_z
+    assert growth(slow, block(1000, 0.05), 0.99 * at).growth < 0.0 < growth(
+        slow, block(1000, 0.05), 1.01 * at).growth
+
+
 def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
     """Limit 0.153 for 0.158; every 50 cycles the loop is unstable without any error."""
     assert meets(limits(loop(ramps=False), sliding(100, 1.0, 10)).positive.k_z, '.153')

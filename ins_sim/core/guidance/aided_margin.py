@@ -1,4 +1,4 @@
-"""What latency the loop bears whose navigator is corrected by sliding windows."""
+"""The latency that a loop bears whose navigator is corrected by windows that slide."""
 
 import math
 from typing import NamedTuple
@@ -29,10 +29,11 @@ def aided_margin(loop, aiding, k_z=0.0):
     """
     Return the PhaseMargin of a LateralLoop, the loop being opened at the command.
 
-    aiding: an Aiding of kind conventional with windows that slide, as if they did every period.
-    The navigators of contiguous windows are slower than the loop: theirs is that of exact
-    navigation, ``margin.phase_margin``.  k_z: lateral scale error of the meter.  Of several
-    crossovers it is the one with the least latency; None where the gain never is one.
+    aiding: an Aiding of kind conventional with windows that slide; a correction every period is
+    assumed.  Navigators with contiguous windows are slower than the loop, so that the margin with
+    exact navigation, ``margin.phase_margin``, is a good approximation for them.  k_z: lateral
+    scale error of the meter.  Where the gain is one at several frequencies, the one that bears the
+    least latency is returned; None where it never is.
     """
     omega = np.geomspace(1e-4, 1.0, POINTS) * math.pi / loop.period_s
     found = _returned(loop, aiding, k_z, np.exp(1j * omega * loop.period_s))
@@ -51,7 +52,7 @@ def aided_margin(loop, aiding, k_z=0.0):
 
 def aided_margin_sentence(generator, navigator):
     """
-    Return what is to be said of a loop that cannot be stable for its latency, or None.
+    Return the warning that the latency makes the loop unstable, or None.
 
     generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.  Of filters other than
     conventional on sliding windows, and where control instants are no cycles of the meter, None.

@@ -38,7 +38,7 @@ class ReducedFlights(NamedTuple):
 
 def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, forward=True):
     """
-    Return the ReducedFlights of cases, ten periods from instant to instant.
+    Return the ReducedFlights of cases, one row every ten control periods.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class _Lateral:
         self._state = np.array((cases.offset + zero, zero, zero))
         self._errors = self._velocity = self._acceleration = zero
         self._command, self._late = zero, deque([zero] * loop.latency)
-        # what is now, its sum since the start, and that at the ends of the last steps
+        # current values, their sums since the start, and those sums at the ends of the last steps
         self._now = self._of_means()
         self._sums = np.zeros_like(self._now)
         self._ends, self._last = deque([self._sums], aiding.cycles // aiding.step + 1), None

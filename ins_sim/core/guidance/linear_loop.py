@@ -17,6 +17,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import schur
 
 from .linear_plant import after_period
 
@@ -100,49 +101,62 @@ def limits(loop, aiding):
 
     Frequencies are those seen at the corrections, at most pi over the time between them.
     """
-    step = _step(loop, aiding)
+    response = _Response(_step(loop, aiding), aiding.cycles // aiding.step)
     step_s, n = aiding.step * loop.period_s, aiding.cycles // aiding.step
     highest = math.pi / step_s
     omega = np.union1d(np.geomspace(1e-4 * highest, highest, POINTS),
                        np.linspace(0.0, highest, POINTS + 8 * n + 1)[1:])
-    values = _read(step, n, omega * step_s)
+    values = response.at(omega * step_s)
     crossings = np.flatnonzero(values.imag[:-1] * values.imag[1:] < 0.0)
     low, high = omega[crossings], omega[crossings + 1]
     sign = values.imag[crossings]
     for _ in range(50):
         middle = 0.5 * (low + high)
-        same = _read(step, n, middle * step_s).imag * sign > 0.0
+        same = response.at(middle * step_s).imag * sign > 0.0
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     # at the highest frequency all is real
     places = np.append(low, highest)
-    real = _read(step, n, places * step_s).real
+    real = response.at(places * step_s).real
     found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
              if abs(x) > ROUNDING]
     positive = min((one for one in found if one.k_z > 0.0), default=None)
     negative = max((one for one in found if one.k_z < 0.0), default=None)
-    return StabilityLimits(positive, negative, _unstable(step, values))
+    return StabilityLimits(positive, negative, _unstable(response.roots, values))
 
 
-def _unstable(step, values):
+def _unstable(roots, values):
     """
     Return how many modes grow at k_z = 0.
 
     By the principle of the argument: values are what is read along the upper half circle, from
-    near 1 to -1, where they are real.
+    near 1 to -1, where they are real; roots: eigenvalues of A.
     """
     around = np.unwrap(np.angle(1.0 - values))
     turns = 2.0 * (around[-1] - around[0]) / (2.0 * math.pi)
-    outside = int((np.abs(np.linalg.eigvals(step.a)) > 1.0).sum())
-    return outside - round(turns)
+    outside = np.count_nonzero(np.abs(roots) > 1.0)
+    return int(outside) - round(turns)
 
 
-def _read(step, n, angles):
-    """Return D(Q) c (Q - A)^-1 b at Q = exp(i angles)."""
-    a, b, c = step
-    q = np.exp(1j * angles)
-    right = np.broadcast_to(b[:, None], (len(q), len(b), 1))
-    found = np.linalg.solve(q[:, None, None] * np.eye(len(a)) - a, right)[..., 0] @ c
-    return found * window_mean(q, n)
+class _Response:
+    """
+    D(Q) c (Q - A)^-1 b on the unit circle.
+
+    By the Schur form of A, so that the states of a long latency cost their square, not their cube,
+    at each Q.  n: steps of a window.
+    """
+
+    def __init__(self, step, n):
+        self._upper, basis = schur(step.a, output='complex')
+        self._b, self._c, self._n = basis.conj().T @ step.b, step.c @ basis, n
+        self.roots = np.diag(self._upper)
+
+    def at(self, angles):
+        """Return it at Q = exp(i angles)."""
+        q, upper = np.exp(1j * angles), self._upper
+        x = np.zeros((len(upper), len(q)), dtype=complex)
+        for k in reversed(range(len(upper))):
+            x[k] = (self._b[k] + upper[k, k + 1:] @ x[k + 1:]) / (q - upper[k, k])
+        return (self._c @ x) * window_mean(q, self._n)
 
 
 def window_mean(q, n):
@@ -172,7 +186,7 @@ def _step(loop, aiding):
     x = np.linalg.matrix_power(np.array([rows[name] for name in names]), aiding.step)
     now = dict(zip(names, x))
     mean = loop.speed / aiding.step * now['sum_beta']
-    # less what is read, 1 for w
+    # the coefficient of the meter's reading w in each state
     read = {name: 0.0 for name in names}
     correct = _conventional if aiding.kind == 'conventional' else _paper_corrected
     correct(loop, aiding, now, mean, read)

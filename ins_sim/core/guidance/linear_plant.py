@@ -6,11 +6,11 @@ z to the right of the leg, its rate v and the sideslip beta under a command u:
     z' = v,  v' = -Z_b beta,  beta' = (u - beta)/tau_b,  u = k1 z_est + k2 v_est
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from ins_sim.core.motion.guided.steered import moved_on
 from .autopilot import make_autopilot
 
 
@@ -49,18 +49,15 @@ def lateral_loop(generator):
 
 
 def after_period(loop):
-    """Return the matrix (3, 5) of z, v, beta a period later by z, v, beta, old and new command."""
-    h, lag, force = loop.period_s, loop.lag_s, loop.side_force
-    left = math.exp(-h / lag)
+    """
+    Return the matrix (3, 5) that gives z, v and beta at the end of a period.
+
+    From z, v, beta, the old and the new command at its start.
+    """
+    h = loop.period_s
 
     def flown(z, v, beta, old, new):
-        if not loop.ramps:
-            old = new
-        slope = (new - old) / h
-        c = beta - old + slope * lag
-        return (z + v * h - force * (old * h * h / 2.0 + slope * h * h * (h / 6.0 - lag / 2.0)
-                                     + c * lag * (h - lag * (1.0 - left))),
-                v - force * (old * h + slope * h * (h / 2.0 - lag) + c * lag * (1.0 - left)),
-                old + slope * (h - lag) + c * left)
+        old = old if loop.ramps else new
+        return moved_on(loop.side_force, loop.lag_s, (z, v, beta, old, (new - old) / h), h)[:3]
 
-    return np.array([flown(*unit) for unit in np.eye(5)]).T
+    return np.array([flown(*unit) for unit in np.eye(5).tolist()]).T

@@ -10,9 +10,11 @@ from ins_sim.core.numerics.instants import seconds
 from .autopilot import make_autopilot
 from .margin import phase_margin
 
-# Why an autopilot does not steer, and what is said at the first time.
+# Why an autopilot does not steer.
 NOT_ENGAGED, TURN, NO_SOLUTION = 'not engaged', 'in a turn', 'no solution'
 NO_NUMBER, JUMP, OLD, NO_COMMAND = 'no number', 'jump', 'old', 'no command'
+# It steers, at the limit of the command.
+LIMITED = 'limited'
 
 
 class SteeringCommand(NamedTuple):
@@ -36,7 +38,8 @@ class Steering:
 
     Solutions are given by ``take``; ``command`` answers a control instant from the newest one that
     is ``latency_s`` old.  The vehicle flies straight (command zero) until the autopilot is
-    engaged, in turns, and where the solution is missing, no number, too old or jumps.
+    engaged, in turns, and where the solution is missing, no number or too old; after a jump until
+    it has gone on without another one for ``timeout_s``.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ class Steering:
     notes : list of str
         Sentences about what was met for the first time; the owner empties it.
     counts : dict
-        {why: number of control instants} at which the vehicle flew straight, and 'limited'.
+        {why: number of control instants} at which the vehicle flew straight, and LIMITED.
     """
 
     def __init__(self, settings, legs, turns=()):
@@ -66,7 +69,7 @@ class Steering:
 
     def reset(self):
         """Forget everything; the next control instant is the first of a run."""
-        self._solutions, self._used = deque(), None
+        self._solutions, self._used, self._jumped_ns = deque(), None, None
         self._engage_ns, self.engaged, self._steers = None, False, False
         self._scheduled = True
         self.notes, self.counts = [], {}
@@ -119,19 +122,25 @@ class Steering:
         if not why:
             if not self._steers:
                 self.autopilot.reset()
-            beta = self.autopilot.command(t_ns, z, v_z)
-            if not abs(beta) < math.inf:
-                why = NO_COMMAND
-                self._say(why, f'the autopilot commands {beta} at {seconds(t_ns)}; expected a '
-                          'number: the vehicle flies straight')
-                beta = 0.0
-        self._steers = not why
+            given = self.autopilot.command(t_ns, z, v_z)
+            beta = _number(given)
+            if beta is None:
+                why, beta = NO_COMMAND, 0.0
+                self._say(why, f'the autopilot commands {given!r:.50} at {seconds(t_ns)}; '
+                          'expected a number: the vehicle flies straight')
         if why:
-            self._count(why)
-        elif abs(beta) > self._limit:
-            beta = math.copysign(self._limit, beta)
-            self._count('limited')
+            self.give_up(why)
+        else:
+            self._steers = True
+            if abs(beta) > self._limit:
+                beta = math.copysign(self._limit, beta)
+                self._count(LIMITED)
         return SteeringCommand(t_ns, beta, z, v_z, why)
+
+    def give_up(self, why):
+        """Count a control instant at which the autopilot does not steer, and why."""
+        self._steers = False
+        self._count(why)
 
     def _estimate(self, t_ns):
         """Return z, v_z and why they are not to be steered by, or ''."""
@@ -166,11 +175,16 @@ class Steering:
         if last is not None and last[3] != NO_NUMBER and last[4] == index:
             expected = last[1] + last[2] * ((stamp_ns - last[0]) * 1e-9)
             if abs(z - expected) > self._jump:
-                why = JUMP
-                self._say(why, f'the solution jumps by {z - expected:.4g} m to the right at '
+                self._jumped_ns = stamp_ns
+                self._say(JUMP, f'the solution jumps by {z - expected:.4g} m to the right at '
                           f'{seconds(stamp_ns)}; expected at most guidance.jump_m, '
-                          f'{self._jump:g} m: the vehicle flies straight until it goes on from '
-                          'where it is')
+                          f'{self._jump:g} m: the vehicle flies straight until the solution has '
+                          f'gone on without a jump for {self._timeout_ns * 1e-9:g} s')
+        if self._jumped_ns is not None:
+            if 0 <= stamp_ns - self._jumped_ns <= self._timeout_ns:
+                why = JUMP
+            else:
+                self._jumped_ns = None
         self._used = stamp_ns, z, v_z, why, index
 
     def _say(self, why, sentence):
@@ -181,9 +195,18 @@ class Steering:
         self.counts[why] = self.counts.get(why, 0) + 1
 
 
+def _number(value):
+    """Return what an autopilot commands as a finite float, or None."""
+    try:
+        value = float(value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return value if abs(value) < math.inf else None
+
+
 def margin_sentence(settings, guided):
     """
-    Return what is to be said of a loop that cannot be stable for its latency, or None.
+    Return the warning that the latency makes the loop unstable, or None.
 
     settings: GuidanceSettings; guided: GuidedSettings.  The navigation is taken to be exact.
     """
@@ -195,6 +218,7 @@ def margin_sentence(settings, guided):
                           settings.latency_s + period_s)
     if margin is None or margin > 0.0:
         return None
-    return (f'guidance.latency_s is {settings.latency_s:g} s, which leaves the loop a phase '
+    return (f'guidance.latency_s is {settings.latency_s:g} s and the control period '
+            f'{period_s:g} s, which leaves the loop a phase '
             f'margin of {math.degrees(margin):.1f} deg; expected more than 0: it is unstable '
             'with exact navigation already')

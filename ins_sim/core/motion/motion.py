@@ -73,6 +73,12 @@ class Motion:
                 if name not in vars(cls):
                     setattr(cls, name, by_truth)
 
+    def check_end(self, end_s: float) -> None:
+        """Raise ValueError where a run up to motion time end_s, s, is longer than the motion."""
+        if end_s > self.end_s:
+            raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most '
+                             f'{self.end_s:g} s, {self.end_name}')
+
     def at(self, t_ns: np.ndarray) -> Truth:
         """
         Return the Truth at instants.
@@ -193,7 +199,5 @@ def check_length(generator, motion):
     if generator.duration_s == 0.0:
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
     end_s = generator.start_s + generator.duration_s
-    if end_s > motion.end_s:
-        raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most {motion.end_s:g}'
-                         f' s, {motion.end_name}')
+    motion.check_end(end_s)
     check_places(motion, generator.start_s, generator.duration_s)

@@ -128,17 +128,18 @@ class SteeringChain:
         if t_ns != now_ns:
             truth = self._motion.one(t_ns)
         sample = (t_ns, tuple(omega), tuple(f), truth[:5])
-        if self._strapdown is not None:
-            loop = self._strapdown
-            for _, _, due in loop.run([sample]):
-                if due and self._meter is not None:
-                    _, _, _, v_n, q_nb = loop.navigator.solution
-                    self._arrived(METER, self._meter.push_ins(
-                        t_ns, quaternion.rotate_back(q_nb, v_n)))
-        steers = self._strapdown if self._aided is None else self._aided
-        if steers is self._aided:
-            for _ in steers.run([sample]):
-                pass
-        if not steers.navigator.navigates:
+        found = self._published(self._strapdown, sample)
+        if self._aided is None:
+            return found
+        if self._meter is not None:
+            for _, (_, _, _, v_n, q_nb) in found:
+                self._arrived(METER, self._meter.push_ins(
+                    t_ns, quaternion.rotate_back(q_nb, v_n)))
+        return self._published(self._aided, sample)
+
+    @staticmethod
+    def _published(loop, sample):
+        """Return the instant and the solution that a NavigationLoop or None publishes, or none."""
+        if loop is None:
             return []
-        return [(t_ns, steers.navigator.solution)]
+        return [(sample[0], loop.navigator.solution) for *_, due in loop.run([sample]) if due]

@@ -56,8 +56,8 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     Raises
     ------
     ValueError
-        Where the run ends behind the last turning point, where the navigator that steers does
-        not publish every step, or as the stages do.
+        Where the run ends behind the last turning point, where the motion's control instants are
+        no samples, or as the stages do.
     """
     if not isinstance(motion, GuidedMotion):
         return None
@@ -66,6 +66,9 @@ def fly(settings, motion, aided=None, progress=None, run=0):
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
     motion.length_s(generator.start_s, generator.duration_s)
     steering = Steering(generator.guidance, motion.route.legs, motion.turns)
+    if motion.period_ns % period_ns(generator.rate_hz):
+        raise ValueError(f'the control period of the motion is {motion.period_ns} ns; expected a '
+                         f'multiple of that of rate_hz, {period_ns(generator.rate_hz)} ns')
     aided = _who_steers(settings, aided, steering.notes)
     sentence = margin_sentence(generator.guidance, generator.motion.guided)
     if sentence is None and aided is not None:
@@ -91,12 +94,6 @@ def _who_steers(settings, aided, notes):
     if topic != steers:
         notes.append(f'guidance.topic is {topic}, which this run does not simulate: the vehicle '
                      f'is steered by {steers}')
-    name, navigator = ('strapdown', settings.strapdown) if aided is None else (
-        'aided_navigator', aided.aided_navigator)
-    if navigator.output_every != 1:
-        raise ValueError(f'{name}: output_every is {navigator.output_every} with motion.kind '
-                         f'guided, steered by {steers}; expected 1: every control instant needs '
-                         'its solution')
     return aided
 
 

@@ -1,9 +1,12 @@
 """Live steering: solutions of a topic in, commands to the guided motion and to a topic out."""
 
+from collections import deque
+import math
 import time
 
 from ins_sim.core.earth.frames import MapFrame
-from ins_sim.core.guidance.steering import margin_sentence, NO_SOLUTION, Steering, SteeringCommand
+from ins_sim.core.guidance.steering import (margin_sentence, NO_COMMAND, NO_SOLUTION, Steering,
+                                            SteeringCommand)
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -13,6 +16,11 @@ from ..transport.patience import MISSING_S
 
 # Control periods between two times at which what was flown is forgotten.
 FORGET = 4096
+# How far the length of a quaternion may be from 1.
+UNIT = 1e-3
+# Of so many solutions the shortest interval is the one in which they come.
+INTERVALS = 8
+LATE = 'late'
 
 
 class Steerer:
@@ -21,7 +29,8 @@ class Steerer:
 
     A command is given when the sample behind it is to be sent.  In lock-step it waits for the
     solution of the instant that the autopilot uses, so that the flight is that of the offline run;
-    in real time the newest solution serves, and the one before where it is late.
+    where solutions come less often than commands, for the last one up to that instant.  In real
+    time the newest solution serves, and the one before where it is late.
 
     Parameters
     ----------
@@ -43,7 +52,8 @@ class Steerer:
 
     def __init__(self, settings, source, queue, publish, fault):
         self._motion, self._first_ns = source.guided, source.first_ns
-        self._name, self._latency_ns = settings.guidance.topic, settings.guidance.in_ns()[0]
+        self._name = settings.guidance.topic
+        self._latency_ns, self._timeout_ns = settings.guidance.in_ns()
         self._source, self._queue, self._fault = source, queue, fault
         self._depth, self._epoch_ns = settings.topics.depth, settings.time.epoch_s * SECOND
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
@@ -66,8 +76,9 @@ class Steerer:
             if self._queue.take() is None:
                 break
         self._newest_ns, self._misses, self.late = None, 0, 0
+        self._intervals, self._late_ns = deque(maxlen=INTERVALS), None
         self._command = SteeringCommand(self._first_ns, 0.0, 0.0, 0.0, NO_SOLUTION)
-        self._began_s, self._told = None, False
+        self._began_s, self._told = None, set()
         self.wait_anew()
 
     def wait_anew(self):
@@ -100,7 +111,7 @@ class Steerer:
             except ValueError as error:
                 self._fault(str(error))
             except Exception as error:
-                # what reads the messages of strangers has a last net, as nodes have
+                # a message of another package must never end the node
                 self._fault(described(error))
 
     def _hear(self, data):
@@ -111,7 +122,11 @@ class Steerer:
             raise ValueError(f'{self._name} has the frames {frames[0]!r} and {frames[1]!r}; '
                              f'expected {self._frames[0]!r} and {self._frames[1]!r}: the vehicle '
                              'is not steered by it')
-        newest_ns = self._newest_ns
+        newest_ns, length = self._newest_ns, math.hypot(*pose[1])
+        if abs(length - 1.0) > UNIT:
+            raise ValueError(f'{self._name} at {seconds(stamp_ns)} has an orientation of length '
+                             f'{length:.6g}; expected a quaternion of length 1: the vehicle is '
+                             'not steered by it')
         if t_ns > self._motion.known_ns + self._motion.period_ns:
             raise ValueError(f'{self._name} has the stamp {seconds(stamp_ns)}, when the truth is '
                              f'at {seconds(self._motion.known_ns + self._epoch_ns)}; expected a '
@@ -125,18 +140,22 @@ class Steerer:
                                  'dropped')
             # sample 0 is answered again
             return
+        if newest_ns is not None:
+            self._intervals.append(t_ns - newest_ns)
         self.steering.take(t_ns, self._frame.geodetic_one(*pose))
         self._newest_ns = t_ns
 
     def _ready(self, waits):
         """Return whether to give the command at the instant up to which the motion is known."""
         wanted_ns = max(self._motion.known_ns - self._latency_ns, self._first_ns)
-        if self.heard and self._newest_ns >= wanted_ns:
-            self._misses, self._since = 0, None
+        # the solution after the newest one would be later than wanted
+        if self.heard and self._newest_ns + min(self._intervals, default=1) > wanted_ns:
+            self._misses, self._since, self._late_ns = 0, None, None
             return True
         now = time.monotonic()
         if not waits:
             self._look_for_silence(now)
+            self._look_for_lateness(wanted_ns)
             self.late += 1
             return True
         if self._since is None:
@@ -144,10 +163,11 @@ class Steerer:
         # A sample may have been lost; who has ended is waited for less and less.
         if now - self._since < MISSING_S / 2 ** self._misses:
             return False
+        goes_on = 'the last one is used' if self.heard else 'the vehicle flies straight'
         self._fault(f'no solution of {seconds(wanted_ns + self._epoch_ns)} on {self._name} in '
                     f'{MISSING_S / 2 ** self._misses:.3g} s; expected that of every control '
-                    'instant (behind a channel of negative delay, and where samples are lost, '
-                    'guidance.latency_s must be larger): steering by the last one')
+                    'instant (does the node of guidance.topic run? Where samples are lost, '
+                    f'guidance.latency_s must be larger): {goes_on}')
         self._misses, self._since = min(self._misses + 1, 60), None
         self.late += 1
         return True
@@ -156,10 +176,24 @@ class Steerer:
         """Say, once, that nothing has come yet."""
         if self._began_s is None:
             self._began_s = now
-        if not self.heard and not self._told and now - self._began_s > MISSING_S:
-            self._told = True
+        if not self.heard and NO_SOLUTION not in self._told and now - self._began_s > MISSING_S:
+            self._told.add(NO_SOLUTION)
             self._fault(f'no message on {self._name} in {MISSING_S:g} s; expected a solution to '
                         'steer by (guidance.topic): the vehicle flies straight until one comes')
+
+    def _look_for_lateness(self, wanted_ns):
+        """Say, once, that solutions are late for longer than the autopilot would hold one."""
+        if not self.heard or LATE in self._told:
+            return
+        if self._late_ns is None:
+            self._late_ns = wanted_ns
+        behind_ns = wanted_ns - self._newest_ns
+        if wanted_ns - self._late_ns > self._timeout_ns >= behind_ns:
+            self._told.add(LATE)
+            self._fault(f'solutions on {self._name} have been late for '
+                        f'{self._timeout_ns * 1e-9:g} s, now by {behind_ns * 1e-9:.3g} s; '
+                        'expected that of every control instant (guidance.latency_s says how late '
+                        'it may be): the last one is used')
 
     def _steer(self):
         """Command the next control period, and publish what was commanded."""
@@ -170,7 +204,8 @@ class Steerer:
             # an autopilot of the user
             self._fault(f'the autopilot raises {type(error).__name__} ({error}) at '
                         f'{seconds(t_ns)}; expected a command: the vehicle flies straight')
-            command = SteeringCommand(t_ns, 0.0, 0.0, 0.0, 'no command')
+            steering.give_up(NO_COMMAND)
+            command = SteeringCommand(t_ns, 0.0, 0.0, 0.0, NO_COMMAND)
         self._command = command
         self._motion.command(t_ns, command.beta)
         if t_ns // self._motion.period_ns % FORGET == 0:
@@ -181,7 +216,7 @@ class Steerer:
         steering.notes.clear()
 
     def engage(self, on):
-        """Engage the autopilot or disengage it; return what became of it, in a few words."""
+        """Engage the autopilot or disengage it; return the text of the response."""
         if not on:
             self.steering.disengage()
             return 'disengaged: it flies straight'

@@ -54,6 +54,7 @@ def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path
     lost = 0
     for topic in (*HEARD, *topics.GUIDANCE):
         stamps = np.array(sorted(listener.heard[topic.name]))
+        assert stamps[0] < 5e9
         # the last control period is not flown any more
         last = SECONDS * RATE_HZ - (topic in topics.GUIDANCE)
         missing = last - round(stamps[0] * 1e-9 * RATE_HZ) + 1 - len(stamps)

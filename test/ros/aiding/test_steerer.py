@@ -102,8 +102,11 @@ def in_frames(data, *frames):
     (lambda data: data[:4] + struct.pack('<iI', 0, SECOND // 2) + data[12:],
      'aided/odometry jumps back from 0.990000000 s to 0.500000000 s'),
     (lambda data: data[:100], 'nav_msgs/msg/Odometry'),
-    (lambda data: with_double(data, 1, lambda y: y + 3e5), 'the solution jumps by -')],
-    ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump'))
+    (lambda data: with_double(data, 1, lambda y: y + 3e5), 'the solution jumps by -'),
+    (lambda data: with_double(data, 5, lambda _: 3.0), 'aided/odometry at 1.000000000 s has an '
+     'orientation of length 3')],
+    ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump',
+         'quaternion'))
 def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
     """One sentence; the last solution is held for a second, then it flies straight and level."""
     before = len(flight.commands)
@@ -112,12 +115,14 @@ def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
     assert sentence in flight.said, flight.said
     assert flight.fed.logs['motion_generator'].lines < 20
     held = [beta for _, beta, _, _ in flight.commands[before:]]
-    # 'jump': at 300 km from the leg it goes on from where it is
-    if 'jumps by' not in sentence:
+    if 'jumps by' in sentence:
+        # straight for a second; then at 300 km from the leg it goes on from where it is
+        assert not any(held[1:100]) and held[-1] != 0.0
+    else:
         assert held[50] != 0.0 and held[-1] == 0.0 and flight.why == 'old'
     assert max(map(abs, held)) <= math.radians(8.0)
     flight.change = lambda data: data
-    flight.good(5)
+    flight.good(110 if 'jumps by' in sentence else 5)
     assert flight.why == '' and flight.commands[-1][1] != 0.0
     assert not flight.rescued
 
@@ -171,8 +176,8 @@ def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
 
 
 @pytest.mark.parametrize('generator, sentence', [
-    ({'guidance.latency_s': 5.0}, 'guidance.latency_s is 5 s, which leaves the loop a phase '
-     'margin of -'),
+    ({'guidance.latency_s': 5.0}, 'guidance.latency_s is 5 s and the control period 0.01 s, '
+     'which leaves the loop a phase margin of -'),
     ({'guidance.topic': 'nobody/odometry'}, 'no message on nobody/odometry in 5 s; expected a '
      'solution to steer by (guidance.topic): the vehicle flies straight until one comes')],
     ids=('latency', 'nobody'))
@@ -192,7 +197,7 @@ def test_a_command_beyond_the_limit_is_counted(ros_domain):
 
 
 def test_a_filter_that_refuses_turns_steers_on(ros_domain):
-    """Filter paper: it says what it does not take, and the loop stays closed."""
+    """Filter paper: the loop stays closed (what it refuses the navigator says)."""
     with Steered(aided_navigator={'rate_hz': 100.0, 'filter': 'paper', 'window.cycles': 50,
                                   'topics.depth': 500}) as flight:
         flight.good(300)
@@ -232,6 +237,40 @@ class LockStep:
         return sends
 
 
+def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
+    """Every tenth one: their interval is learnt, and the newest one up to the instant serves."""
+    turn = [0]
+
+    def tenth(data):
+        turn[0] += 1
+        return data if turn[0] % 10 == 0 else None
+
+    flight.change = tenth
+    flight.good(195)
+    steerer = flight.generator._steerer
+    newest_ns = steerer._newest_ns
+    lock = LockStep(flight)
+    while lock.may_send(0.0):
+        assert steerer._motion.known_ns <= newest_ns + SECOND // 10
+    # it waits for the next one
+    assert steerer._motion.known_ns == newest_ns + SECOND // 10
+    assert flight.why == '' and 'no solution of' not in flight.said
+
+
+def test_solutions_that_are_always_late_are_said_once(flight):
+    """In real time the last one serves; a second of it is mentioned."""
+    held = []
+
+    def late(data):
+        held.append(data)
+        return held.pop(0) if len(held) > 30 else None
+
+    flight.change = late
+    flight.good(250)
+    assert flight.why == ''
+    assert flight.said.count(f'solutions on {NAME} have been late for 1 s, now by 0.3') == 1
+
+
 def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
     """5 s, 2.5 s, ...: a lost sample costs as much, an estimator that has ended 10 s in all."""
     flight.change = lambda data: None
@@ -241,6 +280,7 @@ def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
         assert not lock.may_send(0.0) and not lock.may_send(0.99 * patience_s)
         assert lock.may_send(0.02 * patience_s)
     assert 'no solution of 1.000000000 s on aided/odometry in 5 s; expected that' in flight.said
+    assert 'guidance.latency_s must be larger): the last one is used' in flight.said
     # the time of a pause does not count
     assert not lock.may_send(0.0)
     flight.fed.clock.now_s += 100.0

@@ -38,8 +38,7 @@ class GuidedMotion(RouteMotion):
     Raises ValueError in one sentence on a flight that cannot be flown.
     """
 
-    end_name = ('up to which the guided motion has been steered: its flight depends on the '
-                'navigation, and only simulate and the live nodes fly it')
+    end_name = 'up to which the guided motion has been steered'
 
     def __init__(self, settings, guided, earth_settings):
         if settings.weave_deg:
@@ -63,13 +62,21 @@ class GuidedMotion(RouteMotion):
         """Return the motion time up to which the motion is known."""
         return self._steered.known_ns
 
+    def check_end(self, end_s):
+        """Raise ValueError where a run up to end_s, s, has not been flown."""
+        if end_s > self.end_s and not self._steered.is_steered:
+            raise ValueError('motion.kind is guided; expected another kind without a flight: the '
+                             'motion depends on the navigation, and only simulate and the live '
+                             'nodes fly it')
+        super().check_end(end_s)
+
     def length_s(self, start_s, duration_s):
         """
         Return the length of a run from start_s on, s; duration_s: 0 = up to the arrival.
 
-        Raises ValueError where it ends, or begins, behind the last turning point.
+        Raises ValueError where the run would last beyond the arrival.
         """
-        if start_s + duration_s > self.arrival_s:
+        if start_s + duration_s > self.arrival_s or start_s >= self.arrival_s:
             raise ValueError(f'start_s + duration_s is {start_s + duration_s:g} s; expected at '
                              f'most {self.arrival_s:g} s, the arrival at the last turning point')
         return duration_s or self.arrival_s - start_s

@@ -62,6 +62,11 @@ class SteeredHistory:
         self._before = (*self._state, 0.0)
         self._rows, self._count, self._last = np.empty((ROOM, COLUMNS)), 0, self._before
 
+    @property
+    def is_steered(self):
+        """Return whether there was a command."""
+        return self._count > 0
+
     def command(self, t_ns, beta_c):
         """
         Fly the control period that begins at t_ns, with the command running to beta_c, rad.
