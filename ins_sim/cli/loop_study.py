@@ -9,7 +9,9 @@ HELP = 'a vehicle steered by its own aided solution: the study of the loop'
 DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lateral scale error '
                'aids: a table of flights of the whole chain, limits of stability beside those of '
                'the linear theory, the map of stability, and flights with noise, wind, gusts and '
-               'the signals of the meter.')
+               'the signals of the meter. The flights set filter, gain, windows, lateral scale '
+               'error, first offset, length and when the autopilot is engaged; all else is that '
+               'of the parameters.')
 SHIPPED = ('guided_flight',)
 MARK = 'loop_study.json'
 PARTS = ('table', 'limits', 'conditions', 'map')
@@ -30,6 +32,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Fly, show and save; return the exit code."""
+    from ins_sim.core.guidance.steering import margin_sentence
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.studies.closed_loop import study_loop
@@ -41,6 +44,9 @@ def run(chosen):
     if kind != 'guided':
         raise ValueError(f'motion.kind is {kind}; expected guided, which the solution steers')
     loop, console = study_loop(settings), PlainConsole()
+    generator = settings.simulation.motion_generator
+    if warning := margin_sentence(generator.guidance, generator.motion.guided):
+        console.print(warning)
     found = {}
     with whole_folder(chosen.output, chosen.force, MARK) as folder:
         for part in dict.fromkeys(chosen.parts):
@@ -56,8 +62,9 @@ def _table(chosen, settings, loop, console, folder):
     from .workers import run_all
     flights = run_all([(fly_case, settings, case) for case in TABLE], chosen.jobs, console,
                       'flights')
-    rows = [report.loop_row(case, flight, lateral_flight(settings, loop, case))
-            for case, flight in zip(TABLE, flights)]
+    alone = run_all([(lateral_flight, settings, loop, case) for case in TABLE], chosen.jobs,
+                    console, 'flights of the lateral channel alone')
+    rows = [report.loop_row(*row) for row in zip(TABLE, flights, alone)]
     report.show_flights('Closed loop', rows, console)
     for k_z in dict.fromkeys(case.k_z for case in TABLE):
         shown = [k for k, case in enumerate(TABLE) if case.k_z == k_z and case.duration_s <= 300.0]
