@@ -134,7 +134,7 @@ def save_histories(path, title, names, flights):
         bottom.plot(flight.t_s, flight.z, lw=0.9, color=colour, label=name)
         bottom.plot(flight.t_s, flight.z_estimated, lw=0.9, ls=':', color=colour)
     top.set_ylabel('sideslip [deg]')
-    bottom.set_ylabel('offset from the leg [m]')
+    bottom.set_ylabel('offset from the leg [m], dotted: estimated')
     bottom.set_xlabel('time [s]')
     for axes in (top, bottom):
         axes.grid(alpha=0.3)
