@@ -9,11 +9,20 @@ from .navigator import InertialNavigator
 
 
 class Navigator(MatchedStreams):
-    """InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors)."""
+    """
+    InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors).
+
+    covariance: a FreeCovariance kept beside it, or None; settings, waiting_limit: as of
+    MatchedStreams.
+    """
+
+    def __init__(self, settings, waiting_limit, covariance=None):
+        self.covariance = covariance
+        super().__init__(settings, waiting_limit)
 
     def begin(self):
         """Forget the solution."""
-        self._navigator = InertialNavigator(self._settings)
+        self._navigator = InertialNavigator(self._settings, self.covariance)
 
     @property
     def navigates(self):

@@ -1,0 +1,174 @@
+"""
+The covariance of the errors of a strapdown that nothing corrects, by propagation alone.
+
+27 states: the nine of ``error_dynamics``, and by body axis the errors of the instruments, which
+stay: biases, scale factors and misalignments of accelerometers and gyros.  Without updates every
+source adds its own share, so that signs of the sources do not matter (docs/design/covariance.md).
+"""
+
+import numpy as np
+
+from ins_sim.core.attitude.interpolation import middle_attitude
+from ins_sim.core.attitude.matrix import dcm_of
+from ins_sim.core.numerics.fixed_order import product
+from .error_dynamics import change, GROWING, inertial_rows, turn_by_position
+
+P, V, PHI, UP = slice(0, 3), slice(3, 6), slice(6, 9), (2, 5)
+BA, BG, SA, SG, MA, MG = (slice(k, k + 3) for k in range(9, 27, 3))
+SIZE, SHARED = 27, 15
+# A step ends after so long, s, or after so much of a turn, rad: its coefficients are those of its
+# middle.
+STEP_S, STEP_RAD = 0.5, 0.6
+# Standard deviations of what is known: nothing is believed to be exact (m, m/s, rad; the
+# instruments m/s^2, rad/s, 1 and rad).
+KNOWN = np.array((1e-3,) * 3 + (1e-5,) * 3 + (1e-8,) * 3 + (1e-9,) * 3 + (1e-12,) * 3
+                 + (1e-12,) * 12)
+DIAGONAL = slice(None, None, SIZE + 1)
+NOTHING = (0.0,) * 7
+
+
+def coefficients(lat, height, v, c, f_b, omega_b, spin, damping):
+    """
+    Return the GROWING rows of F, (9, 27).
+
+    lat to spin: as of ``inertial_rows``; f_b, omega_b (3,): readings by body axis; damping: c1,
+    c2 of a damped vertical channel, by which the height error acts on its rate and on that of the
+    vertical velocity, or zero.
+    """
+    f = np.empty((GROWING, SIZE))
+    c_ex, c_ey, c_ez, c_nx, c_ny, c_nz, c_ux, c_uy, c_uz = c
+    x, y, z = f_b
+    f_n = (c_ex * x + c_ey * y + c_ez * z, c_nx * x + c_ny * y + c_nz * z,
+           c_ux * x + c_uy * y + c_uz * z)
+    f[:, :SHARED] = inertial_rows(lat, height, v, c, f_n, spin)
+    f[:, SHARED:] = 0.0
+    f[2, 2] -= damping[0]
+    f[5, 2] -= damping[1]
+    c_nb = np.array(c).reshape(3, 3)
+    for rows, reading, scale, turned in ((V, f_b, SA, MA), (PHI, omega_b, SG, MG)):
+        a, b, d = reading
+        f[rows, scale] = c_nb * np.array(reading)
+        # C times the matrix of (reading x)
+        f[rows, turned] = product(c_nb, np.array(((0.0, -d, b), (d, 0.0, -a), (-b, a, 0.0))))
+    return f
+
+
+def grown(p, n, noise):
+    """
+    Return the covariance after a step: (1 + N) (P + Q/2) (1 + N)' + Q/2, symmetric.
+
+    n: ``change`` of the coefficients; noise (27,): diagonal of Q, what white noise adds in a step.
+    """
+    half = 0.5 * noise
+    left = p.copy()
+    left.reshape(-1)[DIAGONAL] += half
+    left[:GROWING] += product(n, left)
+    both = left.copy()
+    both[:, :GROWING] += product(left, n.T)
+    both.reshape(-1)[DIAGONAL] += half
+    return 0.5 * (both + both.T)
+
+
+class FreeCovariance:
+    """
+    Propagates the covariance beside an InertialNavigator, from its readings and its solution.
+
+    Parameters
+    ----------
+    variances : (27,) at the start; of attitude, that of the inertial attitude
+    densities : (27,) of white noise, per s
+    spin : rate of the Earth, rad/s
+    held : whether height and vertical velocity come from the truth
+    damping : as of ``coefficients``
+    dt_s : sampling period, s
+    seen : called with (t_ns, P, solution) at the start and after each step, or None
+
+    Attributes
+    ----------
+    p : (27, 27), replaced at each step and never changed
+    t_ns, solution : its instant, and lat, lon, height, v_n, q_nb then
+
+    """
+
+    def __init__(self, variances, densities, spin, held, damping, dt_s, seen=None):
+        self._variances = np.maximum(variances, KNOWN * KNOWN)
+        self._densities = np.array(densities, dtype=float)
+        self._spin, self._held, self._damping = spin, held, damping
+        self._step_s = min(STEP_S, 0.5 / damping[0]) if damping[0] else STEP_S
+        self._every = max(1, int(self._step_s / dt_s + 1e-6))
+        self._seen = seen
+        self.p = self.t_ns = self.solution = None
+
+    def begin(self, t_ns, solution):
+        """Begin at the start of a navigator; solution: lat, lon, height, v_n, q_nb."""
+        p = np.diag(self._variances)
+        # of the attitude in its own n: the computed n turns with the position
+        a, b, c = turn_by_position(solution[0], solution[2])
+        for row, column, by in ((6, 1, a), (7, 0, b), (8, 0, c)):
+            p[row] -= by * p[column]
+        for row, column, by in ((6, 1, a), (7, 0, b), (8, 0, c)):
+            p[:, row] -= by * p[:, column]
+        self._keep(t_ns, self._level(p), solution)
+        self._last_ns = t_ns
+
+    def _keep(self, t_ns, p, solution):
+        self.p, self.t_ns, self.solution = p, t_ns, solution
+        self._count, self._sums = 0, NOTHING
+        if self._seen is not None:
+            self._seen(t_ns, p, solution)
+
+    def _level(self, p):
+        """Hold the up rows where the vertical channel is that of the truth, as the ESKF does."""
+        if self._held:
+            for k in UP:
+                p[k, :] = p[:, k] = 0.0
+                p[k, k] = KNOWN[k] * KNOWN[k]
+        return p
+
+    def take(self, t_ns, omega, f, navigator):
+        """Take the reading that has brought a navigator to t_ns."""
+        dt = (t_ns - self._last_ns) * 1e-9
+        self._last_ns = t_ns
+        x, y, z = omega
+        a, b, c, d, e, g, turned = self._sums
+        self._sums = (a + x * dt, b + y * dt, c + z * dt, d + f[0] * dt, e + f[1] * dt,
+                      g + f[2] * dt, turned + (abs(x) + abs(y) + abs(z)) * dt)
+        self._count += 1
+        if self._count >= self._every or self._sums[6] >= STEP_RAD:
+            self._step(t_ns, navigator.solution)
+
+    def take_block(self, t_ns, omega, f, states):
+        """Take readings (n,), (n, 3), (n, 3) and their NavStates; the bits are those of take."""
+        dt = np.diff(t_ns, prepend=self._last_ns) * 1e-9
+        turned = (abs(omega[:, 0]) + abs(omega[:, 1]) + abs(omega[:, 2])) * dt
+        parts = np.concatenate([omega * dt[:, None], f * dt[:, None], turned[:, None]], axis=1)
+        first = 0
+        while first < len(t_ns):
+            stop = min(len(t_ns), first + self._every - self._count)
+            sums = np.add.accumulate(np.concatenate([[self._sums], parts[first:stop]]))[1:]
+            over = np.flatnonzero(sums[:, 6] >= STEP_RAD)
+            taken = int(over[0]) + 1 if len(over) else stop - first
+            self._sums, self._count = tuple(sums[taken - 1].tolist()), self._count + taken
+            first += taken
+            if len(over) or self._count >= self._every:
+                self._step(int(t_ns[first - 1]), states.one(first - 1))
+        if len(t_ns):
+            self._last_ns = int(t_ns[-1])
+
+    def _step(self, t_ns, solution):
+        lat, _, height, v, q_nb = solution
+        _, _, _, v_start, q_start = self.solution
+        time_s = (t_ns - self.t_ns) * 1e-9
+        per_s = 1.0 / time_s
+        x, y, z, a, b, c, _ = self._sums
+        c_nb = dcm_of(middle_attitude(q_start, q_nb))
+        middle = (0.5 * (v_start[0] + v[0]), 0.5 * (v_start[1] + v[1]),
+                  0.5 * (v_start[2] + v[2]))
+        f = coefficients(lat, height, middle, c_nb, (a * per_s, b * per_s, c * per_s),
+                         (x * per_s, y * per_s, z * per_s), self._spin, self._damping)
+        # of an IMU slower than the steps, several
+        parts = max(1, int(time_s / self._step_s + 0.5))
+        n, noise, p = change(f, time_s / parts), self._densities * (time_s / parts), self.p
+        for _ in range(parts):
+            p = self._level(grown(p, n, noise))
+        self._keep(t_ns, p, solution)
