@@ -2,15 +2,16 @@
 The covariance of the errors of a strapdown that nothing corrects, by propagation alone.
 
 27 states: the nine of ``error_dynamics``, and by body axis the errors of the instruments, which
-stay: biases, scale factors and misalignments of accelerometers and gyros.  Without updates every
-source adds its own share, so that signs of the sources do not matter (docs/design/covariance.md).
+stay: biases, scale factors and misalignments of accelerometers and gyros.  Beside them goes the
+error that is the same in every run (the initial errors that are given, non-orthogonality,
+asymmetry, g-sensitivity), nine numbers whose squares are added (docs/design/covariance.md).
 """
 
 import numpy as np
 
 from ins_sim.core.attitude.interpolation import middle_attitude
 from ins_sim.core.attitude.matrix import dcm_of
-from ins_sim.core.numerics.fixed_order import product
+from ins_sim.core.numerics.fixed_order import applied, product
 from .error_dynamics import change, GROWING, inertial_rows, turn_by_position
 
 P, V, PHI, UP = slice(0, 3), slice(3, 6), slice(6, 9), (2, 5)
@@ -77,45 +78,50 @@ class FreeCovariance:
     ----------
     variances : (27,) at the start; of attitude, that of the inertial attitude
     densities : (27,) of white noise, per s
+    errors : (9,) that are given at the start, of attitude inertial
+    fixed : functions (input, specific force) -> error of accelerometers and of gyros, or None
     spin : rate of the Earth, rad/s
     held : whether height and vertical velocity come from the truth
     damping : as of ``coefficients``
     dt_s : sampling period, s
-    seen : called with (t_ns, P, solution) at the start and after each step, or None
+    seen : called with this object at the start and after each step, or None
 
     Attributes
     ----------
-    p : (27, 27), replaced at each step and never changed
+    p : (27, 27), replaced at each step and never changed, as is
+    mean : (9,) error that is the same in every run
     t_ns, solution : its instant, and lat, lon, height, v_n, q_nb then
 
     """
 
-    def __init__(self, variances, densities, spin, held, damping, dt_s, seen=None):
+    def __init__(self, variances, densities, errors, fixed, spin, held, damping, dt_s, seen=None):
         self._variances = np.maximum(variances, KNOWN * KNOWN)
+        self._errors, self._fixed = np.array(errors, dtype=float), fixed
         self._densities = np.array(densities, dtype=float)
         self._spin, self._held, self._damping = spin, held, damping
         self._step_s = min(STEP_S, 0.5 / damping[0]) if damping[0] else STEP_S
         self._every = max(1, int(self._step_s / dt_s + 1e-6))
         self._seen = seen
-        self.p = self.t_ns = self.solution = None
+        self.p = self.mean = self.t_ns = self.solution = None
 
     def begin(self, t_ns, solution):
         """Begin at the start of a navigator; solution: lat, lon, height, v_n, q_nb."""
-        p = np.diag(self._variances)
+        p, mean = np.diag(self._variances), self._errors.copy()
         # of the attitude in its own n: the computed n turns with the position
         a, b, c = turn_by_position(solution[0], solution[2])
-        for row, column, by in ((6, 1, a), (7, 0, b), (8, 0, c)):
-            p[row] -= by * p[column]
-        for row, column, by in ((6, 1, a), (7, 0, b), (8, 0, c)):
-            p[:, row] -= by * p[:, column]
-        self._keep(t_ns, self._level(p), solution)
+        turn = np.eye(SIZE)
+        turn[6, 1], turn[7, 0], turn[8, 0] = -a, -b, -c
+        mean = applied(turn[:GROWING, :GROWING], mean)
+        self._keep(t_ns, product(product(turn, p), turn.T), mean, solution)
         self._last_ns = t_ns
 
-    def _keep(self, t_ns, p, solution):
-        self.p, self.t_ns, self.solution = p, t_ns, solution
+    def _keep(self, t_ns, p, mean, solution):
+        self.p, self.mean, self.t_ns, self.solution = self._level(p), mean, t_ns, solution
+        if self._held:
+            mean[list(UP)] = 0.0
         self._count, self._sums = 0, NOTHING
         if self._seen is not None:
-            self._seen(t_ns, p, solution)
+            self._seen(self)
 
     def _level(self, p):
         """Hold the up rows where the vertical channel is that of the truth, as the ESKF does."""
@@ -164,11 +170,23 @@ class FreeCovariance:
         c_nb = dcm_of(middle_attitude(q_start, q_nb))
         middle = (0.5 * (v_start[0] + v[0]), 0.5 * (v_start[1] + v[1]),
                   0.5 * (v_start[2] + v[2]))
-        f = coefficients(lat, height, middle, c_nb, (a * per_s, b * per_s, c * per_s),
-                         (x * per_s, y * per_s, z * per_s), self._spin, self._damping)
+        force, rate = (a * per_s, b * per_s, c * per_s), (x * per_s, y * per_s, z * per_s)
+        f = coefficients(lat, height, middle, c_nb, force, rate, self._spin, self._damping)
         # of an IMU slower than the steps, several
         parts = max(1, int(time_s / self._step_s + 0.5))
-        n, noise, p = change(f, time_s / parts), self._densities * (time_s / parts), self.p
+        dt = time_s / parts
+        n, noise, p, mean = change(f, dt), self._densities * dt, self.p, self.mean
+        driven = self._driven(f, c_nb, force, rate, dt)
         for _ in range(parts):
             p = self._level(grown(p, n, noise))
-        self._keep(t_ns, p, solution)
+            mean = mean + applied(n[:, :GROWING], mean) + driven
+        self._keep(t_ns, p, mean, solution)
+
+    def _driven(self, f, c_nb, force, rate, dt):
+        """Return what the fixed errors of the instruments add to the nine errors, (9,)."""
+        u = np.zeros(GROWING)
+        c = np.array(c_nb).reshape(3, 3)
+        for rows, fixed, value in zip((V, PHI), self._fixed, (force, rate)):
+            if fixed is not None:
+                u[rows] = applied(c, fixed(value, force))
+        return dt * (u + (0.5 * dt) * applied(f[:, :GROWING], u))
