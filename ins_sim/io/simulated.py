@@ -11,11 +11,13 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
+from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest_name
 from .motion import read_motion
 from .simulated_aiding import AidingSource
+from .simulated_covariance import CovarianceSource
 
 # samples of the generator that are in memory as messages at once
 WINDOW = 4096
@@ -28,9 +30,10 @@ def published_topics(settings, aided=False):
 
     aided: velocity_meter, gnss and aided_navigator too.
     """
+    data = (topics.IMU_DATA,) if settings.strapdown.imu_data else ()
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
-    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()))
+    return (*clock, *topics.DATA, *data, *parity, *(topics.AIDING if aided else ()))
 
 
 def select_topics(settings, names, aided=False):
@@ -67,7 +70,7 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
     aiding = None
     if aided is not None:
         aided_settings, flown = aided
-        aiding = AidingSource(aided_settings, flown, _rates_at(
+        aiding = AidingSource(aided_settings, flown, _readings_at(
             flown.states.t_ns, run.imu.t_ns, run.imu.omega))
     source = _Source(settings, run, aiding,
                      read_motion(settings.motion_generator) if motion is None else motion)
@@ -84,8 +87,8 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
 
 
 def _as_published(topic, settings, aiding):
-    if topic is topics.IMU_RAW:
-        return topics.imu_raw(*reported_variances(settings.imu_sensor))
+    if topic in (topics.IMU_RAW, topics.IMU_DATA):
+        return topics.imu_raw(*reported_variances(settings.imu_sensor), topic)
     return topic if aiding is None else aiding.as_published(topic)
 
 
@@ -105,6 +108,7 @@ class _Source:
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
         self._instant = SampleClock(strapdown, period_ns(strapdown.rate_hz)).instant
         self._run, self._aiding = run, aiding
+        self._known = CovarianceSource(settings, run, motion)
         self._parity = None
         if run.imu.parity is not None:
             self._parity = parity_rows(
@@ -126,7 +130,8 @@ class _Source:
         for record, values in (
                 (truth, convert.truth_blocks(self._truth_frame, truth)),
                 (imu, convert.imu_block(imu)),
-                (states, convert.state_blocks(self._frame, states, self._rates(states))),
+                (states, convert.state_blocks(self._frame, states, self._readings(states),
+                                              self._known.at(states.t_ns))),
                 (errors, convert.error_blocks(errors))):
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
@@ -135,14 +140,15 @@ class _Source:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
 
-    def _rates(self, states):
-        """Return the readings of the gyros at the instants of a part of the solution."""
+    def _readings(self, states):
+        """Return the ImuSamples at the instants of a part of the solution."""
         if not len(states):
-            return np.empty((0, 3))
+            return self._run.imu[:0]
         imu, instant = self._run.imu, self._instant
         near = imu[bisect_left(imu.t_ns, states.t_ns[0], key=instant):
                    bisect_right(imu.t_ns, states.t_ns[-1], key=instant)]
-        return _rates_at(states.t_ns, instant(near.t_ns), near.omega)
+        return ImuSamples(states.t_ns, *(_readings_at(states.t_ns, instant(near.t_ns), x)
+                                         for x in (near.omega, near.f)))
 
 
 def _between(t_ns, begin, end):
@@ -150,9 +156,9 @@ def _between(t_ns, begin, end):
     return slice(bisect_left(t_ns, begin), bisect_left(t_ns, end))
 
 
-def _rates_at(t_ns, instants_ns, omega):
-    """Return the readings of the gyros (n, 3) at instants t_ns, zero where there is none."""
+def _readings_at(t_ns, instants_ns, readings):
+    """Return the readings (n, 3) at instants t_ns, zero where there is none."""
     if not len(instants_ns):
         return np.zeros((len(t_ns), 3))
     k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)
-    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], omega[k], 0.0)
+    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], readings[k], 0.0)

@@ -76,6 +76,8 @@ class StrapdownSettings(SettingsGroup):
                             choices=('stamp', 'nominal'))
     imu_latency_us: float = setting(0.0, 'known latency of the stamps, taken off before the '
                                     'nominal instant is found', 'us', -1e6, 1e6)
+    imu_data: bool = setting(False, 'publish imu/data: imu/data_raw with the orientation of the '
+                             'INS and its covariance')
     output_every: int = setting(1, 'publish every n-th step', 'steps', 1, 1000000)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew from truth (reset) or end the node (stop)',

@@ -84,25 +84,26 @@ class FreeCovariance:
     held : whether height and vertical velocity come from the truth
     damping : as of ``coefficients``
     dt_s : sampling period, s
-    seen : called with this object at the start and after each step, or None
+    show : function of this object, called at the start and after each step, or None
 
     Attributes
     ----------
     p : (27, 27), replaced at each step and never changed, as is
     mean : (9,) error that is the same in every run
     t_ns, solution : its instant, and lat, lon, height, v_n, q_nb then
+    show : as given; shown : what it has returned last
 
     """
 
-    def __init__(self, variances, densities, errors, fixed, spin, held, damping, dt_s, seen=None):
+    def __init__(self, variances, densities, errors, fixed, spin, held, damping, dt_s, show=None):
         self._variances = np.maximum(variances, KNOWN * KNOWN)
         self._errors, self._fixed = np.array(errors, dtype=float), fixed
         self._densities = np.array(densities, dtype=float)
         self._spin, self._held, self._damping = spin, held, damping
         self._step_s = min(STEP_S, 0.5 / damping[0]) if damping[0] else STEP_S
         self._every = max(1, int(self._step_s / dt_s + 1e-6))
-        self._seen = seen
-        self.p = self.mean = self.t_ns = self.solution = None
+        self.show = show
+        self.p = self.mean = self.t_ns = self.solution = self.shown = None
 
     def begin(self, t_ns, solution):
         """Begin at the start of a navigator; solution: lat, lon, height, v_n, q_nb."""
@@ -120,8 +121,8 @@ class FreeCovariance:
         if self._held:
             mean[list(UP)] = 0.0
         self._count, self._sums = 0, NOTHING
-        if self._seen is not None:
-            self._seen(self)
+        if self.show is not None:
+            self.shown = self.show(self)
 
     def _level(self, p):
         """Hold the up rows where the vertical channel is that of the truth, as the ESKF does."""

@@ -61,6 +61,7 @@ class Truth(PlacedHistory):
     omega_ib_b: np.ndarray
     f_ib_b: np.ndarray
 
+
 @dataclass(frozen=True, eq=False)
 class ImuSamples(History):
     """
