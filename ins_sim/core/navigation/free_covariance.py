@@ -113,7 +113,8 @@ class FreeCovariance:
         turn = np.eye(SIZE)
         turn[6, 1], turn[7, 0], turn[8, 0] = -a, -b, -c
         mean = applied(turn[:GROWING, :GROWING], mean)
-        self._keep(t_ns, product(product(turn, p), turn.T), mean, solution)
+        p = product(product(turn, p), turn.T)
+        self._keep(t_ns, 0.5 * (p + p.T), mean, solution)
         self._last_ns = t_ns
 
     def _keep(self, t_ns, p, mean, solution):
@@ -146,6 +147,8 @@ class FreeCovariance:
 
     def take_block(self, t_ns, omega, f, states):
         """Take readings (n,), (n, 3), (n, 3) and their NavStates; the bits are those of take."""
+        if not len(t_ns):
+            return
         dt = np.diff(t_ns, prepend=self._last_ns) * 1e-9
         turned = (abs(omega[:, 0]) + abs(omega[:, 1]) + abs(omega[:, 2])) * dt
         parts = np.concatenate([omega * dt[:, None], f * dt[:, None], turned[:, None]], axis=1)
@@ -159,8 +162,7 @@ class FreeCovariance:
             first += taken
             if len(over) or self._count >= self._every:
                 self._step(int(t_ns[first - 1]), states.one(first - 1))
-        if len(t_ns):
-            self._last_ns = int(t_ns[-1])
+        self._last_ns = int(t_ns[-1])
 
     def _step(self, t_ns, solution):
         lat, _, height, v, q_nb = solution
