@@ -15,6 +15,7 @@ from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest_name
+from .environment import environment_topics, EnvironmentSensors
 from .motion import read_motion
 from .simulated_aiding import AidingSource
 from .simulated_covariance import CovarianceSource
@@ -33,7 +34,8 @@ def published_topics(settings, aided=False):
     data = (topics.IMU_DATA,) if settings.strapdown.imu_data else ()
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
-    return (*clock, *topics.DATA, *data, *parity, *(topics.AIDING if aided else ()))
+    around = environment_topics(settings.imu_sensor)
+    return (*clock, *topics.DATA, *data, *around, *parity, *(topics.AIDING if aided else ()))
 
 
 def select_topics(settings, names, aided=False):
@@ -89,6 +91,8 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
 def _as_published(topic, settings, aiding):
     if topic in (topics.IMU_RAW, topics.IMU_DATA):
         return topics.imu_raw(*reported_variances(settings.imu_sensor), topic)
+    if topic in (topics.IMU_MAG, topics.IMU_PRESSURE):
+        return EnvironmentSensors(settings.imu_sensor).topics[topic]
     return topic if aiding is None else aiding.as_published(topic)
 
 
@@ -108,6 +112,7 @@ class _Source:
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
         self._instant = SampleClock(strapdown, period_ns(strapdown.rate_hz)).instant
         self._run, self._aiding = run, aiding
+        self._environment = EnvironmentSensors(settings.imu_sensor)
         self._known = CovarianceSource(settings, run, motion)
         self._parity = None
         if run.imu.parity is not None:
@@ -136,9 +141,22 @@ class _Source:
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
             blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
+        blocks.update(self._around(truth, blocks[topics.TRUTH_ODOMETRY][1]))
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
+
+    def _around(self, truth, odometry):
+        """Return {Topic: (instants, values)} of magnetometer and barometer, by the messages."""
+        found = {topic: ([], []) for topic in self._environment.topics}
+        if found:
+            for t_ns, row in zip(truth.t_ns.tolist(), odometry.tolist()):
+                for topic, run in self._environment.read(t_ns, row[0:3], row[3:7], row[7:10]):
+                    found[topic][0].append(t_ns)
+                    found[topic][1].append(run)
+        return {topic: (np.array(stamps, dtype=np.int64),
+                        np.array(runs).reshape(len(stamps), -1))
+                for topic, (stamps, runs) in found.items()}
 
     def _readings(self, states):
         """Return the ImuSamples at the instants of a part of the solution."""

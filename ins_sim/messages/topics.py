@@ -8,6 +8,8 @@ from .cdr import Reader, Writer
 IMU = 'sensor_msgs/msg/Imu'
 ODOMETRY = 'nav_msgs/msg/Odometry'
 FIX = 'sensor_msgs/msg/NavSatFix'
+MAGNETIC = 'sensor_msgs/msg/MagneticField'
+PRESSURE = 'sensor_msgs/msg/FluidPressure'
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
 QUATERNION = 'geometry_msgs/msg/QuaternionStamped'
 HEADER = 'std_msgs/msg/Header'
@@ -21,6 +23,8 @@ UNMEASURED = 1e9
 # Variances that the truth states, since filters take zero for unknown or divide by it: of 1 mm,
 # 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2.  A perfect IMU states the last two.
 TRUE_PLACE, TRUE_VELOCITY, TRUE_ATTITUDE, TRUE_RATE, TRUE_FORCE = 1e-6, 1e-6, 1e-8, 1e-12, 1e-10
+# Those of a perfect magnetometer and barometer, of 1 nT and 0.01 Pa.
+TRUE_FIELD, TRUE_PRESSURE = 1e-18, 1e-4
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,9 @@ IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13,
 IMU_PARITY = Topic('imu/parity', VECTOR, ('imu_link',))
 # what imu/data_raw holds, with the orientation of the INS (REP-145)
 IMU_DATA = Topic('imu/data', IMU, ('imu_link',), (), ((0, 4), (4, 13), (13, 16), (25, 28)))
+# field in b, T; static pressure, Pa
+IMU_MAG = Topic('imu/mag', MAGNETIC, ('imu_link',))
+IMU_PRESSURE = Topic('imu/pressure', PRESSURE, ('imu_link',))
 # pose and twist, each followed by its covariance
 _WITH_COVARIANCE = ((0, 7), (7, 43), (43, 49), (49, 85))
 INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'), (), _WITH_COVARIANCE)
@@ -132,3 +139,10 @@ def imu_raw(rate_variance, force_variance, topic=IMU_RAW):
     variances = (*(max(v, TRUE_RATE) for v in rate_variance),
                  *(max(v, TRUE_FORCE) for v in force_variance))
     return replace(topic, constants=(*topic.constants, *zip((16, 20, 24, 28, 32, 36), variances)))
+
+
+def with_variance(topic, variance):
+    """Return IMU_MAG or IMU_PRESSURE with the variance of each number, T^2 or Pa^2, not zero."""
+    if topic is IMU_PRESSURE:
+        return replace(topic, constants=((1, max(variance, TRUE_PRESSURE)),))
+    return replace(topic, constants=_diagonal(3, 3, max(variance, TRUE_FIELD)))
