@@ -225,9 +225,9 @@ def test_the_status_of_a_fix_as_ros_reads_it():
                           [0.05 * 0.05, 0.06 * 0.06, 0.1 * 0.1, 1e9, 1e9, 1e9])
     small = (1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 0.0, 1e-6)
     known = (4.0, 1.0, 0.0, 1.0, 4.0, 0.0, 0.0, 0.0, 9.0)
-    for topic, given, covariance, kind in ((topics.TRUTH_FIX, (), small, b'\x02'),
-                                           (topics.INS_FIX, (known,), known, b'\x03')):
-        data = topic.writer().pack(3, (1.0, 2.0, 3.0), *given)
+    for topic, run, covariance, kind in ((topics.TRUTH_FIX, (), small, b'\x02'),
+                                         (topics.INS_FIX, (known,), known, b'\x03')):
+        data = topic.writer().pack(3, (1.0, 2.0, 3.0), *run)
         assert data == (b'\x00\x01\x00\x00' + struct.pack('<iI', 0, 3) + b'\x0a\x00\x00\x00'
                         b'base_link\x00' + bytes(10)
                         + struct.pack('<12d', 1.0, 2.0, 3.0, *covariance) + kind)

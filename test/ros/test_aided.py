@@ -88,7 +88,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         sigmas = [s[k] for s in (errors.position_sigma, errors.velocity_sigma,
                                  errors.attitude_sigma)]
         odometry = aided_odometry_one(frame, solution, (0.0, 0.0, 0.0), sigmas,
-                                       rate_variance(settings.aided_navigator))
+                                      rate_variance(settings.aided_navigator))
         x, z = route.to_xz(*solution[:2], 0)
         rows = (np.concatenate(odometry), np.concatenate(aided_fix_one(solution, sigmas)),
                 errors.attitude[k], errors.velocity[k], errors.position[k],

@@ -16,18 +16,21 @@ class PeriodicSensor:
     """
     A sensor that takes the first sample of the truth in each of its periods.
 
+    A sample that is repeated is answered again.
+
     rate_hz: of the sensor; noise: IndexedNoise of its samples.
     """
 
     def __init__(self, rate_hz, noise):
-        self._period_ns, self._noise, self._last = period_ns(rate_hz), noise, None
+        self._period_ns, self._noise = period_ns(rate_hz), noise
+        self._index = self._taken_ns = None
 
     def due(self, t_ns):
         """Return the noise of the sample at motion time t_ns, or None where there is none."""
         index = t_ns // self._period_ns
-        if index == self._last:
+        if index == self._index and t_ns != self._taken_ns:
             return None
-        self._last = index
+        self._index, self._taken_ns = index, t_ns
         return self._noise.normal(index)
 
 

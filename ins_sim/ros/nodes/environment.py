@@ -17,7 +17,7 @@ class EnvironmentPublisher:
             topic: (qos.make_publisher(node, topic, node.depth).publish, own.writer().pack)
             for topic, own in self._sensors.topics.items()}
         self.queue = DrivingQueue(node, topics.TRUTH_ODOMETRY, node.depth,
-                                  node.guarded(self._on_truth), lambda: None, lambda: True)
+                                  node.guarded(self._on_truth), lambda: None, node.nobody_waits)
 
     def reset(self):
         """Start anew with the next sample."""

@@ -47,11 +47,15 @@ class StageNode(Node):
         # whoever waits for an answer waits for every one of them: only then nothing may be lost
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
                                    self.guarded(self.on_drained),
-                                   lambda: not self._ack_publisher.get_subscription_count(),
+                                   self.nobody_waits,
                                    LINGER_S)
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
         self.monitor.add(SolePublishers(self, queues).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
+
+    def nobody_waits(self):
+        """Return whether nobody waits for the acknowledgements of this node."""
+        return not self._ack_publisher.get_subscription_count()
 
     def hand_queues(self):
         """Return {topic name: HandQueue} of what is taken beside the driver."""
