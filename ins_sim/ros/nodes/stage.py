@@ -15,6 +15,7 @@ from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_FAULT, Stop
 from ..transport import qos
 from ..transport.backlog import DrivingQueue, LINGER_S
+from ..transport.qos_overrides import subscribe
 
 
 class StageNode(Node):
@@ -42,8 +43,7 @@ class StageNode(Node):
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self.create_subscription(String, topics.STATUS.name, self._on_status,
-                                 qos.latched_profile())
+        subscribe(self, String, topics.STATUS.name, self._on_status, qos.latched_profile())
         # whoever waits for an answer waits for every one of them: only then nothing may be lost
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
                                    self.guarded(self.on_drained),
