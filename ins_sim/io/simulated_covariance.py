@@ -1,10 +1,13 @@
 """The covariances of ins/* of an offline run, which are found as its messages are written."""
 
 from collections import deque
+import warnings
 
 import numpy as np
 
-from ins_sim.core.simulation.free_covariance import published_covariance, PublishedCovariance
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.simulation.free_covariance import (disagreement, published_covariance,
+                                                     PublishedCovariance)
 from ins_sim.core.simulation.inertial import navigate_blocks
 
 
@@ -17,6 +20,9 @@ class CovarianceSource:
     """
 
     def __init__(self, settings, run, motion):
+        sentence = disagreement(settings.strapdown, reported_variances(settings.imu_sensor))
+        if sentence:
+            warnings.warn(sentence, stacklevel=2)
         self._free = published_covariance(settings.strapdown)
         self._steps, self._show = deque(), self._free.show
         self._free.show = self._note

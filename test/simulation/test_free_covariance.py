@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from support.covariances import ratios, settings_of, SIGMAS, steps_of
 
+from ins_sim import parameter_files, resources
 from ins_sim.core.navigation.free_covariance import SIZE
 from ins_sim.core.navigation.navigator import InertialNavigator
-from ins_sim.core.simulation.free_covariance import free_covariance, published_covariance
+from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.simulation.free_covariance import (disagreement, free_covariance,
+                                                     published_covariance)
 from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.io.motion import read_motion
 
@@ -133,6 +136,18 @@ def test_what_is_published_belongs_to_the_step_before():
         2 * 0.05 ** 2 + (speed * 1.5e-3) ** 2 + (speed * 3e-4) ** 2, rel=1e-3)
     assert all(is_positive(np.reshape(m, (n, n))) for m, n in (
         (known.pose, 6), (known.velocity, 3), (known.rate, 3), (known.place, 3)))
+
+
+@pytest.mark.parametrize('name', ['default', FOG, MEMS, 'imu_navigation_rlg', 'imu_tactical_dtg',
+                                  'grade_tactical', 'grade_mid', 'grade_navigation'])
+def test_the_files_describe_one_imu_to_both_nodes(name):
+    """What imu/data_raw states is what the strapdown expects; of another IMU it is said."""
+    settings = parameter_files.read([resources.parameter_file(name)])
+    stated = reported_variances(settings.imu_sensor)
+    assert disagreement(settings.strapdown, stated) == ''
+    assert disagreement(settings.strapdown, (stated[0], (1.0, 1.0, 1.0))).startswith(
+        'imu/data_raw states a noise of 1 m/s^2 a sample on axis x, and accelerometer.errors of '
+        'strapdown have ')
 
 
 def test_figures_that_do_not_fit_are_refused():

@@ -15,6 +15,9 @@ from ins_sim.core.numerics.fixed_order import product
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.error_sigmas import fixed_errors, triad_sigmas
 
+# Variances up to here, (rad/s)^2 and (m/s^2)^2, are what is stated of what has no noise.
+ALMOST_EXACT = 1e-11, 1e-9
+
 
 def sigmas_of(settings):
     """Return the TriadSigmas of gyros and accelerometers of StrapdownSettings."""
@@ -47,6 +50,24 @@ def free_covariance(settings, show=None):
         ellipsoid.rotation_rate(settings.earth.rotation), channel == 'truth',
         damping(settings.vertical.time_constant_s)[:2] if channel == 'damped' else (0.0, 0.0),
         period_ns(settings.rate_hz) * 1e-9, show)
+
+
+def disagreement(settings, stated):
+    """
+    Return in what an IMU is not the one that StrapdownSettings describe, or ''.
+
+    stated: variances of a sample by axis that its messages state, (rad/s)^2 and (m/s^2)^2; they
+    disagree from a factor of two of the standard deviations on, the least that is stated apart.
+    """
+    for unit, name, said, known, least in zip(('rad/s', 'm/s^2'), ('gyro', 'accelerometer'),
+                                              stated, sigmas_of(settings), ALMOST_EXACT):
+        for axis, one, other in zip('xyz', said, known.sample):
+            if max(one, other) > least and not 0.25 * one <= other <= 4.0 * one:
+                return (f'imu/data_raw states a noise of {math.sqrt(max(0.0, one)):.3g} {unit} a '
+                        f'sample on axis {axis}, and {name}.errors of strapdown have '
+                        f'{math.sqrt(other):.3g} {unit}; expected the figures of this IMU: the '
+                        'covariances of ins/* are those of another one')
+    return ''
 
 
 class PublishedCovariance(NamedTuple):
