@@ -9,9 +9,14 @@ from .magnetic_field import magnetic_field
 
 
 def environment_topics(settings):
-    """Return the Topics of the sensors that ImuSensorSettings switch on."""
+    """
+    Return the Topics of the sensors that ImuSensorSettings switch on.
+
+    Raises ValueError where the model of the magnetic field is asked for and missing.
+    """
     found = ()
     if settings.magnetometer.publish:
+        magnetic_field(settings.magnetometer.year)
         found += (topics.IMU_MAG,)
     if settings.barometer.publish:
         found += (topics.IMU_PRESSURE,)
@@ -22,8 +27,8 @@ class EnvironmentSensors:
     """
     The magnetometer and the barometer of ImuSensorSettings.
 
-    topics: {Topic: the same with the variance of its sensor}.  Raises ValueError where the model
-    of the magnetic field is missing.
+    topics: {Topic: the same with the variance of its sensor}.  Raises ValueError as
+    ``environment_topics``.
     """
 
     def __init__(self, settings):

@@ -16,7 +16,7 @@ from .error_dynamics import change, GROWING, inertial_rows, turn_by_position
 
 P, V, PHI, UP = slice(0, 3), slice(3, 6), slice(6, 9), (2, 5)
 BA, BG, SA, SG, MA, MG = (slice(k, k + 3) for k in range(9, 27, 3))
-SIZE, SHARED = 27, 15
+SIZE = 27
 # A step ends after so long, s, or after so much of a turn, rad: its coefficients are those of its
 # middle.
 STEP_S, STEP_RAD = 0.5, 0.6
@@ -24,8 +24,8 @@ STEP_S, STEP_RAD = 0.5, 0.6
 # instruments m/s^2, rad/s, 1 and rad).
 KNOWN = np.array((1e-3,) * 3 + (1e-5,) * 3 + (1e-8,) * 3 + (1e-9,) * 3 + (1e-12,) * 3
                  + (1e-12,) * 12)
+NONE = (0.0,) * 12
 DIAGONAL = slice(None, None, SIZE + 1)
-NOTHING = (0.0,) * 7
 
 
 def coefficients(lat, height, v, c, f_b, omega_b, spin, damping):
@@ -36,38 +36,44 @@ def coefficients(lat, height, v, c, f_b, omega_b, spin, damping):
     c2 of a damped vertical channel, by which the height error acts on its rate and on that of the
     vertical velocity, or zero.
     """
-    f = np.empty((GROWING, SIZE))
-    c_ex, c_ey, c_ez, c_nx, c_ny, c_nz, c_ux, c_uy, c_uz = c
+    c_e, c_n, c_u = c[0:3], c[3:6], c[6:9]
     x, y, z = f_b
-    f_n = (c_ex * x + c_ey * y + c_ez * z, c_nx * x + c_ny * y + c_nz * z,
-           c_ux * x + c_uy * y + c_uz * z)
-    f[:, :SHARED] = inertial_rows(lat, height, v, c, f_n, spin)
-    f[:, SHARED:] = 0.0
+    f_n = [row[0] * x + row[1] * y + row[2] * z for row in (c_e, c_n, c_u)]
+    rows = inertial_rows(lat, height, v, c, f_n, spin)
+    f = np.array((
+        *(row + NONE for row in rows[0:3]),
+        *(row + (*by, 0.0, 0.0, 0.0, *turned, 0.0, 0.0, 0.0) for row, (by, turned) in zip(
+            rows[3:6], (_by_reading(axes, f_b) for axes in (c_e, c_n, c_u)))),
+        *(row + (0.0, 0.0, 0.0, *by, 0.0, 0.0, 0.0, *turned) for row, (by, turned) in zip(
+            rows[6:9], (_by_reading(axes, omega_b) for axes in (c_e, c_n, c_u))))))
     f[2, 2] -= damping[0]
     f[5, 2] -= damping[1]
-    c_nb = np.array(c).reshape(3, 3)
-    for rows, reading, scale, turned in ((V, f_b, SA, MA), (PHI, omega_b, SG, MG)):
-        a, b, d = reading
-        f[rows, scale] = c_nb * np.array(reading)
-        # C times the matrix of (reading x)
-        f[rows, turned] = product(c_nb, np.array(((0.0, -d, b), (d, 0.0, -a), (-b, a, 0.0))))
     return f
+
+
+def _by_reading(row, reading):
+    """Return a row of C times the diagonal matrix of a reading, and times that of (reading x)."""
+    p, q, r = row
+    x, y, z = reading
+    return (p * x, q * y, r * z), (q * z - r * y, r * x - p * z, p * y - q * x)
 
 
 def grown(p, n, noise):
     """
-    Return the covariance after a step: (1 + N) (P + Q/2) (1 + N)' + Q/2, symmetric.
+    Return the covariance after a step: (1 + N) (P + Q/2) (1 + N)' + Q/2, symmetric as P is.
 
     n: ``change`` of the coefficients; noise (27,): diagonal of Q, what white noise adds in a step.
     """
     half = 0.5 * noise
-    left = p.copy()
-    left.reshape(-1)[DIAGONAL] += half
-    left[:GROWING] += product(n, left)
-    both = left.copy()
-    both[:, :GROWING] += product(left, n.T)
-    both.reshape(-1)[DIAGONAL] += half
-    return 0.5 * (both + both.T)
+    p = p.copy()
+    p.reshape(-1)[DIAGONAL] += half
+    moved = product(n, p)
+    square, both = moved[:, :GROWING], product(moved, n.T)
+    p[:GROWING, :GROWING] += (square + square.T) + 0.5 * (both + both.T)
+    p[:GROWING, GROWING:] += moved[:, GROWING:]
+    p[GROWING:, :GROWING] = p[:GROWING, GROWING:].T
+    p.reshape(-1)[DIAGONAL] += half
+    return p
 
 
 class FreeCovariance:
@@ -121,7 +127,7 @@ class FreeCovariance:
         self.p, self.mean, self.t_ns, self.solution = self._level(p), mean, t_ns, solution
         if self._held:
             mean[list(UP)] = 0.0
-        self._count, self._sums = 0, NOTHING
+        self._readings, self._turned = [], 0.0
         if self.show is not None:
             self.shown = self.show(self)
 
@@ -138,11 +144,9 @@ class FreeCovariance:
         dt = (t_ns - self._last_ns) * 1e-9
         self._last_ns = t_ns
         x, y, z = omega
-        a, b, c, d, e, g, turned = self._sums
-        self._sums = (a + x * dt, b + y * dt, c + z * dt, d + f[0] * dt, e + f[1] * dt,
-                      g + f[2] * dt, turned + (abs(x) + abs(y) + abs(z)) * dt)
-        self._count += 1
-        if self._count >= self._every or self._sums[6] >= STEP_RAD:
+        self._readings.append((*omega, *f, dt))
+        self._turned += (abs(x) + abs(y) + abs(z)) * dt
+        if len(self._readings) >= self._every or self._turned >= STEP_RAD:
             self._step(t_ns, navigator.solution)
 
     def take_block(self, t_ns, omega, f, states):
@@ -150,17 +154,19 @@ class FreeCovariance:
         if not len(t_ns):
             return
         dt = np.diff(t_ns, prepend=self._last_ns) * 1e-9
-        turned = (abs(omega[:, 0]) + abs(omega[:, 1]) + abs(omega[:, 2])) * dt
-        parts = np.concatenate([omega * dt[:, None], f * dt[:, None], turned[:, None]], axis=1)
+        rows = np.column_stack((omega, f, dt)).tolist()
+        turns = (abs(omega[:, 0]) + abs(omega[:, 1]) + abs(omega[:, 2])) * dt
         first = 0
         while first < len(t_ns):
-            stop = min(len(t_ns), first + self._every - self._count)
-            sums = np.add.accumulate(np.concatenate([[self._sums], parts[first:stop]]))[1:]
-            over = np.flatnonzero(sums[:, 6] >= STEP_RAD)
-            taken = int(over[0]) + 1 if len(over) else stop - first
-            self._sums, self._count = tuple(sums[taken - 1].tolist()), self._count + taken
-            first += taken
-            if len(over) or self._count >= self._every:
+            stop = min(len(t_ns), first + self._every - len(self._readings))
+            turned = np.add.accumulate(np.concatenate([[self._turned], turns[first:stop]]))[1:]
+            over = np.flatnonzero(turned >= STEP_RAD)
+            if len(over):
+                stop = first + int(over[0]) + 1
+            self._readings += rows[first:stop]
+            self._turned = float(turned[stop - first - 1])
+            first = stop
+            if len(over) or len(self._readings) >= self._every:
                 self._step(int(t_ns[first - 1]), states.one(first - 1))
         self._last_ns = int(t_ns[-1])
 
@@ -169,7 +175,8 @@ class FreeCovariance:
         _, _, _, v_start, q_start = self.solution
         time_s = (t_ns - self.t_ns) * 1e-9
         per_s = 1.0 / time_s
-        x, y, z, a, b, c, _ = self._sums
+        rows = np.array(self._readings)
+        x, y, z, a, b, c = np.add.accumulate(rows[:, :6] * rows[:, 6:])[-1].tolist()
         c_nb = dcm_of(middle_attitude(q_start, q_nb))
         middle = (0.5 * (v_start[0] + v[0]), 0.5 * (v_start[1] + v[1]),
                   0.5 * (v_start[2] + v[2]))
