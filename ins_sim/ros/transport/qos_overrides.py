@@ -37,13 +37,17 @@ def given(node, name, kind):
 
     Raises ValueError, one sentence, for a policy that cannot be set, or not to that value.
     """
-    prefix = f'{PREFIX}{node.resolve_topic_name(name)}.{kind}.'
-    found = {}
-    for key, parameter in node._parameter_overrides.items():
-        if key.startswith(prefix):
-            policy = key[len(prefix):]
-            found[policy] = _checked(key, policy, parameter.value)
-    return found
+    overrides = {key: parameter.value for key, parameter in node._parameter_overrides.items()
+                 if key.startswith(PREFIX)}
+    if not overrides:
+        return {}
+    try:
+        prefix = f'{PREFIX}{node.resolve_topic_name(name)}.{kind}.'
+    except RuntimeError:
+        # a name that is none: rclpy refuses it in its own words when the entity is made
+        return {}
+    return {key[len(prefix):]: _checked(key, key[len(prefix):], value)
+            for key, value in overrides.items() if key.startswith(prefix)}
 
 
 def _checked(key, policy, value):
