@@ -7,7 +7,7 @@ import textwrap
 from ins_sim.settings.aided_navigator import AidedNavigatorSettings
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.by_node import ALL_NODES
-from ins_sim.settings.presets import PRESETS
+from ins_sim.settings.presets import PRESETS, strapdown_values
 from ins_sim.settings.motion import MotionGeneratorSettings
 
 SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
@@ -78,9 +78,11 @@ def preset_document(preset):
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
             '/**/imu_sensor:', '  ros__parameters:']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
+    out += ['', '# The covariances of ins/* are of the same instrument.', '/**/strapdown:',
+            '  ros__parameters:']
+    out += [f'    {key}: {text(value)}' for key, value in strapdown_values(preset).items()]
     if 'output' in preset.values:
-        out += ['', '/**/strapdown:', '  ros__parameters:',
-                f'    input: {preset.values["output"]}']
+        out += [f'    input: {preset.values["output"]}']
     return '\n'.join(out) + '\n'
 
 

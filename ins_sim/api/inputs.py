@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal, overload, Union
 
 from ins_sim import parameter_files, resources
-from ins_sim.settings.presets import preset, PRESETS
+from ins_sim.settings.presets import preset, PRESETS, strapdown_values
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 
 Name = Union[str, 'os.PathLike[str]']
@@ -151,4 +151,6 @@ def presets(name: str | None = None) -> dict[str, Any]:
         raise ValueError(f'name is {name!r}; expected one of {", ".join(PRESETS)}')
     if name is None:
         return {key: entry.datasheet for key, entry in PRESETS.items()}
-    return {f'imu_sensor:{key}': value for key, value in preset(name).items()}
+    return {**{f'imu_sensor:{key}': value for key, value in preset(name).items()},
+            **{f'strapdown:{key}': value
+               for key, value in strapdown_values(PRESETS[name]).items()}}

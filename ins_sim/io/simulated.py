@@ -11,11 +11,14 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
+from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.settings.suggest import nearest_name
+from .environment import environment_topics, EnvironmentSensors
 from .motion import read_motion
 from .simulated_aiding import AidingSource
+from .simulated_covariance import CovarianceSource
 
 # samples of the generator that are in memory as messages at once
 WINDOW = 4096
@@ -28,10 +31,13 @@ def published_topics(settings, aided=False):
 
     aided: velocity_meter, gnss and aided_navigator too.
     """
+    data = (topics.IMU_DATA,) if settings.strapdown.imu_data else ()
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
+    around = environment_topics(settings.imu_sensor)
     guidance = topics.GUIDANCE if settings.motion_generator.motion.kind == 'guided' else ()
-    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()), *guidance)
+    return (*clock, *topics.DATA, *data, *around, *parity, *(topics.AIDING if aided else ()),
+            *guidance)
 
 
 def select_topics(settings, names, aided=False):
@@ -68,7 +74,7 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
     aiding = None
     if aided is not None:
         aided_settings, flown = aided
-        aiding = AidingSource(aided_settings, flown, _rates_at(
+        aiding = AidingSource(aided_settings, flown, _readings_at(
             flown.states.t_ns, run.imu.t_ns, run.imu.omega))
     source = _Source(settings, run, aiding,
                      read_motion(settings.motion_generator) if motion is None else motion,
@@ -86,8 +92,10 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
 
 
 def _as_published(topic, settings, aiding):
-    if topic is topics.IMU_RAW:
-        return topics.imu_raw(*reported_variances(settings.imu_sensor))
+    if topic in (topics.IMU_RAW, topics.IMU_DATA):
+        return topics.imu_raw(*reported_variances(settings.imu_sensor), topic)
+    if topic in (topics.IMU_MAG, topics.IMU_PRESSURE):
+        return EnvironmentSensors(settings.imu_sensor).topics[topic]
     return topic if aiding is None else aiding.as_published(topic)
 
 
@@ -107,6 +115,8 @@ class _Source:
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
         self._instant = SampleClock(strapdown, period_ns(strapdown.rate_hz)).instant
         self._run, self._aiding = run, aiding
+        self._environment = EnvironmentSensors(settings.imu_sensor)
+        self._known = CovarianceSource(settings, run, motion)
         self._parity = None
         if run.imu.parity is not None:
             self._parity = parity_rows(
@@ -128,7 +138,8 @@ class _Source:
         for record, values in (
                 (truth, convert.truth_blocks(self._truth_frame, truth)),
                 (imu, convert.imu_block(imu)),
-                (states, convert.state_blocks(self._frame, states, self._rates(states))),
+                (states, convert.state_blocks(self._frame, states, self._readings(states),
+                                              self._known.at(states.t_ns))),
                 (errors, convert.error_blocks(errors))):
             blocks.update({topic: (record.t_ns, v) for topic, v in values.items()})
         if self._parity is not None:
@@ -138,18 +149,32 @@ class _Source:
             until = truth.t_ns[-1] if last else end
             commands = self._commands[_between(self._commands.t_ns, begin, until)]
             blocks[topics.GUIDANCE_COMMAND] = commands.t_ns, convert.command_block(commands)
+        blocks.update(self._around(truth, blocks[topics.TRUTH_ODOMETRY][1]))
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
         return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
 
-    def _rates(self, states):
-        """Return the readings of the gyros at the instants of a part of the solution."""
+    def _around(self, truth, odometry):
+        """Return {Topic: (instants, values)} of magnetometer and barometer, by the messages."""
+        found = {topic: ([], []) for topic in self._environment.topics}
+        if found:
+            for t_ns, row in zip(truth.t_ns.tolist(), odometry.tolist()):
+                for topic, run in self._environment.read(t_ns, row[0:3], row[3:7], row[7:10]):
+                    found[topic][0].append(t_ns)
+                    found[topic][1].append(run)
+        return {topic: (np.array(stamps, dtype=np.int64),
+                        np.array(runs).reshape(len(stamps), -1))
+                for topic, (stamps, runs) in found.items()}
+
+    def _readings(self, states):
+        """Return the ImuSamples at the instants of a part of the solution."""
         if not len(states):
-            return np.empty((0, 3))
+            return self._run.imu[:0]
         imu, instant = self._run.imu, self._instant
         near = imu[bisect_left(imu.t_ns, states.t_ns[0], key=instant):
                    bisect_right(imu.t_ns, states.t_ns[-1], key=instant)]
-        return _rates_at(states.t_ns, instant(near.t_ns), near.omega)
+        return ImuSamples(states.t_ns, *(_readings_at(states.t_ns, instant(near.t_ns), x)
+                                         for x in (near.omega, near.f)))
 
 
 def _between(t_ns, begin, end):
@@ -157,9 +182,9 @@ def _between(t_ns, begin, end):
     return slice(bisect_left(t_ns, begin), bisect_left(t_ns, end))
 
 
-def _rates_at(t_ns, instants_ns, omega):
-    """Return the readings of the gyros (n, 3) at instants t_ns, zero where there is none."""
+def _readings_at(t_ns, instants_ns, readings):
+    """Return the readings (n, 3) at instants t_ns, zero where there is none."""
     if not len(instants_ns):
         return np.zeros((len(t_ns), 3))
     k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)
-    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], omega[k], 0.0)
+    return np.where((instants_ns[k] == t_ns)[:, np.newaxis], readings[k], 0.0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ins_sim.core.aiding.reading_noise import rate_variance
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import convert, topics, velocity_record
@@ -22,6 +23,7 @@ class AidingSource:
         self._frame = MapFrame(navigator.datum, navigator.earth.rotation)
         self._route = GreatCircleRoute.of_points(navigator.motion.route.points)
         self._flown, self._omega, self._leg = flown, omega, 0
+        self._rate_variance = rate_variance(navigator)
         self._knows = not np.isnan(flown.errors.position_sigma).all()
         epoch_ns = settings.simulation.motion_generator.time.epoch_s * SECOND
         self._messages = {**_velocity_messages(flown.velocity_fixes, epoch_ns),
@@ -58,7 +60,7 @@ class AidingSource:
         for solution, rate, *sigmas in columns:
             sigmas = sigmas if self._knows else None
             odometry.append(_joined(convert.aided_odometry_one(self._frame, solution, rate,
-                                                               sigmas)))
+                                                               sigmas, self._rate_variance)))
             fixes.append(_joined(convert.aided_fix_one(solution, sigmas)))
             lat, lon, height = solution[:3]
             self._leg = self._route.leg_at(lat, lon, self._leg)

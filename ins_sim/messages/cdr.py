@@ -41,6 +41,8 @@ LAYOUTS = {
     'sensor_msgs/msg/Imu': Layout(1, 37, ((0, 4), (13, 16), (25, 28))),
     'nav_msgs/msg/Odometry': Layout(2, 85, ((0, 7), (43, 49))),
     'sensor_msgs/msg/NavSatFix': Layout(1, 12, ((0, 3),), True),
+    'sensor_msgs/msg/MagneticField': Layout(1, 12, ((0, 3),)),
+    'sensor_msgs/msg/FluidPressure': Layout(1, 2, ((0, 1),)),
     'geometry_msgs/msg/Vector3Stamped': Layout(1, 3, ((0, 3),)),
     'geometry_msgs/msg/QuaternionStamped': Layout(1, 4, ((0, 4),)),
     'geometry_msgs/msg/TwistStamped': Layout(1, 6, ((0, 6),)),

@@ -24,6 +24,9 @@ DOUBLES = {
     'nav_msgs/msg/Odometry': _POSE + _TWIST,
     'sensor_msgs/msg/NavSatFix': (
         ('latitude', 1), ('longitude', 1), ('altitude', 1), ('position_covariance', 9)),
+    'sensor_msgs/msg/MagneticField': (
+        ('magnetic_field', 3), ('magnetic_field_covariance', 9)),
+    'sensor_msgs/msg/FluidPressure': (('fluid_pressure', 1), ('variance', 1)),
     'geometry_msgs/msg/Vector3Stamped': (('vector', 3),),
     'geometry_msgs/msg/QuaternionStamped': (('quaternion', 4),),
     'geometry_msgs/msg/TwistStamped': _TWIST[:2],

@@ -11,6 +11,7 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import within_half_turn_deg
+from ins_sim.core.attitude.matrix import dcm_of, turned_back
 from . import topics
 
 # of what is published on aided/sigma/*
@@ -34,18 +35,26 @@ def imu_block(imu):
     return {topics.IMU_RAW: np.concatenate([imu.omega, imu.f], axis=1)}
 
 
-def state_blocks(frame, states, omega):
+def state_blocks(frame, states, imu, known):
     """
     Return {Topic: values} of NavStates.
 
-    omega (n, 3): the readings of the gyros at the same stamps, from which the angular velocity
-    of the odometry is the rate relative to the Earth.
+    imu: ImuSamples of the same stamps, from whose rates the angular velocity of the odometry is
+    that relative to the Earth; known: PublishedCovariance of arrays, of each state.
     """
     r_m, q_mb, v_b = frame.pose(states.lat, states.lon, states.height, states.v_n, states.q_nb)
+    velocity = turned_back(dcm_of(np.moveaxis(states.q_nb, -1, 0)), known.velocity.T)
+    twist = np.zeros((len(states), 6, 6))
+    twist[:, :3, :3] = np.stack(velocity, axis=-1).reshape(-1, 3, 3)
+    twist[:, 3:, 3:] = known.rate.reshape(-1, 3, 3)
     return {
         topics.INS_ODOMETRY: np.concatenate(
-            [r_m, q_mb, v_b, _rate_in_map(frame, q_mb, omega)], axis=1),
-        topics.INS_FIX: _fix(states),
+            [r_m, q_mb, known.pose, v_b, _rate_in_map(frame, q_mb, imu.omega),
+             twist.reshape(-1, 36)], axis=1),
+        topics.INS_FIX: np.concatenate([_fix(states), known.place], axis=1),
+        topics.IMU_DATA: np.concatenate(
+            [q_mb, known.pose.reshape(-1, 6, 6)[:, 3:, 3:].reshape(-1, 9), imu.omega, imu.f],
+            axis=1),
     }
 
 
@@ -67,8 +76,26 @@ def aided_error_blocks(errors):
         errors.attitude, errors.velocity, errors.position, *(SIGMAS * s for s in three))))
 
 
+def ins_odometry_one(frame, solution, omega, known):
+    """
+    Return the runs of ins/odometry.
+
+    solution: lat, lon, height, v_n, q_nb; omega: the reading of the gyros; known:
+    PublishedCovariance.
+    """
+    pose, twist = odometry_one(frame, solution, omega)
+    return (pose, known.pose, twist,
+            _blocks(turned_back(dcm_of(solution[4]), known.velocity), known.rate))
+
+
+def orientation_one(pose, known):
+    """Return the runs of the orientation of imu/data: of the pose of ins/odometry."""
+    c = known.pose
+    return pose[3:], (*c[21:24], *c[27:30], *c[33:36])
+
+
 def odometry_one(frame, solution, omega):
-    """Return the runs of ins/odometry: solution (lat, lon, height, v_n, q_nb), gyro reading."""
+    """Return pose and twist of an odometry: of a solution and a reading of the gyros."""
     r_m, q_mb, v_b = frame.pose_one(*solution)
     turn = quaternion.rotate_back(q_mb, frame.omega_ie_m)
     return (*r_m, *q_mb), (*v_b, omega[0] - turn[0], omega[1] - turn[1], omega[2] - turn[2])
@@ -82,25 +109,31 @@ def fix_one(solution):
     return math.degrees(solution[0]), lon_deg, solution[2]
 
 
-def aided_odometry_one(frame, solution, omega, sigmas):
+def aided_odometry_one(frame, solution, omega, sigmas, rate_variance):
     """
-    Return the runs of aided/odometry, those of ins/odometry each followed by its covariance.
+    Return the runs of aided/odometry, pose and twist each followed by its covariance.
 
     sigmas: of position (m), velocity (m/s) and attitude (rad) in East, North, Up, or None.  Their
-    covariances are turned into the axes of map and base_link, correlations being left out; those
-    of rates, and without sigmas of all, are zero: unknown.
+    covariances are turned into the axes of map and base_link, correlations being left out; what
+    has no sigmas is unknown.  rate_variance: of the angular velocity about each axis, (rad/s)^2.
     """
     pose, twist = odometry_one(frame, solution, omega)
+    rates = _diagonal(rate_variance)
     if sigmas is None:
-        return pose, _UNKNOWN, twist, _UNKNOWN
+        return pose, _blocks(_UNKNOWN, _UNKNOWN), twist, _blocks(_UNKNOWN, rates)
     q_nb = solution[4]
     q_mn = quaternion.multiply(pose[3:], quaternion.conjugate(q_nb))
     position, velocity, turned = sigmas
     return (pose, _blocks(_turned(q_mn, position), _turned(q_mn, turned)), twist,
-            _blocks(_turned(quaternion.conjugate(q_nb), velocity), _UNKNOWN[:9]))
+            _blocks(_turned(quaternion.conjugate(q_nb), velocity), rates))
 
 
-_UNKNOWN = (0.0,) * 36
+def _diagonal(variance):
+    """Return a covariance of 3 x 3 row by row, the same along each axis."""
+    return (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)
+
+
+_UNKNOWN = _diagonal(topics.UNMEASURED)
 
 
 def _turned(q, sigmas):
@@ -113,14 +146,14 @@ def _turned(q, sigmas):
 
 def _blocks(upper, lower):
     """Return the covariance of 6 x 6 with two blocks of 3 x 3 in its diagonal."""
-    nothing = [0.0] * 3
-    rows = [upper[k:k + 3] + nothing for k in (0, 3, 6)]
-    rows += [nothing + list(lower[k:k + 3]) for k in (0, 3, 6)]
-    return [x for row in rows for x in row]
+    a, b, c, d, e, f, g, h, i = upper
+    j, k, m, n, o, p, q, r, s = lower
+    return (a, b, c, 0.0, 0.0, 0.0, d, e, f, 0.0, 0.0, 0.0, g, h, i, 0.0, 0.0, 0.0,
+            0.0, 0.0, 0.0, j, k, m, 0.0, 0.0, 0.0, n, o, p, 0.0, 0.0, 0.0, q, r, s)
 
 
 def aided_fix_one(solution, sigmas):
-    """Return the runs of aided/fix: place and variances by East, North, Up, zero if unknown."""
+    """Return the runs of aided/fix: place and variances by East, North, Up; zero: unknown."""
     variances = ((s * s,) for s in (sigmas[0] if sigmas else (0.0,) * 3))
     return fix_one(solution), *variances
 

@@ -8,6 +8,8 @@ from .cdr import Reader, Writer
 IMU = 'sensor_msgs/msg/Imu'
 ODOMETRY = 'nav_msgs/msg/Odometry'
 FIX = 'sensor_msgs/msg/NavSatFix'
+MAGNETIC = 'sensor_msgs/msg/MagneticField'
+PRESSURE = 'sensor_msgs/msg/FluidPressure'
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
 QUATERNION = 'geometry_msgs/msg/QuaternionStamped'
 HEADER = 'std_msgs/msg/Header'
@@ -16,8 +18,13 @@ STRING = 'std_msgs/msg/String'
 TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 
-# the variance, (m/s)^2 or (rad/s)^2, of what is not measured
+# the variance, m^2, rad^2, (m/s)^2 or (rad/s)^2, of what is not measured or not known
 UNMEASURED = 1e9
+# Variances that the truth states, since filters take zero for unknown or divide by it: of 1 mm,
+# 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2.  A perfect IMU states the last two.
+TRUE_PLACE, TRUE_VELOCITY, TRUE_ATTITUDE, TRUE_RATE, TRUE_FORCE = 1e-6, 1e-6, 1e-8, 1e-12, 1e-10
+# Those of a perfect magnetometer and barometer, of 1 nT and 0.01 Pa.
+TRUE_FIELD, TRUE_PRESSURE = 1e-18, 1e-4
 
 
 @dataclass(frozen=True)
@@ -25,8 +32,8 @@ class Topic:
     """
     A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
 
-    constants: {index: value} of the doubles that a writer of it fills once; zero covariances
-    mean unknown, or exact for the truth.  numbers: those of a NavSatFix, see Writer.
+    constants: {index: value} of the doubles that a writer of it fills once.  numbers: those of a
+    NavSatFix, see Writer.
     """
 
     name: str
@@ -46,16 +53,35 @@ class Topic:
         return Reader(self.type_name, self.writer().runs if runs is None else runs)
 
 
-TRUTH_IMU = Topic('truth/imu', IMU, ('imu_link',))
-TRUTH_ODOMETRY = Topic('truth/odometry', ODOMETRY, ('map', 'base_link'))
+def _diagonal(first, size, *variances):
+    """Return constants of the diagonal of a covariance (size x size): three of each variance."""
+    return tuple((first + k * (size + 1), variances[k // 3]) for k in range(size))
+
+
+TRUTH_IMU = Topic('truth/imu', IMU, ('imu_link',),
+                  _diagonal(4, 3, TRUE_ATTITUDE) + _diagonal(16, 3, TRUE_RATE)
+                  + _diagonal(28, 3, TRUE_FORCE))
+TRUTH_ODOMETRY = Topic('truth/odometry', ODOMETRY, ('map', 'base_link'),
+                       _diagonal(7, 6, TRUE_PLACE, TRUE_ATTITUDE)
+                       + _diagonal(49, 6, TRUE_VELOCITY, TRUE_RATE))
 TRUTH_ATTITUDE = Topic('truth/attitude', QUATERNION, ('enu',))
-TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',))
+# its covariance is diagonal, known
+TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',), _diagonal(3, 3, TRUE_PLACE),
+                  numbers=(0, 0, 2))
 # an orientation that is not measured: identity, and -1 at the head of its covariance (REP-145)
 IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13, 16), (25, 28)))
 # x: parity of the reading, y: its mean over the last window, z: what that may be; rad/s
 IMU_PARITY = Topic('imu/parity', VECTOR, ('imu_link',))
-INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'))
-INS_FIX = Topic('ins/fix', FIX, ('base_link',))
+# what imu/data_raw holds, with the orientation of the INS (REP-145)
+IMU_DATA = Topic('imu/data', IMU, ('imu_link',), (), ((0, 4), (4, 13), (13, 16), (25, 28)))
+# field in b, T; static pressure, Pa
+IMU_MAG = Topic('imu/mag', MAGNETIC, ('imu_link',))
+IMU_PRESSURE = Topic('imu/pressure', PRESSURE, ('imu_link',))
+# pose and twist, each followed by its covariance
+_WITH_COVARIANCE = ((0, 7), (7, 43), (43, 49), (49, 85))
+INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'), (), _WITH_COVARIANCE)
+# its covariance is known
+INS_FIX = Topic('ins/fix', FIX, ('base_link',), (), ((0, 3), (3, 12)), (0, 0, 3))
 ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))
 ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('enu',))
 ERROR_POSITION = Topic('ins/error/position', VECTOR, ('enu',))
@@ -74,8 +100,7 @@ GNSS_NO_FIX = replace(GNSS_FIX, constants=tuple((k, nan) for k in range(3)), run
                       numbers=(-1, 1, 0))
 GNSS_VELOCITY = Topic('gnss/velocity', TWIST, ('enu',), _NO_RATE,
                       ((0, 3), (6, 7), (13, 14), (20, 21)))
-AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (),
-                       ((0, 7), (7, 43), (43, 49), (49, 85)))
+AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (), _WITH_COVARIANCE)
 # covariance diagonal, known, or of filters without one unknown
 AIDED_FIX = Topic('aided/fix', FIX, ('base_link',), (), GNSS_FIX.runs, (0, 0, 2))
 AIDED_FIX_ALONE = replace(AIDED_FIX, numbers=(0, 0, 0))
@@ -96,6 +121,8 @@ CLOCK_TOPIC = Topic('/clock', CLOCK)
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)
 DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
+# what is published where it is asked for, or with tuned gyros
+BESIDE = (IMU_DATA, IMU_MAG, IMU_PRESSURE, IMU_PARITY)
 # of velocity_meter, gnss and aided_navigator
 AIDING = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, AIDED_ODOMETRY, AIDED_FIX,
           *AIDED_ERRORS, *AIDED_SIGMAS, AIDED_ORTHODROME)
@@ -105,7 +132,19 @@ GUIDANCE = (GUIDANCE_COMMAND,)
 SELDOM = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, *AIDED_SIGMAS, *GUIDANCE)
 
 
-def imu_raw(rate_variance, force_variance):
-    """Return IMU_RAW with covariances: variances by axis, (rad/s)^2 and (m/s^2)^2."""
-    diagonals = zip((16, 20, 24, 28, 32, 36), (*rate_variance, *force_variance))
-    return replace(IMU_RAW, constants=(*IMU_RAW.constants, *diagonals))
+def imu_raw(rate_variance, force_variance, topic=IMU_RAW):
+    """
+    Return IMU_RAW, or IMU_DATA, with covariances: variances by axis, (rad/s)^2 and (m/s^2)^2.
+
+    None is less than that of the truth.
+    """
+    variances = (*(max(v, TRUE_RATE) for v in rate_variance),
+                 *(max(v, TRUE_FORCE) for v in force_variance))
+    return replace(topic, constants=(*topic.constants, *zip((16, 20, 24, 28, 32, 36), variances)))
+
+
+def with_variance(topic, variance):
+    """Return IMU_MAG or IMU_PRESSURE with the variance of each number, T^2 or Pa^2, not zero."""
+    if topic is IMU_PRESSURE:
+        return replace(topic, constants=((1, max(variance, TRUE_PRESSURE)),))
+    return replace(topic, constants=_diagonal(3, 3, max(variance, TRUE_FIELD)))

@@ -41,6 +41,27 @@ class Accelerometer(SettingsGroup):
     errors: AccelerometerErrors = group(AccelerometerErrors)
 
 
+@settings_class
+class MagnetometerSettings(SettingsGroup):
+    """The magnetometer beside the IMU, imu/mag: the World Magnetic Model (extra magnetic)."""
+
+    publish: bool = setting(False, 'publish imu/mag')
+    rate_hz: float = setting(50.0, 'its rate, at most that of the truth', 'Hz', 0.01, 20000.0)
+    noise_nt: float = setting(100.0, 'noise of a sample, standard deviation, each axis', 'nT',
+                              0.0, 1e6)
+    year: float = setting(2025.0, 'decimal year of the field, whatever the stamps', 'year',
+                          2025.0, 2030.0)
+
+
+@settings_class
+class BarometerSettings(SettingsGroup):
+    """The barometer beside the IMU, imu/pressure: the standard atmosphere."""
+
+    publish: bool = setting(False, 'publish imu/pressure')
+    rate_hz: float = setting(50.0, 'its rate, at most that of the truth', 'Hz', 0.01, 20000.0)
+    noise_pa: float = setting(2.0, 'noise of a sample, standard deviation', 'Pa', 0.0, 1e5)
+
+
 OUTPUTS = ('rotation_vector', 'integrated')
 
 
@@ -54,6 +75,8 @@ class ImuSensorSettings(SettingsGroup):
     motion: MotionSettings = group(MotionSettings)
     gyro: Gyro = group(Gyro)
     accelerometer: Accelerometer = group(Accelerometer)
+    magnetometer: MagnetometerSettings = group(MagnetometerSettings)
+    barometer: BarometerSettings = group(BarometerSettings)
     temperature: Temperature = group(Temperature)
     sampling: Sampling = group(Sampling)
     topics: Topics = group(Topics)

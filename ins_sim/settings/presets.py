@@ -167,6 +167,12 @@ def preset(name):
     return dict(PRESETS[name].values)
 
 
+def strapdown_values(entry):
+    """Return {dotted key of strapdown: value} of a Preset: the errors of which it knows."""
+    return {key: value for key, value in entry.values.items()
+            if key.startswith((GYRO, ACCELEROMETER))}
+
+
 def preset_triads(name):
     """Return (GyroErrors, AccelerometerErrors) of the preset of that name."""
     values = preset(name)

@@ -2,6 +2,7 @@
 
 from .field import group, setting, settings_class, SettingsGroup
 from .imu import OUTPUTS
+from .instrument_errors import AccelerometerErrors, GyroErrors
 from .node import Time, Topics
 from .place import Datum, Earth
 
@@ -17,7 +18,12 @@ class Vertical(SettingsGroup):
 
 @settings_class
 class Initial(SettingsGroup):
-    """Initial errors, added to the truth, resolved in East, North, Up."""
+    """
+    Initial errors, added to the truth, resolved in East, North, Up.
+
+    The standard deviations are those that the covariances of ins/* begin with; the errors are
+    squared in.
+    """
 
     after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
     attitude_error_deg: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'rotation vector of the '
@@ -26,6 +32,25 @@ class Initial(SettingsGroup):
                                                     -1e4, 1e4, size=3)
     position_error_m: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'position error', 'm', -1e6,
                                                   1e6, size=3)
+    position_sigma_m: float = setting(0.0, 'standard deviation of the position, each axis', 'm',
+                                      0.0, 1e6)
+    velocity_sigma_m_s: float = setting(0.0, 'that of the velocity, each axis', 'm/s', 0.0, 1e3)
+    tilt_sigma_mrad: float = setting(0.0, 'that of the tilt, each axis', 'mrad', 0.0, 500.0)
+    azimuth_sigma_mrad: float = setting(0.0, 'that of the azimuth', 'mrad', 0.0, 3142.0)
+
+
+@settings_class
+class GyroFigures(SettingsGroup):
+    """The gyros, of which the covariances of ins/* need the errors alone."""
+
+    errors: GyroErrors = group(GyroErrors)
+
+
+@settings_class
+class AccelerometerFigures(SettingsGroup):
+    """The accelerometers, likewise."""
+
+    errors: AccelerometerErrors = group(AccelerometerErrors)
 
 
 @settings_class
@@ -37,6 +62,8 @@ class StrapdownSettings(SettingsGroup):
     time: Time = group(Time)
     vertical: Vertical = group(Vertical)
     initial: Initial = group(Initial)
+    gyro: GyroFigures = group(GyroFigures)
+    accelerometer: AccelerometerFigures = group(AccelerometerFigures)
     topics: Topics = group(Topics)
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
     input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output)',
@@ -49,6 +76,8 @@ class StrapdownSettings(SettingsGroup):
                             choices=('stamp', 'nominal'))
     imu_latency_us: float = setting(0.0, 'known latency of the stamps, taken off before the '
                                     'nominal instant is found', 'us', -1e6, 1e6)
+    imu_data: bool = setting(False, 'publish imu/data: imu/data_raw with the orientation of the '
+                             'INS and its covariance')
     output_every: int = setting(1, 'publish every n-th step', 'steps', 1, 1000000)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew from truth (reset) or end the node (stop)',

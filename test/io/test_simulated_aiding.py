@@ -9,6 +9,7 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.aiding.live import AidedStream
+from ins_sim.core.aiding.reading_noise import rate_variance
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import convert, topics, velocity_record
@@ -66,7 +67,8 @@ def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
                   errors.attitude_sigma[k].tolist())
         leg = route.leg_at(*place[:2], leg)
         x, z = route.to_xz(*place[:2], leg)
-        runs = [convert.aided_odometry_one(frame, place, rates[t_ns], sigmas),
+        runs = [convert.aided_odometry_one(frame, place, rates[t_ns], sigmas,
+                                           rate_variance(navigator)),
                 convert.aided_fix_one(place, sigmas),
                 *((getattr(errors, kind)[k].tolist(),) for kind in (
                     'attitude', 'velocity', 'position')),
@@ -216,7 +218,8 @@ def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
         spans = bag.spans()
         assert [spans['/' + topic.name].count for topic in topics.AIDED_SIGMAS] == [0, 0, 0]
         fixes = bag.arrays('aided/fix')
-        assert not bag.arrays('aided/odometry')['pose_covariance'].any()
+        unknown = bag.arrays('aided/odometry')['pose_covariance']
+        assert np.array_equal(unknown, np.tile(1e9 * np.eye(6).ravel(), (501, 1)))
     assert len(fixes) == 501 and not fixes['position_covariance_type'].any()
 
 

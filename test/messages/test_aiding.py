@@ -207,7 +207,7 @@ def test_repeated_lost_and_restarted_messages():
 
 
 def test_the_status_of_a_fix_as_ros_reads_it():
-    """Fix, GPS, diagonal known; without a fix -1, NaN and unknown; those of the truth as ever."""
+    """Fix, GPS, diagonal known; without one -1, NaN and unknown; the truth 1 mm, the INS known."""
     _, load, _ = ros(topics.FIX)
     writer = GnssWriter(EPOCH)
     message = load(writer.fix(FIX))
@@ -223,11 +223,14 @@ def test_the_status_of_a_fix_as_ros_reads_it():
     assert velocity.header.frame_id == 'enu' and velocity.twist.twist.linear.y == -70.1
     assert np.array_equal(np.diag(np.reshape(velocity.twist.covariance, (6, 6))),
                           [0.05 * 0.05, 0.06 * 0.06, 0.1 * 0.1, 1e9, 1e9, 1e9])
-    for topic in (topics.TRUTH_FIX, topics.INS_FIX):
-        data = topic.writer().pack(3, (1.0, 2.0, 3.0))
+    small = (1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 0.0, 1e-6)
+    known = (4.0, 1.0, 0.0, 1.0, 4.0, 0.0, 0.0, 0.0, 9.0)
+    for topic, run, covariance, kind in ((topics.TRUTH_FIX, (), small, b'\x02'),
+                                         (topics.INS_FIX, (known,), known, b'\x03')):
+        data = topic.writer().pack(3, (1.0, 2.0, 3.0), *run)
         assert data == (b'\x00\x01\x00\x00' + struct.pack('<iI', 0, 3) + b'\x0a\x00\x00\x00'
                         b'base_link\x00' + bytes(10)
-                        + struct.pack('<12d', 1.0, 2.0, 3.0, *[0.0] * 9) + b'\x00')
+                        + struct.pack('<12d', 1.0, 2.0, 3.0, *covariance) + kind)
 
 
 @pytest.mark.parametrize('frame', ['', 'm', 'ab', 'map', 'gnss_link'])

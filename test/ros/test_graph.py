@@ -4,6 +4,8 @@ import subprocess
 import sys
 
 from ins_sim.core.earth.frames import MapFrame
+from ins_sim.io.motion import read_motion
+from ins_sim.io.simulated_covariance import CovarianceSource
 from ins_sim.settings.presets import preset
 from ins_sim.messages import topics
 from ins_sim.messages.convert import error_blocks, state_blocks
@@ -16,9 +18,9 @@ from support.studies import run_offline
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
-VALUES = {'gyro.delay_us.y': 1.0, 'rate_hz': 100.0, 'duration_s': 30.0}
+VALUES = {'gyro.delay_us.y': 1.0, 'rate_hz': 100.0, 'duration_s': 30.0, 'imu_data': True}
 LOCK_STEP = {'pacing.real_time_factor': 0.0, 'pacing.required': '[strapdown, listener]'}
-HEARD = (topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
+HEARD = (topics.IMU_RAW, topics.IMU_DATA, topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
 FORWARD = ('motion_generator', 'imu_sensor', 'strapdown')
 
 
@@ -65,9 +67,12 @@ def same_as_offline(values, heard):
     settings = studies.settings({**values, 'source': 'stream'})
     run = run_offline(settings, twin=False)
     frame = MapFrame(settings.strapdown.datum, True)
-    expected = {**state_blocks(frame, run.states, run.imu.omega), **error_blocks(run.errors)}
+    expected = {**state_blocks(frame, run.states, run.imu, CovarianceSource(
+        settings, run, read_motion(settings.motion_generator)).at(run.states.t_ns)),
+        **error_blocks(run.errors)}
     rounding = {'ins/odometry': 8e-9, 'ins/error/position': 8e-9, 'ins/error/velocity': 1e-11,
-                'ins/error/attitude': 1e-14, 'ins/error/drift': 1e-14 / 0.01, 'ins/fix': 8e-9}
+                'ins/error/attitude': 1e-14, 'ins/error/drift': 1e-14 / 0.01, 'ins/fix': 8e-9,
+                'imu/data': 0.0}
     for topic, values in expected.items():
         got = heard[topic.name]
         assert sorted(got) == run.states.t_ns.tolist()

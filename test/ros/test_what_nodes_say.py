@@ -76,9 +76,11 @@ def test_the_lock_step_complaint_is_a_line():
 def test_two_publishers_are_named():
     """Two generators: said by both, and by whoever reads them, with their names."""
     from ins_sim.ros.process.publishers import SolePublishers
-    infos = [SimpleNamespace(node_name=name, node_namespace='/run') for name in (
-        'motion_generator', 'second\x1b')]
+    from ins_sim.ros.transport.qos import data_profile
+    infos = [SimpleNamespace(node_name=name, node_namespace='/run', qos_profile=data_profile(1))
+             for name in ('motion_generator', 'second\x1b')]
     node = SimpleNamespace(resolve_topic_name=lambda name: f'/run/{name}',
+                           _parameter_overrides={},
                            count_publishers=lambda name: 2,
                            get_publishers_info_by_topic=lambda name: infos)
     queue = SimpleNamespace(gaps=Gaps())
@@ -115,8 +117,9 @@ def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
     from ins_sim.ros.transport import backlog
     clock, taken = ToldClock(), []
     monkeypatch.setattr(backlog, 'time', clock)
-    node = SimpleNamespace(create_subscription=lambda *_, **__: SimpleNamespace(
-        handle=SimpleNamespace(take_message=None)))
+    node = SimpleNamespace(resolve_topic_name=str, _parameter_overrides={},
+                           create_subscription=lambda *_, **__: SimpleNamespace(
+                               handle=SimpleNamespace(take_message=None)))
     queue = backlog.DrivingQueue(node, topics.TRUTH_IMU, 10, taken.append, lambda: None,
                                  lambda: may_drop)
     ages_s = [6.0, 5.5, 5.1, 4.9, 1.0, 0.0]

@@ -164,12 +164,12 @@ def test_navigator_starts_anew_after_a_jump_back(navigator, truth):
     navigator.reset()
     w, f = truth(0)[0][2:]
     navigator.push_truth(*truth(0)[1])
-    (t_ns, solution, errors), = navigator.push_imu(0, w, f)
+    (t_ns, solution, errors, _), = navigator.push_imu(0, w, f)
     assert t_ns == 0
     fresh = Navigator(settings(MOTION_2).strapdown)
     fresh.push_truth(*truth(0)[1])
-    assert fresh.push_imu(0, w, f) == [(t_ns, solution, errors)]
-    assert fresh.push_imu(0, w, f) == [(t_ns, solution, errors)]
+    assert fresh.push_imu(0, w, f) == [(t_ns, solution, errors, None)]
+    assert fresh.push_imu(0, w, f) == [(t_ns, solution, errors, None)]
 
 
 def test_seconds_are_exact_text():

@@ -113,5 +113,5 @@ def test_truth_that_does_not_follow_a_jump_back():
     navigator.rejoin()
     for k in range(35, 40):
         assert navigator.push_imu(*imu[k][1]) == []
-        (t_ns, _, _), = navigator.push_truth(*truth[k][1])
+        (t_ns, _, _, _), = navigator.push_truth(*truth[k][1])
         assert t_ns == k * DT

@@ -30,6 +30,23 @@ def quaternion_of(c):
     return q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm
 
 
+def turned_back(c, m):
+    """
+    Return C' M C of nine numbers C, row by row, and a symmetric M, nine too; floats or arrays.
+
+    It is the covariance in b of what has the covariance M in n, with C = C_nb.
+    """
+    a, b, d, e, f, g, h, i, j = c
+    xx, xy, xz, _, yy, yz, _, _, zz = m
+    # the columns of M C
+    ux, vx, wx = (xx * a + xy * e) + xz * h, (xy * a + yy * e) + yz * h, (xz * a + yz * e) + zz * h
+    uy, vy, wy = (xx * b + xy * f) + xz * i, (xy * b + yy * f) + yz * i, (xz * b + yz * f) + zz * i
+    uz, vz, wz = (xx * d + xy * g) + xz * j, (xy * d + yy * g) + yz * j, (xz * d + yz * g) + zz * j
+    pq, pr, qr = (a * uy + e * vy) + h * wy, (a * uz + e * vz) + h * wz, (b * uz + f * vz) + i * wz
+    return ((a * ux + e * vx) + h * wx, pq, pr, pq, (b * uy + f * vy) + i * wy, qr, pr, qr,
+            (d * uz + g * vz) + j * wz)
+
+
 def skew(v):
     """Return the matrix of v x."""
     x, y, z = v

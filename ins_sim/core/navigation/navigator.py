@@ -22,11 +22,12 @@ class InertialNavigator:
     The strapdown of one IMU, without aiding but for its vertical channel.
 
     settings: StrapdownSettings.  The first sample after ``initial.after_s`` starts it at the
-    truth plus the initial errors; its increments serve only as the sample before.
+    truth plus the initial errors; its increments serve only as the sample before.  covariance:
+    a FreeCovariance that is kept beside it, or None.
     """
 
-    def __init__(self, settings):
-        self._settings = settings
+    def __init__(self, settings, covariance=None):
+        self._settings, self._covariance = settings, covariance
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
         self._gravity = ellipsoid.GRAVITY_TERMS[settings.earth.gravity]
         self._integrated = settings.input == 'integrated'
@@ -68,6 +69,8 @@ class InertialNavigator:
             phi, u = fixed_rate_increments(self._integrated, now, self._last)
             self._last = now
             ins.advance(t_ns, phi, u, truth[2], truth[3][2])
+            if self._covariance is not None:
+                self._covariance.take(t_ns, omega, f, self)
         return self._meter.measure(ins.elapsed_s, (ins.q_ib, ins.lat, ins.lon, ins.height, ins.v),
                                    truth)
 
@@ -90,7 +93,10 @@ class InertialNavigator:
             solved[0] = ins.lat, ins.lon, ins.height, *ins.v, *ins.q_ib
         if len(t_ns) > begun:
             self._solve(t_ns[begun:], omega[begun:], f[begun:], truth[begun:], solved[begun:])
-        return self._judged(t_ns, solved, truth)
+        states, errors = self._judged(t_ns, solved, truth)
+        if self._covariance is not None:
+            self._covariance.take_block(t_ns[begun:], omega[begun:], f[begun:], states[begun:])
+        return states, errors
 
     def _solve(self, t_ns, omega, f, truth, solved):
         ins = self._strapdown
@@ -139,3 +145,5 @@ class InertialNavigator:
         ins.move(lat, lon, off_height, (v_e, v_n, v_u))
         self._strapdown, self._meter = ins, ErrorMeter(self._spin)
         self._last = integrals(omega, f, 1.0 / self._settings.rate_hz)
+        if self._covariance is not None:
+            self._covariance.begin(t_ns, ins.solution)

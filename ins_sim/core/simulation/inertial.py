@@ -95,17 +95,17 @@ def ideal_blocks(settings, motion):
 
 
 @paused_in_blocks
-def navigate_blocks(settings, motion, blocks, faults=None):
+def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     """
     Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
 
     Yield (truth, states, errors) records of the output instants of each block.  A gap is handled
     as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
-    the list faults, or ValueError is raised.
+    the list faults, or ValueError is raised.  covariance: a FreeCovariance kept beside it.
     """
     dt_ns = period_ns(settings.rate_hz)
-    loop = NavigationLoop(partial(InertialNavigator, settings), dt_ns, settings.output_every,
-                          settings.on_fault, faults)
+    loop = NavigationLoop(partial(InertialNavigator, settings, covariance), dt_ns,
+                          settings.output_every, settings.on_fault, faults)
     clock = SampleClock(settings, dt_ns)
     for imu in blocks:
         t_ns = clock.instant(imu.t_ns)

@@ -34,8 +34,17 @@ class History:
         return cls(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
+class PlacedHistory(History):
+    """A history with lat, lon, height, v_n and q_nb."""
+
+    def one(self, k):
+        """Return lat, lon, height, v_n, q_nb of one instant as floats and tuples of floats."""
+        return (float(self.lat[k]), float(self.lon[k]), float(self.height[k]),
+                tuple(self.v_n[k].tolist()), tuple(self.q_nb[k].tolist()))
+
+
 @dataclass(frozen=True, eq=False)
-class Truth(History):
+class Truth(PlacedHistory):
     """
     True motion at instants.
 
@@ -51,11 +60,6 @@ class Truth(History):
     q_nb: np.ndarray
     omega_ib_b: np.ndarray
     f_ib_b: np.ndarray
-
-    def one(self, k):
-        """Return lat, lon, height, v_n, q_nb of one instant as floats and tuples of floats."""
-        return (float(self.lat[k]), float(self.lon[k]), float(self.height[k]),
-                tuple(self.v_n[k].tolist()), tuple(self.q_nb[k].tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +86,7 @@ class ImuSamples(History):
 
 
 @dataclass(frozen=True, eq=False)
-class NavStates(History):
+class NavStates(PlacedHistory):
     """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
 
     t_ns: np.ndarray

@@ -4,6 +4,7 @@ import time
 
 from ins_sim.core.aiding.live import AidedStream
 from ins_sim.core.aiding.navigator import GNSS, METER
+from ins_sim.core.aiding.reading_noise import rate_variance
 from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one, SIGMAS
@@ -31,6 +32,7 @@ class AidedNavigatorNode(NavigatorNode):
     def make_outputs(self):
         """Make publishers and readers, and the queues of the fixes."""
         super().make_outputs()
+        self._rate_variance = rate_variance(self.settings)
         self._fix = qos.make_publisher(self, topics.AIDED_FIX, self.depth)
         self._fix_pack = topics.AIDED_FIX.writer().pack
         self._fix_alone = topics.AIDED_FIX_ALONE.writer().pack
@@ -113,8 +115,8 @@ class AidedNavigatorNode(NavigatorNode):
 
     def messages(self, rate, solution, errors, sigmas):
         """Return the runs of the topics that every filter has."""
-        return (aided_odometry_one(self.frame, solution, rate, sigmas), *((e,) for e in errors),
-                (self._orthodrome(solution),))
+        return (aided_odometry_one(self.frame, solution, rate, sigmas, self._rate_variance),
+                *((e,) for e in errors), (self._orthodrome(solution),))
 
     def publish_one(self, stamp_ns, rate, solution, errors, sigmas):
         """Publish an output, with three sigma where the filter has them."""

@@ -11,7 +11,8 @@ from ..transport.backlog import HandQueue
 from ..transport.patience import MISSING_S, Patience
 from .stage import StageNode
 
-AT_REST = (0.0, 0.0, 0.0)
+# rate and message of a reading that is not known any more
+NO_READING = (0.0, 0.0, 0.0), None
 
 
 class NavigatorNode(StageNode):
@@ -32,7 +33,7 @@ class NavigatorNode(StageNode):
         settings = self.settings
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
         self._decimation = Decimation(settings.output_every, period_ns(settings.rate_hz))
-        self._rates = {}
+        self._readings = {}
         self._newest_ns = None
         return self.make_navigator()
 
@@ -56,7 +57,7 @@ class NavigatorNode(StageNode):
 
     def start_anew(self):
         """Forget all that has come, and which stream is ahead of the other."""
-        self._rates.clear()
+        self._readings.clear()
         self._newest_ns = None
         self.stage.rejoin()
 
@@ -71,10 +72,10 @@ class NavigatorNode(StageNode):
             return
         sample = (self.instant(sample[0]), *sample[1:])
         self._newest_ns = sample[0]
-        if len(self._rates) > self.depth:
+        if len(self._readings) > self.depth:
             # of readings that are refused, none is ever needed
-            self._rates.clear()
-        self._rates[sample[0]] = sample[1]
+            self._readings.clear()
+        self._readings[sample[0]] = sample[1], data
         # the rest first: it may have jumped back as the IMU is about to
         self.take()
         self.publish(self.push(self.stage.push_imu, sample))
@@ -102,7 +103,7 @@ class NavigatorNode(StageNode):
         if self.stage.waiting:
             self.seen_so_far(self.stage.processed_ns)
             return
-        self._rates.clear()
+        self._readings.clear()
         if self._newest_ns is not None:
             self.seen(self._newest_ns)
 
@@ -115,14 +116,19 @@ class NavigatorNode(StageNode):
                 self.begin_run()
             if not self._decimation.due(t_ns):
                 continue
-            self.publish_one(t_ns + self.epoch_ns, self._rates.get(t_ns, AT_REST), *output)
+            rate, self.reading = self._readings.get(t_ns, NO_READING)
+            self.publish_one(t_ns + self.epoch_ns, rate, *output)
             self.monitor.sent += 1
 
     def begin_run(self):
         """Start anew at the first instant of a run."""
 
     def publish_one(self, stamp_ns, rate, *output):
-        """Publish an output; rate: the reading of the gyros at its instant, rad/s."""
+        """
+        Publish an output; rate: the reading of the gyros at its instant, rad/s.
+
+        ``reading`` is the message that it is from, or None.
+        """
         for (publisher, pack), runs in zip(self._outputs, self.messages(rate, *output)):
             # asking costs a fifth of packing and publishing what nobody hears
             if publisher.get_subscription_count():

@@ -16,7 +16,11 @@ from .stage import StageNode
 
 
 class ImuSensorNode(StageNode):
-    """Reads truth/imu, publishes imu/data_raw and, with tuned gyros, imu/parity."""
+    """
+    Reads truth/imu, publishes imu/data_raw and, with tuned gyros, imu/parity.
+
+    Where they are asked for, it reads truth/odometry and publishes imu/mag and imu/pressure.
+    """
 
     NAME = 'imu_sensor'
     SETTINGS = ImuSensorSettings
@@ -41,9 +45,23 @@ class ImuSensorNode(StageNode):
         self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
         topic = topics.imu_raw(*reported_variances(settings))
         self._reader, self._writer = PlausibleReader(topics.TRUTH_IMU), topic.writer()
+        self._environment = None
+        if settings.magnetometer.publish or settings.barometer.publish:
+            from .environment import EnvironmentPublisher
+            self._environment = EnvironmentPublisher(self)
         self._parity = None
         if self.stage.pair is not None:
             self._watch_parity()
+
+    def hand_queues(self):
+        """Return the queue of what surrounds the IMU, if it is read."""
+        return {topics.TRUTH_ODOMETRY.name: self._environment.queue} if self._environment else {}
+
+    def start_anew(self):
+        """Forget all that has come."""
+        super().start_anew()
+        if self._environment:
+            self._environment.reset()
 
     def _watch_parity(self):
         from ins_sim.core.sensors.tuned_gyro.parity import ParityTest

@@ -19,6 +19,7 @@ from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
 from ..transport import qos
 from ..transport.backlog import HandQueue
+from ..transport.qos_overrides import advertise
 
 SERVE_S = 0.01
 POLL_S = 2e-4
@@ -54,7 +55,7 @@ class MotionGeneratorNode(Node):
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
             self._clock_publisher = qos.make_publisher(self, topics.CLOCK_TOPIC, depth)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
-        self._status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
+        self._status = advertise(self, String, topics.STATUS.name, qos.latched_profile())
         self.monitor = Monitor(self)
         self._queues, self._steerer = {}, None
         if self._source.guided:

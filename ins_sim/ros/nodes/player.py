@@ -16,6 +16,7 @@ from ..process.runtime import EXIT_CONSUMER, EXIT_FAULT
 from ..recording.playing import ABSOLUTE, PlaybackStart, Playing
 from ..recording.run_clock import JUMP_NS
 from ..transport import qos
+from ..transport.qos_overrides import advertise
 from ..transport.backlog import HandQueue
 
 SERVE_S = 0.01
@@ -81,8 +82,8 @@ class PlayerNode(Node):
         profile = qos.recorded_profile(bag_qos.read_profiles(channel.qos), DEPTH)
         if profile.durability == qos.LATCHING:
             profile.depth = min(max(1, self._playing.counts[channel.name]), LATCHED_DEPTH)
-        return self.create_publisher(qos.message_class(topics.Topic(name, channel.type_name)),
-                                     name, profile)
+        return advertise(self, qos.message_class(topics.Topic(name, channel.type_name)), name,
+                         profile)
 
     def run(self, executor, stop):
         """Play until the end or until stop is set."""

@@ -15,6 +15,7 @@ from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_FAULT, Stop
 from ..transport import qos
 from ..transport.backlog import DrivingQueue, LINGER_S
+from ..transport.qos_overrides import subscribe
 
 
 class StageNode(Node):
@@ -42,16 +43,19 @@ class StageNode(Node):
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self.create_subscription(String, topics.STATUS.name, self._on_status,
-                                 qos.latched_profile())
+        subscribe(self, String, topics.STATUS.name, self._on_status, qos.latched_profile())
         # whoever waits for an answer waits for every one of them: only then nothing may be lost
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
                                    self.guarded(self.on_drained),
-                                   lambda: not self._ack_publisher.get_subscription_count(),
+                                   self.nobody_waits,
                                    LINGER_S)
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
         self.monitor.add(SolePublishers(self, queues).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
+
+    def nobody_waits(self):
+        """Return whether nobody waits for the acknowledgements of this node."""
+        return not self._ack_publisher.get_subscription_count()
 
     def hand_queues(self):
         """Return {topic name: HandQueue} of what is taken beside the driver."""

@@ -4,6 +4,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from ..transport.qos_overrides import advertise, unused
 from ..transport.wall_timer import wall_timer
 from .net import described
 from .said import kind, Said, short
@@ -27,9 +28,9 @@ class Monitor:
         self._node, self._input, self._stale_s = node, input_name, stale_s
         self._fault_time = self._seen_time = time.monotonic()
         self._before = (time.monotonic(), 0, 0)
-        self._stale, self._told = False, None
+        self._stale, self._told, self._looked = False, None, False
         self._more, self._standing = [], set()
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._publisher = advertise(node, DiagnosticArray, '/diagnostics', 10)
         wall_timer(node, 1.0, self.publish)
 
     def add(self, describe):
@@ -56,10 +57,14 @@ class Monitor:
         last, received, sent = self._before
         if self.received != received or not self.awaited:
             self._seen_time, self._stale = now, False
-        status = DiagnosticStatus(level=DiagnosticStatus.OK, message=self.state,
-                                  name=self._node.get_fully_qualified_name(),
-                                  hardware_id='ins_sim')
+        name = self._node.get_fully_qualified_name()
+        status = DiagnosticStatus(level=DiagnosticStatus.OK, message=self.state, name=name,
+                                  hardware_id=name)
         silence = now - self._seen_time
+        if not self._looked:
+            # once all of the node is made
+            self._looked = True
+            self._tell_unused()
         if self._input and self._told != bool(self.received):
             # here and not at the start, where the first log line would cost 50 ms of CPU
             self._told = bool(self.received)
@@ -96,6 +101,13 @@ class Monitor:
         array = DiagnosticArray(status=[status])
         array.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(array)
+
+    def _tell_unused(self):
+        names = unused(self._node)
+        if names:
+            self._node.get_logger().info(
+                f'{len(names)} qos_overrides are of no publisher and no subscription of this '
+                f'node, {short(names[0])} the first: not used here')
 
     @staticmethod
     def _ask(describe):

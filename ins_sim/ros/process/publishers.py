@@ -1,6 +1,13 @@
-"""Topics that one node alone should publish: two on one of them are said in words."""
+"""
+Topics that one node alone should publish: two on one of them are said in words.
+
+A publisher that offers best effort alone, as drivers of sensors do, is read so from then on.
+"""
+
+from rclpy.qos import ReliabilityPolicy
 
 from ..transport.backlog import BACKLOG_NS
+from ..transport.qos_overrides import given
 from .said import short
 
 # as many are named
@@ -15,7 +22,7 @@ class SolePublishers:
     """
 
     def __init__(self, node, queues):
-        self._node = node
+        self._node, self._suited = node, set()
         self._queues = {node.resolve_topic_name(name): queue for name, queue in queues.items()}
 
     def describe(self):
@@ -25,11 +32,26 @@ class SolePublishers:
             count = self._node.count_publishers(name)
             if queue is not None:
                 queue.gaps.publishers = max(1, count)
+                self._suit(name, queue)
             if count > 1 and not wrong:
                 wrong = (f'{name} has {count} publishers, {self._names(name)}; expected one: two '
                          'of them (two generators, two of the same node, or a player beside a '
                          'simulation) make whoever reads it start anew again and again')
         return wrong, ()
+
+    def _suit(self, name, queue):
+        """Read a topic best effort if a publisher offers no more, unless a parameter forbids."""
+        if name in self._suited or 'reliability' in given(self._node, name, 'subscription'):
+            return
+        infos = self._node.get_publishers_info_by_topic(name)
+        weak = [info for info in infos
+                if info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT]
+        if weak:
+            self._suited.add(name)
+            queue.read_best_effort()
+            self._node.get_logger().info(
+                f'{name} is published best effort: it is read so from now on, and what is lost '
+                'on the way is not sent again')
 
     def _names(self, name):
         infos = self._node.get_publishers_info_by_topic(name)

@@ -10,6 +10,7 @@ from rclpy.callback_groups import CallbackGroup
 
 from . import qos
 from .gaps import Gaps
+from .qos_overrides import subscribe
 
 TURN_S = 0.01
 LINGER_S = 0.003
@@ -39,13 +40,20 @@ class HandQueue:
 
     def __init__(self, node, topic, depth, profile=None):
         self.topic, self.gaps, self.dropped = topic.name, Gaps(), 0
+        self._node, self._depth = node, depth
         self._group = NeverReady()
         self._class = qos.message_class(topic)
-        self.subscription = node.create_subscription(
-            self._class, topic.name, lambda data: None, profile or qos.data_profile(depth),
-            raw=True,
-            callback_group=self._group)
+        self._subscribe(profile or qos.data_profile(depth))
+
+    def _subscribe(self, profile):
+        self.subscription = subscribe(self._node, self._class, self.topic, lambda data: None,
+                                      profile, raw=True, callback_group=self._group)
         self._take = self.subscription.handle.take_message
+
+    def read_best_effort(self):
+        """Subscribe anew, so that a publisher that is no more than best effort is heard."""
+        self._node.destroy_subscription(self.subscription)
+        self._subscribe(qos.best_effort_profile(self._depth))
 
     def take(self):
         """Return the oldest message as bytes, or None."""
@@ -75,10 +83,19 @@ class DrivingQueue:
     def __init__(self, node, topic, depth, on_data, on_drained, may_drop, linger_s=0.0):
         self.gaps, self.dropped, self._may_drop = Gaps(), 0, may_drop
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
+        self._node, self.topic, self._depth = node, topic.name, depth
         self._class = qos.message_class(topic)
-        self.subscription = node.create_subscription(self._class, topic.name, self._wake,
-                                                     qos.data_profile(depth), raw=True)
+        self._subscribe(qos.data_profile(depth))
+
+    def _subscribe(self, profile):
+        self.subscription = subscribe(self._node, self._class, self.topic, self._wake, profile,
+                                      raw=True)
         self._take = self.subscription.handle.take_message
+
+    def read_best_effort(self):
+        """Subscribe anew, as a HandQueue does."""
+        self._node.destroy_subscription(self.subscription)
+        self._subscribe(qos.best_effort_profile(self._depth))
 
     def _give(self, data, info, late_ns):
         self.gaps.take(info['publication_sequence_number'])

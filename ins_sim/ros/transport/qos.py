@@ -3,6 +3,7 @@
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from ins_sim.messages import topics
+from .qos_overrides import advertise
 
 ACK_DEPTH = 1000
 LATCHING = DurabilityPolicy.TRANSIENT_LOCAL
@@ -13,6 +14,11 @@ def data_profile(depth):
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth,
                       reliability=ReliabilityPolicy.RELIABLE,
                       durability=DurabilityPolicy.VOLATILE)
+
+
+def best_effort_profile(depth):
+    """Return best effort, volatile, keep-last: it suits publishers of every reliability."""
+    return keep_last(depth, ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
 
 
 def latched_profile():
@@ -31,7 +37,7 @@ def message_class(topic):
 
 def make_publisher(node, topic, depth):
     """Return a publisher of a Topic for bytes."""
-    return node.create_publisher(message_class(topic), topic.name, data_profile(depth))
+    return advertise(node, message_class(topic), topic.name, data_profile(depth))
 
 
 def ack_publisher(node):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 from ins_sim.bags.bag_reader import open_bag
+from ins_sim.core.aiding.reading_noise import rate_variance
 from ins_sim.core.simulation.aided import make_instruments, simulate_aided
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.rates import body_velocity
@@ -86,7 +87,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
                                      states.q_nb.tolist())):
         sigmas = [s[k] for s in (errors.position_sigma, errors.velocity_sigma,
                                  errors.attitude_sigma)]
-        odometry = aided_odometry_one(frame, solution, (0.0, 0.0, 0.0), sigmas)
+        odometry = aided_odometry_one(frame, solution, (0.0, 0.0, 0.0), sigmas,
+                                      rate_variance(settings.aided_navigator))
         x, z = route.to_xz(*solution[:2], 0)
         rows = (np.concatenate(odometry), np.concatenate(aided_fix_one(solution, sigmas)),
                 errors.attitude[k], errors.velocity[k], errors.position[k],

@@ -188,13 +188,14 @@ def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
         listener.close()
     text = chain.text(strapdown)
     assert 'jumps back from 5.000000000 s to 0.000000000 s' in text
+    names = ('position', 'orientation', 'pose_covariance', 'linear', 'angular',
+             'twist_covariance')
     with open_bag(path) as bag:
-        table = bag.arrays('ins/odometry', ('position', 'orientation', 'linear', 'angular'))
+        table = bag.arrays('ins/odometry', names)
     heard = listener.heard['ins/odometry']
     assert sorted(heard) == table['stamp_ns'].tolist()
     # every stamp was solved at least twice, the last time as in the original
-    expected = np.concatenate([table[n] for n in ('position', 'orientation', 'linear', 'angular')],
-                              axis=1)
+    expected = np.concatenate([table[n] for n in names], axis=1)
     assert np.array_equal([heard[t] for t in sorted(heard)], expected)
 
 

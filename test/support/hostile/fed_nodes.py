@@ -17,7 +17,7 @@ from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.cdr import LAYOUTS, Reader, stamp_of
 
 TOPICS = {topic.name: topic for topic in (
-    *topics.DATA, *topics.AIDING, *topics.GUIDANCE, topics.IMU_PARITY, topics.ACK,
+    *topics.DATA, *topics.BESIDE, *topics.AIDING, *topics.GUIDANCE, topics.ACK,
     topics.CLOCK_TOPIC)}
 
 
@@ -220,7 +220,7 @@ class FedNodes:
             self.bus.join(node._queue, node.DRIVER.name, True)
         if hasattr(node, 'hand_queues'):
             for topic, queue in node.hand_queues().items():
-                self.bus.join(queue, topic, False)
+                self.bus.join(queue, topic, hasattr(queue, '_wake'))
         if hasattr(node, 'recorder'):
             for topic, track in node.recorder.tracks.items():
                 self.bus.join(track.queue, topic.lstrip('/'), False)

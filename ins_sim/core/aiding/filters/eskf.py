@@ -4,6 +4,7 @@ import numpy as np
 
 from ins_sim.core.attitude import matrix, quaternion
 from ins_sim.core.attitude.interpolation import middle_attitude
+from ins_sim.core.navigation.error_dynamics import change
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.numerics.fixed_order import applied
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, UG
@@ -100,8 +101,8 @@ class ErrorStateFilter(AidingFilter):
         q_mid = middle_attitude(q_start, ins.q_nb)
         f_n = quaternion.rotate(q_mid, (f_x / dt, f_y / dt, f_z / dt))
         v = tuple(0.5 * (a + b) for a, b in zip(v_start, ins.v))
-        return model.change(model.dynamics(ins.lat, ins.height, v, matrix.dcm_of(q_mid), f_n,
-                                           self._spin), dt)
+        return change(model.dynamics(ins.lat, ins.height, v, matrix.dcm_of(q_mid), f_n,
+                                     self._spin), dt)
 
     def _of_turns(self, ins, dt):
         """

@@ -1,0 +1,16 @@
+"""What an aided navigator believes of a single reading of its gyros."""
+
+from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H
+
+
+def rate_variance(settings):
+    """
+    Return the variance of the angular velocity about each axis, (rad/s)^2.
+
+    settings: AidedNavigatorSettings.  It is that of the white noise of a sample and of the bias
+    at the start.
+    """
+    model = settings.imu_model
+    white = model.angle_random_walk_deg_sqrt_h * DEG / SQRT_H
+    bias = model.gyro_bias_sigma_deg_h * DEG_H
+    return white * white * settings.rate_hz + bias * bias

@@ -1,0 +1,116 @@
+"""The covariance of a strapdown from its settings, and what is published of it."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ins_sim.core.attitude.matrix import attitude_matrix, skew
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.navigation.error_dynamics import GROWING, turn_by_position
+from ins_sim.core.navigation.free_covariance import BG, FreeCovariance
+from ins_sim.core.navigation.vertical_channel import damping
+from ins_sim.core.numerics.fixed_order import product
+from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.sensors.imu.error_sigmas import fixed_errors, triad_sigmas
+
+# Variances up to here, (rad/s)^2 and (m/s^2)^2, are what is stated of what has no noise.
+ALMOST_EXACT = 1e-11, 1e-9
+
+
+def sigmas_of(settings):
+    """Return the TriadSigmas of gyros and accelerometers of StrapdownSettings."""
+    dt_s = period_ns(settings.rate_hz) * 1e-9
+    return (triad_sigmas(settings.gyro.errors, dt_s, 'gyro.errors'),
+            triad_sigmas(settings.accelerometer.errors, dt_s, 'accelerometer.errors'))
+
+
+def free_covariance(settings, show=None):
+    """
+    Return the FreeCovariance of StrapdownSettings: of its initial errors and its instruments.
+
+    show: as of FreeCovariance.  Raises ValueError where the figures of the instruments are none.
+    """
+    initial, channel = settings.initial, settings.vertical.channel
+    gyro, accelerometer = sigmas_of(settings)
+    tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
+    errors = (*initial.position_error_m, *initial.velocity_error_m_s,
+              *map(math.radians, initial.attitude_error_deg))
+    sigmas = ((initial.position_sigma_m,) * 3 + (initial.velocity_sigma_m_s,) * 3
+              + (tilt, tilt, azimuth))
+    variances = (*np.square(sigmas).tolist(), *accelerometer.bias, *gyro.bias,
+                 *accelerometer.scale, *gyro.scale, *accelerometer.misalignment,
+                 *gyro.misalignment)
+    densities = ((0.0,) * 3 + accelerometer.white + gyro.white + accelerometer.walk + gyro.walk
+                 + (0.0,) * 12)
+    return FreeCovariance(
+        variances, densities, errors,
+        (fixed_errors(settings.accelerometer.errors), fixed_errors(settings.gyro.errors)),
+        ellipsoid.rotation_rate(settings.earth.rotation), channel == 'truth',
+        damping(settings.vertical.time_constant_s)[:2] if channel == 'damped' else (0.0, 0.0),
+        period_ns(settings.rate_hz) * 1e-9, show)
+
+
+def disagreement(settings, stated):
+    """
+    Return in what an IMU is not the one that StrapdownSettings describe, or ''.
+
+    stated: variances of a sample by axis that its messages state, (rad/s)^2 and (m/s^2)^2; they
+    disagree from a factor of two of the standard deviations on, the least that is stated apart.
+    """
+    for unit, name, said, known, least in zip(('rad/s', 'm/s^2'), ('gyro', 'accelerometer'),
+                                              stated, sigmas_of(settings), ALMOST_EXACT):
+        for axis, one, other in zip('xyz', said, known.sample):
+            if max(one, other) > least and not 0.25 * one <= other <= 4.0 * one:
+                return (f'imu/data_raw states a noise of {math.sqrt(max(0.0, one)):.3g} {unit} a '
+                        f'sample on axis {axis}, and {name}.errors of strapdown have '
+                        f'{math.sqrt(other):.3g} {unit}; expected the figures of this IMU: the '
+                        'covariances of ins/* are those of another one')
+    return ''
+
+
+class PublishedCovariance(NamedTuple):
+    """
+    What is published of a FreeCovariance, tuples of floats; it holds from t_ns to the next one.
+
+    pose: (36) of position (m) and attitude (rad) about the axes of map, row by row; velocity: (9)
+    of the velocity that is published in b, in the axes of n; rate: (9) of the angular velocity in
+    b; place: (9) of the position in East, North, Up.  All with the square of the error that is the
+    same in every run.
+    """
+
+    t_ns: int
+    pose: tuple
+    velocity: tuple
+    rate: tuple
+    place: tuple
+
+
+def published_covariance(settings):
+    """Return the FreeCovariance of StrapdownSettings that shows a PublishedCovariance."""
+    frame, (gyro, _) = MapFrame(settings.datum, settings.earth.rotation), sigmas_of(settings)
+    sample = np.diag(gyro.sample)
+
+    def show(free):
+        lat, lon, height, v, _ = free.solution
+        p = free.p[:GROWING, :GROWING] + np.multiply.outer(free.mean, free.mean)
+        turn = np.eye(GROWING)
+        turn[6, 1], turn[7, 0], turn[8, 0] = turn_by_position(lat, height)
+        c = attitude_matrix(frame.q_mn(lat, lon))
+        pose = np.zeros((6, GROWING))
+        pose[:3] = product(c, turn[:3])
+        pose[3:] = product(c, turn[6:])
+        # an attitude that is out by phi turns the velocity in b by v x phi
+        velocity = np.concatenate([np.zeros((3, 3)), np.eye(3), skew(v)], axis=1)
+        return PublishedCovariance(free.t_ns, _carried(pose, p), _carried(velocity, p),
+                                   tuple((free.p[BG, BG] + sample).ravel().tolist()),
+                                   tuple(p[:3, :3].ravel().tolist()))
+
+    return free_covariance(settings, show)
+
+
+def _carried(a, p):
+    """Return A P A', symmetric, row by row."""
+    found = product(product(a, p), a.T)
+    return tuple((0.5 * (found + found.T)).ravel().tolist())

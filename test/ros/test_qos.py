@@ -1,0 +1,128 @@
+"""Quality of service: overrides by parameters are seen, and best-effort publishers are heard."""
+
+import time
+
+from ins_sim.messages import topics
+import pytest
+from support.live import GUARD_S
+
+pytest.importorskip('rclpy')
+
+
+@pytest.fixture
+def make_node(ros_domain):
+    """Return a function that makes a node of ours in this process from its parameters."""
+    import rclpy
+    from rclpy.parameter import Parameter
+    from ins_sim.ros.main import _load
+    context, made = rclpy.Context(), []
+    context.init(domain_id=ros_domain)
+
+    def make(name, **parameters):
+        made.append(_load(name)(context=context, parameter_overrides=[
+            Parameter(key, value=value) for key, value in parameters.items()]))
+        return made[-1]
+
+    yield make
+    for node in made:
+        node.destroy_node()
+    context.shutdown()
+
+
+def wait_for(condition):
+    """Wait until DDS has made something known; return it."""
+    end = time.monotonic() + GUARD_S
+    while not (found := condition()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
+
+
+@pytest.mark.live
+def test_a_reader_sees_the_overrides(make_node, talker):
+    """Reliability of publisher and subscription as the parameters say; of the others as ever."""
+    from rclpy.qos import ReliabilityPolicy
+    own = {f'qos_overrides./{name}.{key}': value for name, key, value in (
+        ('ins/odometry', 'publisher.reliability', 'best_effort'),
+        ('ins/odometry', 'publisher.depth', 7),
+        ('imu/data_raw', 'subscription.reliability', 'best_effort'),
+        ('diagnostics', 'publisher.durability', 'transient_local'))}
+    node = make_node('strapdown', **own)
+    reader = talker.node
+    for name, look, expected in (
+            ('/ins/odometry', reader.get_publishers_info_by_topic, ReliabilityPolicy.BEST_EFFORT),
+            ('/ins/fix', reader.get_publishers_info_by_topic, ReliabilityPolicy.RELIABLE),
+            ('/imu/data_raw', reader.get_subscriptions_info_by_topic,
+             ReliabilityPolicy.BEST_EFFORT),
+            ('/truth/odometry', reader.get_subscriptions_info_by_topic,
+             ReliabilityPolicy.RELIABLE)):
+        info, = wait_for(lambda: look(name))
+        assert info.qos_profile.reliability == expected, name
+    info, = wait_for(lambda: reader.get_publishers_info_by_topic('/diagnostics'))
+    assert info.qos_profile.durability.name == 'TRANSIENT_LOCAL'
+    assert {key: node.get_parameter(key).value for key in own} == own
+
+
+@pytest.mark.live
+def test_a_best_effort_publisher_is_heard(make_node, talker):
+    """Driver and queue in hand are subscribed to anew once such a publisher is there."""
+    from nav_msgs.msg import Odometry
+    from rclpy.executors import SingleThreadedExecutor
+    from sensor_msgs.msg import Imu
+    node = make_node('strapdown')
+    said = []
+    node.get_logger = lambda: Told(said)
+    publishers = [talker.publisher(cls, name, 'best_effort') for cls, name in (
+        (Imu, 'imu/data_raw'), (Odometry, 'truth/odometry'))]
+    for publisher in publishers:
+        wait_for(lambda: node.get_publishers_info_by_topic(publisher.topic_name))
+    node.monitor.publish()
+    assert sum('is published best effort: it is read so' in text for text in said) == 2
+    talker.wait_matched(*publishers)
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    stamp_ns, end = 0, time.monotonic() + GUARD_S
+    truth = topics.TRUTH_ODOMETRY.writer().pack(0, (0.0,) * 6 + (1.0,), (0.0,) * 6)
+    queue, heard = node.hand_queues()['truth/odometry'], None
+    while not (node.monitor.received and heard):
+        assert time.monotonic() < end
+        stamp_ns += 10_000_000
+        publishers[0].publish(talker.imu_bytes(stamp_ns))
+        publishers[1].publish(truth)
+        executor.spin_once(timeout_sec=0.02)
+        heard = heard or queue.take()
+
+
+class Told:
+    """A logger that keeps what it is told."""
+
+    def __init__(self, said):
+        self.info = self.warning = said.append
+
+
+@pytest.mark.live
+@pytest.mark.parametrize('key, value, sentence', [
+    ('ins/odometry.publisher.depht', 5, "no policy 'depht' can be set; expected one of history, "
+     r'depth, reliability, durability \(nearest: depth\)'),
+    ('ins/odometry.publisher.depth', 0, 'is 0; expected a whole number from 1 to 1000000'),
+    ('ins/odometry.publisher.depth', 2.5, 'is 2.5; expected a whole number from 1 to 1000000'),
+    ('imu/data_raw.subscription.reliability', 'best-effort', "is 'best-effort'; expected one of "
+     'reliable, best_effort')])
+def test_an_override_that_cannot_be(key, value, sentence, make_node):
+    """One sentence with place, key, value and expectation, before anything is published."""
+    with pytest.raises(ValueError, match=f'^qos_overrides./{key}:? {sentence}$'):
+        make_node('strapdown', **{f'qos_overrides./{key}': value})
+
+
+@pytest.mark.live
+def test_overrides_of_other_nodes_are_told_once(make_node):
+    """A parameter file may serve all nodes; and /diagnostics names the node."""
+    node, said = make_node('strapdown', **{'qos_overrides./no/topic.publisher.depth': 3}), []
+    node.get_logger = lambda: Told(said)
+    sent = []
+    node.monitor._publisher = type('Publisher', (), {'publish': staticmethod(sent.append)})
+    node.monitor.publish()
+    node.monitor.publish()
+    assert sum('1 qos_overrides are of no publisher and no subscription of this node, '
+               'qos_overrides./no/topic.publisher.depth the first' in text for text in said) == 1
+    assert {array.status[0].hardware_id for array in sent} == {'/strapdown'}
