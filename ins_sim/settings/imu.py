@@ -1,9 +1,10 @@
 """Settings of the node imu_sensor."""
 
 from .field import group, setting, settings_class, SettingsGroup
+from .frames import Frames, Tf
 from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .motion import MotionSettings
-from .node import Time, Topics
+from .node import Topics
 from .place import Datum, Earth
 from .tuned_gyro import TunedGyroPairSettings
 
@@ -50,7 +51,8 @@ class ImuSensorSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     motion: MotionSettings = group(MotionSettings)
     gyro: Gyro = group(Gyro)
     accelerometer: Accelerometer = group(Accelerometer)

@@ -1,6 +1,7 @@
 """Settings of the motions and of the node motion_generator."""
 
 from .field import column, group, setting, settings_class, SettingsGroup
+from .frames import Frames, Tf
 from .guidance import GuidanceSettings, GuidedSettings
 from .node import Pacing, Time, Topics
 from .place import Datum, Earth
@@ -176,6 +177,8 @@ class MotionGeneratorSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     time: Time = group(Time)
     motion: MotionSettings = group(MotionSettings)
     guidance: GuidanceSettings = group(GuidanceSettings)

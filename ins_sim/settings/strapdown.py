@@ -1,8 +1,9 @@
 """Settings of the node strapdown."""
 
 from .field import group, setting, settings_class, SettingsGroup
+from .frames import Frames, Tf
 from .imu import OUTPUTS
-from .node import Time, Topics
+from .node import Topics
 from .place import Datum, Earth
 
 
@@ -34,7 +35,8 @@ class StrapdownSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     vertical: Vertical = group(Vertical)
     initial: Initial = group(Initial)
     topics: Topics = group(Topics)
