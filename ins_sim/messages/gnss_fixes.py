@@ -16,14 +16,15 @@ class GnssWriter:
     """
     Packs GnssFixes.
 
-    epoch_ns: stamp of motion time zero, which may change; names: as of ``Topic.named``,
-    None for the default ones.
+    epoch_ns: stamp of motion time zero, which may change; names: as of ``Topic.named``, None for
+    the default ones.
     """
 
     def __init__(self, epoch_ns, names=None):
         self.epoch_ns = epoch_ns
-        self._fix, self._none, self._velocity = (topic.named(names or {}).writer().pack for topic in (
-            topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
+        self._fix, self._none, self._velocity = (
+            topic.named(names or {}).writer().pack
+            for topic in (topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
 
     def fix(self, fix):
         """Return gnss/fix: degrees; a fix that is none has status -1 and NaN."""

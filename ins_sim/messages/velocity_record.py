@@ -32,7 +32,8 @@ def pack_fix(fix, epoch_ns, names=None):
     values += [('status', fix.status), ('arrival_ns', str(fix.arrival_ns + epoch_ns))]
     level = diagnostic_array.OK if fix.valid else diagnostic_array.WARN
     frame, = topics.METER_RECORD.named(names or {}).frames
-    return diagnostic_array.pack_diagnostics(fix.end_ns + epoch_ns, frame, [Status(level, NAME, fix.status, '', tuple(values))])
+    status = Status(level, NAME, fix.status, '', tuple(values))
+    return diagnostic_array.pack_diagnostics(fix.end_ns + epoch_ns, frame, [status])
 
 
 def read_fix(data, epoch_ns):

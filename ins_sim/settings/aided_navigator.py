@@ -4,9 +4,8 @@ from collections import namedtuple
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming, Window
-from .frames import Frames, Tf
 from .node import Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 from .route import RouteSettings
 
 # A filter: where its class is ('module:class'), the instruments whose fixes it processes, and

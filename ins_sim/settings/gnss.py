@@ -2,9 +2,8 @@
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming
-from .frames import Frames, Tf
 from .node import Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 
 Axes = tuple[float, ...]
 

@@ -1,11 +1,10 @@
 """Settings of the node imu_sensor."""
 
 from .field import group, setting, settings_class, SettingsGroup
-from .frames import Frames, Tf
 from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .motion import MotionSettings
 from .node import Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 from .tuned_gyro import TunedGyroPairSettings
 
 

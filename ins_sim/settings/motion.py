@@ -1,10 +1,9 @@
 """Settings of the motions and of the node motion_generator."""
 
 from .field import column, group, setting, settings_class, SettingsGroup
-from .frames import Frames, Tf
 from .guidance import GuidanceSettings, GuidedSettings
 from .node import Pacing, Time, Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 from .route import FlownRouteSettings
 
 # The sum of the three is less than a third of the rate at which a message is taken to be damaged,

@@ -1,10 +1,9 @@
 """Settings of the node strapdown."""
 
 from .field import group, setting, settings_class, SettingsGroup
-from .frames import Frames, Tf
 from .imu import OUTPUTS
 from .node import Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class

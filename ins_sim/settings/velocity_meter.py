@@ -6,9 +6,8 @@ Axes of the antennas: X1 forward, Z1 right (docs/theory.md, "Correlation velocit
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import Window
-from .frames import Frames, Tf
 from .node import Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class

@@ -17,9 +17,9 @@ class NavigatorNode(StageNode):
     """
     A node driven by imu/data_raw whose stage is a core.streams.matching.MatchedStreams.
 
-    A subclass has PUBLISHED, its Topics, an Odometry first; make_navigator(), and messages(rate, *output) -> the
-    runs of each of these, output being one of the stage without its instant.  It may have more
-    to take, ``take``, and to miss, ``miss``.
+    A subclass has PUBLISHED, its Topics, an Odometry first; make_navigator(), and messages(rate,
+    *output) -> the runs of each of these, output being one of the stage without its instant.  It
+    may have more to take, ``take``, to wait for, ``waits``, and to miss, ``miss``.
     """
 
     DRIVER = topics.IMU_RAW
@@ -40,8 +40,8 @@ class NavigatorNode(StageNode):
         self._imu_reader = PlausibleReader(topics.IMU_RAW)
         # the rate of the body is not needed: pose and velocity only
         self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
-        self._outputs = [(qos.make_publisher(self, topic, self.depth), topic.named(self.names).writer().pack)
-                         for topic in self.PUBLISHED]
+        self._outputs = [(qos.make_publisher(self, topic, self.depth),
+                          topic.named(self.names).writer().pack) for topic in self.PUBLISHED]
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)

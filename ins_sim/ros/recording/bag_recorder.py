@@ -70,7 +70,7 @@ class BagRecorder:
         self._answered_ns, self._sent_ns, self._paced = None, None, []
         self._flushed = time.monotonic()
 
-    def add(self, topic, profile=None, offered=bag_qos.RELIABLE, definition=None, type_hash=''):
+    def add(self, topic, profile=None, offered=None, definition=None, type_hash=''):
         """
         Subscribe to a Topic and declare it in the bag; return its Track.
 
@@ -79,6 +79,9 @@ class BagRecorder:
         them.  Raises ValueError if the type is unknown, ImportError if it is not installed.
         """
         name = self._node.resolve_topic_name(topic.name)
+        if topic.latched:
+            profile = profile or qos.latched_profile()
+        offered = offered or (bag_qos.LATCHED if topic.latched else bag_qos.RELIABLE)
         queue = HandQueue(self._node, topic, self._depth, profile)
         try:
             self._bag.add_topic(name, topic.type_name, offered, definition, type_hash)
@@ -86,12 +89,14 @@ class BagRecorder:
             self._node.destroy_subscription(queue.subscription)
             raise
         seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
-        # its array is stamped with the time of the run, as that of /diagnostics need not be
-        by_stamp = is_stamped(topic.type_name) or name == self._node.resolve_topic_name(
-            topics.METER_RECORD.name)
+        # their arrays are stamped with the time of the run, as that of /diagnostics need not be
+        run, record = (self._node.resolve_topic_name(t.name) for t in (
+            topics.RUN, topics.METER_RECORD))
+        by_stamp = is_stamped(topic.type_name) or name in (run, record)
         track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom, Holes())
         self.tracks[name] = track
-        if (track.stamped or seldom) and name != self._ack_name:
+        # a run need not be announced, and what is latched is not missed
+        if (track.stamped or seldom) and name not in (self._ack_name, run):
             self._silent.append(track)
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
         known = [n for n in order if n in self.tracks]
