@@ -11,7 +11,8 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
-IDEAL = {'rate_hz': 100.0, 'duration_s': 30.0, 'gyro.delay_us.y': 1.0, 'publish_clock': True}
+IDEAL = {'time.epoch': 'fixed', 'time.epoch_s': 1735689600, 'rate_hz': 100.0,
+         'duration_s': 30.0, 'gyro.delay_us.y': 1.0, 'publish_clock': True}
 FOG = {**IDEAL, **{key: list(value) if isinstance(value, tuple) else value
                    for key, value in preset('tactical_fog').items()}, 'seed': 7}
 # The live strapdown starts from, and is compared with, a truth that went through the Cartesian

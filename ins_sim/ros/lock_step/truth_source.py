@@ -29,8 +29,8 @@ class TruthSource:
 
     topics: those of the truth and, where tf.source is truth, /tf; epoch_ns: the stamp of motion
     time zero; count: number of samples; endless: whether only the stamps of ROS end the run;
-    dt_ns: the sampling period; guided: the GuidedMotion, which has to be commanded before it is known, or
-    None.  Raises ValueError on settings that name no motion or a run longer than it.
+    dt_ns: the sampling period; guided: the GuidedMotion, which has to be commanded before it is
+    known, or None.  Raises ValueError on settings that name no motion or a run longer than it.
     """
 
     def __init__(self, settings):
