@@ -25,7 +25,7 @@ def test_every_common_instant_is_paired_once(order, every_first, every_second):
 
 
 def test_a_stream_that_jumps_back_begins_anew():
-    """What the first run has left is not paired with the second; a repeated one is paired again."""
+    """What the first run has left is not paired with the second; a repeated value is."""
     pairs = StampPairs(10)
     assert not pairs.waiting
     assert pairs.push_first(5, 'a') == [] and pairs.waiting
