@@ -81,6 +81,10 @@ class AidedNavigatorNode(NavigatorNode):
         """Return whether the truth, a fix or the INS has to come."""
         return super().waits() or self._odom is not None and self._odom.waiting
 
+    def progress(self):
+        """Return what changes when something comes that is waited for."""
+        return super().progress() if super().waits() else self._odom.reached_ns
+
     def place(self, stamp_ns, pose):
         """Place odom, once the INS of this instant has come."""
         if self._odom is not None:

@@ -45,8 +45,7 @@ class NavigatorNode(StageNode):
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
-        self._patience = Patience(self, self.waits,
-                                  lambda: self.stage.processed_ns, self.take, self.miss,
+        self._patience = Patience(self, self.waits, self.progress, self.take, self.miss,
                                   self._settle)
 
     def hand_queues(self):
@@ -82,6 +81,10 @@ class NavigatorNode(StageNode):
     def waits(self):
         """Return whether something has to come before what was taken is done."""
         return self.stage.waiting
+
+    def progress(self):
+        """Return what changes when something comes that is waited for."""
+        return self.stage.processed_ns
 
     def take(self):
         """Take what has come beside the readings."""

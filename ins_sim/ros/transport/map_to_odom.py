@@ -13,11 +13,13 @@ class MapToOdom:
     Reads ins/odometry beside the solutions of a node, and broadcasts map -> odom.
 
     An aided solution waits for the INS of its instant, so that every one that has both is
-    published.  node: StageNode; depth: of the queue.
+    published.  node: StageNode; depth: of the queue.  reached_ns: the stamp of the INS that came
+    last, or None.
     """
 
     def __init__(self, node, broadcaster, depth):
         self._node, self._broadcaster, self._patient = node, broadcaster, True
+        self.reached_ns = None
         self._reader = PlausibleReader(topics.INS_ODOMETRY, ((0, 3), (3, 7)))
         self.queue = HandQueue(node, topics.INS_ODOMETRY, depth)
         self._pairs = StampPairs(depth)
@@ -43,7 +45,7 @@ class MapToOdom:
             except ValueError as error:
                 self._node.fault(str(error))
             else:
-                self._patient = True
+                self._patient, self.reached_ns = True, stamp_ns
                 self._send(self._pairs.push_second(stamp_ns, (*place, *turn)))
 
     def miss(self):

@@ -190,14 +190,14 @@ class FedNodes:
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
         from ins_sim.ros.lock_step import pacing, steerer
-        from ins_sim.ros.process import diagnostics, said
+        from ins_sim.ros.process import announced, diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
         # as in a node process
         self._plain = plain_only()
         self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
-        for module in (diagnostics, said, backlog, patience, pacing, steerer):
+        for module in (announced, diagnostics, said, backlog, patience, pacing, steerer):
             self._patch(module, 'time', self.clock)
         for module in (diagnostics, patience):
             self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
