@@ -50,6 +50,16 @@ def pose_between(pose, other):
     return (pose[0] - moved[0], pose[1] - moved[1], pose[2] - moved[2], *turn)
 
 
+def first_stamp(data):
+    """Return the stamp of the first transform of a TFMessage, ns, or None where it has none."""
+    try:
+        (_, _, stamp_ns, _), *_ = read_transforms(data)
+    except ValueError:
+        # no TFMessage, or one without transforms
+        return None
+    return stamp_ns
+
+
 def read_rotations(data):
     """
     Return the frames and rotations of a TFMessage.

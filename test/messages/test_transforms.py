@@ -1,8 +1,8 @@
 """Transforms: bytes by the definition of tf2_msgs, and what the frames of a vehicle mean."""
 
 from ins_sim.messages import placements, topics
-from ins_sim.messages.transforms import (AT_PARENT, pose_between, read_rotations, read_transforms,
-                                         TransformWriter)
+from ins_sim.messages.transforms import (AT_PARENT, first_stamp, pose_between, read_rotations,
+                                         read_transforms, TransformWriter)
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.gnss import GnssSettings
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
@@ -28,6 +28,8 @@ def test_bytes_are_those_of_the_definition(parent, child):
     assert bytes(STORE.serialize_cdr(message, topics.TRANSFORMS)) == data
     assert read_transforms(data) == [(parent, child, 1735689600123456789, POSE)]
     assert read_rotations(data) == [(parent, child, POSE[3:])]
+    assert first_stamp(data) == 1735689600123456789
+    assert first_stamp(data[:30]) is None and first_stamp(data[:4] + bytes(4)) is None
 
 
 def test_a_pose_that_is_not_finite_is_not_sent():

@@ -5,7 +5,8 @@ import time
 
 from ins_sim.bags import qos as bag_qos
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND, Writer
+from ins_sim.messages.cdr import SECOND, STAMP_END_NS, Writer
+from ins_sim.messages.transforms import first_stamp
 from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.gaps import Gaps
@@ -142,7 +143,7 @@ class BagRecorder:
         track.gaps.take(info['publication_sequence_number'])
         received_ns = info['received_timestamp'] or time.time_ns()
         if not track.stamped:
-            self._write_unstamped(track, data, received_ns)
+            self._take_unstamped(track, data, received_ns)
             return
         stamp_ns = self._clock.hear(data, received_ns)
         if track is self._answered and stamp_ns is not None:
@@ -163,6 +164,19 @@ class BagRecorder:
             self._write(track, stamp_ns, data)
             if self._waiting:
                 self._write_waiting()
+        else:
+            self._write_unstamped(track, data, received_ns)
+
+    def _take_unstamped(self, track, data, received_ns):
+        stamp_ns = None
+        if track.type_name == topics.TRANSFORMS and self._by_stamp:
+            # of many publishers, whose stamps take turns
+            if data == track.last:
+                track.repeated += 1
+                return
+            track.last, stamp_ns = data, first_stamp(data)
+        if stamp_ns is not None and 0 <= stamp_ns < STAMP_END_NS:
+            self._write(track, stamp_ns, data)
         else:
             self._write_unstamped(track, data, received_ns)
 

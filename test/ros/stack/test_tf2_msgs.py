@@ -2,9 +2,12 @@
 
 import importlib.util
 import json
+import signal
 import sys
 
+from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import TABLE
+from ins_sim.messages.transforms import read_transforms
 import pytest
 from support.built_interfaces import build_interfaces
 from support.live import GUARD_S
@@ -54,7 +57,11 @@ def definitions():
 
 
 def test_a_listener_of_tf_hears_us(chain, tmp_path):
-    """Frames, poses and what stands fixed; and who places a frame as well is named, not before."""
+    """
+    Frames, poses and what stands fixed; and who places a frame as well is named, not before.
+
+    A recorder logs every transform at its own stamp, and what stands fixed as latched.
+    """
     environment = {} if importlib.util.find_spec('tf2_msgs') else build_interfaces(
         tmp_path / 'tf2_msgs', 'tf2_msgs', definitions(), 'geometry_msgs')
     for name, value in environment.items():
@@ -62,6 +69,8 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
         chain.environment[name] = f'{value}:{rest}' if rest else value
     values = {'motion.kind': 'static', 'duration_s': 0.0, 'tf.source': 'ins',
               'frames.prefix': 'uav1', 'time.epoch': 'now'}
+    recorder = chain.start_verb('record', '/tf', '/tf_static', '-o', tmp_path / 'bag')
+    chain.wait_text(recorder, 'waiting for')
     nodes = {node: chain.start(node, values)
              for node in ('strapdown', 'imu_sensor', 'motion_generator')}
     (tmp_path / 'listener.py').write_text(LISTENER, encoding='utf-8')
@@ -82,3 +91,13 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
     listener.kill()
     listener.wait()
     assert all(process.poll() is None for process in nodes.values())
+    recorder.send_signal(signal.SIGINT)
+    assert recorder.wait(GUARD_S) == 0, chain.text(recorder)
+    with open_bag(tmp_path / 'bag') as bag:
+        found = [(name, log_ns, *read_transforms(bytes(data)))
+                 for name, log_ns, data in bag.messages()]
+        assert 'transient_local' in bag.topics['/tf_static'].qos
+    assert {one[1] for name, _, one in found if name == '/tf_static'} == {
+        'uav1/odom', 'uav1/imu_link'}
+    # the other node stamps with zero
+    assert len(found) > 200 and all(log_ns == one[2] for _, log_ns, one in found)
