@@ -25,12 +25,12 @@ END_NS = 10 * SECOND
 
 class TruthSource:
     """
-    Sample k of the run as the bytes of its messages, in the order of ``topics``.
+    Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
 
-    topics: those of the truth and, where tf.source is truth, /tf; epoch_ns: the stamp of motion
-    time zero; count: number of samples; endless: whether only the stamps of ROS end the run;
-    dt_ns: the sampling period; guided: the GuidedMotion, which has to be commanded before it is
-    known, or None.  Raises ValueError on settings that name no motion or a run longer than it.
+    Where tf.source is truth, that of /tf stands behind them.  epoch_ns: the stamp of motion time
+    zero; announcement: the RunAnnouncement; count: number of samples; endless: whether only the
+    stamps of ROS end the run; dt_ns: the sampling period; guided: the GuidedMotion, which has to
+    be commanded before it is known, or None.  Raises ValueError on settings that name no motion or a run longer than it.
     """
 
     def __init__(self, settings):
@@ -70,11 +70,6 @@ class TruthSource:
         self.announcement = RunAnnouncement(self.epoch_ns, self.first_ns, settings.rate_hz,
                                             self.first_ns + (self.count - 1) * self.dt_ns)
         self.restart()
-
-    @property
-    def topics(self):
-        """Return the Topics of the messages of a sample."""
-        return topics.TRUTH if self._transforms is None else (*topics.TRUTH, topics.TF)
 
     def restart(self):
         """Go back to the start of the run; a guided motion forgets its commands."""
