@@ -30,7 +30,8 @@ class TruthSource:
     Where tf.source is truth, that of /tf stands behind them.  epoch_ns: the stamp of motion time
     zero; announcement: the RunAnnouncement; count: number of samples; endless: whether only the
     stamps of ROS end the run; dt_ns: the sampling period; guided: the GuidedMotion, which has to
-    be commanded before it is known, or None.  Raises ValueError on settings that name no motion or a run longer than it.
+    be commanded before it is known, or None.  Raises ValueError on settings that name no motion or
+    a run longer than it.
     """
 
     def __init__(self, settings):
