@@ -30,8 +30,9 @@ def message_class(topic):
 
 
 def make_publisher(node, topic, depth):
-    """Return a publisher of a Topic for bytes."""
-    return node.create_publisher(message_class(topic), topic.name, data_profile(depth))
+    """Return a publisher of a Topic for bytes; depth: of its queue, unless it is latched."""
+    return node.create_publisher(message_class(topic), topic.name,
+                                 latched_profile() if topic.latched else data_profile(depth))
 
 
 def ack_publisher(node):

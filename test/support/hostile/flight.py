@@ -19,7 +19,8 @@ from .messages import HostileMessages
 
 RATE_HZ, DT_S = 100.0, 0.01
 COMMON = {'rate_hz': RATE_HZ, 'topics.depth': 500}
-FLIGHT = {**COMMON, 'motion.kind': 'racetrack', 'pacing.lock_step': True, 'pacing.window': 200}
+FLIGHT = {**COMMON, 'time.epoch': 'fixed', 'time.epoch_s': 0, 'motion.kind': 'racetrack',
+          'pacing.lock_step': True, 'pacing.window': 200}
 WINDOWS = {'window.cycles': 50, 'limits.height_max_m': 2e4}
 NODES = {
     'motion_generator': FLIGHT,
