@@ -22,7 +22,7 @@ class ImuSensorNode(StageNode):
 
     NAME = 'imu_sensor'
     SETTINGS = ImuSensorSettings
-    DRIVER = topics.TRUTH_IMU
+    DRIVER = TRUTH = topics.TRUTH_IMU
 
     def make_stage(self):
         """Return the IMU."""

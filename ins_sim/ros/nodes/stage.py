@@ -25,10 +25,11 @@ class StageNode(Node):
     A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
     pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
     is a fault too, after which the node starts anew.  CHECKS_STAMPS: whether stamps outside the
-    announced run are refused.
+    announced run are refused; TRUTH: what the node reads of the generator.
     """
 
     CHECKS_STAMPS = True
+    TRUTH = topics.TRUTH_ODOMETRY
 
     def __init__(self, stop=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
@@ -42,7 +43,8 @@ class StageNode(Node):
         self._ack_publisher = qos.ack_publisher(self)
         self._last_stamp = self._seen_ns = None
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
-        self._announced = AnnouncedRun(self, self.depth, self._begin_announced, self._give_held)
+        self._announced = AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced,
+                                       self._give_held)
         self.broadcaster = self.make_broadcaster()
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)

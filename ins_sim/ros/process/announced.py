@@ -9,6 +9,8 @@ from ins_sim.messages.run_announcement import read_announcement, UNANNOUNCED
 from ..transport import qos
 from ..transport.patience import MISSING_S
 
+# An announcement whose publisher is known comes; a busy machine may take its time.
+PATIENCE_S = 30.0
 # Readings may be stamped later than the truth, by their latency.
 LATER_NS = 10_000_000_000
 
@@ -18,12 +20,14 @@ class AnnouncedRun:
     Epoch and end of the run of a node, which it learns and never sets.
 
     Where nobody announces a run, as with a recorded or a real IMU, motion time is the stamp.  A
-    generator makes its publisher of sim/run before all others: whoever is found without one
+    generator makes its publisher of sim/run before all others: one whose truth is found without it
     announces nothing.
 
     Parameters
     ----------
     node : Node with a ``monitor`` and ``guarded``
+    truth : Topic
+        That of the generator, which the node reads.
     depth : of the messages that wait
     begin : callable
         Called with every RunAnnouncement of another epoch, and the first one.
@@ -31,8 +35,8 @@ class AnnouncedRun:
         Called with each message that had to wait.
     """
 
-    def __init__(self, node, depth, begin, give):
-        self._node, self._begin, self._give = node, begin, give
+    def __init__(self, node, truth, depth, begin, give):
+        self._node, self._truth, self._begin, self._give = node, truth, begin, give
         self._held, self._dropped, self._since = deque(), 0, None
         self._depth, self.run = depth, None
         node.create_subscription(qos.message_class(topics.RUN), topics.RUN.name,
@@ -42,22 +46,32 @@ class AnnouncedRun:
         """Return whether a message has to wait for the announcement; it is kept then."""
         if self.run is not None:
             return False
-        node, now = self._node, time.monotonic()
+        now = time.monotonic()
         self._since = now if self._since is None else self._since
-        if not node.count_publishers(node.resolve_topic_name(topics.RUN.name)):
-            node.get_logger().info(f'nobody announces a run on {topics.RUN.name}: motion time is '
-                                   'the stamp itself')
-        elif now - self._since < MISSING_S:
+        if self._may_come(now - self._since):
             if len(self._held) < self._depth:
                 self._held.append(data)
             else:
                 self._dropped += 1
             return True
-        else:
-            node.monitor.fault(f'no message on {topics.RUN.name} in {MISSING_S:g} s, though it '
+        self._settle(UNANNOUNCED)
+        return False
+
+    def _may_come(self, waited_s):
+        """Return whether an announcement may still come; say so where it is no longer awaited."""
+        node = self._node
+        known, truth = (node.count_publishers(node.resolve_topic_name(topic.name))
+                        for topic in (topics.RUN, self._truth))
+        # readings may come from a sensor that has found the generator earlier
+        if waited_s < (PATIENCE_S if known else 0.0 if truth else MISSING_S):
+            return True
+        if known:
+            node.monitor.fault(f'no message on {topics.RUN.name} in {PATIENCE_S:g} s, though it '
                                'has a publisher; expected the announcement of the run: motion '
                                'time is the stamp itself')
-        self._settle(UNANNOUNCED)
+        else:
+            node.get_logger().info(f'nobody announces a run on {topics.RUN.name}: motion time is '
+                                   'the stamp itself')
         return False
 
     def take(self, data):

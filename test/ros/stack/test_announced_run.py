@@ -17,19 +17,15 @@ GNSS = {**COMMON, 'gnss.rate_hz': 10.0, 'outages.start_s': [0.25], 'outages.end_
 class Announced(HostileFlight):
     """A flight of all nodes; ``knows`` says whether sim/run is known to have a publisher."""
 
+    announced = None
+
     def __init__(self, **more):
         super().__init__(1, more)
 
-    def know(self, count):
-        """Let every node count so many publishers of sim/run."""
+    def know(self, count, others=1):
+        """Let every node count so many publishers of sim/run, and of all other topics."""
         for node in self.fed.nodes.values():
-            node.count_publishers = lambda name: count if name == '/sim/run' else 1
-
-    def announce(self, run, *names):
-        """Deliver an announcement to the nodes that follow, or to some."""
-        for name in names or self.fed.nodes:
-            if hasattr(self.fed.nodes[name], '_announced'):
-                self.fed.nodes[name]._announced.take(run.pack())
+            node.count_publishers = lambda name: count if name == '/sim/run' else others
 
     def said(self, node):
         """Return what a node has said."""
@@ -97,14 +93,34 @@ def test_where_nobody_announces_motion_time_is_the_stamp(flight):
                                        'stamp itself') == 1
 
 
-def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
-    """5 s, then one sentence, and the first samples are not lost."""
-    flight.know(1)
-    flight.good(2)
+def test_readings_may_come_before_the_generator_is_found(flight):
+    """From a sensor that has found it: the navigators wait for 5 s, and then for nobody."""
+    flight.know(0)
+    flight.good(1)
+    assert flight.newest(topics.INS_ODOMETRY) is not None
+    navigator = flight.fed.nodes['strapdown']
+    navigator._announced.run = navigator._announced._since = None
+    flight.know(0, others=0)
+    before = flight.fed.bus.sent[topics.INS_ODOMETRY.name]
+    flight.good(10)
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before
+    flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND), 'strapdown')
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before + 10
+    navigator._announced.run = navigator._announced._since = None
+    flight.good(1)
     flight.fed.clock.pass_by(5.0)
     flight.good(1)
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before + 12
+
+
+def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
+    """30 s, then one sentence, and the first samples are not lost."""
+    flight.know(1)
+    flight.good(2)
+    flight.fed.clock.pass_by(30.0)
+    flight.good(1)
     assert flight.fed.bus.sent[topics.IMU_RAW.name] == 3
-    assert 'no message on sim/run in 5 s, though it has a publisher; expected the announcement ' \
+    assert 'no message on sim/run in 30 s, though it has a publisher; expected the announcement ' \
         'of the run' in flight.said('imu_sensor')
 
 

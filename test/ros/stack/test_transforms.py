@@ -2,7 +2,6 @@
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
-from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.messages.transforms import read_transforms, TransformWriter
 import numpy as np
 import pytest
@@ -23,13 +22,6 @@ class Placed(HostileFlight):
                     for node, values in NODES.items()}
         super().__init__(1, settings)
         self.tf, self.poses = [], {}
-
-    def __enter__(self):
-        super().__enter__()
-        for node in self.fed.nodes.values():
-            if hasattr(node, '_announced'):
-                node._announced.take(RunAnnouncement(0, 0, 100.0, 60 * SECOND).pack())
-        return self
 
     def _heard(self, name, data):
         super()._heard(name, data)
