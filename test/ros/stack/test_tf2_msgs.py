@@ -9,7 +9,7 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.definitions import TABLE
 from ins_sim.messages.transforms import read_transforms
 import pytest
-from support.built_interfaces import build_interfaces
+from support.nodes.built_interfaces import build_interfaces
 from support.live import GUARD_S
 
 pytest.importorskip('rclpy')

@@ -101,11 +101,11 @@ class HostileFlight:
 
     def __enter__(self):
         self.fed.__enter__()
-        if self.announced is not None:
-            self.announce(self.announced)
         self.fed.bus.listen = self._heard
         for node in self.fed.nodes.values():
             self._watch(node)
+        if self.announced is not None:
+            self.announce(self.announced)
         return self
 
     def __exit__(self, *exception):
