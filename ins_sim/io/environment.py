@@ -27,7 +27,7 @@ class EnvironmentSensors:
     """
     The magnetometer and the barometer of ImuSensorSettings.
 
-    topics: {Topic: the same with the variance of its sensor}.  Raises ValueError as
+    topics: {Topic: the same with its frame and the variance of its sensor}.  Raises ValueError as
     ``environment_topics``.
     """
 
@@ -37,7 +37,8 @@ class EnvironmentSensors:
         self._sensors, self.topics = {}, {}
         self.reset()
         for topic, sensor in self._sensors.items():
-            self.topics[topic] = topics.with_variance(topic, sensor.variance)
+            self.topics[topic] = topics.with_variance(topic, sensor.variance).named(
+                settings.frames.names())
 
     def reset(self):
         """Forget which samples have been taken."""

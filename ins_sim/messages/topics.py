@@ -17,6 +17,7 @@ CLOCK = 'rosgraph_msgs/msg/Clock'
 STRING = 'std_msgs/msg/String'
 TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
+TRANSFORMS = 'tf2_msgs/msg/TFMessage'
 
 # the variance, m^2, rad^2, (m/s)^2 or (rad/s)^2, of what is not measured or not known
 UNMEASURED = 1e9
@@ -32,8 +33,9 @@ class Topic:
     """
     A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
 
-    constants: {index: value} of the doubles that a writer of it fills once.  numbers: those of a
-    NavSatFix, see Writer.
+    frames: by their default names, in whose place ``named`` puts those of a vehicle; constants:
+    {index: value} of the doubles that a writer of it fills once.  numbers: those of a NavSatFix,
+    see Writer.  latched: whether a late subscriber gets the last message.
     """
 
     name: str
@@ -42,6 +44,11 @@ class Topic:
     constants: tuple = ()
     runs: tuple | None = None
     numbers: tuple = (0, 0, 0)
+    latched: bool = False
+
+    def named(self, names):
+        """Return this topic with the frame ids of a vehicle, {default name: name}."""
+        return replace(self, frames=tuple(names.get(frame, frame) for frame in self.frames))
 
     def writer(self):
         """Return the Writer of its messages."""
@@ -79,13 +86,16 @@ IMU_MAG = Topic('imu/mag', MAGNETIC, ('imu_link',))
 IMU_PRESSURE = Topic('imu/pressure', PRESSURE, ('imu_link',))
 # pose and twist, each followed by its covariance
 _WITH_COVARIANCE = ((0, 7), (7, 43), (43, 49), (49, 85))
-INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'), (), _WITH_COVARIANCE)
+# in the coordinates of map as the free INS has them, continuous and drifting (REP-105)
+INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('odom', 'base_link'), (), _WITH_COVARIANCE)
 # its covariance is known
 INS_FIX = Topic('ins/fix', FIX, ('base_link',), (), ((0, 3), (3, 12)), (0, 0, 3))
-ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))
-ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('enu',))
-ERROR_POSITION = Topic('ins/error/position', VECTOR, ('enu',))
-ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('enu',))
+# by East, North, Up at the vehicle, from which the axes of map, at the datum, differ by the angle
+# between the two places
+ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('map',))
+ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('map',))
+ERROR_POSITION = Topic('ins/error/position', VECTOR, ('map',))
+ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('map',))
 # the complete fix, see velocity_record, stamped at the end of its window
 METER_RECORD = Topic('velocity_meter/record', DIAGNOSTICS, ('velocity_meter_link',))
 # stamped at the middle of the window; up is no measurement, nor is a rate
@@ -105,9 +115,9 @@ AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (), _WI
 AIDED_FIX = Topic('aided/fix', FIX, ('base_link',), (), GNSS_FIX.runs, (0, 0, 2))
 AIDED_FIX_ALONE = replace(AIDED_FIX, numbers=(0, 0, 0))
 # solution less truth, and three standard deviations by the filter
-AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('enu',))
+AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
-AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('enu',))
+AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
 # x: along the leg, y: height, z: right of it; m
 AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
@@ -116,7 +126,12 @@ AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
 GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
 ACK = Topic('sim/ack', HEADER)
 STATUS = Topic('sim/status', STRING)
+# what the generator announces, see run_announcement
+RUN = Topic('sim/run', DIAGNOSTICS, latched=True)
 CLOCK_TOPIC = Topic('/clock', CLOCK)
+# see transforms
+TF = Topic('/tf', TRANSFORMS)
+TF_STATIC = Topic('/tf_static', TRANSFORMS, latched=True)
 
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)

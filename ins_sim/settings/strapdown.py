@@ -3,8 +3,8 @@
 from .field import group, setting, settings_class, SettingsGroup
 from .imu import OUTPUTS
 from .instrument_errors import AccelerometerErrors, GyroErrors
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class
@@ -59,7 +59,8 @@ class StrapdownSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     vertical: Vertical = group(Vertical)
     initial: Initial = group(Initial)
     gyro: GyroFigures = group(GyroFigures)

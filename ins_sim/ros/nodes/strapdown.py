@@ -8,8 +8,10 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.convert import fix_one, ins_odometry_one, odometry_one, orientation_one
 from ins_sim.messages.imu_data import with_orientation
+from ins_sim.messages.placements import INS_FIXED, INS_MOVES
 from ins_sim.settings.strapdown import StrapdownSettings
 from ..transport import qos
+from ..transport.broadcaster import Broadcaster
 from .following import NavigatorNode
 
 
@@ -19,6 +21,10 @@ class StrapdownNode(NavigatorNode):
     NAME = 'strapdown'
     SETTINGS = StrapdownSettings
     PUBLISHED = (topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
+
+    def make_broadcaster(self):
+        """Return the Broadcaster of odom -> base_link."""
+        return Broadcaster(self, self.settings, INS_MOVES, INS_FIXED)
 
     def make_navigator(self):
         """Return the navigator."""

@@ -36,8 +36,9 @@ def message_class(topic):
 
 
 def make_publisher(node, topic, depth):
-    """Return a publisher of a Topic for bytes."""
-    return advertise(node, message_class(topic), topic.name, data_profile(depth))
+    """Return a publisher of a Topic for bytes; depth: of its queue, unless it is latched."""
+    profile = latched_profile() if topic.latched else data_profile(depth)
+    return advertise(node, message_class(topic), topic.name, profile)
 
 
 def ack_publisher(node):
