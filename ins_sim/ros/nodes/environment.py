@@ -1,5 +1,7 @@
 """What imu_sensor publishes beside the IMU: imu/mag and imu/pressure."""
 
+from collections import deque
+
 from ins_sim.io.environment import EnvironmentSensors
 from ins_sim.messages import topics
 from ins_sim.messages.plausible import PlausibleReader
@@ -12,6 +14,7 @@ class EnvironmentPublisher:
 
     def __init__(self, node):
         self._node, self._sensors = node, EnvironmentSensors(node.settings)
+        self._held = deque(maxlen=node.depth)
         self._reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
         self._publish = {
             topic: (qos.make_publisher(node, topic, node.depth).publish, own.writer().pack)
@@ -24,6 +27,12 @@ class EnvironmentPublisher:
         self._sensors.reset()
 
     def _on_truth(self, data):
+        # what comes before the epoch is known waits for it
+        self._held.append(data)
+        while self._held and self._node.knows_run:
+            self._take(self._held.popleft())
+
+    def _take(self, data):
         node = self._node
         sample = None if node.stop else node.read(self._reader, data)
         if sample is None:

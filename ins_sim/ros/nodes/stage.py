@@ -59,6 +59,11 @@ class StageNode(Node):
         self.monitor.add(SolePublishers(self, {topics.RUN.name: None, **queues}).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
 
+    @property
+    def knows_run(self):
+        """Return whether the run, and so its epoch, is known."""
+        return self._announced.run is not None
+
     def nobody_waits(self):
         """Return whether nobody waits for the acknowledgements of this node."""
         return not self._ack_publisher.get_subscription_count()
