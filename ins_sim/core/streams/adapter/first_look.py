@@ -6,7 +6,7 @@ from ..faults import StreamFault
 from .fit import KnotFit
 from .judgement import FEWEST, judged, Judgement
 from .scheme import chosen, knot_count, report, Scheme
-from .stamps import gap_fault, NominalClock, Steadiness, steadiness
+from .stamps import gap_fault, NominalClock, round_period_ns, Steadiness, steadiness
 from .steps import StepCheck
 
 # How long is looked, and at how many samples at most.
@@ -65,9 +65,12 @@ class FirstLook:
                                 steady.longest_ns, restart=False)
         clock = None
         if self._settings.stamps == 'nominal':
-            base_ns = samples[0].t_ns
-            clock = NominalClock(base_ns, float(line[-1]), steady.period_ns)
-            samples = [s._replace(t_ns=base_ns + round(x)) for s, x in zip(samples, line.tolist())]
+            # The instants of a round period, through the middle of the line.
+            half_ns, part = 0.5 * float(line[-1]), round_period_ns(steady, count) / steady.period_ns
+            base_ns = samples[0].t_ns + half_ns * (1.0 - part)
+            samples = [s._replace(t_ns=round(base_ns + part * x))
+                       for s, x in zip(samples, line.tolist())]
+            clock = NominalClock(samples[-1].t_ns, part * steady.period_ns)
         every = min(knot_count(steady.period_ns, self._dt_ns), count // FEWEST)
         thin = KnotFit(every, 0.0, steady.period_ns)
         knots = [knot for s in samples for knot in thin.push(s)]

@@ -11,8 +11,8 @@ from .stencils import MIDDLE, POINTS, weights
 
 # How few knots may be judged.
 FEWEST = 16
-# Rms of a difference of sixth order of white noise of unit variance.
-SIXTH = math.sqrt(924.0)
+# Neighbours whose sixth divided difference is looked at: what a polynomial leaves is noise.
+NEIGHBOURS = 7
 # What poses and twist may differ by before lateness is looked for: m/s, rad/s; and from which
 # correlation of neighbours on it is no noise.
 DIFFERENT_M_S, DIFFERENT_RAD_S = 1e-3, 2e-4
@@ -43,7 +43,7 @@ class Judgement:
     What two seconds of the input say.
 
     sigma_m, sigma_rad, sigma_m_s, sigma_rad_s: noise of position, attitude, velocity and rate by
-    axis; spread_m: that of the position by the median, which jumps do not spoil; in_parent: the
+    axis; spread_m: that of the position as a vector, by the median, which jumps do not spoil; in_parent: the
     axes of the twist; velocity, rate: Fittings; delay_s of the twist, or None where nothing has
     changed; empty: whether the twist is zero throughout; knot_hz: rate of the knots.
     """
@@ -99,15 +99,16 @@ def judged(knots, in_parent=None):
         coning = np.cross(w_b[:-1], w_b[1:]) * (step_s * step_s / 12.0)[:, None]
         found[parent] = (_fitting(rho, step_s, DIFFERENT_M_S),
                          _fitting(_difference(t_ns, step_s, turns - coning, w_b), step_s,
-                                  DIFFERENT_RAD_S), _delay(rho, v_m), v_m, w_b)
+                                  DIFFERENT_RAD_S), _delay(rho, v_m, None if parent else (q, v)),
+                         v_m, w_b)
     parent = in_parent if in_parent is not None else _is_parent(found)
     velocity, rate, delay_s, v_m, w_b = found[parent]
+    angles = np.concatenate([np.zeros((1, 3)), np.cumsum(turns, axis=0)])
+    noise = _Noise(t_ns)
     return Judgement(
-        *_noise(np.diff(r, 6, axis=0)), _noise(np.diff(turns, 5, axis=0))[0],
-        min(_noise(np.diff(x, 6, axis=0))[0] for x in (v, v_m)),
-        min(_noise(np.diff(x, 6, axis=0))[0] for x in (w, w_b)), parent, velocity, rate, delay_s,
-        not (v.any() or w.any()),
-        float(1.0 / np.median(step_s)))
+        *noise.of(r), noise.of(angles)[0], min(noise.of(x)[0] for x in (v, v_m)),
+        min(noise.of(x)[0] for x in (w, w_b)), parent, velocity, rate, delay_s,
+        not (v.any() or w.any()), float(1.0 / np.median(step_s)))
 
 
 def _difference(t_ns, step_s, changes, rates):
@@ -129,9 +130,20 @@ def _fitting(rho, step_s, limit):
     return Fitting(rms, float(np.sum(rho[1:] * rho[:-1])) / square if square else 0.0, limit)
 
 
-def _delay(rho, v_m):
-    """Return how late the velocities are, s, or None where they do not change."""
-    change = np.diff(v_m, axis=0)[MIDDLE:MIDDLE + len(rho)]
+def _delay(rho, v_m, in_child):
+    """
+    Return how late the velocities are, s, or None where they do not change.
+
+    in_child: attitudes and velocities in the child, where they are given in its axes: it is there
+    that they are late.
+    """
+    if in_child is None:
+        change = np.diff(v_m, axis=0)
+    else:
+        q, v = in_child
+        change = np.stack(quaternion.rotate(tuple(x[:-1] for x in q), tuple(np.diff(
+            v, axis=0).T)), axis=-1)
+    change = change[MIDDLE:MIDDLE + len(rho)]
     square = float(np.sum(change * change))
     return float(np.sum(rho * change)) / square if square > 1e-12 * len(rho) else None
 
@@ -145,7 +157,25 @@ def _is_parent(found):
     return child[0].rms > DIFFERENT_M_S and parent[0].rms < 0.5 * child[0].rms
 
 
-def _noise(sixth):
-    """Return the standard deviation of white noise by axis: by the rms, and by the median."""
-    return (float(np.sqrt(np.mean(sixth * sixth))) / SIXTH,
-            float(np.median(abs(sixth))) / (0.6745 * SIXTH))
+class _Noise:
+    """
+    Tells noise from motion by what a polynomial through NEIGHBOURS samples leaves.
+
+    t_ns (n,): instants of the samples.
+    """
+
+    def __init__(self, t_ns):
+        count = len(t_ns) - NEIGHBOURS + 1
+        near = [(t_ns[k:k + count] - t_ns[:count]) * 1e-9 for k in range(NEIGHBOURS)]
+        # Divided differences of sixth order, of unit gain for white noise.
+        factors = [math.prod(1.0 / (a - b) for b in near if b is not a) for a in near]
+        norm = np.sqrt(sum(x * x for x in factors))
+        self._factors = [(x / norm)[:, None] for x in factors]
+
+    def of(self, values):
+        """Return the noise of values (n, 3): by axis by the rms, of the vector by the median."""
+        count = len(self._factors[0])
+        left = sum(x * (values[k:k + count] - values[3:3 + count])
+                   for k, x in enumerate(self._factors))
+        return (float(np.sqrt(np.mean(left * left))),
+                float(np.median(np.sqrt(np.sum(left * left, axis=1)))) / 0.6745)

@@ -106,8 +106,9 @@ class TruthAdapter:
             return []
         if self._settings.stamps == 'nominal':
             if self._clock is None:
-                self._clock = NominalClock(sample.t_ns, 0.0, self._steady.period_ns)
-            sample = sample._replace(t_ns=self._clock.instant(sample.t_ns))
+                self._clock = NominalClock(sample.t_ns, self._steady.period_ns)
+            else:
+                sample = sample._replace(t_ns=self._clock.instant(sample.t_ns))
         truths = []
         for knot in self._fit.push(sample):
             self._steps.check(knot, self._watch.spread_m)

@@ -1,6 +1,7 @@
 """The stamps of the input: their rate and jitter, their gaps, and the instants they stand for."""
 
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from ..faults import MOST_PERIODS, StreamFault
 # A step longer than so many periods is a gap, and what jitter is added to that.
 GAP, JITTERS = 1.5, 5.0
 # Bandwidth with which nominal instants follow the stamps, rad/s.
-FOLLOW = 0.5
+FOLLOW = 0.1
+# A period is taken for a round one within so many of its sigmas.
+ROUND_SIGMAS = 4.0
 
 
 @dataclass(frozen=True)
@@ -42,25 +45,37 @@ def steadiness(t_ns):
     return Steadiness(period, float(np.sqrt(np.mean((stamps - line) ** 2)))), line
 
 
+def round_period_ns(steady, count):
+    """Return the period of a whole rate in Hz or of whole milliseconds, where it may be that."""
+    period_ns = steady.period_ns
+    # A hundredth of a nanosecond: stamps are whole ones.
+    sigma_ns = steady.jitter_ns * math.sqrt(12.0 / count) / count + 0.01
+    for nearest_ns in (1e9 / max(1, round(1e9 / period_ns)), 1e6 * round(1e-6 * period_ns)):
+        if abs(nearest_ns - period_ns) <= ROUND_SIGMAS * sigma_ns:
+            return nearest_ns
+    return period_ns
+
+
 class NominalClock:
     """
-    Instants of equal steps that follow, by a loop of second order, stamps which are off them.
+    Instants of equal steps that follow stamps which are off them.
 
-    base_ns: a stamp; last: the last instant that is known, ns since then, a float; period_ns: the
-    step.
+    What they are off moves the steps and never the instants, by a loop of second order, so that
+    the motion does not shake. base_ns: the last instant; period_ns: the step, a float.
     """
 
-    def __init__(self, base_ns, last, period_ns):
-        self._base_ns, self._last, self._period = base_ns, last, period_ns
+    def __init__(self, base_ns, period_ns):
+        self._base_ns, self._period = base_ns, period_ns
+        self._last = self._slip = 0.0
 
     def instant(self, t_ns):
         """Return the instant of the next stamp, ns."""
-        stamp, period = float(t_ns - self._base_ns), self._period
-        count = max(1.0, float(round((stamp - self._last) / period)))
-        predicted = self._last + count * period
-        off, turn = stamp - predicted, FOLLOW * count * period * 1e-9
-        self._last = predicted + 2.0 * turn * off
-        self._period = period + turn * turn * off / count
+        off = float(t_ns - self._base_ns) - self._last
+        count = max(1.0, float(round(off / self._period)))
+        step = count * self._period
+        turn = FOLLOW * step * 1e-9
+        self._slip = self._slip + turn * (FOLLOW * (off - step) - 2.0 * self._slip)
+        self._last = self._last + step + self._slip * step * 1e-9
         return self._base_ns + round(self._last)
 
 

@@ -24,7 +24,7 @@ class StepCheck:
 
     def check(self, knot, spread_m):
         """
-        Raise StreamFault (restart) for a knot; spread_m: noise of the positions by axis, m.
+        Raise StreamFault (restart) for a knot; spread_m: noise of the positions, m.
 
         The acceleration is that of the last three positions.
         """

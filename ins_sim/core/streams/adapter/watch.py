@@ -25,7 +25,7 @@ class Watch:
     ----------
     scheme : Scheme
     spread_m : float
-        Noise of the positions by axis, by the last judgement.
+        Noise of the positions, by the last judgement.
     """
 
     def __init__(self, settings, name, dt_ns, beginning):
