@@ -7,7 +7,7 @@ from .place import Datum, Earth
 
 @settings_class
 class World(SettingsGroup):
-    """The world of the other simulator: flat, it is the plane tangent to the Earth at the datum."""
+    """The flat world of the other simulator: the plane tangent to the Earth at the datum."""
 
     yaw_deg: float = setting(0.0, 'angle from East to its axis x, counter-clockwise', 'deg',
                              -360.0, 360.0)

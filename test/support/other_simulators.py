@@ -7,6 +7,7 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.sensors.imu.ideal import MotionImu
+from ins_sim.core.sensors.imu.readings import samples_of
 from ins_sim.core.sensors.imu.stream import StreamImu
 from ins_sim.core.simulation.inertial import navigate_blocks
 from ins_sim.core.streams.adapter.stage import TruthAdapter
@@ -118,7 +119,9 @@ class AdaptedRun:
         self.truth = Truth(columns[0], *columns[5:8], np.stack(quaternion.rotate(
             columns[8].T, tuple(columns[3].T)), axis=-1), *columns[8:])
         self.r_m = columns[1]
-        self.imu = StreamImu(s.imu_sensor).advance(self.truth)
+        imu = StreamImu(s.imu_sensor)
+        self.imu = samples_of([reading for t in truths for reading in imu.push(
+            t.t_ns, t.q_mb, t.omega_ib_b, t.f_ib_b)])
         exact = MotionImu(s.imu_sensor, simulator.motion, int(self.imu.t_ns[0])).advance(
             len(self.imu.t_ns))
         self.f, self.w = (float(np.sqrt(np.mean(np.sum((a - b)[1:] ** 2, axis=1)))) for a, b in (

@@ -70,6 +70,15 @@ class TruthAdapter:
         self._fit = KnotFit(scheme.every, scheme.half_ns, self._steady.period_ns)
         self._knots = TwistKnots(scheme.in_parent) if scheme.by_twist else PoseKnots()
 
+    @property
+    def state(self):
+        """What the input is taken for, in a few words."""
+        if self._watch is None:
+            return 'being judged'
+        scheme = self._watch.scheme
+        return (f'twist believed, in the {"parent" if scheme.in_parent else "child"} frame'
+                if scheme.by_twist else 'poses only')
+
     def push(self, t_ns, r, q, v, w):
         """
         Take a sample; return the AdaptedTruth that it completes, a list.
