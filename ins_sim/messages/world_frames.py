@@ -42,5 +42,5 @@ class WorldFrames:
                              f'expected {self._frames[0]!r} and {self._frames[1]!r} as before: '
                              'one publisher of one vehicle; the message was dropped')
         self._frames = frames
-        return (f'{self._name}: the world {frames[0]!r} is taken as the plane tangent to the Earth '
-                f'at the datum, z up, {frames[1]!r} as the vehicle, x forward, z up')
+        return (f'{self._name}: the world {frames[0]!r} is taken as the plane tangent to the '
+                f'Earth at the datum, z up, {frames[1]!r} as the vehicle, x forward, z up')

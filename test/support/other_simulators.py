@@ -133,8 +133,8 @@ class AdaptedRun:
 
     def closures(self):
         """Return the largest distances of the strapdown from adapted and from exact truth, m."""
-        most = [0.0, 0.0]
-        for truth, states, _ in navigate_blocks(self._simulator.settings.strapdown, self, [self.imu]):
+        most, settings = [0.0, 0.0], self._simulator.settings.strapdown
+        for truth, states, _ in navigate_blocks(settings, self, [self.imu]):
             for k, true in enumerate((truth, self._simulator.motion.at(truth.t_ns))):
                 far = np.array(position_error(states.lat, states.lon, states.height, true.lat,
                                               true.lon, true.height))

@@ -12,8 +12,8 @@ class Release:
     """
     Sends what is made of an input, and says of each sample of the input when that is done.
 
-    In lock-step at most ``window`` samples are unanswered, and the input is done with only when all
-    that was made of it has been sent, so that who waits for that waits for the consumers.
+    In lock-step at most ``window`` samples are unanswered, and a sample of the input is done only
+    when all that was made of it has been sent: who waits for that waits for the consumers.
 
     Parameters
     ----------

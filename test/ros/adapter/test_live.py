@@ -18,6 +18,7 @@ pytestmark = pytest.mark.live
 
 WANTED = (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.TRUTH_FIX, topics.IMU_RAW,
           topics.INS_ODOMETRY)
+STAND_IN = ROOT / 'test' / 'ros' / 'adapter' / 'stand_in.py'
 MOTION, RATE_HZ, LENGTH_S = 'racetrack', 50.0, 6.0
 
 
@@ -56,8 +57,8 @@ def test_another_simulator_drives_imu_and_strapdown(pace, ros_domain, tmp_path):
         adapter = chain.start('truth_adapter', {**place, **(waits if pace == 'lock_step' else {})})
         chain.wait_text(adapter, 'waiting for')
         listener.poll_for(1.0)
-        stand_in = chain.run('stand_in', [sys.executable, '-m', 'support.stand_in', MOTION,
-                                          str(RATE_HZ), str(LENGTH_S), pace])
+        stand_in = chain.run('stand_in', [sys.executable, str(STAND_IN), MOTION, str(RATE_HZ),
+                                          str(LENGTH_S), pace])
         wanted = expected()
         listener.poll_until(lambda: stand_in.poll() is not None, GUARD_S)
         listener.poll_until(lambda: all(max(wanted[name]) in heard

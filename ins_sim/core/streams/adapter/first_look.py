@@ -66,7 +66,8 @@ class FirstLook:
         clock = None
         if self._settings.stamps == 'nominal':
             # The instants of a round period, through the middle of the line.
-            half_ns, part = 0.5 * float(line[-1]), round_period_ns(steady, count) / steady.period_ns
+            part = round_period_ns(steady, count) / steady.period_ns
+            half_ns = 0.5 * float(line[-1])
             base_ns = samples[0].t_ns + half_ns * (1.0 - part)
             samples = [s._replace(t_ns=round(base_ns + part * x))
                        for s, x in zip(samples, line.tolist())]

@@ -44,8 +44,9 @@ class Judgement:
 
     sigma_m, sigma_rad, sigma_m_s, sigma_rad_s: noise of position, attitude, velocity and rate by
     axis; spread_m: that of the position as a vector, by the median, which jumps do not spoil;
-    in_parent: whether the twist is in the axes of the parent; velocity, rate: Fittings; delay_s of the twist, or None where nothing has
-    changed; empty: whether the twist is zero throughout; knot_hz: rate of the knots.
+    in_parent: whether the twist is in the axes of the parent; velocity, rate: Fittings; delay_s of
+    the twist, or None where nothing has changed; empty: whether the twist is zero throughout;
+    knot_hz: rate of the knots.
     """
 
     sigma_m: float

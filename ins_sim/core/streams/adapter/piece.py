@@ -14,9 +14,9 @@ class Piece:
     """
     The motion from start_ns to end_ns.
 
-    path: for each axis of the world the coefficients c0...c5 of position in powers of the time since
-    start_ns, s; q: attitude at the start; turned: the rotation vector to the end, rad; w_start, w_end:
-    rates relative to the world at both ends, in the body, rad/s.
+    path: for each axis of the world the coefficients c0...c5 of position in powers of the time
+    since start_ns, s; q: attitude at the start; turned: the rotation vector to the end, rad;
+    w_start, w_end: rates relative to the world at both ends, in the body, rad/s.
     """
 
     __slots__ = 'start_ns', 'end_ns', '_path', '_q', '_curve', '_per_s'

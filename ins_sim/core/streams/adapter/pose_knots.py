@@ -55,5 +55,3 @@ def quintic(h, p0, v0, a0, p1, v1, a1):
     da = (a1 - a0) * n
     return (p0, v0, half, 10.0 * dp - 4.0 * dv + 0.5 * da, (-15.0 * dp + 7.0 * dv - da) * n,
             (6.0 * dp - 3.0 * dv + 0.5 * da) * n * n)
-
-

@@ -45,5 +45,5 @@ class StepCheck:
             *last.column(1, 0, 3)))) / (0.5 * (h0 + h1))
         noise = SECOND_DIFFERENCE * spread_m / (h0 * h1)
         if a > MOST_M_S2 + NOISES * noise:
-            raise StreamFault(f'{self._name} jumps at {seconds(t_ns)}: its positions accelerate by '
-                              f'{a:.4g} m/s^2; expected at most {MOST_M_S2:g}', restart=True)
+            raise StreamFault(f'{self._name} jumps at {seconds(t_ns)}: its positions accelerate '
+                              f'by {a:.4g} m/s^2; expected at most {MOST_M_S2:g}', restart=True)

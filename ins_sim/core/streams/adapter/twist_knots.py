@@ -1,9 +1,9 @@
 """
 The scheme that believes the twist: velocity and rate are integrated, the pose holds them.
 
-Velocity is a cubic Hermite curve with slopes from five velocities, position is its integral, held
+Velocity is a cubic Hermite curve with slopes from five velocities; position is its integral, held
 to the measured positions by a loop of second order whose acceleration is linear between knots.
-Attitude is integrated from the rates and held to the measured quaternions by a loop of first order.
+Attitude is integrated from the rates, held to the measured quaternions by a loop of first order.
 """
 
 from ins_sim.core.attitude import quaternion
@@ -68,7 +68,7 @@ class TwistKnots:
         slopes = [weighted(stencil(steps, k)[0], w, w[k]) for k in (node, node + 1)]
         w0, w1 = w[node], w[node + 1]
         h = steps[node] * 1e-9
-        # The correction is linear between knots: what the last error asked for is there at the end.
+        # The correction is linear between knots; at the end it is what the last error asked for.
         self._turning = now = self._wanted
         mean = [0.5 * h * (a + b + c + d) + h * h / 12.0 * (e - f) for a, b, c, d, e, f in zip(
             w0, w1, before, now, *slopes)]
