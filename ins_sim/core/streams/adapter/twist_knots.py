@@ -13,12 +13,10 @@ from .stencils import MIDDLE, POINTS, stencil, weighted
 
 # Bandwidth of both loops, rad/s.
 HOLD = 0.5
-# Fields of a knot.
-T_NS, R, Q, V, W = range(5)
 # Looked at: the knots from two before the start of a piece to two behind its end.
 LOOKED = POINTS + 1
-# Rates behind a knot by which it is turned.
-RATES = 6
+START, END = MIDDLE, MIDDLE + 1
+ZERO = (0.0, 0.0, 0.0)
 
 
 class TwistKnots:
@@ -30,84 +28,112 @@ class TwistKnots:
 
     def __init__(self, in_parent):
         self._in_parent = in_parent
-        self._first = []
         self._last = LastKnots(LOOKED)
-        # Rates of the correction of the attitude: at the last knot, and what its error asks for.
-        self._turning = self._wanted = (0.0, 0.0, 0.0)
-        self._rates = LastKnots(RATES)
-        self._loops = None
+        # At the start of the next piece: attitude, rate of its correction, and what that is to be
+        # at the end; acceleration, with the velocities there and before; position with its loop.
+        self._q, self._turning, self._wanted = None, ZERO, ZERO
+        self._a, self._velocities, self._loops = None, None, None
 
     def push(self, sample):
         """Take a Sample that is a knot; return the Piece that it completes, or None."""
-        w = sample.w
-        if self._in_parent:
-            w = quaternion.rotate_back(sample.q, w)
-        self._rates.add((sample.t_ns, w))
-        if self._first is not None:
-            self._first.append(sample)
-            if len(self._first) < RATES:
-                return None
-            q = self._first[0].q
-            self._keep(self._first[0], q, self._rates[0][1])
-            for k in range(1, RATES):
-                self._turn(self._first[k], k - 1)
-            self._first = None
+        w = quaternion.rotate_back(sample.q, sample.w) if self._in_parent else sample.w
+        self._last.add((sample.t_ns, w, sample))
+        if len(self._last) < LOOKED:
             return None
-        self._turn(sample, RATES - 2)
+        if self._q is None:
+            self._begin()
+            return None
         return self._piece()
 
-    def _keep(self, sample, q, w):
-        v = sample.v if self._in_parent else quaternion.rotate(q, sample.v)
-        self._last.add((sample.t_ns, sample.r, q, v, w))
+    def _begin(self):
+        """Turn the first attitude from knot to knot up to the start of the first piece."""
+        rates = self._rates(range(END + 1), 0)
+        q, velocities = self._last[0][2].q, []
+        for k in range(END):
+            q = self._turned(q, k, rates[k], rates[k + 1], ZERO, ZERO)
+            velocities.append(self._velocity(k + 1, q))
+        self._q = q
+        self._velocities = velocities[1:]
+        self._a = self._slope(velocities, q, ZERO)
+        r = self._last[END][2].r
+        self._loops = [(x, 0.0, 0.0) for x in r]
 
-    def _turn(self, sample, node):
-        """Add a knot: turn the last one by the rates from one node of the stencil to the next."""
-        q, before = self._last[-1][Q], self._turning
-        steps = self._rates.steps(0, RATES)
-        w = self._rates.column(1, 0, RATES)
-        slopes = [weighted(stencil(steps, k)[0], w, w[k]) for k in (node, node + 1)]
-        w0, w1 = w[node], w[node + 1]
-        h = steps[node] * 1e-9
-        # The correction is linear between knots; at the end it is what the last error asked for.
-        self._turning = now = self._wanted
-        mean = [0.5 * h * (a + b + c + d) + h * h / 12.0 * (e - f) for a, b, c, d, e, f in zip(
-            w0, w1, before, now, *slopes)]
-        start = tuple(a + b for a, b in zip(w0, before))
-        end = tuple(a + b for a, b in zip(w1, now))
-        phi = tuple(m + h * h / 12.0 * c for m, c in zip(mean, quaternion.cross(start, end)))
-        q = quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
-        self._wanted = tuple(HOLD * x for x in turn_between(q, sample.q))
-        self._keep(sample, q, end)
+    def _rates(self, nodes, centred):
+        """
+        Return rate and its slope at some of the knots.
+
+        centred: the nodes below it have five samples around them, the others all that there are.
+        """
+        last, w = self._last, self._last.column(1, 0, LOOKED)
+        found = []
+        for k in nodes:
+            first, stop = (k - MIDDLE, k + MIDDLE + 1) if k < centred else (0, LOOKED)
+            factors = stencil(last.steps(first, stop), k - first)[0]
+            found.append((w[k], weighted(factors, w[first:stop], w[k])))
+        return found
+
+    def _turned(self, q, k, start, end, before, now):
+        """Return attitude q after the step behind knot k: rates, slopes, rates of correction."""
+        h = (self._last[k + 1][0] - self._last[k][0]) * 1e-9
+        w0, w1 = _sum(start[0], before), _sum(end[0], now)
+        c = quaternion.cross(w0, w1)
+        phi = tuple(0.5 * h * (a + b) + h * h / 12.0 * (d - e + f)
+                    for a, b, d, e, f in zip(w0, w1, start[1], end[1], c))
+        return quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
+
+    def _velocity(self, k, q):
+        v = self._last[k][2].v
+        return v if self._in_parent else quaternion.rotate(q, v)
+
+    def _slope(self, before, q, turning):
+        """
+        Return the acceleration at the end of a piece.
+
+        before: velocities of the two knots before it and there; q: the attitude there; turning:
+        rate of the correction behind it. The attitudes behind it are not final: rates still to
+        come will change them a little.
+        """
+        velocities = list(before)
+        rates = self._rates(range(END, LOOKED), END + 1)
+        for k in range(END, LOOKED - 1):
+            q = self._turned(q, k, rates[k - END], rates[k + 1 - END], turning, turning)
+            velocities.append(self._velocity(k + 1, q))
+        return weighted(stencil(self._last.steps(1, LOOKED), MIDDLE)[0], velocities,
+                        velocities[MIDDLE])
 
     def _piece(self):
         """Return the Piece between the two knots in the middle."""
-        last = self._last
-        start, end = last[MIDDLE], last[MIDDLE + 1]
-        v = last.column(V, 0, LOOKED)
-        a0, a1 = (weighted(stencil(last.steps(k, k + POINTS), MIDDLE)[0], v[k:k + POINTS],
-                           v[k + MIDDLE]) for k in (0, 1))
-        h = (end[T_NS] - start[T_NS]) * 1e-9
-        if self._loops is None:
-            self._loops = [(r, 0.0, 0.0) for r in start[R]]
-        path, loops = [], []
+        start_ns, w0, first = self._last[START]
+        end_ns, w1, second = self._last[END]
+        before, now, q = self._turning, self._wanted, self._q
+        q_end = self._turned(q, START, *self._rates((START, END), END + 1), before, now)
+        wanted = tuple(HOLD * x for x in turn_between(q_end, second.q))
+        velocities = [*self._velocities, self._velocity(END, q_end)]
+        a, loops, h = self._slope(velocities, q_end, wanted), [], (end_ns - start_ns) * 1e-9
+        path = []
         for axis in range(3):
-            c, state = _held(h, self._loops[axis], start[R][axis], start[V][axis], end[V][axis],
-                             a0[axis], a1[axis])
+            c, loop = held(h, self._loops[axis], first.r[axis], velocities[1][axis],
+                           velocities[2][axis], self._a[axis], a[axis])
             path.append(c)
-            loops.append(state)
-        self._loops = loops
-        return Piece(start[T_NS], end[T_NS], path, start[Q], turn_between(start[Q], end[Q]),
-                     start[W], end[W])
+            loops.append(loop)
+        self._q, self._turning, self._wanted = q_end, now, wanted
+        self._a, self._velocities, self._loops = a, velocities[1:], loops
+        return Piece(start_ns, end_ns, path, q, turn_between(q, q_end), _sum(w0, before),
+                     _sum(w1, now))
 
 
-def _held(h, state, measured, v0, v1, a0, a1):
+def _sum(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def held(h, loop, measured, v0, v1, a0, a1):
     """
-    Return c0...c5 of one axis of position, and the state of its loop at the end.
+    Return c0...c5 of one axis of position, and its loop at the end.
 
-    state: position, velocity and acceleration of the correction at the start; measured: position
+    loop: position, velocity and acceleration of the correction at the start; measured: position
     there; the others are velocity and its slope at both ends.
     """
-    p, u, alpha = state
+    p, u, alpha = loop
     alpha_end = HOLD * (HOLD * (measured - p) - 2.0 * u)
     n = 1.0 / h
     mean = (v1 - v0) * n
