@@ -186,7 +186,8 @@ class FedNodes:
     def __enter__(self):
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
-        from ins_sim.ros.lock_step import pacing, steerer
+        from ins_sim.ros.lock_step import pacing, release, steerer
+        from ins_sim.ros.nodes import truth_adapter
         from ins_sim.ros.process import diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
         # as in a node process
@@ -194,9 +195,9 @@ class FedNodes:
         self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
-        for module in (diagnostics, said, backlog, patience, pacing, steerer):
+        for module in (diagnostics, said, backlog, patience, pacing, release, steerer):
             self._patch(module, 'time', self.clock)
-        for module in (diagnostics, patience):
+        for module in (diagnostics, patience, truth_adapter):
             self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
                 self.clock, period_s, callback))
         self._patch(qos, 'make_publisher', self.bus.make_publisher)
@@ -224,7 +225,7 @@ class FedNodes:
         if hasattr(node, 'recorder'):
             for topic, track in node.recorder.tracks.items():
                 self.bus.join(track.queue, topic.lstrip('/'), False)
-        if hasattr(node, '_acks'):
+        if getattr(node, '_acks', None) is not None:
             self.bus.join(node._acks, topics.ACK.name, False)
 
     def __exit__(self, *exception):
