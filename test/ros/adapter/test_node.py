@@ -77,7 +77,7 @@ def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
 
 
 def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
-    """The input's epoch is its own: stamps of a simulation and those of 2026 give truth at them."""
+    """The input's epoch is its own: stamps near 0 and those of 2026 give truth at them."""
     shift_ns = 1_796_000_000 * 10**9
     with Graph(**{'time.epoch_s': 1_735_689_600}) as graph:
         graph.send(messages_of())

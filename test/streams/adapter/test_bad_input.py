@@ -121,7 +121,7 @@ NUMBERS = st.floats(-1e5, 1e5)
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
 
 
-@examples(max_examples=60, deadline=None)
+@examples(max_examples=30, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 199), st.integers(-30_000_000, 60_000_000),
                           st.sampled_from('rqvw'), VECTORS, NUMBERS), max_size=8),
        st.sampled_from(['auto', 'use', 'ignore']), st.sampled_from(['believed', 'nominal']),

@@ -30,6 +30,19 @@ def test_noise_is_found_by_axis():
     assert j.force_noise(True) == pytest.approx(2.7 * 2e-3 * 50.0, rel=0.3)
 
 
+@pytest.mark.parametrize('rate_hz', [20.0, 50.0])
+@pytest.mark.parametrize('twist, noise', [('use', {'metres_s': 1e-3}),
+                                          ('ignore', {'metres': 1e-4})])
+def test_the_noise_of_the_force_is_the_expected_one(twist, noise, rate_hz):
+    """Noise of the input becomes the noise of the force that the report tells, within 15 %."""
+    simulator = OtherSimulator('motion_1', rate_hz, 40.0).noisy(**noise)
+    _, truths = simulator.adapted(twist=twist)
+    exact = simulator.motion.at(np.array([truth.t_ns for truth in truths])).f_ib_b
+    off = np.array([truth.f_ib_b for truth in truths]) - exact
+    expected = judgement_of(simulator).force_noise(twist == 'use')
+    assert np.sqrt(np.mean(np.sum(off * off, axis=1))) == pytest.approx(expected, rel=0.15)
+
+
 @pytest.mark.parametrize('rate_hz', [20.0, 50.0, 100.0])
 @pytest.mark.parametrize('name', ['racetrack', 'sinusoids', 'aggressive'])
 def test_the_frame_of_the_twist_is_found(name, rate_hz):

@@ -17,8 +17,8 @@ NEIGHBOURS = 7
 # correlation of neighbours on it is no noise.
 DIFFERENT_M_S, DIFFERENT_RAD_S = 1e-3, 2e-4
 CORRELATED, SURELY = 0.5, 0.7
-# Noise of the force by noise of the input: of velocities times the rate, of positions times its
-# square (docs/theory.md, "Truth from another simulator").
+# Rms of the vector of the force by the noise of an axis of the input: of velocities times the
+# rate, of positions times its square (docs/theory.md, "Truth from another simulator").
 BY_TWIST, BY_POSE = 2.7, 6.5
 # A twist that is so much noisier than the poses is left, from this noise of the force on, m/s^2.
 NOISIER, NOISY = 2.0, 0.01
@@ -62,7 +62,7 @@ class Judgement:
     knot_hz: float
 
     def force_noise(self, by_twist):
-        """Return the noise of the force, each axis, m/s^2, that a scheme makes of the input's."""
+        """Return what a scheme makes of the noise: rms of the vector of the force, m/s^2."""
         if by_twist:
             return BY_TWIST * self.sigma_m_s * self.knot_hz
         return BY_POSE * self.sigma_m * self.knot_hz * self.knot_hz

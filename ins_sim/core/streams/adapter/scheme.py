@@ -70,4 +70,4 @@ def report(name, scheme: Scheme, judgement: Judgement, steady: Steadiness):
     dense = f', a knot for every {scheme.every} samples' if scheme.every > 1 else ''
     return (f'{name}: {1e9 / steady.period_ns:.4g} Hz, jitter {1e-6 * steady.jitter_ns:.2g} ms; '
             f'noise by axis: pose {pose}, {twist}; {how}{dense}; expected noise of the force: '
-            f'{j.force_noise(scheme.by_twist):.2g} m/s^2')
+            f'{j.force_noise(scheme.by_twist):.2g} m/s^2 (rms of the vector)')
