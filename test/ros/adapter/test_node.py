@@ -171,6 +171,18 @@ def test_damaged_messages_are_said_and_passed_over(ros_domain):
         assert any('holds the position (1e+300' in line for line in graph.said)
 
 
+def test_an_odometry_that_stops_is_missed(ros_domain):
+    """Silence is told, and truth goes on behind it."""
+    with Graph() as graph:
+        messages = messages_of(8.0)
+        graph.send(messages[:200])
+        for _ in range(5):
+            graph.clock.pass_by(1.0)
+        assert any('no message on odom for' in line for line in graph.said)
+        graph.send(messages[200:])
+        assert graph.stamps[-1] > 7.9e9 and graph.stamps == sorted(set(graph.stamps))
+
+
 def test_reset_judges_anew(ros_domain):
     """The service ~/reset forgets what the input is like."""
     from types import SimpleNamespace

@@ -60,7 +60,7 @@ def report(name, scheme: Scheme, judgement: Judgement, steady: Steadiness):
         twist = 'twist zero'
     else:
         late = 'delay unknown at constant velocity' if j.delay_s is None else (
-            f'{1e3 * j.delay_s:.2g} ms late')
+            f'{round(1e3 * j.delay_s, 2) + 0.0:g} ms late')
         twist = (f'twist {1e3 * j.sigma_m_s:.2g} mm/s, {math.degrees(j.sigma_rad_s):.2g} deg/s, '
                  f'in the {"parent" if scheme.in_parent else "child"} frame, {late}')
     if scheme.by_twist:
