@@ -11,8 +11,10 @@ from .knots import LastKnots, turn_between
 from .piece import Piece
 from .stencils import MIDDLE, POINTS, stencil, weighted
 
-# Bandwidth of both loops, rad/s.
-HOLD = 0.5
+# Bandwidth of the loop of the position, rad/s, and twice its damping; that of the attitude. With
+# noise of 0.01 deg and 0.01 deg/s, a slower one of the attitude lets the path wander more.
+HOLD, DAMPING = 0.5, 1.4
+TURN_HOLD = 1.5
 # Looked at: the knots from two before the start of a piece to two behind its end.
 LOOKED = POINTS + 1
 START, END = MIDDLE, MIDDLE + 1
@@ -107,7 +109,7 @@ class TwistKnots:
         end_ns, w1, second = self._last[END]
         before, now, q = self._turning, self._wanted, self._q
         q_end = self._turned(q, START, *self._rates((START, END), END + 1), before, now)
-        wanted = tuple(HOLD * x for x in turn_between(q_end, second.q))
+        wanted = tuple(TURN_HOLD * x for x in turn_between(q_end, second.q))
         velocities = [*self._velocities, self._velocity(END, q_end)]
         a, loops, h = self._slope(velocities, q_end, wanted), [], (end_ns - start_ns) * 1e-9
         path = []
@@ -134,7 +136,7 @@ def held(h, loop, measured, v0, v1, a0, a1):
     there; the others are velocity and its slope at both ends.
     """
     p, u, alpha = loop
-    alpha_end = HOLD * (HOLD * (measured - p) - 2.0 * u)
+    alpha_end = HOLD * (HOLD * (measured - p) - DAMPING * u)
     n = 1.0 / h
     mean = (v1 - v0) * n
     c = (p, v0 + u, 0.5 * (a0 + alpha),
