@@ -14,7 +14,7 @@ from ins_sim.core.numerics import compilation
 from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.imu import ImuSensorSettings
-from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
+from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
 from ins_sim.studies.tuned_gyro import study_table
 
 STEPS, BLOCK, PERIOD_NS = 2000, 4096, 10_000_000

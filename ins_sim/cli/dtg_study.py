@@ -28,7 +28,7 @@ def run(chosen):
     from ins_sim.own_folders import whole_folder
     from ins_sim.report import tuned_gyro_study as report
     from ins_sim.report.console import PlainConsole
-    from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
+    from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
     studies = {}
     for path in arguments.parameter_paths(chosen, SHIPPED):
         if path.stem in studies:

@@ -30,6 +30,13 @@ def truth_blocks(frame, truth):
     }
 
 
+def truth_one(truth):
+    """Return the runs of each of topics.TRUTH of an AdaptedTruth."""
+    return (((*truth.r_m, *truth.q_mb), (*truth.v_b, *truth.omega_mb_b)), (truth.q_nb,),
+            (fix_one((truth.lat, truth.lon, truth.height)),),
+            (truth.q_mb, truth.omega_ib_b, truth.f_ib_b))
+
+
 def imu_block(imu):
     """Return {Topic: values} of ImuSamples."""
     return {topics.IMU_RAW: np.concatenate([imu.omega, imu.f], axis=1)}

@@ -124,6 +124,8 @@ AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
 # at a control instant, x: commanded sideslip, rad; y and z: estimated offset to the right of the
 # leg, m, and its rate, m/s, zero without an estimate
 GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
+# of another simulator, for truth_adapter; any frames
+OTHER_ODOMETRY = Topic('odom', ODOMETRY, ('odom', 'base_link'))
 ACK = Topic('sim/ack', HEADER)
 STATUS = Topic('sim/status', STRING)
 # what the generator announces, see run_announcement

@@ -2,7 +2,7 @@
 
 from rich.table import Table
 
-from ins_sim.settings.tuned_gyro_study import SWEEPS
+from ins_sim.settings.tuned_gyro import SWEEPS
 from .plotting import new_figure, save_png
 
 

@@ -18,6 +18,7 @@ NODES = {
     'velocity_meter': ('velocity_meter', 'VelocityMeterNode'),
     'gnss': ('gnss', 'GnssNode'),
     'aided_navigator': ('aided_navigator', 'AidedNavigatorNode'),
+    'truth_adapter': ('truth_adapter', 'TruthAdapterNode'),
     'recorder': ('recorder', 'RecorderNode'),
     'player': ('player', 'PlayerNode'),
 }
@@ -51,6 +52,7 @@ strapdown = partial(run_node, 'strapdown')
 velocity_meter = partial(run_node, 'velocity_meter')
 gnss = partial(run_node, 'gnss')
 aided_navigator = partial(run_node, 'aided_navigator')
+truth_adapter = partial(run_node, 'truth_adapter')
 recorder = partial(run_node, 'recorder')
 
 

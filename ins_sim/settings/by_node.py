@@ -12,6 +12,7 @@ from .imu import ImuSensorSettings
 from .motion import MotionGeneratorSettings
 from .recorder import RecorderSettings
 from .strapdown import StrapdownSettings
+from .truth_adapter import TruthAdapterSettings
 from .velocity_meter import VelocityMeterSettings
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
@@ -20,5 +21,6 @@ NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSet
 AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
           'aided_navigator': AidedNavigatorSettings}
 # those of a simulation, and the one that watches it
-ALL_NODES = {**NODES, **AIDING, 'recorder': RecorderSettings}
+ALL_NODES = {**NODES, **AIDING, 'truth_adapter': TruthAdapterSettings,
+             'recorder': RecorderSettings}
 ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))

@@ -192,7 +192,4 @@ class MotionGeneratorSettings(SettingsGroup):
 
     def check(self):
         """Refuse a window of lock-step that the queues cannot hold."""
-        window, depth = self.pacing.window, self.topics.depth
-        if window > depth:
-            raise ValueError(f'pacing.window is {window}; expected at most topics.depth, {depth}: '
-                             'a queue must hold a window')
+        self.pacing.check_depth(self.topics.depth)

@@ -6,12 +6,9 @@ from .field import setting, settings_class, SettingsGroup
 
 
 @settings_class
-class Pacing(SettingsGroup):
-    """How fast the generator goes."""
+class LockStepPacing(SettingsGroup):
+    """How a master of time waits for those who use what it sends."""
 
-    real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
-                                      'slowest required consumer (implies lock_step)', '',
-                                      0.0, 1e6)
     lock_step: bool = setting(False, 'wait for the acknowledgements of the required consumers')
     window: int = setting(200, 'unanswered steps allowed in lock-step', 'steps', 1, 2000)
     required: tuple[str, ...] = setting(('strapdown',), 'names of the consumers that must '
@@ -19,10 +16,35 @@ class Pacing(SettingsGroup):
     timeout_s: float = setting(30.0, 'wall time without an acknowledgement before the missing '
                                'consumer is named and the run ends', 's', 0.1, 1e5)
 
+    @property
+    def waits(self) -> bool:
+        """Whether the consumers are waited for."""
+        return self.lock_step
+
     def check(self):
         """Refuse lock-step without a consumer."""
-        if not self.required and (self.lock_step or self.real_time_factor == 0.0):
+        if not self.required and self.waits:
             raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
+
+    def check_depth(self, depth):
+        """Refuse a window that queues of topics.depth cannot hold."""
+        if self.window > depth:
+            raise ValueError(f'pacing.window is {self.window}; expected at most topics.depth, '
+                             f'{depth}: a queue must hold a window')
+
+
+@settings_class
+class Pacing(LockStepPacing):
+    """How fast the generator goes."""
+
+    real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
+                                      'slowest required consumer (implies lock_step)', '',
+                                      0.0, 1e6)
+
+    @property
+    def waits(self) -> bool:
+        """Whether the consumers are waited for."""
+        return self.lock_step or self.real_time_factor == 0.0
 
 
 # 2025-01-01: a stamp that tools take for one, and early enough for long runs.

@@ -11,7 +11,7 @@ from ins_sim.core.numerics import compilation
 from ins_sim.core.sensors.tuned_gyro.pair import GyroPair
 from ins_sim.studies.tuned_gyro import (gyro_at, half_peak_to_peak, rocking_amplitudes,
                                         stability_limits, study_curve, study_table)
-from ins_sim.settings.tuned_gyro_study import TunedGyroStudySettings
+from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
 from ins_sim.core.sensors.tuned_gyro.rotor import PRESETS
 from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report
 from support.places import ROOT

@@ -49,7 +49,7 @@ class MotionGeneratorNode(Node):
         self._announcements.publish(self._source.announcement.pack())
         self._pace = Pace(pacing.real_time_factor, self._source.dt_ns * 1e-9)
         self._lock = None
-        if pacing.lock_step or pacing.real_time_factor == 0.0:
+        if pacing.waits:
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
                 topics.HEADER)

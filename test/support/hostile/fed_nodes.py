@@ -189,7 +189,8 @@ class FedNodes:
     def __enter__(self):
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
-        from ins_sim.ros.lock_step import pacing, steerer
+        from ins_sim.ros.lock_step import pacing, release, steerer
+        from ins_sim.ros.nodes import truth_adapter
         from ins_sim.ros.process import announced, diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
         # as in a node process
@@ -197,9 +198,9 @@ class FedNodes:
         self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
-        for module in (announced, diagnostics, said, backlog, patience, pacing, steerer):
+        for module in (announced, diagnostics, said, backlog, patience, pacing, release, steerer):
             self._patch(module, 'time', self.clock)
-        for module in (diagnostics, patience):
+        for module in (diagnostics, patience, truth_adapter):
             self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
                 self.clock, period_s, callback))
         self._patch(qos, 'make_publisher', self.bus.make_publisher)
@@ -233,7 +234,7 @@ class FedNodes:
         broadcaster = getattr(node, 'broadcaster', None)
         if broadcaster is not None and broadcaster.queue is not None:
             self.bus.join(broadcaster.queue, topics.TF.name, False)
-        if hasattr(node, '_acks'):
+        if getattr(node, '_acks', None) is not None:
             self.bus.join(node._acks, topics.ACK.name, False)
 
     def __exit__(self, *exception):

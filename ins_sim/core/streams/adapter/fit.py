@@ -1,0 +1,83 @@
+"""Knots from samples: each of them, or every so many, as parabolas through the samples around."""
+
+from collections import deque
+
+from ins_sim.core.attitude import quaternion
+from .knots import Sample, turn_between
+
+# A window is closed at this part of a period behind its half length, which stamps may be off.
+SLACK = 0.25
+
+
+class KnotFit:
+    """
+    Makes knots of samples.
+
+    every: how many samples a knot stands for; half_ns: a knot is the value of the parabola fitted
+    to the samples not farther from it than this, 0 for the sample itself; period_ns: of the
+    samples.
+    """
+
+    def __init__(self, every, half_ns, period_ns):
+        self._every, self._half_ns = every, half_ns
+        self._least_ns = 0.5 * every * period_ns
+        self._slack_ns = SLACK * period_ns
+        self._samples, self._centres = deque(), deque()
+        self._last_ns, self._count = None, 0
+
+    def push(self, sample):
+        """Take a Sample; return the knots that it completes, a list of Samples."""
+        self._count += 1
+        t_ns = sample.t_ns
+        if self._last_ns is None or (self._count >= self._every
+                                     and t_ns - self._last_ns >= self._least_ns):
+            self._last_ns, self._count = t_ns, 0
+            if not self._half_ns:
+                return [sample]
+            self._centres.append(sample)
+        self._samples.append(sample)
+        knots = []
+        while self._centres and (
+                t_ns + self._slack_ns >= self._centres[0].t_ns + self._half_ns):
+            knots.append(self._fitted(self._centres.popleft()))
+        return knots
+
+    def _fitted(self, centre):
+        """Return a Sample at a centre by the samples around it, those before it being dropped."""
+        t_ns, reach_ns = centre.t_ns, self._half_ns + self._slack_ns
+        while self._samples[0].t_ns < t_ns - reach_ns:
+            self._samples.popleft()
+        near = [s for s in self._samples if s.t_ns <= t_ns + reach_ns]
+        factors = parabola_weights([(s.t_ns - t_ns) * 1e-9 for s in near])
+        turned = _mean(factors, [turn_between(centre.q, s.q) for s in near])
+        r = centre.r
+        moved = _mean(factors, [[a - b for a, b in zip(s.r, r)] for s in near])
+        return Sample(t_ns, tuple(a + b for a, b in zip(r, moved)),
+                      quaternion.multiply(centre.q, quaternion.exponential(turned)),
+                      _mean(factors, [s.v for s in near]), _mean(factors, [s.w for s in near]))
+
+
+def _mean(factors, vectors):
+    x = y = z = 0.0
+    for factor, (a, b, c) in zip(factors, vectors):
+        x, y, z = x + factor * a, y + factor * b, z + factor * c
+    return x, y, z
+
+
+def parabola_weights(x):
+    """
+    Return the factors that give, at 0, the parabola of least squares through values at x.
+
+    Of fewer than three abscissas, or where they are on one side, the value at 0 alone counts.
+    """
+    count = len(x)
+    if count < 3 or not min(x) < 0.0 < max(x):
+        return [1.0 if s == 0.0 else 0.0 for s in x]
+    s1 = s2 = s3 = s4 = 0.0
+    for s in x:
+        square = s * s
+        s1, s2, s3, s4 = s1 + s, s2 + square, s3 + square * s, s4 + square * square
+    # The first row of the inverse of the normal equations, by cofactors.
+    a, b, c = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+    d = count * a + s1 * b + s2 * c
+    return [(a + s * (b + s * c)) / d for s in x]

@@ -1,0 +1,115 @@
+"""The stamps of the input: their rate and jitter, their gaps, and the instants they stand for."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics.instants import seconds
+from ..faults import MOST_PERIODS, StreamFault
+
+# A step longer than so many periods is a gap, and what jitter is added to that.
+GAP, JITTERS = 1.5, 5.0
+# Bandwidth with which nominal instants follow the stamps, rad/s.
+FOLLOW = 0.1
+# A period is taken for a round one within so many of its sigmas.
+ROUND_SIGMAS = 4.0
+
+
+@dataclass(frozen=True)
+class Steadiness:
+    """period_ns of the stamps, a float, and their jitter: rms off a straight line, ns."""
+
+    period_ns: float
+    jitter_ns: float
+
+    @property
+    def longest_ns(self):
+        """The longest step that is no gap, ns."""
+        return GAP * self.period_ns + JITTERS * self.jitter_ns
+
+
+def steadiness(t_ns):
+    """
+    Return the Steadiness of stamps, a list of ints, and the line through them.
+
+    The line: instants (n,) float, ns since the first stamp, steps of the period apart.
+    """
+    stamps = np.array(t_ns) - t_ns[0]
+    steps = np.diff(stamps)
+    number = np.concatenate([[0], np.cumsum(np.maximum(1, np.rint(steps / np.median(steps))))])
+    mean = number.mean()
+    centred = number - mean
+    period = float(np.sum(centred * stamps) / np.sum(centred * centred))
+    line = stamps.mean() + centred * period
+    return Steadiness(period, float(np.sqrt(np.mean((stamps - line) ** 2)))), line
+
+
+def round_period_ns(steady, count):
+    """Return the period of a whole rate in Hz or of whole milliseconds, where it may be that."""
+    period_ns = steady.period_ns
+    # A hundredth of a nanosecond: stamps are whole ones.
+    sigma_ns = steady.jitter_ns * math.sqrt(12.0 / count) / count + 0.01
+    for nearest_ns in (1e9 / max(1, round(1e9 / period_ns)), 1e6 * round(1e-6 * period_ns)):
+        if abs(nearest_ns - period_ns) <= ROUND_SIGMAS * sigma_ns:
+            return nearest_ns
+    return period_ns
+
+
+class NominalClock:
+    """
+    Instants of equal steps that follow stamps which are off them.
+
+    What they are off moves the steps and never the instants, by a loop of second order, so that
+    the motion does not shake. base_ns: the last instant; period_ns: the step, a float.
+    """
+
+    def __init__(self, base_ns, period_ns):
+        self._base_ns, self._period = base_ns, period_ns
+        self._last = self._slip = 0.0
+
+    def instant(self, t_ns):
+        """Return the instant of the next stamp, ns."""
+        off = float(t_ns - self._base_ns) - self._last
+        count = max(1.0, float(round(off / self._period)))
+        step = count * self._period
+        turn = FOLLOW * step * 1e-9
+        self._slip = self._slip + turn * (FOLLOW * (off - step) - 2.0 * self._slip)
+        self._last = self._last + step + self._slip * step * 1e-9
+        return self._base_ns + round(self._last)
+
+
+class StampCheck:
+    """
+    Refuses stamps that do not follow each other.
+
+    name: of the input; dt_ns: period of the IMU, of which a step is at most MOST_PERIODS.
+    """
+
+    def __init__(self, name, dt_ns):
+        self._name, self._dt_ns = name, dt_ns
+        self._last_ns = None
+
+    def check(self, t_ns, steady):
+        """Raise StreamFault for a stamp; steady: Steadiness of the input, or None."""
+        last_ns = self._last_ns
+        if last_ns is None:
+            self._last_ns = t_ns
+            return
+        step_ns, name = t_ns - last_ns, self._name
+        if step_ns == 0:
+            raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; '
+                              'the sample was dropped', restart=False)
+        if step_ns < 0:
+            raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
+                              'expected rising stamps', restart=True)
+        longest_ns = MOST_PERIODS * self._dt_ns if steady is None else steady.longest_ns
+        if step_ns > longest_ns:
+            raise gap_fault(name, last_ns, t_ns, longest_ns, restart=True)
+        self._last_ns = t_ns
+
+
+def gap_fault(name, last_ns, t_ns, longest_ns, restart):
+    """Return the StreamFault of a gap between two stamps."""
+    return StreamFault(f'{name} has a gap from {seconds(last_ns)} to {seconds(t_ns)}; expected '
+                       f'steps of at most {longest_ns * 1e-9:.4g} s', restart=restart)

@@ -1,0 +1,124 @@
+"""Node truth_adapter: the odometry of another simulator in, truth out."""
+
+from std_msgs.msg import String
+
+from ins_sim.core.streams.adapter.stage import TruthAdapter
+from ins_sim.core.timeseries.bounds import LATEST_NS
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import Reader
+from ins_sim.messages.convert import truth_one
+from ins_sim.messages.plausible import PlausibleReader
+from ins_sim.messages.world_frames import WorldFrames
+from ins_sim.settings.truth_adapter import TruthAdapterSettings
+from ..lock_step.release import Release
+from ..process.publishers import SolePublishers
+from ..process.runtime import EXIT_CONSUMER
+from ..transport import qos
+from ..transport.backlog import HandQueue
+from ..transport.wall_timer import wall_timer
+from .stage import StageNode
+
+LOOK_S = 0.005
+
+
+class TruthAdapterNode(StageNode):
+    """
+    Reads odom, publishes truth/* and sim/status; paces by its input, and in lock-step by sim/ack.
+
+    It is the master of time in place of motion_generator: stamps of the input are those of the
+    truth.  docs/design/other_simulators.md says how it and the simulator wait for each other.
+    """
+
+    NAME = 'truth_adapter'
+    SETTINGS = TruthAdapterSettings
+    DRIVER = topics.OTHER_ODOMETRY
+    # the epoch is that of the other simulator
+    FIRST_NS = -2 * LATEST_NS
+
+    def make_stage(self):
+        """Return the adapter."""
+        return TruthAdapter(self.settings, topics.OTHER_ODOMETRY.name)
+
+    def make_outputs(self):
+        """Make publishers, readers and writers, and in lock-step the queue of the answers."""
+        name, pacing = topics.OTHER_ODOMETRY.name, self.settings.pacing
+        self._reader = PlausibleReader(topics.OTHER_ODOMETRY, ((0, 3), (3, 7), (43, 46), (46, 49)))
+        self._frames = WorldFrames(name)
+        self._packs = [topic.writer().pack for topic in topics.TRUTH]
+        self._publish = [qos.make_publisher(self, topic, self.depth).publish
+                         for topic in topics.TRUTH]
+        self._release = Release(pacing, self._send, self.seen)
+        self._acks = None
+        if pacing.waits:
+            self._acks = HandQueue(self, topics.ACK, qos.ACK_DEPTH)
+            self._ack_reader = Reader(topics.HEADER)
+            wall_timer(self, LOOK_S, self.guarded(self._look))
+        self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None}).describe)
+        self.monitor.add(self._describe)
+        status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
+        status.publish(String(data='running'))
+
+    def start_anew(self):
+        """Forget all that has come, and what the input is like."""
+        self._release.clear()
+        self._frames.forget()
+        self.stage.begin()
+
+    def on_message(self, data):
+        """Give one message to the adapter and send the truth that it completes."""
+        sample = self.read(self._reader, data)
+        if sample is None:
+            return
+        try:
+            note = self._frames.check(data)
+        except ValueError as error:
+            self.fault(str(error))
+            return
+        if note:
+            self.get_logger().info(note)
+        if len(self._release) > self.depth:
+            self.fault(f'{len(self._release)} samples wait for the consumers of pacing.required '
+                       f'to answer; expected at most topics.depth: {topics.OTHER_ODOMETRY.name} '
+                       'must wait for the acknowledgements of truth_adapter, or be slower')
+            self._release.clear()
+            self.stage.reset()
+        for truth in self.push(self.stage.push, sample):
+            stamp_ns = truth.t_ns + self.epoch_ns
+            self._release.add(stamp_ns, [pack(stamp_ns, *runs) for pack, runs in zip(
+                self._packs, truth_one(truth))])
+        while self.stage.notes:
+            self.get_logger().info(self.stage.notes.pop(0))
+        self._release.finish(sample[0])
+
+    def _send(self, messages):
+        for publish, message in zip(self._publish, messages):
+            publish(message)
+        self.monitor.sent += 1
+
+    def on_drained(self):
+        """Take the answers, send what may be sent, acknowledge."""
+        if self._acks is not None:
+            self._take_acks()
+            self._release.advance()
+        super().on_drained()
+
+    def _take_acks(self):
+        for data in self.taken_of(self._acks):
+            try:
+                stamp_ns, _ = self._ack_reader.read(data)
+                name = self._ack_reader.strings(data)[0]
+            except ValueError as error:
+                self.monitor.fault(f'{topics.ACK.name}: {error}; the message was dropped')
+            else:
+                self._release.ack(name, stamp_ns)
+
+    def _look(self):
+        self.on_drained()
+        late = self._release.look('the consumers of pacing.required')
+        if late and not self.stop:
+            self.monitor.fault(late, fatal=True)
+            self.stop.request(EXIT_CONSUMER)
+
+    def _describe(self):
+        """Return nothing that is wrong, and the values for /diagnostics."""
+        return '', (('input', self.stage.state), ('waiting', len(self._release)))
