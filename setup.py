@@ -14,6 +14,8 @@ COMPRESSION = ['lz4<5', 'backports.zstd<2; python_version < "3.14"']
 DATAFRAME = ['pandas<4']
 # Compiles the loops of offline runs; the numbers are the same without it.
 FAST = ['numba<1']
+# The World Magnetic Model of imu/mag.
+MAGNETIC = ['pygeomag>=1.1,<2']
 
 # Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
@@ -35,9 +37,10 @@ setup(
         'compression': COMPRESSION,
         'dataframe': DATAFRAME,
         'fast': FAST,
+        'magnetic': MAGNETIC,
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': [*COMPRESSION, *DATAFRAME, *FAST, 'pytest<9', 'pytest-xdist<4', 'hypothesis<7',
-                 'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
+        'test': [*COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, 'pytest<9', 'pytest-xdist<4',
+                 'hypothesis<7', 'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
                  # what results are compared with
                  'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12'],
         'bench': ['python-ins<2', 'inu<3', 'rosbags<0.12'],

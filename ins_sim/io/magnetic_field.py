@@ -31,6 +31,6 @@ def _model():
         from pygeomag.wmm.wmm_2025 import WMM_2025
     except ImportError as error:
         raise ValueError(f'magnetometer.publish is true and pygeomag cannot be imported ({error});'
-                         " expected it for the World Magnetic Model (pip install "
-                         "'ins_sim[magnetic]')") from None
+                         ' expected it for the World Magnetic Model (extra magnetic of '
+                         'ins_sim)') from None
     return GeoMag(coefficients_data=WMM_2025)

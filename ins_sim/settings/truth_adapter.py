@@ -1,8 +1,8 @@
 """Settings of the node truth_adapter."""
 
 from .field import group, setting, settings_class, SettingsGroup
-from .node import LockStepPacing, Time, Topics
-from .place import Datum, Earth
+from .node import LockStepPacing, Topics
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class
@@ -19,7 +19,8 @@ class TruthAdapterSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     topics: Topics = group(Topics)
     pacing: LockStepPacing = group(LockStepPacing)
     world: World = group(World)

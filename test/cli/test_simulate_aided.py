@@ -78,7 +78,7 @@ def test_without_aided_the_run_is_as_before(run, tmp_path, capsys):
     with np.load(tmp_path / 'run' / 'run.npz') as arrays:
         assert np.array_equal(arrays['errors_position'], run[2].errors.position)
         assert not [name for name in arrays if 'aided' in name or 'fix' in name]
-    assert 'velocity_meter' not in (tmp_path / 'run' / 'parameters.yaml').read_text()
+    assert 'velocity_meter:\n' not in (tmp_path / 'run' / 'parameters.yaml').read_text()
     assert not (tmp_path / 'run' / 'aided.png').exists()
 
 

@@ -115,7 +115,7 @@ def test_run_time_needs_five_libraries_and_ros():
     required = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL).group(1)
     assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
     of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
-    extras = {'pandas', 'numba'}
+    extras = {'pandas', 'numba', 'pygeomag'}
     assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
         of_ros | extras)
 

@@ -12,6 +12,7 @@ from ins_sim.io import environment, magnetic_field
 from ins_sim.messages import topics
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.imu import ImuSensorSettings
+from ins_sim.settings.node import EPOCH_S
 import numpy as np
 import pytest
 
@@ -103,7 +104,8 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
         data, raw = (bag.arrays(topic.name) for topic in (topics.IMU_DATA, topics.IMU_RAW))
         odometry = bag.arrays('ins/odometry')
     # the truth comes every 10 ms: the first of each 25 ms
-    assert field['stamp_ns'][:5].tolist() == [0, 30_000_000, 50_000_000, 80_000_000, 100_000_000]
+    assert (field['stamp_ns'][:5] - 10**9 * EPOCH_S).tolist() == [
+        0, 30_000_000, 50_000_000, 80_000_000, 100_000_000]
     assert len(field) == 4001 and len(air) == 501
     assert np.linalg.norm(field['magnetic_field'], axis=1) == pytest.approx(5e-5, rel=0.02)
     assert field['magnetic_field_covariance'] == pytest.approx(
@@ -132,7 +134,8 @@ def test_live_nodes_send_the_bytes_of_the_bag(ros_domain, tmp_path, monkeypatch)
     words = [word for key, value in asked.items()
              for word in ('-p', f'imu_sensor:{key}:={str(value).lower()}')]
     assert main(['simulate', '-p', 'motion.kind:=racetrack', '--no-twin', '-p', 'duration_s:=1.0',
-                 '-o', str(tmp_path / 'run'), '--bag', str(path), *words]) == 0
+                 '-p', 'time.epoch:=fixed', '-p', 'time.epoch_s:=0', '-o',
+                 str(tmp_path / 'run'), '--bag', str(path), *words]) == 0
     with open_bag(path) as bag:
         for name, messages in heard.items():
             assert [bytes(data) for _, _, data in bag.messages([name])] == messages

@@ -7,7 +7,9 @@ from ins_sim.core.timeseries.bounds import LATEST_NS
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.convert import truth_one
+from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.messages.plausible import PlausibleReader
+from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.messages.world_frames import WorldFrames
 from ins_sim.settings.truth_adapter import TruthAdapterSettings
 from ..lock_step.release import Release
@@ -15,6 +17,8 @@ from ..process.publishers import SolePublishers
 from ..process.runtime import EXIT_CONSUMER
 from ..transport import qos
 from ..transport.backlog import HandQueue
+from ..transport.broadcaster import Broadcaster
+from ..transport.qos_overrides import advertise
 from ..transport.wall_timer import wall_timer
 from .stage import StageNode
 
@@ -26,25 +30,31 @@ class TruthAdapterNode(StageNode):
     Reads odom, publishes truth/* and sim/status; paces by its input, and in lock-step by sim/ack.
 
     It is the master of time in place of motion_generator: stamps of the input are those of the
-    truth.  docs/design/other_simulators.md says how it and the simulator wait for each other.
+    truth, and it announces a run with the epoch zero.  docs/design/other_simulators.md says how it
+    and the simulator wait for each other.
     """
 
     NAME = 'truth_adapter'
     SETTINGS = TruthAdapterSettings
     DRIVER = topics.OTHER_ODOMETRY
-    # the epoch is that of the other simulator
-    FIRST_NS = -2 * LATEST_NS
 
     def make_stage(self):
         """Return the adapter."""
         return TruthAdapter(self.settings, topics.OTHER_ODOMETRY.name)
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of map -> base_link."""
+        return Broadcaster(self, self.settings, TRUTH_MOVES)
+
     def make_outputs(self):
         """Make publishers, readers and writers, and in lock-step the queue of the answers."""
+        # first, so that whoever has found the truth knows that there is an announcement
+        announcement = RunAnnouncement(0, 0, self.settings.truth_hz, LATEST_NS).pack()
+        qos.make_publisher(self, topics.RUN, self.depth).publish(announcement)
         name, pacing = topics.OTHER_ODOMETRY.name, self.settings.pacing
         self._reader = PlausibleReader(topics.OTHER_ODOMETRY, ((0, 3), (3, 7), (43, 46), (46, 49)))
         self._frames = WorldFrames(name)
-        self._packs = [topic.writer().pack for topic in topics.TRUTH]
+        self._packs = [topic.named(self.names).writer().pack for topic in topics.TRUTH]
         self._publish = [qos.make_publisher(self, topic, self.depth).publish
                          for topic in topics.TRUTH]
         self._release = Release(pacing, self._send, self.seen)
@@ -55,8 +65,9 @@ class TruthAdapterNode(StageNode):
             wall_timer(self, LOOK_S, self.guarded(self._look))
         self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None}).describe)
         self.monitor.add(self._describe)
-        status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
+        status = advertise(self, String, topics.STATUS.name, qos.latched_profile())
         status.publish(String(data='running'))
+        self._announced.take(announcement)
 
     def start_anew(self):
         """Forget all that has come, and what the input is like."""
@@ -84,15 +95,18 @@ class TruthAdapterNode(StageNode):
             self.stage.reset()
         for truth in self.push(self.stage.push, sample):
             stamp_ns = truth.t_ns + self.epoch_ns
-            self._release.add(stamp_ns, [pack(stamp_ns, *runs) for pack, runs in zip(
-                self._packs, truth_one(truth))])
+            values = truth_one(truth)
+            messages = [pack(stamp_ns, *runs) for pack, runs in zip(self._packs, values)]
+            self._release.add(stamp_ns, (messages, stamp_ns, values[0][0]))
         while self.stage.notes:
             self.get_logger().info(self.stage.notes.pop(0))
         self._release.finish(sample[0])
 
-    def _send(self, messages):
+    def _send(self, sample):
+        messages, stamp_ns, pose = sample
         for publish, message in zip(self._publish, messages):
             publish(message)
+        self.broadcaster.send(stamp_ns, pose)
         self.monitor.sent += 1
 
     def on_drained(self):

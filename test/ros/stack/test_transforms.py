@@ -172,7 +172,8 @@ def test_guided_by_the_free_ins(ros_domain):
         steerer = Steerer(settings, TruthSource(settings), Queue(), lambda data: None,
                           faults.append)
         odometry = topics.INS_ODOMETRY.named(settings.frames.names())
-        queue.append(odometry.writer().pack(0, (0.0,) * 6 + (1.0,), (0.0,) * 6))
+        queue.append(odometry.writer().pack(
+            0, (0.0,) * 6 + (1.0,), (0.0,) * 36, (0.0,) * 6, (0.0,) * 36))
         steerer.reach(1, 1, waits=False)
         assert steerer.heard and not faults
         queue.append(topics.AIDED_ODOMETRY.writer().pack(

@@ -41,8 +41,9 @@ def triad_sigmas(settings, dt_s, name=''):
     the rest a bias that stays, which is more than it does after a few time constants.
     """
     m = triad_model(settings, dt_s, name)
-    fast = sum(2.0 * time for time in FLICKER_TIMES if time <= SLOW_S)
-    slow = sum(1.0 for time in FLICKER_TIMES if time > SLOW_S)
+    fast = slow = 0.0
+    for time in FLICKER_TIMES:
+        fast, slow = (fast + 2.0 * time, slow) if time <= SLOW_S else (fast, slow + 1.0)
     flicker = FLICKER_SIGMA * FLICKER_SIGMA * np.square(m.flicker)
     variance, time = np.square(m.gauss_markov_sigma), np.array(m.gauss_markov_time)
     walking, white = np.isinf(time), time <= SLOW_S
