@@ -38,7 +38,7 @@ def files(tmp_path_factory):
             bag.add_topic('/imu', topics.IMU)
             bag.add_topic('/odom', topics.ODOMETRY)
             bag.add_topic('/status', topics.STRING)
-            imu, odometry = topics.IMU_RAW.writer(), topics.INS_ODOMETRY.writer()
+            imu, odometry = topics.IMU_RAW.writer(), topics.TRUTH_ODOMETRY.writer()
             for first in (0, N):
                 stamps = np.arange(first, first + N) * 10**7
                 bag.write_blocks({
@@ -64,7 +64,7 @@ def unchecked(path, kind):
         channels = [writer.register_channel(name, 'cdr', writer.register_schema(t, 'ros2msg', b''))
                     for name, t in (('/imu', topics.IMU), ('/odom', topics.ODOMETRY))]
         for k in range(N):
-            for channel, topic in zip(channels, (topics.IMU_RAW, topics.INS_ODOMETRY)):
+            for channel, topic in zip(channels, (topics.IMU_RAW, topics.TRUTH_ODOMETRY)):
                 data = topic.writer().pack_block([k], np.ones((1, 13)))[0]
                 writer.add_message(channel, k, data, k)
         writer.finish()

@@ -76,7 +76,7 @@ def test_command_passes_names_files_and_values():
 def test_scripts_exist():
     """Each console script names a function that is there."""
     assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter',
-                            'gnss', 'aided_navigator', 'recorder', 'ins_sim'}
+                            'gnss', 'aided_navigator', 'recorder', 'truth_adapter', 'ins_sim'}
     for entry in SCRIPTS.values():
         module, function = entry.split(':')
         assert callable(getattr(import_module(module), function))

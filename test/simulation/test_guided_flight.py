@@ -10,6 +10,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.prediction.predict import predict
 from ins_sim.core.simulation.guided_flight import fly
 from ins_sim.core.simulation.inertial import simulate
+from ins_sim.settings.node import EPOCH_S
 from ins_sim.studies.oscillations import half_range
 import numpy as np
 import pytest
@@ -215,6 +216,6 @@ def test_the_command_writes_the_histories(tmp_path, capsys):
     with ins_sim.open_bag(tmp_path / 'bag') as bag:
         commands = bag.arrays('guidance/command')
     # the last sample needs no further command
-    assert np.array_equal(commands['stamp_ns'], arrays['steering_t_ns'][:-1])
+    assert np.array_equal(commands['stamp_ns'] - 10**9 * EPOCH_S, arrays['steering_t_ns'][:-1])
     assert np.array_equal(commands['vector'], np.stack(
         [arrays[f'steering_{name}'][:-1] for name in ('command', 'z', 'v_z')], axis=1))
