@@ -18,6 +18,7 @@ NODES = {
     'velocity_meter': ('velocity_meter', 'VelocityMeterNode'),
     'gnss': ('gnss', 'GnssNode'),
     'aided_navigator': ('aided_navigator', 'AidedNavigatorNode'),
+    'simulation': ('simulation', 'SimulationNode'),
     'recorder': ('recorder', 'RecorderNode'),
     'player': ('player', 'PlayerNode'),
 }
@@ -51,6 +52,7 @@ strapdown = partial(run_node, 'strapdown')
 velocity_meter = partial(run_node, 'velocity_meter')
 gnss = partial(run_node, 'gnss')
 aided_navigator = partial(run_node, 'aided_navigator')
+simulation = partial(run_node, 'simulation')
 recorder = partial(run_node, 'recorder')
 
 

@@ -17,6 +17,7 @@ from ..process.diagnostics import Monitor
 from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
+from ..process.serving import serve_ready
 from ..transport import qos
 from ..transport.backlog import HandQueue
 
@@ -35,8 +36,9 @@ class MotionGeneratorNode(Node):
 
     NAME = 'motion_generator'
 
-    def __init__(self, stop=None, **kwargs):
+    def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
+        self.hand_over = hand_over
         self._stop = stop
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
@@ -94,7 +96,7 @@ class MotionGeneratorNode(Node):
             wait_s = self._advance(stop)
             now = time.monotonic()
             if now - served > SERVE_S:
-                executor.spin_once(timeout_sec=0.0)
+                serve_ready(executor)
                 served = now
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
@@ -130,6 +132,8 @@ class MotionGeneratorNode(Node):
             self._send(k)
             self._next += 1
             self._single = max(0, self._single - 1)
+        if self.hand_over is not None:
+            self.hand_over.drained()
         return 0.0
 
     def _send(self, k):

@@ -28,8 +28,9 @@ class StageNode(Node):
 
     FIRST_NS = 0
 
-    def __init__(self, stop=None, **kwargs):
+    def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
+        self.hand_over = hand_over
         self.stop = Stop() if stop is None else stop
         self.settings = declare_settings(self, self.SETTINGS)
         self.epoch_ns = self.settings.time.epoch_s * SECOND

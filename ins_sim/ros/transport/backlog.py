@@ -4,6 +4,7 @@ Subscriptions that give bytes and are emptied by hand.
 Each counts by the numbers of the publishers what was lost before it was taken.
 """
 
+from collections import deque
 import time
 
 from rclpy.callback_groups import CallbackGroup
@@ -17,6 +18,8 @@ NAP_S = 5e-4
 BATCH = 50
 # what has waited for longer is dropped where nobody waits for its answer
 BACKLOG_NS = 5_000_000_000
+# what DDS would note of a message that was handed over
+HANDED = {'publication_sequence_number': None, 'received_timestamp': 0}
 
 
 class NeverReady(CallbackGroup):
@@ -35,17 +38,44 @@ class NeverReady(CallbackGroup):
 
 
 class HandQueue:
-    """A raw subscription out of the wait set; profile: its QoS, by default that of data."""
+    """
+    A raw subscription out of the wait set; profile: its QoS, by default that of data.
+
+    In a process of several nodes it may be a queue in memory, see ``hand_over``.
+    """
 
     def __init__(self, node, topic, depth, profile=None):
         self.topic, self.gaps, self.dropped = topic.name, Gaps(), 0
+        self._node, self._depth, self._profile = node, depth, profile or qos.data_profile(depth)
         self._group = NeverReady()
         self._class = qos.message_class(topic)
-        self.subscription = node.create_subscription(
-            self._class, topic.name, lambda data: None, profile or qos.data_profile(depth),
-            raw=True,
+        hand_over = qos.hand_over_of(node)
+        if hand_over is not None and profile is None and hand_over.serves(topic):
+            hand_over.join(node, topic, self)
+        else:
+            self.subscribe()
+
+    def subscribe(self):
+        """Hear the topic by DDS."""
+        self.subscription = self._node.create_subscription(
+            self._class, self.topic, lambda data: None, self._profile, raw=True,
             callback_group=self._group)
         self._take = self.subscription.handle.take_message
+
+    def accept(self, patience):
+        """Return the function that takes a message; patience: goes on when one has come."""
+        waiting = deque()
+        self._take = lambda cls, raw: (waiting.popleft(), HANDED) if waiting else None
+
+        def receive(data):
+            if len(waiting) == self._depth:
+                waiting.popleft()
+                self.gaps.lost += 1
+            waiting.append(data)
+            if patience is not None and patience.waits:
+                patience.go_on()
+
+        return receive
 
     def take(self):
         """Return the oldest message as bytes, or None."""
@@ -75,10 +105,26 @@ class DrivingQueue:
     def __init__(self, node, topic, depth, on_data, on_drained, may_drop, linger_s=0.0):
         self.gaps, self.dropped, self._may_drop = Gaps(), 0, may_drop
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
+        self._node, self._topic, self._depth = node, topic, depth
         self._class = qos.message_class(topic)
-        self.subscription = node.create_subscription(self._class, topic.name, self._wake,
-                                                     qos.data_profile(depth), raw=True)
+        hand_over = qos.hand_over_of(node)
+        if hand_over is None:
+            self.subscribe()
+        else:
+            # what is sent elsewhere is served beside the run of this process
+            self._linger_s = 0.0
+            hand_over.join(node, topic, self)
+            hand_over.add_drained(on_drained)
+
+    def subscribe(self):
+        """Hear the topic by DDS."""
+        self.subscription = self._node.create_subscription(
+            self._class, self._topic.name, self._wake, qos.data_profile(self._depth), raw=True)
         self._take = self.subscription.handle.take_message
+
+    def accept(self, patience):
+        """Return the function that takes a message in this process."""
+        return self._on_data
 
     def _give(self, data, info, late_ns):
         self.gaps.take(info['publication_sequence_number'])

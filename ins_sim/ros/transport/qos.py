@@ -31,7 +31,14 @@ def message_class(topic):
 
 def make_publisher(node, topic, depth):
     """Return a publisher of a Topic for bytes."""
-    return node.create_publisher(message_class(topic), topic.name, data_profile(depth))
+    publisher = node.create_publisher(message_class(topic), topic.name, data_profile(depth))
+    hand_over = hand_over_of(node)
+    return publisher if hand_over is None else hand_over.publisher(node, topic, publisher)
+
+
+def hand_over_of(node):
+    """Return the HandOver of a node that shares its process with others, else None."""
+    return getattr(node, 'hand_over', None)
 
 
 def ack_publisher(node):
