@@ -23,6 +23,8 @@ from ..transport.backlog import HandQueue
 
 SERVE_S = 0.01
 POLL_S = 2e-4
+# As long a time for samples as for the callbacks of the executor, times this.
+SHARE = 20.0
 BURST = 50
 CLOCK_HZ = 100.0
 
@@ -91,13 +93,15 @@ class MotionGeneratorNode(Node):
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
         self._pace.anchor(0)
-        served = 0.0
+        serve_s = 0.0
         while not stop:
             wait_s = self._advance(stop)
             now = time.monotonic()
-            if now - served > SERVE_S:
+            if now > serve_s:
                 serve_ready(executor)
-                served = now
+                served = time.monotonic()
+                # where looking takes long, it is done more rarely
+                serve_s = served + max(SERVE_S, SHARE * (served - now))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
 

@@ -51,6 +51,7 @@ class HandQueue:
         self._class = qos.message_class(topic)
         hand_over = qos.hand_over_of(node)
         if hand_over is not None and profile is None and hand_over.serves(topic):
+            self.accept(None)
             hand_over.join(node, topic, self)
         else:
             self.subscribe()
