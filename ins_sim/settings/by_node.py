@@ -10,7 +10,7 @@ from .catalogue import flatten
 from .gnss import GnssSettings
 from .imu import ImuSensorSettings
 from .motion import MotionGeneratorSettings
-from .one_process import OneProcessSettings
+from .node import OneProcessSettings
 from .recorder import RecorderSettings
 from .strapdown import StrapdownSettings
 from .velocity_meter import VelocityMeterSettings

@@ -4,7 +4,7 @@ import sys
 
 from rclpy.node import Node
 
-from ins_sim.settings.one_process import OneProcessSettings
+from ins_sim.settings.node import OneProcessSettings
 from ..process.parameters import declare_settings
 from ..transport.hand_over import HandOver
 from .imu_sensor import ImuSensorNode
