@@ -1,6 +1,7 @@
 """The messages of a run, of nodes that are fed one by one and of those in one process."""
 
 from collections import defaultdict
+from functools import partial
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import stamp_of
@@ -31,12 +32,8 @@ def apart(values):
     return dict(sent)
 
 
-def together(values, watch=lambda node: None):
-    """
-    Return {topic: {stamp: bytes}} of the nodes in one process.
-
-    watch: called with the SimulationNode before it runs.
-    """
+def together(values):
+    """Return {topic: {stamp: bytes}} of the nodes in one process."""
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.parameter import Parameter
@@ -50,8 +47,7 @@ def together(values, watch=lambda node: None):
         Parameter(name, value=value) for name, value in values.items()])
     try:
         for topic in PUBLISHED:
-            listen(node, topic, sent[topic.name])
-        watch(node)
+            node.hand_over.listen(node, topic, partial(_keep, sent[topic.name]))
         executor.add_node(node)
         with plain_only():
             node.run(executor, stop)
@@ -63,8 +59,5 @@ def together(values, watch=lambda node: None):
     return {name: messages for name, messages in sent.items() if messages}
 
 
-def listen(node, topic, messages):
-    """Put what is handed over of a Topic into {stamp: bytes}, as a further reader of it."""
-    receivers = node.hand_over._receivers.get(node.resolve_topic_name(topic.name))
-    if receivers is not None:
-        receivers.append(lambda data: messages.__setitem__(stamp_of(data), data))
+def _keep(messages, data):
+    messages[stamp_of(data)] = data

@@ -132,13 +132,35 @@ class MotionGeneratorNode(Node):
             due_s = self._pace.wait_s(self._next)
             quiet = lock is None or self._paused or time.monotonic() - lock.moved > 0.05
             return max(due_s, 10 * POLL_S if quiet else POLL_S) if lock or self._paused else due_s
-        for k in range(self._next, min(allowed, self._next + BURST)):
-            self._send(k)
-            self._next += 1
-            self._single = max(0, self._single - 1)
+        for _ in range(self._next, min(allowed, self._next + BURST)):
+            self._send_next()
         if self.hand_over is not None:
             self.hand_over.drained()
         return 0.0
+
+    def step(self):
+        """
+        Send the next sample, whoever is to acknowledge; return its stamp, None at the end.
+
+        The solution that steers must be there by then: its node is in this process.
+        """
+        k = self._next
+        if k >= self._source.count:
+            return None
+        if self._steerer:
+            while self._steerer.reach(k, k + 1, waits=True) <= k:
+                time.sleep(POLL_S)
+        self._send_next()
+        return self._source.stamp_ns(k)
+
+    def repeat_first(self):
+        """Send sample 0 again: a consumer has come since."""
+        self._send(0)
+
+    def _send_next(self):
+        self._send(self._next)
+        self._next += 1
+        self._single = max(0, self._single - 1)
 
     def _send(self, k):
         if self._clock_every and k % self._clock_every == 0:

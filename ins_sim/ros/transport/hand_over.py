@@ -57,6 +57,17 @@ class HandOver:
                 receivers.append(queue.accept(self._patiences.get(node)))
         self._joining.clear()
 
+    def listen(self, node, topic, receive):
+        """
+        Let a function receive the bytes of a Topic, as a queue of a node does.
+
+        Return whether it is published here.
+        """
+        receivers = self._receivers.get(node.resolve_topic_name(topic.name))
+        if receivers is not None:
+            receivers.append(receive)
+        return receivers is not None
+
     def drained(self):
         """Say that a burst of messages is over: the nodes acknowledge."""
         for on_drained in self._drained:
