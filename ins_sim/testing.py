@@ -12,7 +12,6 @@ import os
 from pathlib import Path
 import tempfile
 import time
-from unittest import mock
 
 from ins_sim import parameter_files
 from ins_sim.api.inputs import read_settings
@@ -31,7 +30,6 @@ except ImportError:
 PUBLISHED = {topic.name: topic for topic in (*topics.DATA, *topics.AIDING, *topics.GUIDANCE,
                                              topics.IMU_PARITY)}
 ALWAYS = (topics.TRUTH_ODOMETRY.name, topics.IMU_RAW.name)
-LOCAL = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 # Sample 0 is sent again until it is answered, so often.
 REPEAT_S = 0.1
 DEPTH = 1000
@@ -109,6 +107,8 @@ class RunningSimulation:
         In one sentence, on a parameter or a topic that does not exist.
     TimeoutError
         Where an answer does not come; the sentence names the topic.
+    RuntimeError
+        Where a node ends the simulation, as on_fault: stop has it.
     """
 
     def __init__(self, names=(), values=None, topics=(), answers=None, aided=False, namespace='',
@@ -137,14 +137,14 @@ class RunningSimulation:
         from ins_sim.ros.process.serving import serve_ready
         from ins_sim.ros.transport.repairs import use_profile
         use_profile()
+        os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         self.domain = stack.enter_context(own_domain())
-        self.environment = {**os.environ, **LOCAL, 'ROS_DOMAIN_ID': str(self.domain)}
+        self.environment = {**os.environ, 'ROS_DOMAIN_ID': str(self.domain)}
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
         self.context = rclpy.Context()
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        with mock.patch.dict(os.environ, LOCAL):
-            self.context.init(self._arguments(folder), domain_id=self.domain)
+        self.context.init(self._arguments(folder), domain_id=self.domain)
         stack.callback(self.context.try_shutdown)
         self._executor = SingleThreadedExecutor(context=self.context)
         stack.callback(self._executor.shutdown)
@@ -162,9 +162,10 @@ class RunningSimulation:
     def _make_nodes(self, stack):
         import rclpy
         from ins_sim.ros.nodes.simulation import SimulationNode
-        simulation = SimulationNode(context=self.context)
+        from ins_sim.ros.process.runtime import Stop
+        self._stop = Stop()
+        self._simulation = simulation = SimulationNode(self._stop, context=self.context)
         stack.callback(simulation.destroy_node)
-        self._generator = simulation.members[0]
         self.node = rclpy.create_node('tester', context=self.context)
         stack.callback(self.node.destroy_node)
         for node in (self.node, simulation, *simulation.members):
@@ -197,10 +198,14 @@ class RunningSimulation:
         """
         for messages in (*self._came.values(), *self._answered.values()):
             messages.clear()
-        stamp_ns = self._generator.step()
+        stamp_ns = self._simulation.step()
         if stamp_ns is None:
             return None
         self._serve()
+        if self._stop:
+            faults = [node.monitor.last_fault for node in self._simulation.members]
+            raise RuntimeError('the simulation has ended, as on_fault says: '
+                               + next(filter(None, faults), 'stopped'))
         read = {name: list(messages) for name, messages in self._came.items()}
         found = {name: [_message(PUBLISHED[name], data) for data in messages]
                  for name, messages in read.items()}
@@ -222,7 +227,7 @@ class RunningSimulation:
                                    'under test to each reading, with its stamp')
             if not self._count and now > repeat_s:
                 # the filter may have joined since
-                self._generator.repeat_first()
+                self._simulation.repeat_first()
                 repeat_s = now + REPEAT_S
             self._executor.spin_once(timeout_sec=0.01)
 

@@ -145,7 +145,11 @@ class MotionGeneratorNode(Node):
         The solution that steers must be there by then: its node is in this process.
         """
         k = self._next
+        if k == 0:
+            # silence between two steps is no fault
+            self._announce('paused')
         if k >= self._source.count:
+            self._announce('finished')
             return None
         if self._steerer:
             while self._steerer.reach(k, k + 1, waits=True) <= k:

@@ -4,6 +4,7 @@ import sys
 
 from rclpy.node import Node
 
+from ins_sim.core.numerics.compilation import plain_only
 from ins_sim.settings.node import OneProcessSettings
 from ..process.parameters import declare_settings
 from ..transport.hand_over import HandOver
@@ -49,6 +50,15 @@ class SimulationNode(Node):
         for node in self.members:
             executor.add_node(node)
         self.members[0].run(executor, stop)
+
+    def step(self):
+        """Send the next sample of the truth; return its stamp, or None at the end of the run."""
+        with plain_only():
+            return self.members[0].step()
+
+    def repeat_first(self):
+        """Send sample 0 again."""
+        self.members[0].repeat_first()
 
     def destroy_node(self):
         """Leave the graph, all nodes."""
