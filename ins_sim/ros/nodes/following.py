@@ -123,7 +123,11 @@ class NavigatorNode(StageNode):
 
     def publish_one(self, stamp_ns, rate, *output):
         """Publish an output; rate: the reading of the gyros at its instant, rad/s."""
-        for (publisher, pack), runs in zip(self._outputs, self.messages(rate, *output)):
-            # asking costs a fifth of packing and publishing what nobody hears
-            if publisher.get_subscription_count():
+        # asking costs a fifth of packing and publishing what nobody hears
+        heard = [publisher.get_subscription_count() for publisher, _ in self._outputs]
+        if not any(heard):
+            return
+        for (publisher, pack), runs, count in zip(self._outputs, self.messages(rate, *output),
+                                                  heard):
+            if count:
                 publisher.publish(pack(stamp_ns, *runs))

@@ -24,7 +24,7 @@ from ..transport.backlog import HandQueue
 SERVE_S = 0.01
 POLL_S = 2e-4
 # As long a time for samples as for the callbacks of the executor, times this.
-SHARE = 20.0
+SHARE = 30.0
 BURST = 50
 CLOCK_HZ = 100.0
 

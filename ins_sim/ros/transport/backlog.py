@@ -18,8 +18,6 @@ NAP_S = 5e-4
 BATCH = 50
 # what has waited for longer is dropped where nobody waits for its answer
 BACKLOG_NS = 5_000_000_000
-# what DDS would note of a message that was handed over
-HANDED = {'publication_sequence_number': None, 'received_timestamp': 0}
 
 
 class NeverReady(CallbackGroup):
@@ -51,13 +49,15 @@ class HandQueue:
         self._class = qos.message_class(topic)
         hand_over = qos.hand_over_of(node)
         if hand_over is not None and profile is None and hand_over.serves(topic):
-            self.accept(None)
+            # nothing comes before it is joined
+            self.take = lambda: None
             hand_over.join(node, topic, self)
         else:
             self.subscribe()
 
     def subscribe(self):
         """Hear the topic by DDS."""
+        self.take = self._take_counted
         self.subscription = self._node.create_subscription(
             self._class, self.topic, lambda data: None, self._profile, raw=True,
             callback_group=self._group)
@@ -66,7 +66,7 @@ class HandQueue:
     def accept(self, patience):
         """Return the function that takes a message; patience: goes on when one has come."""
         waiting = deque()
-        self._take = lambda cls, raw: (waiting.popleft(), HANDED) if waiting else None
+        self.take = lambda: waiting.popleft() if waiting else None
 
         def receive(data):
             if len(waiting) == self._depth:
@@ -78,7 +78,7 @@ class HandQueue:
 
         return receive
 
-    def take(self):
+    def _take_counted(self):
         """Return the oldest message as bytes, or None."""
         taken = self._take(self._class, True)
         if taken is None:

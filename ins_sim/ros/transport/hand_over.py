@@ -75,10 +75,12 @@ class HandOver:
 
 
 class HandingPublisher:
-    """A publisher that gives the bytes to receivers in this process as well."""
+    """A publisher of bytes that gives them to receivers in this process as well."""
 
     def __init__(self, publisher, receivers):
-        self._publish, self._count = publisher.publish, publisher.get_subscription_count
+        # The handle itself: rclpy locks it for each call, and looks what kind of message it is.
+        self._publish = publisher.handle.publish_raw
+        self._count = publisher.handle.get_subscription_count
         self._receivers = receivers
 
     def publish(self, data):
