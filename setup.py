@@ -55,6 +55,7 @@ setup(
             'velocity_meter = ins_sim.ros.main:velocity_meter',
             'gnss = ins_sim.ros.main:gnss',
             'aided_navigator = ins_sim.ros.main:aided_navigator',
+            'simulation = ins_sim.ros.main:simulation',
             'recorder = ins_sim.ros.main:recorder',
             'ins_sim = ins_sim.entry:command',
         ],

@@ -171,8 +171,9 @@ class RunningSimulation:
         for node in (self.node, simulation, *simulation.members):
             self._executor.add_node(node)
         self._came = {name: deque(maxlen=DEPTH) for name in self._names}
-        for name in self._names:
-            if not simulation.hand_over.listen(self.node, PUBLISHED[name], self._came[name].append):
+        listen = simulation.hand_over.listen
+        for name, came in self._came.items():
+            if not listen(self.node, PUBLISHED[name], came.append):
                 raise ValueError(f'topics: nothing publishes {name} in this simulation; expected '
                                  'aided=True for the topics of the aids, and the settings that '
                                  'make the others')

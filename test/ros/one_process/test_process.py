@@ -54,7 +54,7 @@ def test_the_bytes_of_three_processes_by_one_parameter_file(chain, ros_domain, t
 
 def test_names_services_and_company(chain, ros_domain):
     """
-    Nodes and services have the names of separate ones; another strapdown beside them is named.
+    Nodes and services have the names of separate ones; another sensor beside them is named.
 
     What is typed once more by Ctrl-C ends it with code 0 and no traceback.
     """
@@ -68,6 +68,8 @@ def test_names_services_and_company(chain, ros_domain):
         names = {name for name, space in listener.node.get_node_names_and_namespaces()
                  if space == '/ship'}
         assert names == {'listener', 'simulation', *NODES}
+        seen = listener.diagnostics()
+        listener.spin_until(lambda: {f'/ship/{node}' for node in NODES} <= {n for n, *_ in seen})
         request = GetParameters.Request(names=['rate_hz'])
         for node in NODES:
             values = listener.call(GetParameters, f'{node}/get_parameters', request).values
