@@ -1,7 +1,6 @@
 """Simulations for the tests of other filters."""
 
 import os
-from pathlib import Path
 import subprocess
 import sys
 
@@ -13,6 +12,29 @@ from support.places import ROOT
 
 pytest.importorskip('rclpy')
 
+# A filter of somebody else, as a process or as a class: answers each reading with its stamp.
+FILTER = '''
+from geometry_msgs.msg import Vector3Stamped
+import rclpy
+from rclpy.node import Node
+from sensor_msgs.msg import Imu
+
+
+class EchoingFilter(Node):
+    def __init__(self, **options):
+        super().__init__('echoing_filter', **options)
+        self._publisher = self.create_publisher(Vector3Stamped, 'filter/rate', 10)
+        self.create_subscription(Imu, 'imu/data_raw', self._on_imu, 10)
+
+    def _on_imu(self, reading):
+        self._publisher.publish(Vector3Stamped(header=reading.header,
+                                               vector=reading.angular_velocity))
+
+
+if __name__ == '__main__':
+    rclpy.init()
+    rclpy.spin(EchoingFilter())
+'''
 VALUES = {'rate_hz': 100.0, 'duration_s': 1.0, 'gyro.delay_us.y': 1.0}
 
 
@@ -55,8 +77,8 @@ def test_a_filter_that_is_a_process():
     """It joins when it likes; every step waits for its answer."""
     from geometry_msgs.msg import Vector3Stamped
     with RunningSimulation((), VALUES, answers={'filter/rate': Vector3Stamped}) as sim:
-        script = Path(ROOT) / 'test' / 'support' / 'echoing_filter.py'
-        with subprocess.Popen([sys.executable, script], env=sim.environment) as process:
+        with subprocess.Popen([sys.executable, '-c', FILTER], env=sim.environment,
+                              stderr=subprocess.DEVNULL) as process:
             try:
                 steps = list(sim.steps(50))
             finally:
@@ -68,11 +90,12 @@ def test_a_filter_that_is_a_process():
 def test_a_filter_that_is_a_node_of_the_test():
     """The same in one process, with a reading lost now and then; without it one sentence."""
     from geometry_msgs.msg import Vector3Stamped
-    from support.echoing_filter import EchoingFilter
+    names = {'__name__': 'filter'}
+    exec(FILTER, names)
     values = {**VALUES, 'sampling.drop_out_probability': 0.2}
     with RunningSimulation((), values, answers={'filter/rate': Vector3Stamped},
                            timeout_s=5.0) as sim:
-        node = EchoingFilter(context=sim.context)
+        node = names['EchoingFilter'](context=sim.context)
         sim.add_node(node)
         steps = list(sim.steps(60))
         node.destroy_node()
