@@ -2,7 +2,7 @@
 
 import pytest
 from support.live import Chain
-from support.talker import Talker
+from support.nodes.talker import Talker
 
 
 @pytest.fixture

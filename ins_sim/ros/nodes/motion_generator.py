@@ -11,6 +11,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ..lock_step.pacing import LockStep, Pace
+from ..lock_step.standard_services import offer_standard_services
 from ..lock_step.steerer import Steerer
 from ..lock_step.truth_source import STAMP_END_S, TruthSource
 from ..process.diagnostics import Monitor
@@ -68,6 +69,7 @@ class MotionGeneratorNode(Node):
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)
         self.create_service(Trigger, '~/reset', self._on_reset)
+        offer_standard_services(self)
         self._paused, self._single, self._next = False, 0, 0
 
     def _make_steerer(self):
@@ -201,11 +203,48 @@ class MotionGeneratorNode(Node):
         if self.settings.exit_at_end:
             stop.request()
 
-    def _on_pause(self, request, response):
-        self._paused = request.data
+    def pause(self, on):
+        """Pause, or go on."""
+        self._paused = on
         self._restart_clocks()
         if self.monitor.state != 'finished':
-            self._announce('paused' if request.data else 'running')
+            self._announce('paused' if on else 'running')
+
+    def reset(self):
+        """Go back to sample 0."""
+        self._next = self._single = 0
+        if self._steerer:
+            self._steerer.restart()
+        if self._lock:
+            self._lock.restart()
+        self._restart_clocks()
+        self._announce('paused' if self._paused else 'running')
+
+    def send(self, steps):
+        """
+        Send so many samples in a pause; return how many were sent.
+
+        They are fewer at the end of the run, and where a consumer is late for pacing.timeout_s.
+        """
+        first, moved = self._next, time.monotonic()
+        self._single = steps
+        self._restart_clocks()
+        while self._single and self.monitor.state == 'paused' and not self._stop:
+            before, wait_s = self._next, self._advance(self._stop)
+            if self._next > before:
+                moved = time.monotonic()
+            elif time.monotonic() - moved > self.settings.pacing.timeout_s:
+                break
+            time.sleep(max(0.0, min(wait_s, SERVE_S)))
+        self._single = 0
+        return self._next - first
+
+    def end(self):
+        """End the process."""
+        self._stop.request()
+
+    def _on_pause(self, request, response):
+        self.pause(request.data)
         response.success, response.message = True, self.monitor.state
         return response
 
@@ -222,13 +261,7 @@ class MotionGeneratorNode(Node):
         return response
 
     def _on_reset(self, request, response):
-        self._next = self._single = 0
-        if self._steerer:
-            self._steerer.restart()
-        if self._lock:
-            self._lock.restart()
-        self._restart_clocks()
-        self._announce('paused' if self._paused else 'running')
+        self.reset()
         response.success, response.message = True, 'back at sample 0'
         return response
 

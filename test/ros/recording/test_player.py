@@ -11,7 +11,7 @@ from ins_sim.messages import topics
 from support.live import Chain, Listener
 import numpy as np
 import pytest
-from support.talker import Talker
+from support.nodes.talker import Talker
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live

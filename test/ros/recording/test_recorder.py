@@ -10,7 +10,7 @@ from support.live import Listener
 import pytest
 
 from ins_sim.messages import topics
-from support.recorder import end, send
+from support.nodes.recorder import end, send
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live

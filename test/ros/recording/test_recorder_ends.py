@@ -6,7 +6,7 @@ import time
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
 import pytest
-from support.recorder import end, send
+from support.nodes.recorder import end, send
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live

@@ -7,8 +7,8 @@ from ins_sim import parameter_files, resources
 from ins_sim.bags.bag_reader import open_bag
 from support.live import Chain
 import pytest
-from support.talker import Talker
-from support.recorder import summary
+from support.nodes.talker import Talker
+from support.nodes.recorder import summary
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
