@@ -59,6 +59,7 @@ setup(
             'gnss = ins_sim.ros.main:gnss',
             'aided_navigator = ins_sim.ros.main:aided_navigator',
             'truth_adapter = ins_sim.ros.main:truth_adapter',
+            'simulation = ins_sim.ros.main:simulation',
             'recorder = ins_sim.ros.main:recorder',
             'ins_sim = ins_sim.entry:command',
         ],

@@ -144,19 +144,24 @@ class Listener:
         self._context.shutdown()
 
 
-def run(rate_hz, duration_s, real_time_factor, domain=91, **parameters):
-    """Run the chain once and return its Result; the generator starts last."""
+def run(rate_hz, duration_s, real_time_factor, domain=91, nodes=NODES, **parameters):
+    """
+    Run the chain once and return its Result.
+
+    nodes: the executables, that which holds the generator last: it starts when the others are
+    there.
+    """
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     parameters = {'rate_hz': float(rate_hz), 'duration_s': float(duration_s),
                   'pacing.real_time_factor': float(real_time_factor), **parameters}
     # in lock-step there is no latency to measure, and a second reader of truth costs time
     listener, running, ends = Listener(domain, real_time_factor > 0), {}, {}
     try:
-        for node in NODES[:2]:
+        for node in nodes[:-1]:
             running[node] = start(node, parameters, domain)
-        listener.wait_for(topics.IMU_RAW.name, topics.INS_ODOMETRY.name)
-        running[NODES[2]] = start(NODES[2], parameters, domain)
-        generator = running[NODES[2]]
+        if running:
+            listener.wait_for(topics.IMU_RAW.name, topics.INS_ODOMETRY.name)
+        generator = running[nodes[-1]] = start(nodes[-1], parameters, domain)
         while os.waitid(os.P_PID, generator.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
             listener.poll()
             time.sleep(0.1)

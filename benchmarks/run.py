@@ -24,6 +24,7 @@ SCRIPTS = (
     ('bags', ['20000'], ['100000'], False),
     ('velocity_meter', ['400', '20'], ['2000', '100'], False),
     ('live_chain', ['--quick'], [], True),
+    ('one_process', ['--quick'], [], True),
     ('live_recorder', ['10'], ['600'], True),
     ('live_aided', ['20'], ['600'], True))
 

@@ -1,11 +1,10 @@
 """Fixtures of all tests."""
 
-import fcntl
 import os
 from pathlib import Path
-import tempfile
 
 from hypothesis import settings
+from ins_sim.ros.process.domains import own_domain
 from ins_sim.ros.transport.repairs import use_profile
 import pytest
 from support.places import ROOT
@@ -27,28 +26,9 @@ settings.load_profile('repeatable')
 @pytest.fixture
 def ros_domain(monkeypatch):
     """Return a ROS domain that no other test on this machine uses, set in the environment."""
-    folder = Path(tempfile.gettempdir()) / f'ins_sim-domains-{os.getuid()}'
-    folder.mkdir(exist_ok=True)
-    # Sessions start at different places, so that a domain is not reused at once; the lock falls
-    # with the process, however it ends.
-    for step in range(101):
-        domain = 1 + (os.getpid() * 7 + _count() + step) % 101
-        lock = open(folder / str(domain), 'w')
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            continue
+    with own_domain() as domain:
         monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
         yield domain
-        lock.close()
-        return
-    pytest.fail('the ROS domains 1 to 101 are all in use')
-
-
-def _count(state=[0]):
-    state[0] += 1
-    return state[0]
 
 
 @pytest.fixture(scope='session')

@@ -19,6 +19,7 @@ NODES = {
     'gnss': ('gnss', 'GnssNode'),
     'aided_navigator': ('aided_navigator', 'AidedNavigatorNode'),
     'truth_adapter': ('truth_adapter', 'TruthAdapterNode'),
+    'simulation': ('simulation', 'SimulationNode'),
     'recorder': ('recorder', 'RecorderNode'),
     'player': ('player', 'PlayerNode'),
 }
@@ -53,6 +54,7 @@ velocity_meter = partial(run_node, 'velocity_meter')
 gnss = partial(run_node, 'gnss')
 aided_navigator = partial(run_node, 'aided_navigator')
 truth_adapter = partial(run_node, 'truth_adapter')
+simulation = partial(run_node, 'simulation')
 recorder = partial(run_node, 'recorder')
 
 

@@ -10,6 +10,7 @@ from .catalogue import flatten
 from .gnss import GnssSettings
 from .imu import ImuSensorSettings
 from .motion import MotionGeneratorSettings
+from .node import OneProcessSettings
 from .recorder import RecorderSettings
 from .strapdown import StrapdownSettings
 from .truth_adapter import TruthAdapterSettings
@@ -20,7 +21,7 @@ NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSet
 # the instruments that aid, and the navigator that they aid
 AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
           'aided_navigator': AidedNavigatorSettings}
-# those of a simulation, and the one that watches it
+# those of a simulation, the one that watches it, and the one that holds them in one process
 ALL_NODES = {**NODES, **AIDING, 'truth_adapter': TruthAdapterSettings,
-             'recorder': RecorderSettings}
+             'recorder': RecorderSettings, 'simulation': OneProcessSettings}
 ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))

@@ -84,3 +84,11 @@ class Topics(SettingsGroup):
 
     depth: int = setting(10000, 'queue depth of publishers and subscriptions', 'messages', 1,
                          100000)
+
+
+@settings_class
+class OneProcessSettings(SettingsGroup):
+    """Which nodes the executable simulation holds."""
+
+    aided: bool = setting(False, 'velocity_meter, gnss and aided_navigator run beside '
+                          'motion_generator, imu_sensor and strapdown')

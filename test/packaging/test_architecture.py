@@ -99,6 +99,7 @@ MAY_IMPORT = {
     'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file', 'visible_text'},
     'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS | {'entry'},
+    'testing': {'api', 'messages', 'parameter_files', 'ros', 'settings'},
     'cli': FILES_AND_BAGS | {'ros', 'entry', '__version__'},
     # The public names; what is not in api is imported for annotations.
     '__init__': {'api', 'bags', 'core.motion', 'core.prediction', 'settings'},

@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 from ins_sim import resources
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
-from ins_sim.ros.transport.repairs import use_profile, VARIABLE
+from ins_sim.ros.transport.repairs import use_profile, VARIABLES
 from support.live import Chain, GUARD_S
 import pytest
 
@@ -22,20 +22,22 @@ RATE_HZ = 1000
 @pytest.fixture
 def chain(ros_domain, tmp_path, monkeypatch):
     """Yield a Chain whose nodes must find the profile themselves, and end it."""
-    monkeypatch.delenv(VARIABLE)
+    for variable in VARIABLES:
+        monkeypatch.delenv(variable)
     chain = Chain(ros_domain, tmp_path)
     yield chain
     chain.end()
 
 
-def test_a_profile_that_the_user_has_named_stays(monkeypatch):
-    """Without one it is ours, and a file."""
-    monkeypatch.setenv(VARIABLE, '/theirs.xml')
+@pytest.mark.parametrize('variable', VARIABLES)
+def test_a_profile_that_the_user_has_named_stays(variable, monkeypatch):
+    """Without one it is ours, and a file; for releases of both kinds."""
+    monkeypatch.setenv(variable, '/theirs.xml')
     use_profile()
-    assert os.environ[VARIABLE] == '/theirs.xml'
-    monkeypatch.delenv(VARIABLE)
+    assert os.environ[variable] == '/theirs.xml'
+    monkeypatch.delenv(variable)
     use_profile()
-    assert os.path.isfile(os.environ[VARIABLE])
+    assert os.path.isfile(os.environ[variable])
 
 
 def test_writers_ask_what_readers_miss_every_tenth_of_a_second():

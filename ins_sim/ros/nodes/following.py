@@ -135,10 +135,13 @@ class NavigatorNode(StageNode):
 
         ``reading`` is the message that it is from, or None.
         """
+        # asking costs a fifth of packing and publishing what nobody hears
+        heard = [publisher.get_subscription_count() for publisher, _ in self._outputs]
+        if self.broadcaster.publish is None and not any(heard):
+            return
         messages = self.messages(rate, *output)
-        for (publisher, pack), runs in zip(self._outputs, messages):
-            # asking costs a fifth of packing and publishing what nobody hears
-            if publisher.get_subscription_count():
+        for (publisher, pack), runs, count in zip(self._outputs, messages, heard):
+            if count:
                 publisher.publish(pack(stamp_ns, *runs))
         # of the Odometry, which is the first of them
         self.place(stamp_ns, messages[0][0])

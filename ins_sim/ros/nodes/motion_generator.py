@@ -12,12 +12,14 @@ from ins_sim.messages.cdr import Reader
 from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ..lock_step.pacing import LockStep, Pace
+from ..lock_step.standard_services import offer_standard_services
 from ..lock_step.steerer import Steerer
 from ..lock_step.truth_source import STAMP_END_S, TruthSource
 from ..process.diagnostics import Monitor
 from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
+from ..process.serving import serve_ready
 from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.broadcaster import Broadcaster
@@ -25,6 +27,8 @@ from ..transport.qos_overrides import advertise
 
 SERVE_S = 0.01
 POLL_S = 2e-4
+# For samples there is so many times as long as for the callbacks of the executor, up to REST_S.
+SHARE, REST_S = 30.0, 0.2
 BURST = 50
 CLOCK_HZ = 100.0
 
@@ -38,8 +42,9 @@ class MotionGeneratorNode(Node):
 
     NAME = 'motion_generator'
 
-    def __init__(self, stop=None, **kwargs):
+    def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
+        self.hand_over = hand_over
         self._stop = stop
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
@@ -74,6 +79,7 @@ class MotionGeneratorNode(Node):
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)
         self.create_service(Trigger, '~/reset', self._on_reset)
+        offer_standard_services(self)
         self._paused, self._single, self._next = False, 0, 0
 
     def _make_steerer(self):
@@ -100,13 +106,15 @@ class MotionGeneratorNode(Node):
                 '(pacing.lock_step: true waits for the consumers and loses none)')
         self._tell_time()
         self._pace.anchor(0)
-        served = 0.0
+        serve_s = 0.0
         while not stop:
             wait_s = self._advance(stop)
             now = time.monotonic()
-            if now - served > SERVE_S:
-                executor.spin_once(timeout_sec=0.0)
-                served = now
+            if now > serve_s:
+                serve_ready(executor)
+                served = time.monotonic()
+                # where looking takes long, it is done more rarely
+                serve_s = served + min(REST_S, max(SERVE_S, SHARE * (served - now)))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
 
@@ -147,11 +155,39 @@ class MotionGeneratorNode(Node):
             due_s = self._pace.wait_s(self._next)
             quiet = lock is None or self._paused or time.monotonic() - lock.moved > 0.05
             return max(due_s, 10 * POLL_S if quiet else POLL_S) if lock or self._paused else due_s
-        for k in range(self._next, min(allowed, self._next + BURST)):
-            self._send(k)
-            self._next += 1
-            self._single = max(0, self._single - 1)
+        for _ in range(self._next, min(allowed, self._next + BURST)):
+            self._send_next()
+        if self.hand_over is not None:
+            self.hand_over.drained()
         return 0.0
+
+    def step(self):
+        """
+        Send the next sample, whoever is to acknowledge; return its stamp, None at the end.
+
+        The solution that steers must be there by then: its node is in this process.
+        """
+        k = self._next
+        if k == 0:
+            # silence between two steps is no fault
+            self._announce('paused')
+        if k >= self._source.count:
+            self._announce('finished')
+            return None
+        if self._steerer:
+            while self._steerer.reach(k, k + 1, waits=True) <= k:
+                time.sleep(POLL_S)
+        self._send_next()
+        return self._source.stamp_ns(k)
+
+    def repeat_first(self):
+        """Send sample 0 again: a consumer has come since."""
+        self._send(0)
+
+    def _send_next(self):
+        self._send(self._next)
+        self._next += 1
+        self._single = max(0, self._single - 1)
 
     def _send(self, k):
         if self._clock_every and k % self._clock_every == 0:
@@ -188,11 +224,48 @@ class MotionGeneratorNode(Node):
         if self.settings.exit_at_end:
             stop.request()
 
-    def _on_pause(self, request, response):
-        self._paused = request.data
+    def pause(self, on):
+        """Pause, or go on."""
+        self._paused = on
         self._restart_clocks()
         if self.monitor.state != 'finished':
-            self._announce('paused' if request.data else 'running')
+            self._announce('paused' if on else 'running')
+
+    def reset(self):
+        """Go back to sample 0."""
+        self._next = self._single = 0
+        if self._steerer:
+            self._steerer.restart()
+        if self._lock:
+            self._lock.restart()
+        self._restart_clocks()
+        self._announce('paused' if self._paused else 'running')
+
+    def send(self, steps):
+        """
+        Send so many samples in a pause; return how many were sent.
+
+        They are fewer at the end of the run, and where a consumer is late for pacing.timeout_s.
+        """
+        first, moved = self._next, time.monotonic()
+        self._single = steps
+        self._restart_clocks()
+        while self._single and self.monitor.state == 'paused' and not self._stop:
+            before, wait_s = self._next, self._advance(self._stop)
+            if self._next > before:
+                moved = time.monotonic()
+            elif time.monotonic() - moved > self.settings.pacing.timeout_s:
+                break
+            time.sleep(max(0.0, min(wait_s, SERVE_S)))
+        self._single = 0
+        return self._next - first
+
+    def end(self):
+        """End the process."""
+        self._stop.request()
+
+    def _on_pause(self, request, response):
+        self.pause(request.data)
         response.success, response.message = True, self.monitor.state
         return response
 
@@ -209,13 +282,7 @@ class MotionGeneratorNode(Node):
         return response
 
     def _on_reset(self, request, response):
-        self._next = self._single = 0
-        if self._steerer:
-            self._steerer.restart()
-        if self._lock:
-            self._lock.restart()
-        self._restart_clocks()
-        self._announce('paused' if self._paused else 'running')
+        self.reset()
         response.success, response.message = True, 'back at sample 0'
         return response
 

@@ -32,8 +32,9 @@ class StageNode(Node):
     CHECKS_STAMPS = True
     TRUTH = topics.TRUTH_ODOMETRY
 
-    def __init__(self, stop=None, **kwargs):
+    def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
+        self.hand_over = hand_over
         self.stop = Stop() if stop is None else stop
         self.settings = declare_settings(self, self.SETTINGS)
         self.names = self.settings.frames.names()

@@ -4,6 +4,7 @@ Subscriptions that give bytes and are emptied by hand.
 Each counts by the numbers of the publishers what was lost before it was taken.
 """
 
+from collections import deque
 import time
 
 from rclpy.callback_groups import CallbackGroup
@@ -36,26 +37,54 @@ class NeverReady(CallbackGroup):
 
 
 class HandQueue:
-    """A raw subscription out of the wait set; profile: its QoS, by default that of data."""
+    """
+    A raw subscription out of the wait set; profile: its QoS, by default that of data.
+
+    In a process of several nodes it may be a queue in memory, see ``hand_over``.
+    """
 
     def __init__(self, node, topic, depth, profile=None):
         self.topic, self.gaps, self.dropped = topic.name, Gaps(), 0
-        self._node, self._depth = node, depth
+        self._node, self._depth, self._profile = node, depth, profile or qos.data_profile(depth)
         self._group = NeverReady()
         self._class = qos.message_class(topic)
-        self._subscribe(profile or qos.data_profile(depth))
+        hand_over = qos.hand_over_of(node)
+        if hand_over is not None and profile is None and hand_over.serves(topic):
+            # nothing comes before it is joined
+            self.take = lambda: None
+            hand_over.join(node, topic, self)
+        else:
+            self.subscribe()
 
-    def _subscribe(self, profile):
+    def subscribe(self):
+        """Hear the topic by DDS."""
+        self.take = self._take_counted
         self.subscription = subscribe(self._node, self._class, self.topic, lambda data: None,
-                                      profile, raw=True, callback_group=self._group)
+                                      self._profile, raw=True, callback_group=self._group)
         self._take = self.subscription.handle.take_message
 
     def read_best_effort(self):
         """Subscribe anew, so that a publisher that is no more than best effort is heard."""
         self._node.destroy_subscription(self.subscription)
-        self._subscribe(qos.best_effort_profile(self._depth))
+        self._profile = qos.best_effort_profile(self._depth)
+        self.subscribe()
 
-    def take(self):
+    def accept(self, patience):
+        """Return the function that takes a message; patience: goes on when one has come."""
+        waiting = deque()
+        self.take = lambda: waiting.popleft() if waiting else None
+
+        def receive(data):
+            if len(waiting) == self._depth:
+                waiting.popleft()
+                self.gaps.lost += 1
+            waiting.append(data)
+            if patience is not None and patience.waits:
+                patience.go_on()
+
+        return receive
+
+    def _take_counted(self):
         """Return the oldest message as bytes, or None."""
         taken = self._take(self._class, True)
         if taken is None:
@@ -83,19 +112,33 @@ class DrivingQueue:
     def __init__(self, node, topic, depth, on_data, on_drained, may_drop, linger_s=0.0):
         self.gaps, self.dropped, self._may_drop = Gaps(), 0, may_drop
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
-        self._node, self.topic, self._depth = node, topic.name, depth
+        self._node, self._depth = node, depth
+        self.topic, self._profile = topic.name, qos.data_profile(depth)
         self._class = qos.message_class(topic)
-        self._subscribe(qos.data_profile(depth))
+        hand_over = qos.hand_over_of(node)
+        if hand_over is None:
+            self.subscribe()
+        else:
+            # what is sent elsewhere is served beside the run of this process
+            self._linger_s = 0.0
+            hand_over.join(node, topic, self)
+            hand_over.add_drained(on_drained)
 
-    def _subscribe(self, profile):
-        self.subscription = subscribe(self._node, self._class, self.topic, self._wake, profile,
-                                      raw=True)
+    def subscribe(self):
+        """Hear the topic by DDS."""
+        self.subscription = subscribe(self._node, self._class, self.topic, self._wake,
+                                      self._profile, raw=True)
         self._take = self.subscription.handle.take_message
 
     def read_best_effort(self):
         """Subscribe anew, as a HandQueue does."""
         self._node.destroy_subscription(self.subscription)
-        self._subscribe(qos.best_effort_profile(self._depth))
+        self._profile = qos.best_effort_profile(self._depth)
+        self.subscribe()
+
+    def accept(self, patience):
+        """Return the function that takes a message in this process."""
+        return self._on_data
 
     def _give(self, data, info, late_ns):
         self.gaps.take(info['publication_sequence_number'])

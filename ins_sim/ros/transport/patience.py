@@ -2,6 +2,7 @@
 
 import time
 
+from .qos import hand_over_of
 from .wall_timer import wall_timer
 
 RETRY_S = 0.005
@@ -24,11 +25,25 @@ class Patience:
         self._node, self._waiting, self._progress = node, waiting, progress
         self._take, self._missed, self._settle = take, missed, settle
         self._since = self._mark = None
+        self._patience_s = PATIENCE_S
+        hand_over = hand_over_of(node)
+        if hand_over is not None:
+            # nothing comes while this process waits
+            self._patience_s = 0.0
+            hand_over.add_patience(node, self)
         self._retry = wall_timer(node, RETRY_S, node.guarded(self._on_retry))
         self._retry.cancel()
 
-    def wait(self, patience_s=PATIENCE_S):
+    @property
+    def waits(self):
+        """Return whether something has not come in that moment."""
+        return self._since is not None
+
+    def wait(self):
         """Wait for a moment, and if that is not enough let the timer go on."""
+        self._wait(self._patience_s)
+
+    def _wait(self, patience_s):
         start = time.monotonic()
         while self._waiting() and not self._node.stop:
             now, mark = time.monotonic(), self._progress()
@@ -50,6 +65,10 @@ class Patience:
 
     def _on_retry(self):
         self._retry.cancel()
-        self._take()
-        self.wait(0.0)
+        self.go_on()
         self._node.on_drained()
+
+    def go_on(self):
+        """Take what has come."""
+        self._take()
+        self._wait(0.0)

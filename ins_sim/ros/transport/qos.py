@@ -38,7 +38,14 @@ def message_class(topic):
 def make_publisher(node, topic, depth):
     """Return a publisher of a Topic for bytes; depth: of its queue, unless it is latched."""
     profile = latched_profile() if topic.latched else data_profile(depth)
-    return advertise(node, message_class(topic), topic.name, profile)
+    publisher = advertise(node, message_class(topic), topic.name, profile)
+    hand_over = hand_over_of(node)
+    return publisher if hand_over is None else hand_over.publisher(node, topic, publisher)
+
+
+def hand_over_of(node):
+    """Return the HandOver of a node that shares its process with others, else None."""
+    return getattr(node, 'hand_over', None)
 
 
 def ack_publisher(node):

@@ -5,8 +5,8 @@ import time
 
 from ins_sim import resources
 
-# of Fast DDS up to 2.x, which is that of Jazzy; other middlewares do not know it
-VARIABLE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+# Of Fast DDS up to 2.x, which is that of Jazzy, and from 3 on; other middlewares know neither.
+VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 # heartbeats are 0.1 s apart in config/fastdds.xml
 REPAIR_S = 0.5
 DRAIN_S = 2.0
@@ -19,7 +19,8 @@ def use_profile():
     Fast DDS does so every 3 s.  A profile that the user has named stays.  It counts before the
     first participant is made.
     """
-    os.environ.setdefault(VARIABLE, str(resources.middleware_profile('fastdds')))
+    for variable in VARIABLES:
+        os.environ.setdefault(variable, str(resources.middleware_profile('fastdds')))
 
 
 def drain_publishers(publishers):
