@@ -144,6 +144,7 @@ class MotionGeneratorNode(Node):
                 stop.request(EXIT_CONSUMER)
             if lock.repeat_due(self._next, self._steerer is None or self._steerer.heard):
                 self._send(0)
+                self._drained()
         if self._next >= source.count:
             if not lock or lock.done(source.count):
                 self._finish(stop)
@@ -157,8 +158,7 @@ class MotionGeneratorNode(Node):
             return max(due_s, 10 * POLL_S if quiet else POLL_S) if lock or self._paused else due_s
         for _ in range(self._next, min(allowed, self._next + BURST)):
             self._send_next()
-        if self.hand_over is not None:
-            self.hand_over.drained()
+        self._drained()
         return 0.0
 
     def step(self):
@@ -183,6 +183,11 @@ class MotionGeneratorNode(Node):
     def repeat_first(self):
         """Send sample 0 again: a consumer has come since."""
         self._send(0)
+
+    def _drained(self):
+        """Let the nodes of this process acknowledge what they have taken."""
+        if self.hand_over is not None:
+            self.hand_over.drained()
 
     def _send_next(self):
         self._send(self._next)

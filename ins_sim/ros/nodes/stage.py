@@ -113,7 +113,11 @@ class StageNode(Node):
 
     def _give_held(self, data):
         self._on_data(data)
-        self.on_drained()
+        if self.hand_over is None:
+            self.on_drained()
+        else:
+            # what it led to may be in the other nodes of this process
+            self.hand_over.drained()
 
     def read(self, reader, data):
         """Return motion time and runs of a message, or None after reporting that it is bad."""
