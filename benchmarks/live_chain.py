@@ -68,6 +68,9 @@ def environment(domain):
 def start(node, parameters=(), domain=91, arguments=(), **kwargs):
     """Start a node process with {name: value} parameters and further ROS arguments."""
     command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
+    if node == 'motion_generator':
+        # Stamps are motion time.
+        parameters = {'time.epoch': 'fixed', 'time.epoch_s': 0, **dict(parameters)}
     for name, value in dict(parameters).items():
         command += ['-p', f'{name}:={value}']
     return subprocess.Popen(command, env=environment(domain), **kwargs)

@@ -30,7 +30,8 @@ run), the trailing axis is physics, so that ``(3,)`` is a sample and ``(n, 3)`` 
 Time
 ----
 Instants are int64 nanoseconds; t_j = t_0 + j dt is computed, never accumulated.  Only differences
-become float seconds.  *Motion time* is the stamp less ``time.epoch_s``.
+become float seconds.  *Motion time* is the stamp less the epoch, which the
+generator announces (``time.epoch``, ``time.epoch_s``).
 
 Angles of attitude
 ------------------

@@ -26,7 +26,11 @@ ARGUMENTS = (
     ('lock_step', '', 'true or false: wait for the consumers; empty = as the parameter files say'),
     ('aided', 'false', 'true or false: velocity_meter, gnss and aided_navigator run as well'),
     ('record', '', 'folder of a new bag for the topics of the nodes; empty = none'),
-    ('use_sim_time', 'false', 'true or false: the nodes take their time from /clock'),
+    ('use_sim_time', 'false', 'true or false: the nodes take their time from /clock, which the '
+                              'generator then publishes'),
+    ('prefix', '', 'prefix of all frames, such as uav1; empty = as the parameter files say'),
+    ('tf', '', 'who places the vehicle on /tf: none, truth, ins or aided; empty = as the '
+               'parameter files say'),
 )
 
 
@@ -35,13 +39,21 @@ def _overrides(process, value):
     typed = {name: ParameterValue(LaunchConfiguration(name), value_type=kind) for name, kind in (
         ('use_sim_time', bool), ('real_time_factor', float), ('lock_step', bool))}
     parameters = {'use_sim_time': typed['use_sim_time']}
+    if process is not graph.RECORDER:
+        parameters.update({key: value[name] for name, key in (
+            ('prefix', 'frames.prefix'), ('tf', 'tf.source')) if value[name]})
     if process.name == graph.MASTER:
+        if value['use_sim_time'].lower() == 'true':
+            parameters['publish_clock'] = True
         parameters.update({'pacing.' + name: typed[name]
                            for name in ('real_time_factor', 'lock_step') if value[name]})
         if _added(value):
             parameters['pacing.required'] = ['strapdown', *(p.name for p in _added(value))]
     elif process is graph.RECORDER:
-        recorded = (*topics.DATA, *((*topics.AIDING, *topics.GUIDANCE) if value['aided'] else ()))
+        aiding = (*topics.AIDING, *topics.GUIDANCE) if value['aided'] else ()
+        recorded = (topics.RUN, *topics.DATA, *aiding)
+        if value['tf'] not in ('', 'none'):
+            recorded += topics.TF, topics.TF_STATIC
         parameters['record.topics'] = [topic.name for topic in recorded]
         parameters['storage.path'] = value['record']
     return parameters

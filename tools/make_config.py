@@ -10,7 +10,7 @@ from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.presets import PRESETS
 from ins_sim.settings.motion import MotionGeneratorSettings
 
-SHARED = ('datum', 'earth', 'time', 'motion', 'topics')
+SHARED = ('datum', 'earth', 'frames', 'tf', 'time', 'motion', 'topics')
 # of an instrument and the navigator: a file over this one sets them in its section /** as well,
 # where they would lose against those of a node here
 AGREED = ('window', 'gnss')

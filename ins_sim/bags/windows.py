@@ -3,6 +3,7 @@
 import numpy as np
 
 from ins_sim.messages.cdr import LAYOUTS
+from . import qos
 from .bag_writer import BagWriter
 
 
@@ -21,7 +22,8 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
                    if written.type_name in LAYOUTS}
         counts = {topic.name: 0 for topic in chosen.values()}
         for topic in chosen.values():
-            bag.add_topic(topic.name, topic.type_name)
+            bag.add_topic(topic.name, topic.type_name,
+                          qos.LATCHED if topic.latched else qos.RELIABLE)
         for blocks in windows:
             messages = {}
             for topic, written in chosen.items():

@@ -95,9 +95,10 @@ def _to_csv(source, target, settings, topic, chosen):
 def _imu_to_bag(source, target, settings, topic, how, chosen):
     imu, notes = csv_imu.read_imu(source, chosen.columns, chosen.units)
     imu, more = stamped_samples(imu, chosen.stamps)
-    stamps_ns = imu.t_ns + settings.time.epoch_s * SECOND
+    stamps_ns = imu.t_ns + _offset_ns(settings)
     _check_stamps(source, stamps_ns)
-    written = topics.IMU_RAW if topic is None else replace(topics.IMU_RAW, name=topic)
+    written = topics.IMU_RAW.named(settings.frames.names())
+    written = written if topic is None else replace(written, name=topic)
     values = np.concatenate([imu.omega, imu.f], axis=1)
     counts = write_windows(target, {topics.IMU_RAW: written}, (
         {topics.IMU_RAW: (stamps_ns[k:k + WINDOW], values[k:k + WINDOW])}
@@ -110,10 +111,10 @@ def _flight_to_bag(source, target, settings, how):
     recording = replace(settings.motion.recording, path=str(source))
     motion = RecordedMotion(csv_flight.read_poses(source, values_of(recording.columns)), recording,
                             settings.earth)
-    frame = MapFrame(settings.datum, settings.earth.rotation)
+    frame, names = MapFrame(settings.datum, settings.earth.rotation), settings.frames.names()
     pad_ns, step_ns = round(PAD_S * SECOND), period_ns(settings.rate_hz)
     count = (round(motion.end_s * SECOND) + 2 * pad_ns) // step_ns + 1
-    offset_ns = motion.zero_ns + settings.time.epoch_s * SECOND
+    offset_ns = motion.zero_ns + _offset_ns(settings)
     _check_stamps(source, np.array([-pad_ns, (count - 1) * step_ns - pad_ns]) + offset_ns)
 
     def windows():
@@ -123,8 +124,17 @@ def _flight_to_bag(source, target, settings, how):
             yield {topic: (truth.t_ns + offset_ns, values)
                    for topic, values in blocks.truth_blocks(frame, truth).items()}
 
-    counts = write_windows(target, {topic: topic for topic in topics.TRUTH}, windows(), **how)
+    written = {topic: topic.named(names) for topic in topics.TRUTH}
+    counts = write_windows(target, written, windows(), **how)
     return _told(target, counts, *motion.warnings)
+
+
+def _offset_ns(settings):
+    """Return what is added to the stamps of a recording, which has a time of its own, ns."""
+    if settings.time.epoch == 'now':
+        raise ValueError('time.epoch is now; expected auto, or fixed, which adds time.epoch_s to '
+                         'the stamps of a recording')
+    return settings.time.epoch_s * SECOND if settings.time.given else 0
 
 
 def _check_stamps(source, stamps_ns):

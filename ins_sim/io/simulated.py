@@ -13,9 +13,11 @@ from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument
 from ins_sim.core.sensors.tuned_gyro.parity import parity_rows
 from ins_sim.messages import convert, topics
 from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.settings.suggest import nearest_name
 from .motion import read_motion
-from .simulated_aiding import AidingSource
+from .simulated_aiding import AidingSource, message_columns
+from .simulated_transforms import SimulatedTransforms
 
 # samples of the generator that are in memory as messages at once
 WINDOW = 4096
@@ -31,7 +33,10 @@ def published_topics(settings, aided=False):
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
     parity = (topics.IMU_PARITY,) if settings.imu_sensor.gyro.model == 'dtg' else ()
     guidance = topics.GUIDANCE if settings.motion_generator.motion.kind == 'guided' else ()
-    return (*clock, *topics.DATA, *parity, *(topics.AIDING if aided else ()), *guidance)
+    transforms = () if settings.motion_generator.tf.source == 'none' else (
+        topics.TF_STATIC, topics.TF)
+    return (topics.RUN, *clock, *transforms, *topics.DATA, *parity,
+            *(topics.AIDING if aided else ()), *guidance)
 
 
 def select_topics(settings, names, aided=False):
@@ -41,8 +46,12 @@ def select_topics(settings, names, aided=False):
 
     aided: as of ``published_topics``.
 
-    Raises ValueError, naming the nearest one, for a topic that the nodes do not publish.
+    Raises ValueError, naming the nearest one, for a topic that the nodes do not publish, and where
+    TF waits for an aided solution that there is not.
     """
+    if settings.motion_generator.tf.source == 'aided' and not aided:
+        raise ValueError('tf.source is aided without velocity_meter, gnss and aided_navigator; '
+                         'expected them to run (--aided), or tf.source truth or ins')
     known = {topic.name.lstrip('/'): topic for topic in published_topics(settings, aided)}
     if names is None:
         return tuple(known.values())
@@ -65,13 +74,17 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
     this run, or None; motion: that of the run, None for the one of the settings; steered: the
     GuidedResult of a guided motion.  A message is logged at its own stamp.
     """
-    aiding = None
+    aiding, generator = None, settings.motion_generator
+    epoch_ns = generator.time.epoch_ns(round(generator.start_s * SECOND), live=False)
+    transforms = None
+    if topics.TF in published_topics(settings):
+        transforms = SimulatedTransforms(settings, None if aided is None else aided[0])
     if aided is not None:
         aided_settings, flown = aided
         aiding = AidingSource(aided_settings, flown, _rates_at(
-            flown.states.t_ns, run.imu.t_ns, run.imu.omega))
-    source = _Source(settings, run, aiding,
-                     read_motion(settings.motion_generator) if motion is None else motion,
+            flown.states.t_ns, run.imu.t_ns, run.imu.omega), epoch_ns)
+    source = _Source(settings, run, aiding, transforms, epoch_ns,
+                     read_motion(generator) if motion is None else motion,
                      None if steered is None else steered.estimates)
 
     def windows():
@@ -87,23 +100,28 @@ def write_bag(path, settings, run, chosen, storage='mcap', compression='none', r
 
 def _as_published(topic, settings, aiding):
     if topic is topics.IMU_RAW:
-        return topics.imu_raw(*reported_variances(settings.imu_sensor))
-    return topic if aiding is None else aiding.as_published(topic)
+        topic = topics.imu_raw(*reported_variances(settings.imu_sensor))
+    if topic in topics.AIDING:
+        return aiding.as_published(topic)
+    return topic.named(settings.motion_generator.frames.names())
 
 
 class _Source:
     """The records of a run, and the truth at every sample of the generator, by windows."""
 
-    def __init__(self, settings, run, aiding, motion, commands):
+    def __init__(self, settings, run, aiding, transforms, epoch_ns, motion, commands):
         generator = settings.motion_generator
-        self._motion, self._commands = motion, commands
+        self._motion, self._transforms, self._commands = motion, transforms, commands
         self._truth_frame = MapFrame(generator.datum, generator.earth.rotation)
         strapdown = settings.strapdown
         self._frame = MapFrame(strapdown.datum, strapdown.earth.rotation)
-        self._epoch_ns = generator.time.epoch_s * SECOND
+        self._epoch_ns = epoch_ns
         self._first_ns, self._dt_ns = round(generator.start_s * SECOND), period_ns(
             generator.rate_hz)
         self.count = round(generator.duration_s * SECOND) // self._dt_ns + 1
+        self._announcement = RunAnnouncement(
+            epoch_ns, self._first_ns, generator.rate_hz,
+            self._first_ns + (self.count - 1) * self._dt_ns)
         self._clock_every = int(np.ceil(generator.rate_hz / CLOCK_HZ))
         self._instant = SampleClock(strapdown, period_ns(strapdown.rate_hz)).instant
         self._run, self._aiding = run, aiding
@@ -140,7 +158,12 @@ class _Source:
             blocks[topics.GUIDANCE_COMMAND] = commands.t_ns, convert.command_block(commands)
         if self._aiding is not None:
             blocks.update(self._aiding.blocks(begin, end))
-        return {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
+        stamped = {topic: (t_ns + self._epoch_ns, v) for topic, (t_ns, v) in blocks.items()}
+        stamped[topics.RUN] = message_columns(
+            [] if first else [(self._announcement.first_stamp_ns, self._announcement.pack())])
+        if self._transforms is not None:
+            stamped.update(self._transforms.blocks(stamped, not first))
+        return stamped
 
     def _rates(self, states):
         """Return the readings of the gyros at the instants of a part of the solution."""

@@ -5,7 +5,6 @@ import numpy as np
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import convert, topics, velocity_record
-from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.gnss_fixes import GnssWriter
 
 
@@ -14,22 +13,24 @@ class AidingSource:
     The topics of the three nodes that aid, by spans of motion time.
 
     settings: AidedSimulationSettings; flown: AidedResult of ``simulate_aided``; omega (n, 3):
-    readings of the gyros at its states.
+    readings of the gyros at its states; epoch_ns: stamp of motion time zero.
     """
 
-    def __init__(self, settings, flown, omega):
+    def __init__(self, settings, flown, omega, epoch_ns):
         navigator = settings.aided_navigator
         self._frame = MapFrame(navigator.datum, navigator.earth.rotation)
         self._route = GreatCircleRoute.of_points(navigator.motion.route.points)
         self._flown, self._omega, self._leg = flown, omega, 0
         self._knows = not np.isnan(flown.errors.position_sigma).all()
-        epoch_ns = settings.simulation.motion_generator.time.epoch_s * SECOND
-        self._messages = {**_velocity_messages(flown.velocity_fixes, epoch_ns),
-                          **_gnss_messages(flown.gnss_fixes, epoch_ns)}
+        self._names = navigator.frames.names()
+        self._messages = {**_velocity_messages(flown.velocity_fixes, epoch_ns, self._names),
+                          **_gnss_messages(flown.gnss_fixes, epoch_ns, self._names)}
 
     def as_published(self, topic):
-        """Return the Topic as the navigator writes it: with the covariance type of its filter."""
-        return topics.AIDED_FIX_ALONE if topic is topics.AIDED_FIX and not self._knows else topic
+        """Return the Topic as it is written: its frames, the covariance type of the filter."""
+        written = topics.AIDED_FIX_ALONE if topic is topics.AIDED_FIX and not self._knows \
+            else topic
+        return written.named(self._names)
 
     def blocks(self, begin, end):
         """Return {Topic: (motion times (n,), values or messages)} of begin <= t < end."""
@@ -80,26 +81,27 @@ def _table(rows, width):
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def _velocity_messages(fixes, epoch_ns):
+def _velocity_messages(fixes, epoch_ns, names):
     """Return {Topic: (motion times (n,), messages (n,))} of VelocityFixes."""
-    pack = topics.METER_VELOCITY.writer().pack
+    pack = topics.METER_VELOCITY.named(names).writer().pack
     records, shown = [], []
     for fix in fixes:
-        records.append((fix.end_ns, velocity_record.pack_fix(fix, epoch_ns)))
+        records.append((fix.end_ns, velocity_record.pack_fix(fix, epoch_ns, names)))
         if fix.valid:
             t_ns, *runs = velocity_record.velocity_one(fix)
             shown.append((t_ns, pack(t_ns + epoch_ns, *runs)))
-    return {topics.METER_RECORD: _columns(records), topics.METER_VELOCITY: _columns(shown)}
+    return {topics.METER_RECORD: message_columns(records),
+            topics.METER_VELOCITY: message_columns(shown)}
 
 
-def _gnss_messages(fixes, epoch_ns):
-    writer = GnssWriter(epoch_ns)
-    return {topics.GNSS_FIX: _columns([(fix.t_ns, writer.fix(fix)) for fix in fixes]),
-            topics.GNSS_VELOCITY: _columns([(fix.t_ns, writer.velocity(fix)) for fix in fixes
-                                            if fix.valid])}
+def _gnss_messages(fixes, epoch_ns, names):
+    writer = GnssWriter(epoch_ns, names)
+    return {topics.GNSS_FIX: message_columns([(fix.t_ns, writer.fix(fix)) for fix in fixes]),
+            topics.GNSS_VELOCITY: message_columns([(fix.t_ns, writer.velocity(fix))
+                                                   for fix in fixes if fix.valid])}
 
 
-def _columns(stamped):
+def message_columns(stamped):
     """Return motion times (n,) and the messages (n,), bytes as objects, of pairs."""
     t_ns = np.array([t for t, _ in stamped], dtype=np.int64)
     messages = np.empty(len(stamped), dtype=object)

@@ -13,16 +13,22 @@ _WAITING = 100
 
 
 class GnssWriter:
-    """Packs GnssFixes; epoch_ns: stamp of motion time zero."""
+    """
+    Packs GnssFixes.
 
-    def __init__(self, epoch_ns):
-        self._epoch_ns = epoch_ns
-        self._fix, self._none, self._velocity = (topic.writer().pack for topic in (
-            topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
+    epoch_ns: stamp of motion time zero, which may change; names: as of ``Topic.named``, None for
+    the default ones.
+    """
+
+    def __init__(self, epoch_ns, names=None):
+        self.epoch_ns = epoch_ns
+        self._fix, self._none, self._velocity = (
+            topic.named(names or {}).writer().pack
+            for topic in (topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
 
     def fix(self, fix):
         """Return gnss/fix: degrees; a fix that is none has status -1 and NaN."""
-        stamp_ns = fix.t_ns + self._epoch_ns
+        stamp_ns = fix.t_ns + self.epoch_ns
         if not fix.valid:
             return self._none(stamp_ns)
         return self._fix(stamp_ns, fix_one((fix.lat, fix.lon, fix.height)),
@@ -30,7 +36,7 @@ class GnssWriter:
 
     def velocity(self, fix):
         """Return gnss/velocity of a fix that is one."""
-        return self._velocity(fix.t_ns + self._epoch_ns, fix.v_n,
+        return self._velocity(fix.t_ns + self.epoch_ns, fix.v_n,
                               *((sigma * sigma,) for sigma in fix.velocity_sigma))
 
 
@@ -38,14 +44,15 @@ class GnssPairs:
     """
     GnssFixes from both topics, matched by their stamps.
 
-    latency_ns: a fix is there this long after its instant.  Both push methods return the list of
-    fixes that are complete, in their order, and raise ValueError on a bad message.  A repeated
-    message is passed over, stamps that jump back begin anew, and a fix whose velocity is lost, a
-    later one being there, is passed over and counted in ``lost``.
+    epoch_ns: stamp of motion time zero, which may change; latency_ns: a fix is there this long
+    after its instant.  Both push methods return the list of fixes that are complete, in their
+    order, and raise ValueError on a bad message.  A repeated message is passed over, stamps that
+    jump back begin anew, and a fix whose velocity is lost, a later one being there, is passed over
+    and counted in ``lost``.
     """
 
     def __init__(self, epoch_ns, latency_ns):
-        self._epoch_ns, self._latency_ns = epoch_ns, latency_ns
+        self.epoch_ns, self._latency_ns = epoch_ns, latency_ns
         self._fix_reader = topics.GNSS_FIX.reader()
         self._velocity_reader = topics.GNSS_VELOCITY.reader()
         self.lost, self._done_ns = 0, None
@@ -82,7 +89,7 @@ class GnssPairs:
                     velocities.popleft()
                 if not velocities:
                     break
-            t_ns = stamp_ns - self._epoch_ns
+            t_ns = stamp_ns - self.epoch_ns
             fixes.popleft()
             self._done_ns = stamp_ns
             if place is None:

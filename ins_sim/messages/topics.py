@@ -15,6 +15,7 @@ CLOCK = 'rosgraph_msgs/msg/Clock'
 STRING = 'std_msgs/msg/String'
 TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
+TRANSFORMS = 'tf2_msgs/msg/TFMessage'
 
 # the variance, (m/s)^2 or (rad/s)^2, of what is not measured
 UNMEASURED = 1e9
@@ -25,8 +26,10 @@ class Topic:
     """
     A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
 
-    constants: {index: value} of the doubles that a writer of it fills once; zero covariances
-    mean unknown, or exact for the truth.  numbers: those of a NavSatFix, see Writer.
+    frames: by their default names, in whose place ``named`` puts those of a vehicle; constants:
+    {index: value} of the doubles that a writer of it fills once; zero covariances mean unknown, or
+    exact for the truth.  numbers: those of a NavSatFix, see Writer.  latched: whether a late
+    subscriber gets the last message.
     """
 
     name: str
@@ -35,6 +38,11 @@ class Topic:
     constants: tuple = ()
     runs: tuple | None = None
     numbers: tuple = (0, 0, 0)
+    latched: bool = False
+
+    def named(self, names):
+        """Return this topic with the frame ids of a vehicle, {default name: name}."""
+        return replace(self, frames=tuple(names.get(frame, frame) for frame in self.frames))
 
     def writer(self):
         """Return the Writer of its messages."""
@@ -54,12 +62,15 @@ TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',))
 IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13, 16), (25, 28)))
 # x: parity of the reading, y: its mean over the last window, z: what that may be; rad/s
 IMU_PARITY = Topic('imu/parity', VECTOR, ('imu_link',))
-INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('map', 'base_link'))
+# in the coordinates of map as the free INS has them, continuous and drifting (REP-105)
+INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('odom', 'base_link'))
 INS_FIX = Topic('ins/fix', FIX, ('base_link',))
-ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('enu',))
-ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('enu',))
-ERROR_POSITION = Topic('ins/error/position', VECTOR, ('enu',))
-ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('enu',))
+# by East, North, Up at the vehicle, from which the axes of map, at the datum, differ by the angle
+# between the two places
+ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('map',))
+ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('map',))
+ERROR_POSITION = Topic('ins/error/position', VECTOR, ('map',))
+ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('map',))
 # the complete fix, see velocity_record, stamped at the end of its window
 METER_RECORD = Topic('velocity_meter/record', DIAGNOSTICS, ('velocity_meter_link',))
 # stamped at the middle of the window; up is no measurement, nor is a rate
@@ -80,9 +91,9 @@ AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (),
 AIDED_FIX = Topic('aided/fix', FIX, ('base_link',), (), GNSS_FIX.runs, (0, 0, 2))
 AIDED_FIX_ALONE = replace(AIDED_FIX, numbers=(0, 0, 0))
 # solution less truth, and three standard deviations by the filter
-AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('enu',))
+AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
-AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('enu',))
+AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
 # x: along the leg, y: height, z: right of it; m
 AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
@@ -91,7 +102,12 @@ AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
 GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
 ACK = Topic('sim/ack', HEADER)
 STATUS = Topic('sim/status', STRING)
+# what the generator announces, see run_announcement
+RUN = Topic('sim/run', DIAGNOSTICS, latched=True)
 CLOCK_TOPIC = Topic('/clock', CLOCK)
+# see transforms
+TF = Topic('/tf', TRANSFORMS)
+TF_STATIC = Topic('/tf_static', TRANSFORMS, latched=True)
 
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)

@@ -1,14 +1,63 @@
-"""Messages of type tf2_msgs/msg/TFMessage: any number of transforms, each with two frames."""
+"""
+Messages of type tf2_msgs/msg/TFMessage: any number of transforms, each with two frames.
 
+A pose is that of the child frame in its parent: three coordinates, m, and the quaternion
+(x, y, z, w) from child to parent.
+"""
+
+import math
 import struct
 
-from .cdr import aligned_offset, ENCAPSULATION
+from ins_sim.core.attitude import quaternion
+from .cdr import aligned_offset, ENCAPSULATION, SECOND
 
-_LENGTH = struct.Struct('<I').unpack_from
-_STAMP_SIZE = 8
+_LENGTH_OF = struct.Struct('<I')
+_LENGTH = _LENGTH_OF.unpack_from
+_STAMP = struct.Struct('<iI')
 _DOUBLES = struct.Struct('<7d')
 # Serialization may fill up the last four bytes of a message.
 _MOST_PADDING = 3
+AT_PARENT = (0.0, 0.0, 0.0, *quaternion.IDENTITY)
+
+
+class TransformWriter:
+    """Packs TFMessages of one transform, from the frame child to the frame parent."""
+
+    def __init__(self, parent, child):
+        body = bytearray(_LENGTH_OF.pack(1) + bytes(_STAMP.size))
+        for text in (parent, child):
+            body += bytes(aligned_offset(len(body), 4) - len(body))
+            name = text.encode() + b'\x00'
+            body += _LENGTH_OF.pack(len(name)) + name
+        body += bytes(aligned_offset(len(body), 8) - len(body))
+        self._first = len(ENCAPSULATION) + len(body)
+        self._buffer = bytearray(ENCAPSULATION + body + bytes(_DOUBLES.size))
+
+    def pack(self, stamp_ns, pose):
+        """Return the bytes of a message; ValueError where the pose is not finite."""
+        if not math.isfinite(sum(pose)):
+            raise ValueError(f'a transform of {stamp_ns / SECOND:.9f} s would hold {pose}; '
+                             'expected finite numbers; it is not sent')
+        _STAMP.pack_into(self._buffer, len(ENCAPSULATION) + 4, *divmod(stamp_ns, SECOND))
+        _DOUBLES.pack_into(self._buffer, self._first, *pose)
+        return bytes(self._buffer)
+
+
+def pose_between(pose, other):
+    """Return the pose in which the frame other stands so that its child has the pose: A B^-1."""
+    turn = quaternion.multiply(pose[3:], quaternion.conjugate(other[3:]))
+    moved = quaternion.rotate(turn, other[:3])
+    return (pose[0] - moved[0], pose[1] - moved[1], pose[2] - moved[2], *turn)
+
+
+def first_stamp(data):
+    """Return the stamp of the first transform of a TFMessage, ns, or None where it has none."""
+    try:
+        (_, _, stamp_ns, _), *_ = read_transforms(data)
+    except ValueError:
+        # no TFMessage, or one without transforms
+        return None
+    return stamp_ns
 
 
 def read_rotations(data):
@@ -27,6 +76,25 @@ def read_rotations(data):
     ------
     ValueError : the bytes are not a TFMessage
     """
+    return [(parent, child, pose[3:]) for parent, child, _, pose in read_transforms(data)]
+
+
+def read_transforms(data):
+    """
+    Return the transforms of a TFMessage.
+
+    Parameters
+    ----------
+    data : bytes of the message, little-endian CDR
+
+    Returns
+    -------
+    list of (parent frame, child frame, stamp in ns, pose)
+
+    Raises
+    ------
+    ValueError : the bytes are not a TFMessage
+    """
     if data[:2] != ENCAPSULATION[:2]:
         raise ValueError(f'it begins with {bytes(data[:2])!r}; expected the encapsulation of '
                          'little-endian CDR')
@@ -36,12 +104,14 @@ def read_rotations(data):
         count, = _LENGTH(body, 0)
         found, offset = [], 4
         for _ in range(count):
-            parent, offset = _string(body, aligned_offset(offset, 4) + _STAMP_SIZE)
+            offset = aligned_offset(offset, 4)
+            sec, nanosec = _STAMP.unpack_from(body, offset)
+            parent, offset = _string(body, offset + _STAMP.size)
             child, offset = _string(body, aligned_offset(offset, 4))
             offset = aligned_offset(offset, 8)
-            quaternion = _DOUBLES.unpack_from(body, offset)[3:]
+            pose = _DOUBLES.unpack_from(body, offset)
             offset += _DOUBLES.size
-            found.append((parent, child, quaternion))
+            found.append((parent, child, sec * SECOND + nanosec, pose))
     except struct.error:
         raise ValueError(f'it ends too early, after {len(data)} bytes') from None
     if len(body) - offset > _MOST_PADDING:

@@ -18,8 +18,12 @@ _FLOATS = (('velocity', ('velocity_x', 'velocity_y')), ('sigma', ('sigma_x', 'si
            ('tau', ('tau12', 'tau23')), ('g', ('g12', 'g23')))
 
 
-def pack_fix(fix, epoch_ns):
-    """Return the message velocity_meter/record of a VelocityFix; epoch_ns: stamp of zero."""
+def pack_fix(fix, epoch_ns, names=None):
+    """
+    Return the message velocity_meter/record of a VelocityFix.
+
+    epoch_ns: stamp of zero; names: as of ``Topic.named``, None for the default ones.
+    """
     values = [('window_start_ns', str(fix.start_ns + epoch_ns)),
               ('window_end_ns', str(fix.end_ns + epoch_ns)), ('cycles', str(fix.cycles)),
               ('tan_alpha', repr(float(fix.tan_alpha)))]
@@ -27,8 +31,9 @@ def pack_fix(fix, epoch_ns):
                for key, value in zip(keys, getattr(fix, field))]
     values += [('status', fix.status), ('arrival_ns', str(fix.arrival_ns + epoch_ns))]
     level = diagnostic_array.OK if fix.valid else diagnostic_array.WARN
-    return diagnostic_array.pack_diagnostics(fix.end_ns + epoch_ns, topics.METER_RECORD.frames[0],
-                                             [Status(level, NAME, fix.status, '', tuple(values))])
+    frame, = topics.METER_RECORD.named(names or {}).frames
+    status = Status(level, NAME, fix.status, '', tuple(values))
+    return diagnostic_array.pack_diagnostics(fix.end_ns + epoch_ns, frame, [status])
 
 
 def read_fix(data, epoch_ns):

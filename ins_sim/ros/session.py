@@ -10,7 +10,7 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
 from .transport.repairs import use_profile
 
-RECORDED = (topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
+RECORDED = (topics.RUN, topics.TRUTH_FIX, topics.IMU_RAW, topics.INS_ODOMETRY, topics.INS_FIX,
             *topics.ERRORS)
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 END_S = 10.0

@@ -4,8 +4,8 @@ from collections import namedtuple
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming, Window
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 from .route import RouteSettings
 
 # A filter: where its class is ('module:class'), the instruments whose fixes it processes, and
@@ -104,7 +104,8 @@ class AidedNavigatorSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     motion: ReferenceRoute = group(ReferenceRoute)
     topics: Topics = group(Topics)
     window: Window = group(Window)

@@ -2,8 +2,8 @@
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import GnssTiming
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 
 Axes = tuple[float, ...]
 
@@ -79,7 +79,8 @@ class GnssSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     topics: Topics = group(Topics)
     gnss: GnssTiming = group(GnssTiming)
     lever_arm_m: Axes = setting((0.0, 0.0, 0.0), 'antenna from base_link, forward, left, up', 'm',

@@ -3,8 +3,8 @@
 from .field import group, setting, settings_class, SettingsGroup
 from .instrument_errors import AccelerometerErrors, GyroErrors, Sampling, Temperature
 from .motion import MotionSettings
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 from .tuned_gyro import TunedGyroPairSettings
 
 
@@ -50,7 +50,8 @@ class ImuSensorSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     motion: MotionSettings = group(MotionSettings)
     gyro: Gyro = group(Gyro)
     accelerometer: Accelerometer = group(Accelerometer)

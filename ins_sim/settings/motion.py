@@ -3,7 +3,7 @@
 from .field import column, group, setting, settings_class, SettingsGroup
 from .guidance import GuidanceSettings, GuidedSettings
 from .node import Pacing, Time, Topics
-from .place import Datum, Earth
+from .place import Datum, Earth, Frames, Tf
 from .route import FlownRouteSettings
 
 # The sum of the three is less than a third of the rate at which a message is taken to be damaged,
@@ -176,6 +176,8 @@ class MotionGeneratorSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     time: Time = group(Time)
     motion: MotionSettings = group(MotionSettings)
     guidance: GuidanceSettings = group(GuidanceSettings)

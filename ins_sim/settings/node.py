@@ -1,5 +1,7 @@
 """Settings of a node that no computation depends on: time of the epoch, topics and pacing."""
 
+import time
+
 from .field import setting, settings_class, SettingsGroup
 
 
@@ -23,11 +25,35 @@ class Pacing(SettingsGroup):
             raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
 
 
+# 2025-01-01: a stamp that tools take for one, and early enough for long runs.
+EPOCH_S = 1735689600
+MILLISECOND = 1_000_000
+
+
 @settings_class
 class Time(SettingsGroup):
-    """Zero of motion time."""
+    """Stamp of motion time zero; motion_generator announces it on sim/run."""
 
-    epoch_s: int = setting(0, 'stamp of motion time zero', 's', 0, 2147483647)
+    epoch: str = setting('auto', 'now: such that the first stamp is the time of the wall clock at '
+                         'the start; fixed: epoch_s; auto: epoch_s where it is not the default, '
+                         'else live now, and offline fixed, so that a run can be repeated',
+                         choices=('auto', 'now', 'fixed'))
+    epoch_s: int = setting(EPOCH_S, 'stamp of motion time zero', 's', 0, 2147483647)
+
+    @property
+    def given(self):
+        """Whether epoch_s counts, live as well."""
+        return self.epoch == 'fixed' or self.epoch == 'auto' and self.epoch_s != EPOCH_S
+
+    def epoch_ns(self, first_ns, live):
+        """
+        Return the stamp of motion time zero, ns; one that is taken from the clock in whole ms.
+
+        first_ns: motion time of the first sample; live: whether the run goes with the wall clock.
+        """
+        if self.given or self.epoch == 'auto' and not live:
+            return 1_000_000_000 * self.epoch_s
+        return time.time_ns() // MILLISECOND * MILLISECOND - first_ns
 
 
 @settings_class

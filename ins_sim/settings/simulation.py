@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from .aided_navigator import AidedNavigatorSettings
+from .catalogue import values_of
 from .gnss import GnssSettings
 from .guidance import check_guided
 from .imu import DelaysUs, ImuSensorSettings
@@ -25,6 +26,7 @@ class SimulationSettings:
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
                              f'{sends:g} Hz')
+        check_frames(self.motion_generator, imu_sensor=self.imu_sensor, strapdown=self.strapdown)
         if self.motion_generator.motion.kind == 'guided':
             check_guided(self.motion_generator, self.imu_sensor, self.lead_ns)
 
@@ -46,6 +48,18 @@ class SimulationSettings:
         """Return whether any channel is late."""
         imu = self.imu_sensor
         return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
+
+
+def check_frames(generator, **nodes):
+    """Raise ValueError unless nodes have the frames of the generator, and its source of TF."""
+    for node, settings in nodes.items():
+        for group in ('frames', 'tf'):
+            ours, theirs = (values_of(getattr(one, group)) for one in (settings, generator))
+            for key, value in ours.items():
+                if value != theirs[key]:
+                    raise ValueError(f'{node}: {group}.{key} is {value!r}; expected that of '
+                                     f'motion_generator, {theirs[key]!r}: a vehicle has one tree '
+                                     'of frames')
 
 
 # What the settings of an instrument and of the navigator must have in common.
@@ -76,6 +90,8 @@ class AidedSimulationSettings:
         if navigator.input != sensor.output:
             raise ValueError(f'aided_navigator: input is {navigator.input}; expected the output '
                              f'of imu_sensor, {sensor.output}')
+        check_frames(self.simulation.motion_generator, velocity_meter=self.velocity_meter,
+                     gnss=self.gnss, aided_navigator=navigator)
         self._check_streams()
         self._check_route()
         self._check_steering()

@@ -2,8 +2,8 @@
 
 from .field import group, setting, settings_class, SettingsGroup
 from .imu import OUTPUTS
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class
@@ -34,7 +34,8 @@ class StrapdownSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     vertical: Vertical = group(Vertical)
     initial: Initial = group(Initial)
     topics: Topics = group(Topics)

@@ -6,8 +6,8 @@ Axes of the antennas: X1 forward, Z1 right (docs/theory.md, "Correlation velocit
 
 from .field import group, setting, settings_class, SettingsGroup
 from .fix_schedule import Window
-from .node import Time, Topics
-from .place import Datum, Earth
+from .node import Topics
+from .place import Datum, Earth, Frames, Tf
 
 
 @settings_class
@@ -114,7 +114,8 @@ class VelocityMeterSettings(SettingsGroup):
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
-    time: Time = group(Time)
+    frames: Frames = group(Frames)
+    tf: Tf = group(Tf)
     topics: Topics = group(Topics)
     window: Window = group(Window)
     mode: str = setting('surrogate', 'signal: fields, correlation functions and fits; surrogate: '

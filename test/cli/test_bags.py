@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from support.studies import run_offline
 
-NAMES = {'/' + topic.name for topic in topics.DATA}
+NAMES = {'/' + topic.name for topic in (topics.RUN, *topics.DATA)}
+EPOCH_NS = 1735689600 * 10**9
 MOTION = ['--params-file', 'motion_2', '--no-twin', '-p', 'duration_s:=5.0']
 
 
@@ -31,7 +32,8 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
     """Every topic of the nodes, at its own stamp, with the numbers of the offline run."""
     path = bag_of(tmp_path, '--storage', storage)
     shown = capsys.readouterr().out
-    assert 'written: ' in shown and f'{11 * 501} messages on 11 topics' in shown.replace('\n', ' ')
+    assert 'written: ' in shown and f'{1 + 11 * 501} messages on 12 topics' in shown.replace(
+        '\n', ' ')
     settings = parameter_files.read([resources.config('motion_2')], ['duration_s:=5.0'])
     run = run_offline(settings, twin=False)
     generator = settings.motion_generator
@@ -46,9 +48,10 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
         for topic, values in expected.items():
             writer = topic.writer()
             messages = list(bag.messages([topic.name]))
-            assert [t for _, t, _ in messages] == truth.t_ns.tolist()
-            assert [d for _, _, d in messages] == writer.pack_block(truth.t_ns, values)
-        order = [name for name, t_ns, _ in bag.messages() if t_ns == 10**7]
+            assert [t for _, t, _ in messages] == (truth.t_ns + EPOCH_NS).tolist()
+            assert [d for _, _, d in messages] == writer.pack_block(
+                truth.t_ns + EPOCH_NS, values)
+        order = [name for name, t_ns, _ in bag.messages() if t_ns == EPOCH_NS + 10**7]
         assert order == ['/' + topic.name for topic in topics.DATA]
     errors = read_errors(path)
     assert np.array_equal(errors.position, run.errors.position)

@@ -4,6 +4,7 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
 from ins_sim.settings.presets import preset
 from ins_sim.messages import topics
+from ins_sim.messages.run_announcement import read_announcement
 from support.live import Chain
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ import pytest
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
-IDEAL = {'rate_hz': 100.0, 'duration_s': 30.0, 'gyro.delay_us.y': 1.0, 'publish_clock': True}
+IDEAL = {'time.epoch': 'fixed', 'time.epoch_s': 1735689600, 'rate_hz': 100.0,
+         'duration_s': 30.0, 'gyro.delay_us.y': 1.0, 'publish_clock': True}
 FOG = {**IDEAL, **{key: list(value) if isinstance(value, tuple) else value
                    for key, value in preset('tactical_fog').items()}, 'seed': 7}
 # The live strapdown starts from, and is compared with, a truth that went through the Cartesian
@@ -37,7 +39,7 @@ def test_live_is_offline_message_for_message(values, ros_domain, tmp_path):
                  str(tmp_path / 'offline'), *(w for word in words for w in ('-p', word))]) == 0
     chain = Chain(ros_domain, tmp_path)
     try:
-        recorder = chain.start_verb('record', *wanted, '-o', tmp_path / 'live')
+        recorder = chain.start_verb('record', *wanted, topics.RUN.name, '-o', tmp_path / 'live')
         parameters = {name: str(value).lower() if isinstance(value, bool) else value
                       for name, value in values.items()}
         generator = [chain.start(node, {**parameters, 'pacing.real_time_factor': 0.0,
@@ -48,7 +50,11 @@ def test_live_is_offline_message_for_message(values, ros_domain, tmp_path):
     finally:
         chain.end()
     with open_bag(tmp_path / 'live') as live, open_bag(tmp_path / 'offline') as offline:
-        assert set(live.topics) == set(offline.topics) == {'/' + n.lstrip('/') for n in wanted}
+        assert set(live.topics) == set(offline.topics) == {
+            '/' + n.lstrip('/') for n in (*wanted, topics.RUN.name)}
+        runs = [read_announcement(bytes(data)) for bag in (live, offline)
+                for _, _, data in bag.messages([topics.RUN.name])]
+        assert len(runs) == 2 and runs[0] == runs[1] and runs[0].epoch_ns == 1735689600 * 10**9
         got, expected = (bag.tables(dict.fromkeys(wanted)) for bag in (live, offline))
         for name in wanted:
             assert live.topics['/' + name.lstrip('/')].type_name == \

@@ -89,8 +89,28 @@ def test_simulation_with_and_without_a_recorder(started):
     assert set(nodes) == {*plain, 'recorder'}
     assert nodes[graph.MASTER].parameters[-1]['pacing.required'] == ['strapdown', 'recorder']
     own = nodes['recorder'].parameters[-1]
-    assert own['record.topics'] == [topic.name for topic in topics.DATA]
+    assert own['record.topics'] == [topic.name for topic in (topics.RUN, *topics.DATA)]
     assert own['storage.path'] == 'bag' and nodes['recorder'].executable == 'recorder'
+
+
+def test_simulated_time_has_a_clock(started):
+    """use_sim_time makes the generator publish /clock: three readers need a publisher."""
+    for value, expected in (('true', True), ('True', True), ('false', None)):
+        nodes = started('simulation', use_sim_time=value)
+        clocks = {name: node.parameters[-1].get('publish_clock') for name, node in nodes.items()}
+        assert clocks == {**dict.fromkeys(nodes), graph.MASTER: expected}
+
+
+def test_frames_and_transforms_of_all_nodes(started):
+    """One prefix and one source of TF for all; the recorder, which has none, records them."""
+    nodes = started('simulation', prefix='uav1', tf='aided', aided='true', record='bag')
+    for name, node in nodes.items():
+        own = node.parameters[-1]
+        given = own.get('frames.prefix'), own.get('tf.source')
+        assert given == ((None, None) if name == 'recorder' else ('uav1', 'aided'))
+    assert nodes['recorder'].parameters[-1]['record.topics'][-2:] == ['/tf', '/tf_static']
+    plain = started('simulation')[graph.MASTER].parameters[-1]
+    assert 'frames.prefix' not in plain and 'tf.source' not in plain
 
 
 def test_aided_simulation(started):
@@ -108,7 +128,8 @@ def test_aided_simulation(started):
     parameters = nodes[graph.MASTER].parameters[-1]
     assert set(parameters['pacing.required']) == {'strapdown', 'recorder', *aiding}
     recorded = nodes['recorder'].parameters[-1]['record.topics']
-    assert recorded == [t.name for t in (*topics.DATA, *topics.AIDING, *topics.GUIDANCE)]
+    assert recorded == [t.name for t in (topics.RUN, *topics.DATA, *topics.AIDING,
+                                         *topics.GUIDANCE)]
     with pytest.raises(ValueError, match="aided is 'yes'; expected true or false"):
         started('simulation', aided='yes')
 

@@ -4,8 +4,9 @@ import struct
 
 from ins_sim.messages import diagnostic_array, topics
 from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.run_announcement import RunAnnouncement
 import pytest
-from support.hostile.flight import COMMON, HostileFlight
+from support.hostile.flight import HostileFlight
 
 pytest.importorskip('rclpy')
 
@@ -124,13 +125,18 @@ def test_a_second_strapdown_disables_nothing(flight):
 
 
 def test_another_epoch_is_named_and_kills_nobody(ros_domain):
-    """time.epoch_s of a node is not that of the generator: a sentence, not an end."""
-    other = {**COMMON, 'time.epoch_s': 1000}
-    with Amid(1, {'imu_sensor': other, 'gnss': other}) as flight:
+    """Two generators of two epochs: the truth that is not announced is named, and ends nobody."""
+    with Amid(1) as flight:
+        flight.good(1)
+        other = RunAnnouncement(1000 * SECOND, 0, 100.0, 60 * SECOND)
+        for node in ('imu_sensor', 'gnss'):
+            flight.fed.nodes[node]._announced.take(other.pack())
         flight.good(300)
         for node in ('imu_sensor', 'gnss'):
-            assert 'before time.epoch_s 1000; expected none before it: time.epoch_s must be the ' \
-                   'same in all nodes' in flight.said(node)
+            assert 'sim/run announces a run with the epoch 1000.000000000 s after 0.000000000 ' \
+                   's; expected one generator' in flight.said(node)
+            assert 'a message has the stamp 0.010000000 s, 999.990000000 s before the epoch of ' \
+                   'the run announced on sim/run, 1000.000000000 s' in flight.said(node)
             assert flight.fed.logs[node].lines < 10
         assert not flight.rescued
 

@@ -38,6 +38,7 @@ def fails(chain, node, parameters, code, arguments=()):
      '/no/such.csv'),
     ('motion_generator', {'time.epoch_s': 2147483000}, 'a ROS stamp can hold'),
     ('motion_generator', {'motion.sinusoids.angle_deg': '[1.0, 2.0]'}, '2 entries; expected 3'),
+    ('strapdown', {'frames.prefix': 'uav1/'}, 'expected no slash at its ends, as in uav1'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(chain, node, parameters, sentence):
     text = fails(chain, node, parameters, 2)

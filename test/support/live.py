@@ -28,6 +28,9 @@ class Chain:
     def start(self, node, parameters=(), arguments=()):
         """Start a node with {name: value} parameters and further ROS arguments."""
         command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
+        if node == 'motion_generator':
+            # Stamps are motion time, whenever the test runs.
+            parameters = {'time.epoch': 'fixed', 'time.epoch_s': 0, **dict(parameters)}
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
         return self.run(node, command)

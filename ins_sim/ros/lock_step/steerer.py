@@ -9,7 +9,6 @@ from ins_sim.core.guidance.steering import (margin_sentence, NO_COMMAND, NO_SOLU
                                             SteeringCommand)
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.plausible import PlausibleReader
 from ..process.net import described
 from ..transport.patience import MISSING_S
@@ -55,13 +54,17 @@ class Steerer:
         self._name = settings.guidance.topic
         self._latency_ns, self._timeout_ns = settings.guidance.in_ns()
         self._source, self._queue, self._fault = source, queue, fault
-        self._depth, self._epoch_ns = settings.topics.depth, settings.time.epoch_s * SECOND
+        self._depth, self._epoch_ns = settings.topics.depth, source.epoch_ns
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
-        topic = topics.Topic(self._name, topics.ODOMETRY, topics.AIDED_ODOMETRY.frames)
+        names = settings.frames.names()
+        own = topics.INS_ODOMETRY if f'/{self._name}'.endswith(f'/{topics.INS_ODOMETRY.name}') \
+            else topics.AIDED_ODOMETRY
+        topic = topics.Topic(self._name, topics.ODOMETRY, own.named(names).frames)
         self._frames = topic.frames
         self._reader, self._text = PlausibleReader(topic, ((0, 3), (3, 7), (43, 46))), \
             topic.reader()
-        self._pack, self._publish = topics.GUIDANCE_COMMAND.writer().pack, publish
+        self._pack, self._publish = topics.GUIDANCE_COMMAND.named(
+            names).writer().pack, publish
         self.steering = Steering(settings.guidance, self._motion.route.legs, self._motion.turns)
         self._margin = margin_sentence(settings.guidance, settings.motion.guided)
         self.restart()

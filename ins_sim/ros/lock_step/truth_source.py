@@ -11,6 +11,8 @@ from ins_sim.io.motion import read_motion
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND, STAMP_END_NS
 from ins_sim.messages.convert import truth_blocks
+from ins_sim.messages.run_announcement import RunAnnouncement
+from ins_sim.messages.transforms import TransformWriter
 from ins_sim.settings.guidance import check_control_rate
 
 BLOCK = 256
@@ -25,18 +27,21 @@ class TruthSource:
     """
     Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
 
-    count: number of samples; endless: whether only the stamps of ROS end the run; dt_ns: the
-    sampling period; guided: the GuidedMotion, which has to be commanded before it is known, or
-    None.  Raises ValueError on settings that name no motion or a run longer than it.
+    Where tf.source is truth, that of /tf stands behind them.  epoch_ns: the stamp of motion time
+    zero; announcement: the RunAnnouncement; count: number of samples; endless: whether only the
+    stamps of ROS end the run; dt_ns: the sampling period; guided: the GuidedMotion, which has to
+    be commanded before it is known, or None.  Raises ValueError on settings that name no motion or
+    a run longer than it.
     """
 
     def __init__(self, settings):
         self._motion = motion = read_motion(settings)
         self.guided = motion if settings.motion.kind == 'guided' else None
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
-        self._writers = [(topic, topic.writer()) for topic in topics.TRUTH]
-        self._epoch_ns = settings.time.epoch_s * SECOND
+        names = settings.frames.names()
+        self._writers = [(topic, topic.named(names).writer()) for topic in topics.TRUTH]
         self.first_ns = round(settings.start_s * SECOND)
+        self.epoch_ns = settings.time.epoch_ns(self.first_ns, live=True)
         self.dt_ns = period_ns(settings.rate_hz)
         length_s = settings.duration_s
         if self.guided:
@@ -48,7 +53,7 @@ class TruthSource:
             length_s = motion.end_s - settings.start_s
         else:
             check_places(motion, settings.start_s, LOOK_S)
-        last_s = settings.time.epoch_s + settings.start_s + length_s
+        last_s = self.epoch_ns / SECOND + settings.start_s + length_s
         if last_s >= STAMP_END_S:
             raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '
                              f'than {STAMP_END_S} s, which a ROS stamp can hold')
@@ -60,6 +65,11 @@ class TruthSource:
             raise ValueError(f'the first stamp is {last_s:g} s; expected less than '
                              f'{STAMP_END_S - END_NS // SECOND} s in a run without duration_s: '
                              'there the stamps of ROS end')
+        self._transforms = None
+        if settings.tf.source == 'truth':
+            self._transforms = TransformWriter(*topics.TRUTH_ODOMETRY.named(names).frames).pack
+        self.announcement = RunAnnouncement(self.epoch_ns, self.first_ns, settings.rate_hz,
+                                            self.first_ns + (self.count - 1) * self.dt_ns)
         self.restart()
 
     def restart(self):
@@ -77,7 +87,7 @@ class TruthSource:
 
     def stamp_ns(self, k):
         """Return the stamp of sample k."""
-        return self._epoch_ns + self.first_ns + k * self.dt_ns
+        return self.epoch_ns + self.first_ns + k * self.dt_ns
 
     def messages(self, k):
         """Return the messages of sample k, which must be known."""
@@ -89,7 +99,10 @@ class TruthSource:
         k = np.arange(start, min(start + BLOCK, self.known), dtype=np.int64)
         truth = self._motion.at(self.first_ns + k * self.dt_ns)
         values = truth_blocks(self._frame, truth)
-        stamps = self._epoch_ns + truth.t_ns
-        self._block = list(zip(*[writer.pack_block(stamps, values[topic])
-                                 for topic, writer in self._writers]))
+        stamps = self.epoch_ns + truth.t_ns
+        columns = [writer.pack_block(stamps, values[topic]) for topic, writer in self._writers]
+        if self._transforms is not None:
+            poses = values[topics.TRUTH_ODOMETRY][:, :7].tolist()
+            columns.append([*map(self._transforms, stamps.tolist(), poses)])
+        self._block = list(zip(*columns))
         self._start = start

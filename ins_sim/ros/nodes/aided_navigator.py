@@ -8,10 +8,13 @@ from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one, SIGMAS
 from ins_sim.messages.gnss_fixes import GnssPairs
+from ins_sim.messages.placements import AIDED_MOVES
 from ins_sim.settings.aided_navigator import AidedNavigatorSettings
 from ..process.aiding_health import AidingHealth
 from ..transport import qos
 from ..transport.backlog import HandQueue
+from ..transport.broadcaster import Broadcaster
+from ..transport.map_to_odom import MapToOdom
 from ..transport.patience import MISSING_S
 from .following import NavigatorNode
 
@@ -28,15 +31,26 @@ class AidedNavigatorNode(NavigatorNode):
         self._route = GreatCircleRoute.of_points(self.settings.motion.route.points)
         return AidedStream(self.settings, self.settings.topics.depth)
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of map -> odom."""
+        return Broadcaster(self, self.settings, AIDED_MOVES)
+
+    def begin_announced(self):
+        """Read the fixes by the epoch."""
+        self._pairs.epoch_ns = self.epoch_ns
+
     def make_outputs(self):
         """Make publishers and readers, and the queues of the fixes."""
         super().make_outputs()
+        self._odom = None
+        if self.broadcaster.publish is not None:
+            self._odom = MapToOdom(self, self.broadcaster, self.depth)
         self._fix = qos.make_publisher(self, topics.AIDED_FIX, self.depth)
-        self._fix_pack = topics.AIDED_FIX.writer().pack
-        self._fix_alone = topics.AIDED_FIX_ALONE.writer().pack
-        self._sigmas = [(qos.make_publisher(self, topic, self.depth), topic.writer().pack)
-                        for topic in topics.AIDED_SIGMAS]
-        self._pairs = GnssPairs(self.epoch_ns, round(1e6 * self.settings.gnss.latency_ms))
+        self._fix_pack = topics.AIDED_FIX.named(self.names).writer().pack
+        self._fix_alone = topics.AIDED_FIX_ALONE.named(self.names).writer().pack
+        self._sigmas = [(qos.make_publisher(self, topic, self.depth),
+                         topic.named(self.names).writer().pack) for topic in topics.AIDED_SIGMAS]
+        self._pairs = GnssPairs(0, round(1e6 * self.settings.gnss.latency_ms))
         sources, self._queues = self.stage.navigator.sources, []
         if METER in sources:
             self._queues.append((HandQueue(self, topics.METER_RECORD, self.depth), METER,
@@ -52,7 +66,29 @@ class AidedNavigatorNode(NavigatorNode):
 
     def hand_queues(self):
         """Return the queues of truth and fixes."""
-        return {**super().hand_queues(), **{queue.topic: queue for queue, *_ in self._queues}}
+        queues = [queue for queue, *_ in self._queues]
+        if self._odom is not None:
+            queues.append(self._odom.queue)
+        return {**super().hand_queues(), **{queue.topic: queue for queue in queues}}
+
+    def start_anew(self):
+        """Forget all that has come, that of the INS too."""
+        super().start_anew()
+        if self._odom is not None:
+            self._odom.clear()
+
+    def waits(self):
+        """Return whether the truth, a fix or the INS has to come."""
+        return super().waits() or self._odom is not None and self._odom.waiting
+
+    def progress(self):
+        """Return what changes when something comes that is waited for."""
+        return super().progress() if super().waits() else self._odom.reached_ns
+
+    def place(self, stamp_ns, pose):
+        """Place odom, once the INS of this instant has come."""
+        if self._odom is not None:
+            self._odom.solved(stamp_ns, pose)
 
     def on_drained(self):
         """
@@ -80,6 +116,8 @@ class AidedNavigatorNode(NavigatorNode):
         for queue, source, read in self._queues:
             for data in self.taken_of(queue):
                 self._take_fixes(source, read, data)
+        if self._odom is not None:
+            self._odom.take()
 
     def _take_fixes(self, source, read, data):
         try:
@@ -103,7 +141,9 @@ class AidedNavigatorNode(NavigatorNode):
                        f'{"window" if source == METER else "instant"}: going on without it until '
                        'it delivers again')
             self.publish(self.push(self.stage.go_on_without, (source,)))
-        if not awaited:
+        if not awaited and not self.stage.waiting:
+            self._odom.miss()
+        elif not awaited:
             super().miss()
 
     def publish(self, outputs):

@@ -3,7 +3,6 @@
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.navigation.loop import Decimation
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.timeseries.bounds import LATEST_NS
 from ins_sim.messages import topics
 from ins_sim.messages.plausible import PlausibleReader
 from ..transport import qos
@@ -18,14 +17,14 @@ class NavigatorNode(StageNode):
     """
     A node driven by imu/data_raw whose stage is a core.streams.matching.MatchedStreams.
 
-    A subclass has PUBLISHED, its Topics; make_navigator(), and messages(rate, *output) -> the
-    runs of each of these, output being one of the stage without its instant.  It may have more
-    to take, ``take``, and to miss, ``miss``.
+    A subclass has PUBLISHED, its Topics, an Odometry first; make_navigator(), and messages(rate,
+    *output) -> the runs of each of these, output being one of the stage without its instant.  It
+    may have more to take, ``take``, to wait for, ``waits``, and to miss, ``miss``.
     """
 
     DRIVER = topics.IMU_RAW
     # a solution counts from its first reading, wherever the epoch is
-    FIRST_NS = -2 * LATEST_NS
+    CHECKS_STAMPS = False
 
     def make_stage(self):
         """Return the navigator."""
@@ -41,13 +40,12 @@ class NavigatorNode(StageNode):
         self._imu_reader = PlausibleReader(topics.IMU_RAW)
         # the rate of the body is not needed: pose and velocity only
         self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
-        self._outputs = [(qos.make_publisher(self, topic, self.depth), topic.writer().pack)
-                         for topic in self.PUBLISHED]
+        self._outputs = [(qos.make_publisher(self, topic, self.depth),
+                          topic.named(self.names).writer().pack) for topic in self.PUBLISHED]
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
-        self._patience = Patience(self, lambda: self.stage.waiting,
-                                  lambda: self.stage.processed_ns, self.take, self.miss,
+        self._patience = Patience(self, self.waits, self.progress, self.take, self.miss,
                                   self._settle)
 
     def hand_queues(self):
@@ -80,6 +78,14 @@ class NavigatorNode(StageNode):
         self.publish(self.push(self.stage.push_imu, sample))
         self._patience.wait()
 
+    def waits(self):
+        """Return whether something has to come before what was taken is done."""
+        return self.stage.waiting
+
+    def progress(self):
+        """Return what changes when something comes that is waited for."""
+        return self.stage.processed_ns
+
     def take(self):
         """Take what has come beside the readings."""
         for data in self.taken_of(self._truth):
@@ -99,7 +105,7 @@ class NavigatorNode(StageNode):
         self.stage.rejoin()
 
     def _settle(self):
-        if self.stage.waiting:
+        if self.waits():
             self.seen_so_far(self.stage.processed_ns)
             return
         self._rates.clear()
@@ -125,9 +131,20 @@ class NavigatorNode(StageNode):
         """Publish an output; rate: the reading of the gyros at its instant, rad/s."""
         # asking costs a fifth of packing and publishing what nobody hears
         heard = [publisher.get_subscription_count() for publisher, _ in self._outputs]
-        if not any(heard):
+        if not any(heard) and not self.places:
             return
-        for (publisher, pack), runs, count in zip(self._outputs, self.messages(rate, *output),
-                                                  heard):
+        messages = self.messages(rate, *output)
+        for (publisher, pack), runs, count in zip(self._outputs, messages, heard):
             if count:
                 publisher.publish(pack(stamp_ns, *runs))
+        # of the Odometry, which is the first of them
+        self.place(stamp_ns, messages[0][0])
+
+    @property
+    def places(self):
+        """Return whether a frame is placed on TF."""
+        return self.broadcaster.publish is not None
+
+    def place(self, stamp_ns, pose):
+        """Place the vehicle on TF."""
+        self.broadcaster.send(stamp_ns, pose)

@@ -6,10 +6,12 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.messages import topics
 from ins_sim.messages.gnss_fixes import GnssWriter
+from ins_sim.messages.placements import gnss_mounting
 from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.gnss import GnssSettings
 from ..transport import qos
 from ..transport.arriving import Arriving
+from ..transport.broadcaster import Broadcaster
 from .stage import StageNode
 
 
@@ -27,11 +29,19 @@ class GnssNode(StageNode):
         self._receiver = Gnss(settings)
         return Arriving(self._receiver)
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of the lever arm of the antenna."""
+        return Broadcaster(self, self.settings, fixed={'': gnss_mounting(self.settings)})
+
+    def begin_announced(self):
+        """Stamp by the epoch."""
+        self._writer.epoch_ns = self.epoch_ns
+
     def make_outputs(self):
         """Make publishers, reader and writer, and the service that forces an outage."""
         self._reader = PlausibleReader(topics.TRUTH_ODOMETRY,
                                        ((0, 3), (3, 7), (43, 46), (46, 49)))
-        self._writer = GnssWriter(self.epoch_ns)
+        self._writer = GnssWriter(0, self.names)
         self._fix, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.GNSS_FIX, topics.GNSS_VELOCITY))
         self._fixes = self._outages = 0

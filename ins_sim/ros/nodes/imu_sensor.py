@@ -9,9 +9,11 @@ from ins_sim.core.sensors.imu.stream import make_imu
 from ins_sim.core.sensors.imu.with_errors import reported_variances
 from ins_sim.core.streams.grid import SampleGrid
 from ins_sim.messages import topics
+from ins_sim.messages.placements import imu_mounting
 from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.imu import ImuSensorSettings
 from ..transport import qos
+from ..transport.broadcaster import Broadcaster
 from .stage import StageNode
 
 
@@ -20,7 +22,7 @@ class ImuSensorNode(StageNode):
 
     NAME = 'imu_sensor'
     SETTINGS = ImuSensorSettings
-    DRIVER = topics.TRUTH_IMU
+    DRIVER = TRUTH = topics.TRUTH_IMU
 
     def make_stage(self):
         """Return the IMU."""
@@ -32,6 +34,10 @@ class ImuSensorNode(StageNode):
             motion = read_motion(settings)
         return make_imu(settings, motion)
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of the mounting of the IMU."""
+        return Broadcaster(self, self.settings, fixed={'': imu_mounting(self.settings)})
+
     def make_outputs(self):
         """Make publishers, reader and writers."""
         settings = self.settings
@@ -39,7 +45,7 @@ class ImuSensorNode(StageNode):
         self._grid, self._reading_ns = SampleGrid(self._dt_ns), None
         self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
         self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
-        topic = topics.imu_raw(*reported_variances(settings))
+        topic = topics.imu_raw(*reported_variances(settings)).named(self.names)
         self._reader, self._writer = PlausibleReader(topics.TRUTH_IMU), topic.writer()
         self._parity = None
         if self.stage.pair is not None:
@@ -49,7 +55,7 @@ class ImuSensorNode(StageNode):
         from ins_sim.core.sensors.tuned_gyro.parity import ParityTest
         self._parity = ParityTest(self.settings, self.stage.pair)
         self._parity_publisher = qos.make_publisher(self, topics.IMU_PARITY, self.depth)
-        self._parity_writer = topics.IMU_PARITY.writer()
+        self._parity_writer = topics.IMU_PARITY.named(self.names).writer()
         self.monitor.add(self._describe_parity)
         if self.stage.pair.has_fault:
             self.create_service(SetBool, '~/fault', self._on_fault)

@@ -9,6 +9,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
+from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.settings.motion import MotionGeneratorSettings
 from ..lock_step.pacing import LockStep, Pace
 from ..lock_step.standard_services import offer_standard_services
@@ -21,6 +22,7 @@ from ..process.runtime import EXIT_CONSUMER
 from ..process.serving import serve_ready
 from ..transport import qos
 from ..transport.backlog import HandQueue
+from ..transport.broadcaster import Broadcaster
 
 SERVE_S = 0.01
 POLL_S = 2e-4
@@ -32,7 +34,7 @@ CLOCK_HZ = 100.0
 
 class MotionGeneratorNode(Node):
     """
-    Publishes truth/*, /clock and sim/status; paces by the clock or by sim/ack.
+    Publishes truth/*, /tf, /clock, sim/run and sim/status; paces by the clock or by sim/ack.
 
     A guided motion it steers by the Odometry of guidance.topic, and publishes guidance/command.
     """
@@ -46,6 +48,9 @@ class MotionGeneratorNode(Node):
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
         self._source = TruthSource(self.settings)
+        # first, so that whoever has found the truth knows that there is an announcement
+        self._announcements = qos.make_publisher(self, topics.RUN, depth)
+        self._announcements.publish(self._source.announcement.pack())
         self._pace = Pace(pacing.real_time_factor, self._source.dt_ns * 1e-9)
         self._lock = None
         if pacing.lock_step or pacing.real_time_factor == 0.0:
@@ -53,18 +58,22 @@ class MotionGeneratorNode(Node):
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
                 topics.HEADER)
         self._truth_publishers = [qos.make_publisher(self, topic, depth) for topic in topics.TRUTH]
+        self.monitor = Monitor(self)
         self._publish = [p.publish for p in self._truth_publishers]
+        self.broadcaster = Broadcaster(self, self.settings, TRUTH_MOVES)
+        if self.broadcaster.publish is not None:
+            self._publish.append(self.broadcaster.publish)
         self._clock_every = 0
         if self.settings.publish_clock:
             self._clock_every = math.ceil(self.settings.rate_hz / CLOCK_HZ)
             self._clock_publisher = qos.make_publisher(self, topics.CLOCK_TOPIC, depth)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
         self._status = self.create_publisher(String, topics.STATUS.name, qos.latched_profile())
-        self.monitor = Monitor(self)
         self._queues, self._steerer = {}, None
         if self._source.guided:
             self._make_steerer()
-        self.monitor.add(SolePublishers(self, {topics.TRUTH_IMU.name: None,
+        alone = [topics.TRUTH_IMU, *([topics.CLOCK_TOPIC] if self._clock_every else ())]
+        self.monitor.add(SolePublishers(self, {**{topic.name: None for topic in alone},
                                                **self._queues}).describe)
         self.create_service(SetBool, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/step', self._on_step)
@@ -94,6 +103,7 @@ class MotionGeneratorNode(Node):
             self.get_logger().warning(
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
+        self._tell_time()
         self._pace.anchor(0)
         serve_s = 0.0
         while not stop:
@@ -106,6 +116,16 @@ class MotionGeneratorNode(Node):
                 serve_s = served + max(SERVE_S, SHARE * (served - now))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
+
+    def _tell_time(self):
+        """Say that the stamps are not those of the wall clock, and what others need then."""
+        factor = self.settings.pacing.real_time_factor
+        if self._lock or factor != 1.0:
+            why = 'lock-step' if self._lock else f'a real_time_factor of {factor:g}'
+            clock = '' if self._clock_every else \
+                ', which publish_clock: true publishes (in the launch file use_sim_time:=true)'
+            self.get_logger().info(f'with {why} the stamps do not follow the wall clock: other '
+                                   f'nodes need use_sim_time: true and /clock{clock}')
 
     def _advance(self, stop):
         """Publish what may be published; return how long there is nothing to do, s."""

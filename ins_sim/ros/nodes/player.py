@@ -55,7 +55,8 @@ class PlayerNode(Node):
                 log.warning(f'{name} is not played: {why}')
                 del playing.channels[name]
             else:
-                self._data_publishers.append(publisher)
+                if name not in playing.runs:
+                    self._data_publishers.append(publisher)
                 self._publish[name] = publisher.publish
         if not self._publish:
             raise ValueError(f'nothing of {path} can be played')
@@ -87,6 +88,8 @@ class PlayerNode(Node):
     def run(self, executor, stop):
         """Play until the end or until stop is set."""
         self._executor, self._stop, self._served = executor, stop, 0.0
+        for name, data in self._playing.announcements():
+            self._send(name, data)
         if not self._lock:
             self._wait_readers()
         try:

@@ -30,7 +30,8 @@ ABSENT_S = 2.0
 # of all topics none may have appeared for so long before a sample of lock-step is answered
 SETTLE_S = 1.0
 # what is known beforehand is subscribed to at once, so that nothing of its start is missed
-OURS = (*topics.DATA, topics.IMU_PARITY, topics.CLOCK_TOPIC, *topics.AIDING, *topics.GUIDANCE)
+OURS = (topics.RUN, *topics.DATA, topics.IMU_PARITY, topics.CLOCK_TOPIC, *topics.AIDING,
+        *topics.GUIDANCE)
 
 
 class RecorderNode(Node):

@@ -4,10 +4,10 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND, Writer
+from ins_sim.messages.cdr import Writer
+from ..process.announced import AnnouncedRun
 from ..process.diagnostics import Monitor
 from ..process.net import caught
 from ..process.parameters import declare_settings
@@ -15,6 +15,7 @@ from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_FAULT, Stop
 from ..transport import qos
 from ..transport.backlog import DrivingQueue, LINGER_S
+from ..transport.broadcaster import Broadcaster
 
 
 class StageNode(Node):
@@ -23,17 +24,19 @@ class StageNode(Node):
 
     A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
     pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
-    is a fault too, after which the node starts anew.  FIRST_NS: the earliest motion time.
+    is a fault too, after which the node starts anew.  CHECKS_STAMPS: whether stamps outside the
+    announced run are refused; TRUTH: what the node reads of the generator.
     """
 
-    FIRST_NS = 0
+    CHECKS_STAMPS = True
+    TRUTH = topics.TRUTH_ODOMETRY
 
     def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
         self.hand_over = hand_over
         self.stop = Stop() if stop is None else stop
         self.settings = declare_settings(self, self.SETTINGS)
-        self.epoch_ns = self.settings.time.epoch_s * SECOND
+        self.names = self.settings.frames.names()
         self.stage = self.make_stage()
         self.depth = self.settings.topics.depth
         self._stops = self.settings.on_fault == 'stop'
@@ -41,6 +44,9 @@ class StageNode(Node):
         self._ack_publisher = qos.ack_publisher(self)
         self._last_stamp = self._seen_ns = None
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
+        self._announced = AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced,
+                                       self._give_held)
+        self.broadcaster = self.make_broadcaster()
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.create_subscription(String, topics.STATUS.name, self._on_status,
@@ -51,7 +57,7 @@ class StageNode(Node):
                                    lambda: not self._ack_publisher.get_subscription_count(),
                                    LINGER_S)
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
-        self.monitor.add(SolePublishers(self, queues).describe)
+        self.monitor.add(SolePublishers(self, {topics.RUN.name: None, **queues}).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
 
     def hand_queues(self):
@@ -77,25 +83,39 @@ class StageNode(Node):
         """Forget all that has come."""
         self.stage.reset()
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of what the node places."""
+        return Broadcaster(self, self.settings)
+
+    def _begin_announced(self, run):
+        """Follow a run of another epoch from its begin."""
+        self.epoch_ns = run.epoch_ns
+        self.start_anew()
+        self.begin_announced()
+        self.broadcaster.send_fixed(run.first_stamp_ns)
+
+    def begin_announced(self):
+        """Take note of another epoch_ns."""
+
     def _on_data(self, data):
-        if not self.stop:
+        if not self.stop and not self._announced.holds(data):
             self.monitor.received += 1
             self.on_message(data)
+
+    def _give_held(self, data):
+        self._on_data(data)
+        self.on_drained()
 
     def read(self, reader, data):
         """Return motion time and runs of a message, or None after reporting that it is bad."""
         try:
             stamp_ns, *runs = reader.read(data)
+            if self.CHECKS_STAMPS:
+                self._announced.check(stamp_ns)
         except ValueError as error:
             self.fault(str(error))
             return None
-        t_ns = stamp_ns - self.epoch_ns
-        if t_ns < self.FIRST_NS:
-            self.fault(f'a message has the stamp {seconds(stamp_ns)}, {seconds(-t_ns)} before '
-                       f'time.epoch_s {self.settings.time.epoch_s}; expected none before it: '
-                       'time.epoch_s must be the same in all nodes; the message was dropped')
-            return None
-        return (t_ns, *runs)
+        return (stamp_ns - self.epoch_ns, *runs)
 
     def push(self, push, sample):
         """Return the outputs of a push; report a fault, start anew or stop, as on_fault says."""

@@ -5,7 +5,9 @@ from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.messages import topics
 from ins_sim.messages.convert import fix_one, odometry_one
+from ins_sim.messages.placements import INS_FIXED, INS_MOVES
 from ins_sim.settings.strapdown import StrapdownSettings
+from ..transport.broadcaster import Broadcaster
 from .following import NavigatorNode
 
 
@@ -15,6 +17,10 @@ class StrapdownNode(NavigatorNode):
     NAME = 'strapdown'
     SETTINGS = StrapdownSettings
     PUBLISHED = (topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
+
+    def make_broadcaster(self):
+        """Return the Broadcaster of odom -> base_link."""
+        return Broadcaster(self, self.settings, INS_MOVES, INS_FIXED)
 
     def make_navigator(self):
         """Return the navigator."""

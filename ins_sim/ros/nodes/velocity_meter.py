@@ -4,11 +4,13 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.messages import topics, velocity_record
+from ins_sim.messages.placements import meter_mounting
 from ins_sim.messages.plausible import PlausibleReader
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ..transport import qos
 from ..transport.arriving import Arriving
 from ..transport.backlog import HandQueue
+from ..transport.broadcaster import Broadcaster
 from ..transport.patience import MISSING_S, Patience
 from .stage import StageNode
 
@@ -32,12 +34,16 @@ class VelocityMeterNode(StageNode):
         self._meter = VelocityMeter(settings)
         return Arriving(self._meter)
 
+    def make_broadcaster(self):
+        """Return the Broadcaster of the mounting of the antennas."""
+        return Broadcaster(self, self.settings, fixed={'': meter_mounting(self.settings)})
+
     def make_outputs(self):
         """Make publishers, readers and the queue of the INS."""
         self._reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
         self._record, self._velocity = (qos.make_publisher(self, topic, self.depth) for topic in (
             topics.METER_RECORD, topics.METER_VELOCITY))
-        self._pack = topics.METER_VELOCITY.writer().pack
+        self._pack = topics.METER_VELOCITY.named(self.names).writer().pack
         self._windows = self._invalid = 0
         self._reason = ''
         self.monitor.add(self._describe)
@@ -103,7 +109,8 @@ class VelocityMeterNode(StageNode):
 
     def _publish(self, fixes):
         for fix in fixes:
-            self._record.publish(velocity_record.pack_fix(fix, self.epoch_ns))
+            self._record.publish(velocity_record.pack_fix(fix, self.epoch_ns,
+                                                          self.names))
             self._windows += 1
             if fix.valid:
                 t_ns, *runs = velocity_record.velocity_one(fix)

@@ -5,7 +5,8 @@ import time
 
 from ins_sim.bags import qos as bag_qos
 from ins_sim.messages import topics
-from ins_sim.messages.cdr import SECOND, Writer
+from ins_sim.messages.cdr import SECOND, STAMP_END_NS, Writer
+from ins_sim.messages.transforms import first_stamp
 from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.gaps import Gaps
@@ -70,7 +71,7 @@ class BagRecorder:
         self._answered_ns, self._sent_ns, self._paced = None, None, []
         self._flushed = time.monotonic()
 
-    def add(self, topic, profile=None, offered=bag_qos.RELIABLE, definition=None, type_hash=''):
+    def add(self, topic, profile=None, offered=None, definition=None, type_hash=''):
         """
         Subscribe to a Topic and declare it in the bag; return its Track.
 
@@ -79,6 +80,9 @@ class BagRecorder:
         them.  Raises ValueError if the type is unknown, ImportError if it is not installed.
         """
         name = self._node.resolve_topic_name(topic.name)
+        if topic.latched:
+            profile = profile or qos.latched_profile()
+        offered = offered or (bag_qos.LATCHED if topic.latched else bag_qos.RELIABLE)
         queue = HandQueue(self._node, topic, self._depth, profile)
         try:
             self._bag.add_topic(name, topic.type_name, offered, definition, type_hash)
@@ -86,12 +90,14 @@ class BagRecorder:
             self._node.destroy_subscription(queue.subscription)
             raise
         seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
-        # its array is stamped with the time of the run, as that of /diagnostics need not be
-        by_stamp = is_stamped(topic.type_name) or name == self._node.resolve_topic_name(
-            topics.METER_RECORD.name)
+        # their arrays are stamped with the time of the run, as that of /diagnostics need not be
+        run, record = (self._node.resolve_topic_name(t.name) for t in (
+            topics.RUN, topics.METER_RECORD))
+        by_stamp = is_stamped(topic.type_name) or name in (run, record)
         track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom, Holes())
         self.tracks[name] = track
-        if (track.stamped or seldom) and name != self._ack_name:
+        # a run need not be announced, and what is latched is not missed
+        if (track.stamped or seldom) and name not in (self._ack_name, run):
             self._silent.append(track)
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
         known = [n for n in order if n in self.tracks]
@@ -137,7 +143,7 @@ class BagRecorder:
         track.gaps.take(info['publication_sequence_number'])
         received_ns = info['received_timestamp'] or time.time_ns()
         if not track.stamped:
-            self._write_unstamped(track, data, received_ns)
+            self._take_unstamped(track, data, received_ns)
             return
         stamp_ns = self._clock.hear(data, received_ns)
         if track is self._answered and stamp_ns is not None:
@@ -158,6 +164,19 @@ class BagRecorder:
             self._write(track, stamp_ns, data)
             if self._waiting:
                 self._write_waiting()
+        else:
+            self._write_unstamped(track, data, received_ns)
+
+    def _take_unstamped(self, track, data, received_ns):
+        stamp_ns = None
+        if track.type_name == topics.TRANSFORMS and self._by_stamp:
+            # of many publishers, whose stamps take turns
+            if data == track.last:
+                track.repeated += 1
+                return
+            track.last, stamp_ns = data, first_stamp(data)
+        if stamp_ns is not None and 0 <= stamp_ns < STAMP_END_NS:
+            self._write(track, stamp_ns, data)
         else:
             self._write_unstamped(track, data, received_ns)
 

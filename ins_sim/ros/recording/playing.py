@@ -56,20 +56,25 @@ class Playing:
     """
     The part of a bag that is played.
 
-    channels: of the topics, by name; first_ns: log time at which it begins; driver: name of the
-    topic whose messages are the samples of lock-step, or None.  Raises ValueError and OSError
+    channels: of the topics, by name; runs: those of them that announce a run; first_ns: log time
+    at which it begins; driver: name of the topic whose messages are the samples of lock-step, or
+    None.  Raises ValueError and OSError
     as ``open_bag``, and ValueError where there is nothing to play.
     """
 
     def __init__(self, path, options):
         self.bag = open_bag(path)
-        names = [self.bag.topic(n).name for n in options.topics or self.bag.topics]
+        # announced before all else, whatever is chosen: the nodes take the epoch from there
+        runs = [n for n in self.bag.topics if n.endswith('/' + topics.RUN.name)]
+        chosen = [self.bag.topic(n).name for n in options.topics or self.bag.topics]
+        names = [*runs, *(n for n in chosen if n not in runs)]
         self.left_out = [n for n in names if (n == CLOCK and options.clock_hz is not None) or (
             options.required and n.endswith('/' + topics.ACK.name))]
         spans = self.bag.spans()
+        self.runs = [n for n in runs if spans[n].count]
         self.channels = {n: self.bag.topics[n] for n in names if n not in self.left_out}
         self.counts = {n: spans[n].count for n in self.channels}
-        heard = [spans[n] for n in self.channels if spans[n].count]
+        heard = [spans[n] for n in self.channels if spans[n].count and n not in runs]
         if not heard:
             raise ValueError(f'{path} has no message on {", ".join(self.channels) or "a topic"}; '
                              'expected something to play')
@@ -102,6 +107,10 @@ class Playing:
         if not present:
             raise ValueError(f'{self.bag.path} has no topic with stamps; lock-step expects one')
         return max(present, key=self.counts.get)
+
+    def announcements(self):
+        """Return [(topic, data)] of the announcements of runs, the first one of each."""
+        return [(name, next(iter(self.bag.messages([name])))[2]) for name in self.runs]
 
     def messages(self):
         """Yield (topic, log_ns, data) in the order of the log times."""

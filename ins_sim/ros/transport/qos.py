@@ -30,8 +30,9 @@ def message_class(topic):
 
 
 def make_publisher(node, topic, depth):
-    """Return a publisher of a Topic for bytes."""
-    publisher = node.create_publisher(message_class(topic), topic.name, data_profile(depth))
+    """Return a publisher of a Topic for bytes; depth: of its queue, unless it is latched."""
+    publisher = node.create_publisher(message_class(topic), topic.name,
+                                      latched_profile() if topic.latched else data_profile(depth))
     hand_over = hand_over_of(node)
     return publisher if hand_over is None else hand_over.publisher(node, topic, publisher)
 

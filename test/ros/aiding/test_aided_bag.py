@@ -11,7 +11,8 @@ pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
 NODES = ('strapdown', 'velocity_meter', 'gnss', 'aided_navigator')
-FLIGHT = ('duration_s:=20.0', 'gnss_model.use:=true', 'window.cycles:=200',
+FLIGHT = ('duration_s:=20.0', 'time.epoch:=fixed', 'time.epoch_s:=0',
+          'gnss_model.use:=true', 'window.cycles:=200',
           'outages.start_s:=[12.0]', 'outages.end_s:=[16.0]', 'pacing.real_time_factor:=0.0',
           f'pacing.required:=[{", ".join(NODES)}, recorder]')
 FRAMED = [topic for topic in topics.AIDING if topic is not topics.METER_RECORD]

@@ -14,7 +14,7 @@ pytest.importorskip('rclpy')
 NAME = topics.AIDED_ODOMETRY.name
 # near enough to the leg that the command is not at its limit
 NEAR = {'motion.kind': 'guided', 'rate_hz': 100.0, 'topics.depth': 500, 'duration_s': 0.0,
-        'motion.guided.offset_m': 5.0}
+        'motion.guided.offset_m': 5.0, 'time.epoch_s': 0}
 # of a message of Odometry: its doubles
 DOUBLES = 85
 

@@ -6,6 +6,7 @@ it, and is looked at.
 """
 
 from collections import defaultdict, deque
+from dataclasses import replace
 from functools import lru_cache
 import math
 import struct
@@ -16,6 +17,8 @@ from unittest import mock
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.cdr import LAYOUTS, Reader, stamp_of
 
+# Stands for tf2_msgs, which the ROS of PyPI has not: on the bus there are only bytes.
+STAND_IN = 'std_msgs/msg/Header'
 TOPICS = {topic.name: topic for topic in (
     *topics.DATA, *topics.AIDING, *topics.GUIDANCE, topics.IMU_PARITY, topics.ACK,
     topics.CLOCK_TOPIC)}
@@ -187,19 +190,22 @@ class FedNodes:
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
         from ins_sim.ros.lock_step import pacing, steerer
-        from ins_sim.ros.process import diagnostics, said
+        from ins_sim.ros.process import announced, diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
         # as in a node process
         self._plain = plain_only()
         self._plain.__enter__()
         self._context = rclpy.Context()
         self._context.init()
-        for module in (diagnostics, said, backlog, patience, pacing, steerer):
+        for module in (announced, diagnostics, said, backlog, patience, pacing, steerer):
             self._patch(module, 'time', self.clock)
         for module in (diagnostics, patience):
             self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
                 self.clock, period_s, callback))
         self._patch(qos, 'make_publisher', self.bus.make_publisher)
+        class_of = qos.message_class
+        self._patch(qos, 'message_class', lambda topic: class_of(
+            replace(topic, type_name=STAND_IN) if topic.type_name == topics.TRANSFORMS else topic))
         for name, parameters in self._parameters.items():
             self._make(name, parameters)
         return self
@@ -224,6 +230,9 @@ class FedNodes:
         if hasattr(node, 'recorder'):
             for topic, track in node.recorder.tracks.items():
                 self.bus.join(track.queue, topic.lstrip('/'), False)
+        broadcaster = getattr(node, 'broadcaster', None)
+        if broadcaster is not None and broadcaster.queue is not None:
+            self.bus.join(broadcaster.queue, topics.TF.name, False)
         if hasattr(node, '_acks'):
             self.bus.join(node._acks, topics.ACK.name, False)
 

@@ -8,8 +8,10 @@ the aided solution.
 from collections import Counter
 from types import SimpleNamespace
 
+from ins_sim.core.timeseries.bounds import LATEST_NS
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.ros.lock_step.truth_source import TruthSource
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.motion import MotionGeneratorSettings
@@ -19,7 +21,8 @@ from .messages import HostileMessages
 
 RATE_HZ, DT_S = 100.0, 0.01
 COMMON = {'rate_hz': RATE_HZ, 'topics.depth': 500}
-FLIGHT = {**COMMON, 'motion.kind': 'racetrack', 'pacing.lock_step': True, 'pacing.window': 200}
+FLIGHT = {**COMMON, 'time.epoch': 'fixed', 'time.epoch_s': 0, 'motion.kind': 'racetrack',
+          'pacing.lock_step': True, 'pacing.window': 200}
 WINDOWS = {'window.cycles': 50, 'limits.height_max_m': 2e4}
 NODES = {
     'motion_generator': FLIGHT,
@@ -93,11 +96,16 @@ class HostileFlight:
         self._source = TruthSource(build(MotionGeneratorSettings, FLIGHT))
         self.most_sent = self.most_bytes = 0
 
+    # What the nodes know of the run, or None.
+    announced = RunAnnouncement(0, 0, RATE_HZ, LATEST_NS)
+
     def __enter__(self):
         self.fed.__enter__()
         self.fed.bus.listen = self._heard
         for node in self.fed.nodes.values():
             self._watch(node)
+        if self.announced is not None:
+            self.announce(self.announced)
         return self
 
     def __exit__(self, *exception):
@@ -116,6 +124,12 @@ class HostileFlight:
     def _heard(self, name, data):
         if name in self.hostile.names:
             self.hostile.heard(name, data)
+
+    def announce(self, run, *names):
+        """Deliver the announcement of a run to the nodes that follow one, or to some."""
+        for name in names or self.fed.nodes:
+            if hasattr(self.fed.nodes[name], '_announced'):
+                self.fed.nodes[name]._announced.take(run.pack())
 
     def good(self, count):
         """Send good samples of the truth."""

@@ -1,0 +1,126 @@
+"""The run that the generator announces on sim/run; what comes before it is known waits."""
+
+from collections import deque
+import time
+
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.messages import topics
+from ins_sim.messages.run_announcement import read_announcement, UNANNOUNCED
+from ..transport import qos
+from ..transport.patience import MISSING_S
+
+# An announcement whose publisher is known comes; a busy machine may take its time.
+PATIENCE_S = 30.0
+# Readings may be stamped later than the truth, by their latency.
+LATER_NS = 10_000_000_000
+
+
+class AnnouncedRun:
+    """
+    Epoch and end of the run of a node, which it learns and never sets.
+
+    Where nobody announces a run, as with a recorded or a real IMU, motion time is the stamp.  A
+    generator makes its publisher of sim/run before all others: one whose truth is found without it
+    announces nothing.
+
+    Parameters
+    ----------
+    node : Node with a ``monitor`` and ``guarded``
+    truth : Topic
+        That of the generator, which the node reads.
+    depth : of the messages that wait
+    begin : callable
+        Called with every RunAnnouncement of another epoch, and the first one.
+    give : callable
+        Called with each message that had to wait.
+    """
+
+    def __init__(self, node, truth, depth, begin, give):
+        self._node, self._truth, self._begin, self._give = node, truth, begin, give
+        self._held, self._dropped, self._since = deque(), 0, None
+        self._depth, self.run = depth, None
+        hand_over = qos.hand_over_of(node)
+        if hand_over is None:
+            self.subscribe()
+        else:
+            hand_over.join(node, topics.RUN, self)
+
+    def subscribe(self):
+        """Hear the announcements by DDS."""
+        self._node.create_subscription(qos.message_class(topics.RUN), topics.RUN.name,
+                                       self._node.guarded(self.take), qos.latched_profile(),
+                                       raw=True)
+
+    def accept(self, patience):
+        """Return the function that takes an announcement in this process."""
+        return self._node.guarded(self.take)
+
+    def holds(self, data):
+        """Return whether a message has to wait for the announcement; it is kept then."""
+        if self.run is not None:
+            return False
+        now = time.monotonic()
+        self._since = now if self._since is None else self._since
+        if self._may_come(now - self._since):
+            if len(self._held) < self._depth:
+                self._held.append(data)
+            else:
+                self._dropped += 1
+            return True
+        self._settle(UNANNOUNCED)
+        return False
+
+    def _may_come(self, waited_s):
+        """Return whether an announcement may still come; say so where it is no longer awaited."""
+        node = self._node
+        known, truth = (node.count_publishers(node.resolve_topic_name(topic.name))
+                        for topic in (topics.RUN, self._truth))
+        # readings may come from a sensor that has found the generator earlier
+        if waited_s < (PATIENCE_S if known else 0.0 if truth else MISSING_S):
+            return True
+        if known:
+            node.monitor.fault(f'no message on {topics.RUN.name} in {PATIENCE_S:g} s, though it '
+                               'has a publisher; expected the announcement of the run: motion '
+                               'time is the stamp itself')
+        else:
+            node.get_logger().info(f'nobody announces a run on {topics.RUN.name}: motion time is '
+                                   'the stamp itself')
+        return False
+
+    def take(self, data):
+        """Take a message of sim/run."""
+        try:
+            run = read_announcement(bytes(data))
+        except ValueError as error:
+            self._node.monitor.fault(f'{error}; the message was dropped')
+            return
+        before = self.run
+        if before is not None and run.epoch_ns != before.epoch_ns:
+            self._node.monitor.fault(
+                f'{topics.RUN.name} announces a run with the epoch {seconds(run.epoch_ns)} after '
+                f'{seconds(before.epoch_ns)}; expected one generator: starting anew with it')
+        self._settle(run)
+
+    def _settle(self, run):
+        before, self.run = self.run, run
+        if before is None or run.epoch_ns != before.epoch_ns:
+            self._begin(run)
+        if self._dropped:
+            self._node.monitor.fault(f'{self._dropped} messages were dropped, for which more than '
+                                     f'topics.depth waited for {topics.RUN.name}')
+        held, self._held, self._dropped = self._held, deque(), 0
+        for data in held:
+            self._give(data)
+
+    def check(self, stamp_ns):
+        """Raise ValueError for a stamp outside the run: that of another epoch."""
+        run = self.run
+        first_ns, end_ns = run.epoch_ns, run.epoch_ns + run.end_ns + LATER_NS
+        if not first_ns <= stamp_ns <= end_ns:
+            late = stamp_ns > end_ns
+            raise ValueError(
+                f'a message has the stamp {seconds(stamp_ns)}, '
+                f'{seconds(stamp_ns - end_ns if late else first_ns - stamp_ns)} '
+                f'{"after the end" if late else "before the epoch"} of the run announced on '
+                f'{topics.RUN.name}, {seconds(end_ns if late else first_ns)}; expected a stamp of '
+                'that run, of one generator; the message was dropped')

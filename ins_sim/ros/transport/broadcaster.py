@@ -1,0 +1,92 @@
+"""Transforms on /tf and /tf_static, where tf2_msgs is installed."""
+
+from collections import deque
+
+from ins_sim.messages import topics
+from ins_sim.messages.transforms import read_transforms, TransformWriter
+from . import qos
+from .backlog import HandQueue
+
+# Of the queues of /tf, as tf2 has it.
+DEPTH = 100
+# So many of our own messages are remembered: more than a queue of /tf holds.
+REMEMBERED = 4 * DEPTH
+
+
+class Broadcaster:
+    """
+    What a node publishes of the transforms of its vehicle, as tf.source says.
+
+    Nothing is published where tf2_msgs is missing, which is no part of the ROS of PyPI and is
+    imported only where tf.source asks for it.  A frame that another node places as well is named
+    on /diagnostics.
+
+    Parameters
+    ----------
+    node : Node with a ``monitor``
+    settings : of the node, with ``frames`` and ``tf``
+    moving : {tf.source: (parent, child)}, the frame that the node places on /tf, by default names
+    fixed : {tf.source: (parent, child, pose)} of /tf_static; the key '' is for every source
+    """
+
+    def __init__(self, node, settings, moving=None, fixed=None):
+        source, self._names = settings.tf.source, settings.frames.names()
+        self._node, self._pack, self._static = node, None, None
+        self.publish, self.queue, self._sent = None, None, deque(maxlen=REMEMBERED)
+        moving, fixed = (moving or {}).get(source), fixed or {}
+        self._fixed = None if source == 'none' else fixed.get(source, fixed.get(''))
+        try:
+            if moving is not None:
+                self._make_moving(moving)
+            if self._fixed is not None:
+                self._static = qos.make_publisher(node, topics.TF_STATIC, 1)
+        except ImportError:
+            self.publish = self._static = None
+            node.get_logger().warning(
+                f'tf.source is {source}, but tf2_msgs cannot be imported; expected that ROS '
+                'package (apt: ros-jazzy-tf2-msgs): no transforms are published')
+
+    def _make_moving(self, moving):
+        publisher = qos.make_publisher(self._node, topics.TF, DEPTH)
+        self.queue = HandQueue(self._node, topics.TF, DEPTH)
+        self._placed = [self._names[frame] for frame in moving]
+        self._pack, self._publish = TransformWriter(*self._placed).pack, publisher.publish
+        self.publish = self._remember
+        self._node.monitor.add(self.describe)
+
+    def _remember(self, data):
+        self._sent.append(data)
+        self._publish(data)
+
+    def send(self, stamp_ns, pose):
+        """Publish the moving frame at a pose, if any."""
+        if self.publish is not None:
+            self.publish(self._pack(stamp_ns, pose))
+
+    def send_fixed(self, stamp_ns):
+        """Publish what stands fixed, with a stamp of the run."""
+        if self._static is not None:
+            parent, child, pose = self._fixed
+            self._static.publish(TransformWriter(
+                self._names[parent], self._names[child]).pack(stamp_ns, pose))
+
+    def describe(self):
+        """Return who else places our frame, or '', and no values: as ``Monitor.add`` takes it."""
+        wrong, sent = '', set(self._sent)
+        parent, child = self._placed
+        for _ in range(DEPTH):
+            if (data := self.queue.take()) is None:
+                break
+            if data in sent:
+                continue
+            try:
+                others = [other for other, placed, *_ in read_transforms(data) if placed == child]
+            except ValueError as error:
+                wrong = f'{topics.TF.name}: {error}'
+            else:
+                if others:
+                    wrong = (f'{topics.TF.name} places {child!r} in {others[0]!r}, and this node '
+                             f'places it in {parent!r}; expected one source of a frame: one '
+                             'tf.source in all nodes, no other localization beside it, and for '
+                             'every vehicle a frames.prefix of its own')
+        return wrong, ()

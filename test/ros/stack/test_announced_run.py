@@ -1,0 +1,198 @@
+"""The announced run: node objects without DDS that learn the epoch before, amid or never."""
+
+from ins_sim.messages import topics
+from ins_sim.messages.cdr import SECOND
+from ins_sim.messages.run_announcement import RunAnnouncement
+import pytest
+from support.hostile.fed_nodes import FedNodes
+from support.hostile.flight import COMMON, HostileFlight
+
+pytest.importorskip('rclpy')
+
+EPOCH_NS = 1735689600 * SECOND
+RUN = RunAnnouncement(EPOCH_NS, 0, 100.0, 60 * SECOND)
+GNSS = {**COMMON, 'gnss.rate_hz': 10.0, 'outages.start_s': [0.25], 'outages.end_s': [0.35]}
+
+
+class Announced(HostileFlight):
+    """A flight of all nodes; ``knows`` says whether sim/run is known to have a publisher."""
+
+    announced = None
+
+    def __init__(self, **more):
+        super().__init__(1, more)
+
+    def know(self, count, others=1):
+        """Let every node count so many publishers of sim/run, and of all other topics."""
+        for node in self.fed.nodes.values():
+            node.count_publishers = lambda name: count if name == '/sim/run' else others
+
+    def said(self, node):
+        """Return what a node has said."""
+        return '\n'.join(self.fed.logs[node].kept)
+
+    def newest(self, topic):
+        """Return the newest stamp on a topic, or None."""
+        return self.fed.bus.newest_ns.get(topic.name)
+
+
+@pytest.fixture
+def flight(ros_domain):
+    with Announced() as flight:
+        yield flight
+
+
+def test_the_generator_announces_before_the_truth(ros_domain):
+    """Epoch, start, rate and end, and nothing else was sent by then."""
+    heard = []
+    values = {**COMMON, 'time.epoch': 'fixed', 'start_s': 5.0, 'duration_s': 7.0}
+    nodes = FedNodes({'motion_generator': values})
+    nodes.bus.listen = lambda name, data: heard.append((name, data))
+    with nodes:
+        assert [name for name, _ in heard] == [topics.RUN.name]
+        assert heard[0][1] == RunAnnouncement(EPOCH_NS, 5 * SECOND, 100.0, 12 * SECOND).pack()
+        generator = nodes.nodes['motion_generator']
+        generator._send(0)
+        assert nodes.bus.newest_ns[topics.TRUTH_IMU.name] == EPOCH_NS + 5 * SECOND
+
+
+def test_what_comes_before_the_announcement_waits(flight):
+    """Nothing is lost and nothing is answered: the readings of the first samples come with it."""
+    flight.know(1)
+    flight.good(20)
+    assert flight.newest(topics.IMU_RAW) is None and flight.newest(topics.ACK) is None
+    flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
+    flight.good(1)
+    assert flight.fed.bus.sent[topics.IMU_RAW.name] == 21
+    assert flight.newest(topics.INS_ODOMETRY) == 20 * SECOND // 100
+    assert flight.newest(topics.ACK) == 20 * SECOND // 100
+    assert 'nobody announces' not in flight.said('strapdown')
+
+
+def test_motion_time_is_that_of_the_epoch(ros_domain):
+    """An outage of 0.25 to 0.35 s of motion time is one of these stamps, as offline."""
+    with Announced(gnss={**GNSS}) as flight:
+        flight.know(1)
+        flight.announce(RunAnnouncement(-SECOND, SECOND, 100.0, 60 * SECOND))
+        status = []
+        reader = topics.GNSS_FIX.reader()
+        flight.fed.bus.listen = lambda name, data: status.append(
+            reader.numbers(data)[0]) if name == topics.GNSS_FIX.name else None
+        flight.good(60)
+        # motion time is one second later than the stamps: the outage has gone by
+        assert status and set(status) == {0}
+
+
+def test_where_nobody_announces_motion_time_is_the_stamp(flight):
+    """As with a recorded or a real IMU; said once by each node."""
+    flight.know(0)
+    flight.good(30)
+    assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
+    for node in ('imu_sensor', 'strapdown', 'gnss', 'velocity_meter', 'aided_navigator'):
+        assert flight.said(node).count('nobody announces a run on sim/run: motion time is the '
+                                       'stamp itself') == 1
+
+
+def test_readings_may_come_before_the_generator_is_found(flight):
+    """From a sensor that has found it: the navigators wait for 5 s, and then for nobody."""
+    flight.know(0)
+    flight.good(1)
+    assert flight.newest(topics.INS_ODOMETRY) is not None
+    navigator = flight.fed.nodes['strapdown']
+    navigator._announced.run = navigator._announced._since = None
+    flight.know(0, others=0)
+    before = flight.fed.bus.sent[topics.INS_ODOMETRY.name]
+    flight.good(10)
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before
+    flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND), 'strapdown')
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before + 10
+    navigator._announced.run = navigator._announced._since = None
+    flight.good(1)
+    flight.fed.clock.pass_by(5.0)
+    flight.good(1)
+    assert flight.fed.bus.sent[topics.INS_ODOMETRY.name] == before + 12
+
+
+def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
+    """30 s, then one sentence, and the first samples are not lost."""
+    flight.know(1)
+    flight.good(2)
+    flight.fed.clock.pass_by(30.0)
+    flight.good(1)
+    assert flight.fed.bus.sent[topics.IMU_RAW.name] == 3
+    assert 'no message on sim/run in 30 s, though it has a publisher; expected the announcement ' \
+        'of the run' in flight.said('imu_sensor')
+
+
+def test_more_than_the_queue_holds_is_counted(ros_domain):
+    with Announced(imu_sensor={**COMMON, 'topics.depth': 5}) as flight:
+        flight.know(1)
+        flight.good(12)
+        flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
+        assert '7 messages were dropped, for which more than topics.depth waited for sim/run' in \
+            flight.said('imu_sensor')
+        flight.good(3)
+        assert flight.newest(topics.IMU_RAW) == 14 * SECOND // 100
+
+
+def test_another_generator_starts_all_anew(flight):
+    """Its epoch is taken, in one sentence; the same run again is none."""
+    flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
+    flight.good(50)
+    flight.announce(RunAnnouncement(0, 0, 100.0, 90 * SECOND))
+    assert 'announces' not in flight.said('imu_sensor')
+    flight.good(1)
+    assert flight.newest(topics.INS_ODOMETRY) == 50 * SECOND // 100
+    flight.announce(RUN, 'imu_sensor')
+    assert 'sim/run announces a run with the epoch 1735689600.000000000 s after 0.000000000 s; ' \
+        'expected one generator: starting anew with it' in flight.said('imu_sensor')
+    assert flight.fed.nodes['imu_sensor'].epoch_ns == EPOCH_NS
+
+
+@pytest.mark.parametrize('run, sentence', [
+    (RUN, 'a message has the stamp 0.000000000 s, 1735689600.000000000 s before the epoch of the '
+     'run announced on sim/run, 1735689600.000000000 s; expected a stamp of that run, of one '
+     'generator; the message was dropped'),
+    (RunAnnouncement(-100 * SECOND, 100 * SECOND, 100.0, 100 * SECOND), 'a message has the stamp '
+     '10.010000000 s, 0.010000000 s after the end of the run')], ids=('before', 'after'))
+def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
+    """One sentence of each node that lives by the epoch; the strapdown navigates all the same."""
+    flight.announce(run)
+    if run is not RUN:
+        flight.good(1001)
+        assert 'stamp' not in flight.said('gnss')
+    flight.good(10)
+    for node in ('imu_sensor', 'gnss', 'velocity_meter'):
+        assert sentence in flight.said(node), flight.said(node)
+        assert flight.fed.logs[node].lines < 10
+    assert not flight.rescued
+
+
+def test_what_is_no_announcement_is_dropped(flight):
+    flight.fed.nodes['gnss']._announced.take(b'\x00\x01\x00\x00')
+    assert 'DiagnosticArray of 4 bytes' in flight.said('gnss')
+    flight.good(5)
+    assert not flight.rescued
+
+
+@pytest.mark.parametrize('values, says', [
+    ({}, ''), ({'pacing.lock_step': True}, 'with lock-step the stamps do not follow the wall '
+               'clock: other nodes need use_sim_time: true and /clock, which publish_clock: true '
+               'publishes'),
+    ({'pacing.real_time_factor': 10.0, 'publish_clock': True}, 'with a real_time_factor of 10 the '
+     'stamps do not follow the wall clock: other nodes need use_sim_time: true and /clock')])
+def test_the_generator_says_who_needs_the_clock(values, says, ros_domain):
+    with FedNodes({'motion_generator': {**COMMON, **values}}) as nodes:
+        nodes.nodes['motion_generator']._tell_time()
+        said = '\n'.join(nodes.logs['motion_generator'].kept)
+        assert (says in said) if says else not said
+        assert ('which publish_clock' in said) == ('lock-step' in said)
+
+
+def test_two_clocks_are_named(ros_domain):
+    with FedNodes({'motion_generator': {**COMMON, 'publish_clock': True}}) as nodes:
+        generator = nodes.nodes['motion_generator']
+        generator.count_publishers = lambda name: 2 if name == '/clock' else 1
+        generator.get_publishers_info_by_topic = lambda name: []
+        generator.monitor.publish()
+        assert '/clock has 2 publishers' in '\n'.join(nodes.logs['motion_generator'].kept)

@@ -1,0 +1,86 @@
+"""Epoch and frames: what the settings mean, and what they refuse."""
+
+import time
+
+from ins_sim import parameter_files
+from ins_sim.settings.by_node import AIDING, NODES
+from ins_sim.settings.catalogue import build, flatten
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.node import EPOCH_S, Time
+from ins_sim.settings.place import Frames, ROLES
+import pytest
+
+SECOND = 10**9
+
+
+@pytest.mark.parametrize('values, live, epoch_s', [
+    ({}, False, 1735689600), ({'epoch': 'fixed'}, True, 1735689600),
+    ({'epoch': 'fixed', 'epoch_s': 0}, True, 0), ({'epoch_s': 5}, True, 5),
+    ({'epoch_s': 5}, False, 5)])
+def test_a_fixed_epoch(values, live, epoch_s):
+    """By default offline; live where it is asked for, or where epoch_s is given."""
+    assert build(Time, values).epoch_ns(3 * SECOND, live) == epoch_s * SECOND
+    assert EPOCH_S == 1735689600
+
+
+@pytest.mark.parametrize('values, live', [({}, True), ({'epoch': 'now'}, True),
+                                          ({'epoch': 'now', 'epoch_s': 5}, False)])
+def test_the_epoch_of_now(values, live):
+    """The first sample, here at 100 s of motion time, has the time of the clock in whole ms."""
+    before = time.time_ns()
+    first_ns = build(Time, values).epoch_ns(100 * SECOND, live) + 100 * SECOND
+    assert before - 10**6 <= first_ns <= time.time_ns() and first_ns % 10**6 == 0
+
+
+def test_only_the_generator_has_an_epoch():
+    """There is no second place to set; every node has the frames and the source of TF."""
+    for name, settings in {**NODES, **AIDING}.items():
+        names = flatten(settings)
+        assert ('time.epoch_s' in names) == (name == 'motion_generator')
+        assert {'tf.source', 'frames.prefix', *(f'frames.{role}' for role in ROLES)} <= set(names)
+
+
+def test_names_of_frames():
+    """The prefix stands before every frame, before those without a name of their own too."""
+    names = build(Frames, {'prefix': 'uav1', 'base_link': 'body'}).names()
+    assert names['map'] == 'uav1/map' and names['base_link'] == 'uav1/body'
+    assert names['enu'] == 'uav1/enu' and names['leg'] == 'uav1/leg'
+    assert set(map(str, Frames().names().values())) == {*ROLES, 'enu', 'leg'}
+    # names may have parts of their own
+    assert build(Frames, {'imu_link': 'nose/imu'}).names()['imu_link'] == 'nose/imu'
+
+
+@pytest.mark.parametrize('values, sentence', [
+    ({'prefix': '/uav1'}, "frames.prefix is '/uav1'; expected no slash at its ends, as in uav1, "
+     'which makes uav1/map'),
+    ({'prefix': 'uav1/'}, "frames.prefix is 'uav1/'; expected no slash at its ends"),
+    ({'map': '/map'}, "frames.map is '/map'; expected no slash at its ends, as in map"),
+    ({'odom': 'map'}, "frames.odom is 'map', which is frames.map too; expected another name for "
+     'every frame'),
+    ({'gnss_link': 'imu_link'}, "frames.gnss_link is 'imu_link', which is frames.imu_link too"),
+    ({'base_link': 'enu'}, "frames.base_link is 'enu', which is enu too"),
+    ({'base_link': ''}, "frames.base_link is ''; expected a name without spaces and empty parts"),
+    ({'base_link': 'a b'}, "frames.base_link is 'a b'; expected a name without spaces"),
+    ({'prefix': 'a\nb'}, r"frames.prefix is 'a\\nb'; expected a name without spaces and empty "
+     'parts, such as uav1'),
+    ({'imu_link': 'a//b'}, "frames.imu_link is 'a//b'; expected a name without spaces")])
+def test_frames_that_tf_does_not_take(values, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        build(Frames, values)
+
+
+@pytest.mark.parametrize('word, sentence', [
+    ('strapdown:frames.prefix:=a', "strapdown: frames.prefix is 'a'; expected that of "
+     "motion_generator, '': a vehicle has one tree of frames"),
+    ('gnss:frames.map:=world', "gnss: frames.map is 'world'; expected that of motion_generator"),
+    ('imu_sensor:tf.source:=ins', "imu_sensor: tf.source is 'ins'; expected that of "
+     "motion_generator, 'none'"),
+    ('tf.source:=inss', r"tf.source is 'inss'; expected one of none, truth, ins, aided "
+     r'\(nearest: ins\)')])
+def test_nodes_of_one_vehicle_agree(word, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        parameter_files.read_aided([], [word])
+    both = parameter_files.read_aided([], ['frames.prefix:=uav1', 'tf.source:=aided'])
+    assert both.aided_navigator.frames.names()['odom'] == 'uav1/odom'
+    assert both.simulation.motion_generator == build(MotionGeneratorSettings, {
+        'frames.prefix': 'uav1', 'tf.source': 'aided'})
