@@ -12,7 +12,8 @@ pytestmark = pytest.mark.live
 NODES = ('imu_sensor', 'motion_generator', 'strapdown')
 HEARD = (topics.IMU_RAW, topics.INS_ODOMETRY, *topics.ERRORS)
 FILE = """/**:
-  ros__parameters: {rate_hz: 100.0, duration_s: 3.0, seed: 4, gyro.delay_us.y: 1.0}
+  ros__parameters: {rate_hz: 100.0, duration_s: 3.0, seed: 4, gyro.delay_us.y: 1.0,
+                   time.epoch_s: 0}
 imu_sensor:
   ros__parameters: {gyro.errors.angle_random_walk_deg_sqrt_h: [0.1, 0.1, 0.1]}
 motion_generator:

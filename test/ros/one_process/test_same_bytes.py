@@ -15,7 +15,7 @@ AIDS = ('aided_navigator', 'velocity_meter', 'gnss')
 NODES = ('strapdown', 'imu_sensor', 'motion_generator')
 PUBLISHED = (*topics.DATA, *topics.AIDING, *topics.GUIDANCE, topics.IMU_PARITY)
 STEP_S = 0.002
-FAST = {'pacing.real_time_factor': 0.0, 'rate_hz': 100.0, 'seed': 3}
+FAST = {'pacing.real_time_factor': 0.0, 'rate_hz': 100.0, 'seed': 3, 'time.epoch_s': 0}
 AIDED = {**{name: list(value) if isinstance(value, tuple) else value
             for name, value in FLIGHT.items()},
          **FAST, 'source': 'stream', 'aided': True, 'duration_s': 5.0, 'outages.start_s': [2.0],
