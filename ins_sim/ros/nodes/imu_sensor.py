@@ -53,7 +53,7 @@ class ImuSensorNode(StageNode):
 
     def _watch_parity(self):
         from ins_sim.core.sensors.tuned_gyro.parity import ParityTest
-        self._parity = ParityTest(self.settings, self.stage.pair)
+        self._parity, self._tested_ns = ParityTest(self.settings, self.stage.pair), None
         self._parity_publisher = qos.make_publisher(self, topics.IMU_PARITY, self.depth)
         self._parity_writer = topics.IMU_PARITY.named(self.names).writer()
         self.monitor.add(self._describe_parity)
@@ -82,7 +82,10 @@ class ImuSensorNode(StageNode):
         return self.stage.push(t_ns, *sample)
 
     def _test_parity(self, stamp_ns, t_ns, omega, force, parity):
-        self._parity.push(t_ns, omega, force, parity)
+        if t_ns != self._tested_ns:
+            # Sample 0 may be repeated, but counts once.
+            self._tested_ns = t_ns
+            self._parity.push(t_ns, omega, force, parity)
         if self._parity_publisher.get_subscription_count():
             self._parity_publisher.publish(
                 self._parity_writer.pack(stamp_ns, self._parity.row(parity)))

@@ -26,8 +26,8 @@ from ..transport.broadcaster import Broadcaster
 
 SERVE_S = 0.01
 POLL_S = 2e-4
-# As long a time for samples as for the callbacks of the executor, times this.
-SHARE = 30.0
+# For samples there is so many times as long as for the callbacks of the executor, up to REST_S.
+SHARE, REST_S = 30.0, 0.2
 BURST = 50
 CLOCK_HZ = 100.0
 
@@ -113,7 +113,7 @@ class MotionGeneratorNode(Node):
                 serve_ready(executor)
                 served = time.monotonic()
                 # where looking takes long, it is done more rarely
-                serve_s = served + max(SERVE_S, SHARE * (served - now))
+                serve_s = served + min(REST_S, max(SERVE_S, SHARE * (served - now)))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
 
