@@ -137,7 +137,7 @@ class NavigatorNode(StageNode):
         """
         # asking costs a fifth of packing and publishing what nobody hears
         heard = [publisher.get_subscription_count() for publisher, _ in self._outputs]
-        if self.broadcaster.publish is None and not any(heard):
+        if not any(heard) and not self.places:
             return
         messages = self.messages(rate, *output)
         for (publisher, pack), runs, count in zip(self._outputs, messages, heard):
@@ -145,6 +145,11 @@ class NavigatorNode(StageNode):
                 publisher.publish(pack(stamp_ns, *runs))
         # of the Odometry, which is the first of them
         self.place(stamp_ns, messages[0][0])
+
+    @property
+    def places(self):
+        """Return whether a frame is placed on TF."""
+        return self.broadcaster.publish is not None
 
     def place(self, stamp_ns, pose):
         """Place the vehicle on TF."""

@@ -39,8 +39,21 @@ class AnnouncedRun:
         self._node, self._truth, self._begin, self._give = node, truth, begin, give
         self._held, self._dropped, self._since = deque(), 0, None
         self._depth, self.run = depth, None
-        node.create_subscription(qos.message_class(topics.RUN), topics.RUN.name,
-                                 node.guarded(self.take), qos.latched_profile(), raw=True)
+        hand_over = qos.hand_over_of(node)
+        if hand_over is None:
+            self.subscribe()
+        else:
+            hand_over.join(node, topics.RUN, self)
+
+    def subscribe(self):
+        """Hear the announcements by DDS."""
+        self._node.create_subscription(qos.message_class(topics.RUN), topics.RUN.name,
+                                       self._node.guarded(self.take), qos.latched_profile(),
+                                       raw=True)
+
+    def accept(self, patience):
+        """Return the function that takes an announcement in this process."""
+        return self._node.guarded(self.take)
 
     def holds(self, data):
         """Return whether a message has to wait for the announcement; it is kept then."""

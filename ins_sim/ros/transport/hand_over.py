@@ -15,7 +15,7 @@ class HandOver:
     """
 
     def __init__(self):
-        self._receivers = {}
+        self._receivers, self._latched = {}, {}
         self._joining, self._patiences, self._drained = [], {}, []
 
     @staticmethod
@@ -33,7 +33,10 @@ class HandOver:
         if not self.serves(topic):
             return publisher
         name = node.resolve_topic_name(topic.name)
-        return HandingPublisher(publisher, self._receivers.setdefault(name, []))
+        handing = HandingPublisher(publisher, self._receivers.setdefault(name, []))
+        if topic.latched:
+            self._latched[name] = handing
+        return handing
 
     def join(self, node, topic, queue):
         """Let a queue of a node be connected: ``accept(patience)`` or ``subscribe()``."""
@@ -55,6 +58,9 @@ class HandOver:
                 queue.subscribe()
             else:
                 receivers.append(queue.accept(self._patiences.get(node)))
+                latched = self._latched.get(node.resolve_topic_name(topic.name))
+                if latched is not None and latched.last is not None:
+                    receivers[-1](latched.last)
         self._joining.clear()
 
     def listen(self, node, topic, receive):
@@ -75,16 +81,18 @@ class HandOver:
 
 
 class HandingPublisher:
-    """A publisher of bytes that gives them to receivers in this process as well."""
+    """A publisher of bytes that gives them to receivers in this process as well; last: of them."""
 
     def __init__(self, publisher, receivers):
         # The handle itself: rclpy locks it for each call, and looks what kind of message it is.
         self._publish = publisher.handle.publish_raw
         self._count = publisher.handle.get_subscription_count
         self._receivers = receivers
+        self.last = None
 
     def publish(self, data):
         """Publish a message and hand it over."""
+        self.last = data
         self._publish(data)
         for receive in self._receivers:
             receive(data)
