@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+from ins_sim import graph, resources
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
 from support.places import ROOT
@@ -81,6 +82,35 @@ def wait_handlers(process, timeout_s=GUARD_S):
                 return
         time.sleep(0.002)
     raise TimeoutError(f'no handler of SIGTERM within {timeout_s} s')
+
+
+def run_in_real_time(chain, listener, awaited, values, names):
+    """
+    Run six nodes, the generator last, and hear them until it has ended.
+
+    awaited: Topics whose publishers are there before it starts; values: parameters of all nodes;
+    names: parameter files.  Returns {name: process} of the others, that of the generator, and how
+    long it ran, s.
+    """
+    files = [word for name in names for word in ('--params-file', str(resources.config(name)))]
+    nodes = {process.name: chain.start(process.executable, values, files)
+             for process in (*graph.AIDING, *graph.PROCESSES) if process.name != graph.MASTER}
+    for node in nodes.values():
+        wait_handlers(node)
+    end = time.monotonic() + GUARD_S
+    while not all(listener.node.count_publishers(topic.name) for topic in awaited):
+        assert time.monotonic() < end, 'the nodes do not appear'
+        time.sleep(0.1)
+    time.sleep(2.0)
+    began = time.monotonic()
+    generator = chain.start(graph.MASTER, values, files)
+    while generator.poll() is None:
+        listener.poll()
+        time.sleep(0.1)
+    took_s = time.monotonic() - began
+    time.sleep(3.5)
+    listener.poll()
+    return nodes, generator, took_s
 
 
 class Listener:

@@ -8,8 +8,9 @@ what the meter reads,
     x+ = A x + b w,   w = (1 + k_z) D p,   p = c x
 
 p is the mean lateral velocity V beta since the last correction, and D makes the mean of a window
-of it: 1, or with windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), Q being a step later.  Absolute
-errors of position, and for paper_corrected of velocity, which nobody observes, are not in x.
+of it: 1, or with windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), where Q is the operator of one
+step forward.  Errors that no measurement shows, those of the absolute position and for
+paper_corrected of the absolute velocity, are left out of x.
 So (1 + k_z) D(Q) c (Q - A)^-1 b = 1, which on the unit circle gives the limits of k_z.
 """
 
@@ -23,7 +24,7 @@ from .linear_plant import after_period
 
 # how finely the unit circle is searched for where k_z is real
 POINTS = 2000
-# a response smaller than this is none
+# responses smaller than this are rounding errors and are ignored
 ROUNDING = 1e-9
 KINDS = ('conventional', 'paper_corrected')
 
@@ -59,7 +60,7 @@ class StabilityLimit(NamedTuple):
 
 class StabilityLimits(NamedTuple):
     """
-    The least positive and the least negative StabilityLimit, or None where there is none.
+    The StabilityLimits nearest to zero, one of each sign; None where a sign has no limit.
 
     unstable: how many modes grow at k_z = 0; only without any are these limits of the stable loop.
     """
@@ -160,7 +161,7 @@ class _Response:
 
 
 def window_mean(q, n):
-    """Return D(Q), the mean of n values of which each is a factor Q later than the one before."""
+    """Return D(Q), the mean of a quantity over n steps if it grows by the factor q in each."""
     return 1.0 if n == 1 else (1.0 - q ** -n) / (n * (1.0 - 1.0 / q))
 
 

@@ -38,8 +38,8 @@ class Steering:
 
     Solutions are given by ``take``; ``command`` answers a control instant from the newest one that
     is ``latency_s`` old.  The vehicle flies straight (command zero) until the autopilot is
-    engaged, in turns, and where the solution is missing, no number or too old; after a jump until
-    it has gone on without another one for ``timeout_s``.
+    engaged, in turns, and where the solution is missing, no number or too old.  After a jump of
+    the solution it flies straight until ``timeout_s`` has passed without another jump.
 
     Parameters
     ----------

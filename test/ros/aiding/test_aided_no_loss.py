@@ -1,10 +1,7 @@
 """Six nodes in real time: nothing is lost on the way."""
 
-import time
-
-from ins_sim import graph, resources
 from ins_sim.messages import topics
-from support.live import Chain, GUARD_S, Listener, wait_handlers
+from support.live import Chain, Listener, run_in_real_time
 import numpy as np
 import pytest
 
@@ -29,28 +26,10 @@ def test_real_time_loses_nothing(ros_domain, tmp_path):
     the same, and the CPU of each node, are printed by benchmarks/live_aided.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, HEARD)
-    files = [word for name in ('default', 'route_flight', 'grade_mid')
-             for word in ('--params-file', str(resources.config(name)))]
+    awaited = topics.IMU_RAW, topics.INS_ODOMETRY, topics.AIDED_ODOMETRY, topics.GNSS_FIX
     try:
-        nodes = {process.name: chain.start(process.executable, VALUES, files)
-                 for process in (*graph.AIDING, *graph.PROCESSES) if process.name != graph.MASTER}
-        for node in nodes.values():
-            wait_handlers(node)
-        names = [topic.name for topic in (topics.IMU_RAW, topics.INS_ODOMETRY,
-                                          topics.AIDED_ODOMETRY, topics.GNSS_FIX)]
-        end = time.monotonic() + GUARD_S
-        while not all(listener.node.count_publishers(name) for name in names):
-            assert time.monotonic() < end, 'the nodes do not appear'
-            time.sleep(0.1)
-        time.sleep(2.0)
-        began = time.monotonic()
-        generator = chain.start(graph.MASTER, VALUES, files)
-        while generator.poll() is None:
-            listener.poll()
-            time.sleep(0.1)
-        took_s = time.monotonic() - began
-        time.sleep(3.5)
-        listener.poll()
+        nodes, _, took_s = run_in_real_time(chain, listener, awaited, VALUES,
+                                            ('default', 'route_flight', 'grade_mid'))
         texts = {name: chain.text(node) for name, node in nodes.items()}
     finally:
         codes = chain.end()

@@ -1,13 +1,12 @@
 """Six nodes in real time, the loop closed over DDS for ten minutes: nothing is lost."""
 
 import math
-import time
 
-from ins_sim import graph, resources
+from ins_sim import graph
 from ins_sim.messages import topics
 import numpy as np
 import pytest
-from support.live import Chain, GUARD_S, Listener, wait_handlers
+from support.live import Chain, Listener, run_in_real_time
 
 pytest.importorskip('rclpy')
 pytestmark = [pytest.mark.live, pytest.mark.figures]
@@ -27,23 +26,8 @@ def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path
     """
     chain = Chain(ros_domain, tmp_path)
     listener = Listener(ros_domain, HEARD, later=topics.GUIDANCE)
-    files = [word for name in FILES for word in ('--params-file', str(resources.config(name)))]
     try:
-        nodes = {process.name: chain.start(process.executable, VALUES, files)
-                 for process in (*graph.AIDING, *graph.PROCESSES) if process.name != graph.MASTER}
-        for node in nodes.values():
-            wait_handlers(node)
-        end = time.monotonic() + GUARD_S
-        while not all(listener.node.count_publishers(topic.name) for topic in HEARD[1:]):
-            assert time.monotonic() < end, 'the nodes do not appear'
-            time.sleep(0.1)
-        time.sleep(2.0)
-        nodes[graph.MASTER] = generator = chain.start(graph.MASTER, VALUES, files)
-        while generator.poll() is None:
-            listener.poll()
-            time.sleep(0.1)
-        time.sleep(3.5)
-        listener.poll()
+        nodes, nodes[graph.MASTER], _ = run_in_real_time(chain, listener, HEARD[1:], VALUES, FILES)
         texts = {name: chain.text(node) for name, node in nodes.items()}
     finally:
         codes = chain.end()

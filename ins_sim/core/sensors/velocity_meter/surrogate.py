@@ -68,10 +68,10 @@ class SurrogateWindows:
 
     def whole(self, total, index, cycles):
         """
-        Return the sum of cycles, of which the last ends at index periods, and that of their noise.
+        Return the sum over cycles, with the sum of their noise; the last ends at index periods.
 
-        Each cycle has its own, so that long windows average that of the short ones, and windows
-        that overlap have that of their common cycles in common.
+        Every cycle has noise of its own. Long windows therefore average the noise of the short
+        ones, and windows that overlap share the noise of the cycles that they share.
         """
         noise = self._normals.normals(index - cycles + 1, cycles)
         return (*total, *in_order((0.0, 0.0), noise.T))
