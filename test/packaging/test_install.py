@@ -76,7 +76,8 @@ def test_command_passes_names_files_and_values():
 def test_scripts_exist():
     """Each console script names a function that is there."""
     assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter',
-                            'gnss', 'aided_navigator', 'recorder', 'truth_adapter', 'ins_sim'}
+                            'gnss', 'aided_navigator', 'recorder', 'truth_adapter', 'simulation',
+                            'ins_sim'}
     for entry in SCRIPTS.values():
         module, function = entry.split(':')
         assert callable(getattr(import_module(module), function))
@@ -115,7 +116,8 @@ def test_run_time_needs_five_libraries_and_ros():
     required = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL).group(1)
     assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
     of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
-    extras = {'pandas', 'numba', 'pygeomag'}
+    # pytest: ins_sim.testing offers a fixture where it is there
+    extras = {'pandas', 'numba', 'pygeomag', 'pytest'}
     assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
         of_ros | extras)
 

@@ -49,7 +49,7 @@ def dot(a, b):
 
 def length(vectors):
     """Return the length of a real vector (m,), or of each row of (n, m)."""
-    return elementary.sqrt(_total(np.moveaxis(vectors * vectors, -1, 0)))
+    return elementary.sqrt(total(np.moveaxis(vectors * vectors, -1, 0)))
 
 
 def magnitude(z):
@@ -116,8 +116,8 @@ def balance(a):
     while moved:
         moved = False
         for i in range(len(a)):
-            row = _total(sizes[i] * scale) / scale[i]
-            column = _total(sizes[:, i] / scale) * scale[i]
+            row = total(sizes[i] * scale) / scale[i]
+            column = total(sizes[:, i] / scale) * scale[i]
             if row == 0.0 or column == 0.0:
                 continue
             factor = math.ldexp(1.0, math.frexp(row / column)[1] // 2)
@@ -136,7 +136,7 @@ def exponential(a):
         return complex_form(exponential(real_form(a)))
     scale = balance(a)
     a = a * scale / scale[:, None]
-    largest = _total(np.abs(a.T)).max()
+    largest = total(np.abs(a.T)).max()
     halvings = max(0, math.frexp(largest)[1] + 1)
     a = a * math.ldexp(1.0, -halvings)
     # e^a - 1 keeps the digits of what is small beside 1
@@ -148,8 +148,8 @@ def exponential(a):
     return (np.eye(len(a)) + less_one) / scale * scale[:, None]
 
 
-def _total(rows):
-    """Return the sum over the first axis, in its order."""
+def total(rows):
+    """Return the sum over the first axis of an array or of a list, in its order."""
     total = rows[0]
     for row in rows[1:]:
         total = total + row

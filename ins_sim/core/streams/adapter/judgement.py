@@ -1,11 +1,14 @@
 """What an input is worth, from two seconds of it: rate, noise, and whether its twist is right."""
 
 from dataclasses import dataclass
+from functools import reduce
 import math
+from operator import mul
 
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.fixed_order import dot, length, total
 from .knots import turn_between
 from .stencils import MIDDLE, POINTS, weights
 
@@ -117,18 +120,23 @@ def _difference(t_ns, step_s, changes, rates):
     steps = np.diff(t_ns)
     count = len(t_ns) - POINTS + 1
     first = weights([steps[k:k + count] for k in range(POINTS - 1)], MIDDLE)[0]
-    slopes = sum(first[k][:, None] * (rates[k:k + count] - rates[MIDDLE:MIDDLE + count])
-                 for k in range(POINTS) if k != MIDDLE)
+    slopes = total([first[k][:, None] * (rates[k:k + count] - rates[MIDDLE:MIDDLE + count])
+                    for k in range(POINTS) if k != MIDDLE])
     at = slice(MIDDLE, MIDDLE + count - 1)
     h = step_s[at][:, None]
     v0, v1 = rates[at], rates[MIDDLE + 1:MIDDLE + count]
     return changes[at] - 0.5 * h * (v0 + v1) - h * h / 12.0 * (slopes[:-1] - slopes[1:])
 
 
+def _product(a, b):
+    """Return the sum of the products of the elements of two arrays."""
+    return dot(a.ravel(), b.ravel())
+
+
 def _fitting(rho, step_s, limit):
-    square = float(np.sum(rho * rho))
+    square = _product(rho, rho)
     rms = math.sqrt(square / len(rho)) / float(np.median(step_s))
-    return Fitting(rms, float(np.sum(rho[1:] * rho[:-1])) / square if square else 0.0, limit)
+    return Fitting(rms, _product(rho[1:], rho[:-1]) / square if square else 0.0, limit)
 
 
 def _delay(rho, v_m, in_child):
@@ -145,8 +153,8 @@ def _delay(rho, v_m, in_child):
         change = np.stack(quaternion.rotate(tuple(x[:-1] for x in q), tuple(np.diff(
             v, axis=0).T)), axis=-1)
     change = change[MIDDLE:MIDDLE + len(rho)]
-    square = float(np.sum(change * change))
-    return float(np.sum(rho * change)) / square if square > 1e-12 * len(rho) else None
+    square = _product(change, change)
+    return _product(rho, change) / square if square > 1e-12 * len(rho) else None
 
 
 def _is_parent(found):
@@ -169,14 +177,14 @@ class _Noise:
         count = len(t_ns) - NEIGHBOURS + 1
         near = [(t_ns[k:k + count] - t_ns[:count]) * 1e-9 for k in range(NEIGHBOURS)]
         # Divided differences of sixth order, of unit gain for white noise.
-        factors = [math.prod(1.0 / (a - b) for b in near if b is not a) for a in near]
-        norm = np.sqrt(sum(x * x for x in factors))
+        factors = [reduce(mul, [1.0 / (a - b) for b in near if b is not a]) for a in near]
+        norm = np.sqrt(total([x * x for x in factors]))
         self._factors = [(x / norm)[:, None] for x in factors]
 
     def of(self, values):
         """Return the noise of values (n, 3): by axis by the rms, of the vector by the median."""
         count = len(self._factors[0])
-        left = sum(x * (values[k:k + count] - values[3:3 + count])
-                   for k, x in enumerate(self._factors))
-        return (float(np.sqrt(np.mean(left * left))),
-                float(np.median(np.sqrt(np.sum(left * left, axis=1)))) / 0.6745)
+        left = total([x * (values[k:k + count] - values[3:3 + count])
+                      for k, x in enumerate(self._factors)])
+        return (math.sqrt(_product(left, left) / left.size),
+                float(np.median(length(left))) / 0.6745)

@@ -20,7 +20,7 @@ class PoseKnots:
     def push(self, sample):
         """Take a Sample that is a knot; return the Piece that it completes, or None."""
         q = sample.q
-        if len(self._last) and sum(a * b for a, b in zip(q, self._last[-1].q)) < 0.0:
+        if len(self._last) and _are_opposite(q, self._last[-1].q):
             sample = sample._replace(q=tuple(-x for x in q))
         self._last.add(sample)
         if len(self._last) < POINTS:
@@ -36,6 +36,11 @@ class PoseKnots:
         turns = [turn_between(q, other) for other in self._last.column(2, 0, POINTS)]
         return (t_ns, r, weighted(first, places, r), weighted(second, places, r), q,
                 weighted(first, turns, (0.0, 0.0, 0.0)))
+
+
+def _are_opposite(q, p):
+    """Return whether two quaternions have opposite signs, one of which is to be turned."""
+    return q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3] < 0.0
 
 
 def _piece(start, end):

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics.fixed_order import dot, total
 from ins_sim.core.numerics.instants import seconds
 from ..faults import MOST_PERIODS, StreamFault
 
@@ -38,11 +39,11 @@ def steadiness(t_ns):
     stamps = np.array(t_ns) - t_ns[0]
     steps = np.diff(stamps)
     number = np.concatenate([[0], np.cumsum(np.maximum(1, np.rint(steps / np.median(steps))))])
-    mean = number.mean()
-    centred = number - mean
-    period = float(np.sum(centred * stamps) / np.sum(centred * centred))
-    line = stamps.mean() + centred * period
-    return Steadiness(period, float(np.sqrt(np.mean((stamps - line) ** 2)))), line
+    centred = number - total(number) / len(number)
+    period = dot(centred, stamps) / dot(centred, centred)
+    line = total(stamps) / len(stamps) + centred * period
+    off = stamps - line
+    return Steadiness(period, math.sqrt(dot(off, off) / len(off))), line
 
 
 def round_period_ns(steady, count):

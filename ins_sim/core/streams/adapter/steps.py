@@ -33,7 +33,7 @@ class StepCheck:
         if len(last) < 2:
             return
         t_ns = knot.t_ns
-        turned = math.sqrt(sum(x * x for x in turn_between(last[-2].q, knot.q)))
+        turned = _length(turn_between(last[-2].q, knot.q))
         if turned > MOST_RAD:
             raise StreamFault(f'{self._name} at {seconds(t_ns)} turns {turned:.3g} rad in one '
                               f'step; expected at most {MOST_RAD:g}: it must come at a higher '
@@ -41,9 +41,14 @@ class StepCheck:
         if len(last) < 3:
             return
         h0, h1 = (step * 1e-9 for step in last.steps(0, 3))
-        a = math.sqrt(sum(((z - y) / h1 - (y - x) / h0) ** 2 for x, y, z in zip(
-            *last.column(1, 0, 3)))) / (0.5 * (h0 + h1))
+        a = _length([(z - y) / h1 - (y - x) / h0 for x, y, z in zip(
+            *last.column(1, 0, 3))]) / (0.5 * (h0 + h1))
         noise = SECOND_DIFFERENCE * spread_m / (h0 * h1)
         if a > MOST_M_S2 + NOISES * noise:
             raise StreamFault(f'{self._name} jumps at {seconds(t_ns)}: its positions accelerate '
                               f'by {a:.4g} m/s^2; expected at most {MOST_M_S2:g}', restart=True)
+
+
+def _length(vector):
+    x, y, z = vector
+    return math.sqrt(x * x + y * y + z * z)
