@@ -144,12 +144,13 @@ class Listener:
         self._context.shutdown()
 
 
-def run(rate_hz, duration_s, real_time_factor, domain=91, nodes=NODES, **parameters):
+def run(rate_hz, duration_s, real_time_factor, domain=91, nodes=NODES, starter=start,
+        **parameters):
     """
     Run the chain once and return its Result.
 
     nodes: the executables, that which holds the generator last: it starts when the others are
-    there.
+    there.  starter: starts one of them.
     """
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     parameters = {'rate_hz': float(rate_hz), 'duration_s': float(duration_s),
@@ -158,10 +159,10 @@ def run(rate_hz, duration_s, real_time_factor, domain=91, nodes=NODES, **paramet
     listener, running, ends = Listener(domain, real_time_factor > 0), {}, {}
     try:
         for node in nodes[:-1]:
-            running[node] = start(node, parameters, domain)
+            running[node] = starter(node, parameters, domain)
         if running:
             listener.wait_for(topics.IMU_RAW.name, topics.INS_ODOMETRY.name)
-        generator = running[nodes[-1]] = start(nodes[-1], parameters, domain)
+        generator = running[nodes[-1]] = starter(nodes[-1], parameters, domain)
         while os.waitid(os.P_PID, generator.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
             listener.poll()
             time.sleep(0.1)
