@@ -11,9 +11,10 @@ from .knots import LastKnots, turn_between
 from .piece import Piece
 from .stencils import MIDDLE, POINTS, stencil, weighted
 
-# Bandwidth of the loop of the position, rad/s, and twice its damping; that of the attitude. With
-# noise of 0.01 deg and 0.01 deg/s, a slower one of the attitude lets the path wander more.
-HOLD, DAMPING = 0.5, 1.4
+# Bandwidth of the loop of the position, rad/s, and twice its damping; that of the attitude. A
+# velocity that is off leaves the path off by DAMPING / HOLD times as much, noise of the positions
+# becomes a force of HOLD^2 times as much, and attitudes that are off turn the velocity.
+HOLD, DAMPING = 0.53, 1.0
 TURN_HOLD = 1.5
 # Looked at: the knots from two before the start of a piece to two behind its end.
 LOOKED = POINTS + 1
