@@ -6,6 +6,7 @@ it, and is looked at.
 """
 
 from collections import defaultdict, deque
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import lru_cache
 import math
@@ -184,43 +185,52 @@ class FedNodes:
         self.clock = ToldClock()
         self.began_s = self.clock.now_s
         self.bus = Bus(self.clock)
-        self.nodes, self.logs, self._patches = {}, {}, []
+        self.nodes, self.logs = {}, {}
 
     def __enter__(self):
+        with ExitStack() as stack:
+            self._start(stack)
+            # from here on __exit__ undoes it; where starting fails it is undone at once
+            self._ends = stack.pop_all()
+        return self
+
+    def __exit__(self, *exception):
+        self._ends.close()
+
+    def _start(self, stack):
         import rclpy
         from ins_sim.core.numerics.compilation import plain_only
         from ins_sim.ros.lock_step import pacing, release, steerer
         from ins_sim.ros.nodes import truth_adapter
         from ins_sim.ros.process import announced, diagnostics, said
         from ins_sim.ros.transport import backlog, patience, qos
+
+        def patch(owner, name, value):
+            stack.enter_context(mock.patch.object(owner, name, value))
+
         # as in a node process
-        self._plain = plain_only()
-        self._plain.__enter__()
+        stack.enter_context(plain_only())
         self._context = rclpy.Context()
         self._context.init()
+        stack.callback(self._context.try_shutdown)
         for module in (announced, diagnostics, said, backlog, patience, pacing, release, steerer):
-            self._patch(module, 'time', self.clock)
+            patch(module, 'time', self.clock)
         for module in (diagnostics, patience, truth_adapter):
-            self._patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
+            patch(module, 'wall_timer', lambda _, period_s, callback: ToldTimer(
                 self.clock, period_s, callback))
-        self._patch(qos, 'make_publisher', self.bus.make_publisher)
+        patch(qos, 'make_publisher', self.bus.make_publisher)
         class_of = qos.message_class
-        self._patch(qos, 'message_class', lambda topic: class_of(
+        patch(qos, 'message_class', lambda topic: class_of(
             replace(topic, type_name=STAND_IN) if topic.type_name == topics.TRANSFORMS else topic))
         for name, parameters in self._parameters.items():
-            self._make(name, parameters)
-        return self
+            self._make(stack, name, parameters)
 
-    def _patch(self, owner, name, value):
-        patch = mock.patch.object(owner, name, value)
-        patch.start()
-        self._patches.append(patch)
-
-    def _make(self, name, parameters):
+    def _make(self, stack, name, parameters):
         from rclpy.parameter import Parameter
         from ins_sim.ros import main
         node = main._load(name)(context=self._context, parameter_overrides=[
             Parameter(key, value=value) for key, value in parameters.items()])
+        stack.callback(node.destroy_node)
         self.nodes[name], self.logs[name] = node, Log()
         node.get_logger = lambda: self.logs[name]
         if hasattr(node, '_queue'):
@@ -236,14 +246,6 @@ class FedNodes:
             self.bus.join(broadcaster.queue, topics.TF.name, False)
         if getattr(node, '_acks', None) is not None:
             self.bus.join(node._acks, topics.ACK.name, False)
-
-    def __exit__(self, *exception):
-        for node in self.nodes.values():
-            node.destroy_node()
-        for patch in self._patches:
-            patch.stop()
-        self._context.try_shutdown()
-        self._plain.__exit__(*exception)
 
 
 def held_bytes(thing, seen=None):
