@@ -20,8 +20,8 @@ HEAD = """\
 # biases, scale factors and sigmas by axis.  Overlays beside this file hold the studies:
 #   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
 """
-FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bias_instability, the '
-         'B of IEEE Std 952, is that over 0.664.')
+FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bias_instability, '
+         'the B of IEEE Std 952, is that over 0.664.')
 
 
 def text(value):

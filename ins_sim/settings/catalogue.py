@@ -78,10 +78,8 @@ def from_ros(value, f):
 
 def for_all_axes(value, f):
     """Return a number as that of each axis where its field f takes one for all; else value."""
-    if f.metadata['equal_axes'] and isinstance(value, (int, float)) and not isinstance(value,
-                                                                                        bool):
-        return (value,) * f.metadata['size']
-    return value
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return (value,) * f.metadata['size'] if is_number and f.metadata['equal_axes'] else value
 
 
 def check_value(name, value, f):

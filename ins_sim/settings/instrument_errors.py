@@ -1,9 +1,10 @@
 """
 Settings of the instrument errors; every default is the perfect instrument.
 
-Lists are by FLU axis (x, y, z), and one number stands for three equal ones.  Random terms are densities or standard deviations of processes,
-never the scatter of a sample, so that nothing changes meaning with the rate.  Key by key the two
-triads are alike; ``core.sensors.imu.triad_model`` brings both to SI.
+Lists are by FLU axis (x, y, z), and one number stands for three equal ones.  Random terms are
+densities or standard deviations of processes, never the scatter of a sample, so that nothing
+changes meaning with the rate.  Key by key the two triads are alike;
+``core.sensors.imu.triad_model`` brings both to SI.
 
 White noise is given as a random walk, in the units of data sheets, or as a density, in those of
 Kalibr, Gazebo and PX4: N of IEEE Std 952 both times, N^2/dt being the variance of a sample.
@@ -81,7 +82,8 @@ class GyroErrors(TriadSettings):
     gauss_markov_sigma_deg_h: Axes = axes(GAUSS_MARKOV, 'deg/h')
     gauss_markov_time_s: Axes = axes(GAUSS_MARKOV_TIME, 's', 1e-3, math.inf, default=300.0)
     angle_random_walk_deg_sqrt_h: Axes = axes('angle random walk N', 'deg/sqrt(h)')
-    noise_density_rad_s_sqrt_hz: Axes = axes(DENSITY + 'angle_random_walk_deg_sqrt_h', 'rad/s/sqrt(Hz)')
+    noise_density_rad_s_sqrt_hz: Axes = axes(DENSITY + 'angle_random_walk_deg_sqrt_h',
+                                             'rad/s/sqrt(Hz)')
     rate_random_walk_deg_h_sqrt_h: Axes = axes('rate random walk K', 'deg/h/sqrt(h)')
     bias_instability_deg_h: Axes = axes(INSTABILITY, 'deg/h')
     scale_factor_ppm: Axes = axes(SCALE, 'ppm', -1e6)

@@ -41,7 +41,8 @@ def test_a_number_in_a_file_in_an_assignment_and_in_python_is_three(tmp_path):
             assert all(isinstance(value, float) for value in gyro.bias_deg_h)
             assert node.accelerometer.errors.scale_factor_ppm == (-2.5,) * 3
     assert GyroErrors(bias_deg_h=3.0) == GyroErrors(bias_deg_h=(3.0,) * 3)
-    assert build(GnssSettings, {'errors.position_noise_m': 2}).errors.position_noise_m == (2.0,) * 3
+    gnss = build(GnssSettings, {'errors.position_noise_m': 2})
+    assert gnss.errors.position_noise_m == (2.0,) * 3
     assert 'angle_random_walk_deg_sqrt_h:\n        - 0.09\n        - 0.09\n        - 0.09' in \
         parameter_files.dump(read)
 

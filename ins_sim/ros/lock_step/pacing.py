@@ -67,8 +67,8 @@ class LivePace(Pace):
     def check_change(self, settings):
         """Refuse a factor of 0 where the run has no lock-step."""
         if settings.pacing.waits and not self._waits:
-            raise ValueError('pacing.real_time_factor is 0 without pacing.lock_step; expected more '
-                             'than 0: lock-step begins with the run or not at all')
+            raise ValueError('pacing.real_time_factor is 0 without pacing.lock_step; expected '
+                             'more than 0: lock-step begins with the run or not at all')
 
     def effective_ns(self, name):
         """Return the motion time of the next sample, None before the first."""

@@ -28,7 +28,8 @@ class StageNode(Node):
     pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
     is a fault too, after which the node starts anew.  CHECKS_STAMPS: whether stamps outside the
     announced run are refused; TRUTH: what the node reads of the generator.  Where the SETTINGS
-    have SETTABLE ones, it is a part of LiveParameters: ``change(settings)``, ``effective_ns(name)``.
+    have SETTABLE ones, the node has ``change(settings)`` and ``effective_ns(name)``, as a part of
+    LiveParameters.
     """
 
     CHECKS_STAMPS = True

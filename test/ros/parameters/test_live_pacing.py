@@ -78,8 +78,9 @@ def test_a_factor_of_zero_needs_lock_step(ros_domain):
     """One sentence without it; with it the clock is off, and on again."""
     with Generator() as generator:
         generator.sent(10)
-        assert generator.set(0.0) == (f'{FACTOR} is 0 without pacing.lock_step; expected more than '
-                                      '0: lock-step begins with the run or not at all')
+        assert generator.set(0.0) == (
+            f'{FACTOR} is 0 without pacing.lock_step; expected more than 0: lock-step begins with '
+            'the run or not at all')
         assert value_of(generator.node, FACTOR) == 1.0
     with Generator(**{'pacing.lock_step': True, 'pacing.window': 20}) as generator:
         generator.node._lock._acked['strapdown'] = 0
@@ -127,4 +128,5 @@ def test_the_pace_of_a_clock(monkeypatch):
     pace.set_factor(0.0, 1)
     assert pace.allowed() == float('inf')
     pace.set_factor(1.0, 7)
-    assert pace.wait_s(7) == pytest.approx(0.0, abs=1e-15) and pace.wait_s(8) == pytest.approx(DT_S)
+    assert pace.wait_s(7) == pytest.approx(0.0, abs=1e-15)
+    assert pace.wait_s(8) == pytest.approx(DT_S)

@@ -32,7 +32,8 @@ class Flown(FedNodes):
 
     def __init__(self, **nodes):
         super().__init__(nodes)
-        self._source, self._k, self.heard = TruthSource(build(MotionGeneratorSettings, FLIGHT)), 0, {}
+        self._source = TruthSource(build(MotionGeneratorSettings, FLIGHT))
+        self._k, self.heard = 0, {}
 
     def __enter__(self):
         super().__enter__()
@@ -149,8 +150,8 @@ def test_outages_and_a_jump_of_the_receiver(ros_domain):
         assert ask(node, {'outages.end_s': [2.0]}) == ['']
         flown.fly(50)
         assert ask(node, {'jump.offset_m': [100.0, 0.0, 0.0]}) == [
-            'jump.offset_m cannot be set: jump.end_s is 0 s with jump.start_s 0 s; expected a later '
-            'end']
+            'jump.offset_m cannot be set: jump.end_s is 0 s with jump.start_s 0 s; expected a '
+            'later end']
         assert ask_at_once(node, {'jump.end_s': 1e6, 'jump.offset_m': [0.0, 0.0, 5e4]}) == ''
         flown.fly(50)
         fixes = flown.heard[topics.GNSS_FIX.name]

@@ -40,8 +40,8 @@ def test_parameters_of_a_running_simulation(ros_domain, tmp_path):
                           chain.text(process))
         since = len(heard)
         listener.poll_until(lambda: len(heard) > since + 20)
-        low, high = ([omega[0] for t_ns, omega in heard.items() if (t_ns >= float(t_s) * 1e9) == on]
-                     for on in (False, True))
+        low, high = ([omega[0] for t_ns, omega in heard.items()
+                      if (t_ns >= float(t_s) * 1e9) == on] for on in (False, True))
         assert len(low) > 4 and len(high) > 4 and min(high) - max(low) > 0.01
         values = listener.call(GetParameters, '/imu_sensor/get_parameters', GetParameters.Request(
             names=[BIAS, 'gyro.errors.scale_factor_ppm'])).values
