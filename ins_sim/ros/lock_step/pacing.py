@@ -57,12 +57,13 @@ class LivePace(Pace):
     """
     The pace of a generator, whose real_time_factor may be set while it runs.
 
-    pacing: settings; source: TruthSource; sent: function that returns how many samples were sent.
+    pacing: settings; source: TruthSource; sent: function that returns how many samples were sent;
+    tell: called when stamps may follow the wall clock no longer.
     """
 
-    def __init__(self, pacing, source, sent):
+    def __init__(self, pacing, source, sent, tell):
         super().__init__(pacing.real_time_factor, source.dt_ns * 1e-9)
-        self._waits, self._source, self._sent = pacing.waits, source, sent
+        self._waits, self._source, self._sent, self._tell = pacing.waits, source, sent, tell
 
     def check_change(self, settings):
         """Refuse a factor of 0 where the run has no lock-step."""
@@ -78,6 +79,9 @@ class LivePace(Pace):
     def change(self, settings):
         """Go at the real_time_factor of other settings."""
         self.set_factor(settings.pacing.real_time_factor, self._sent())
+        if not self._waits:
+            # with lock-step that was said at the start
+            self._tell()
 
 
 class LockStep:

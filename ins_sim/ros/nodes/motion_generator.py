@@ -45,15 +45,15 @@ class MotionGeneratorNode(Node):
 
     def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
-        self.hand_over = hand_over
-        self._stop = stop
+        self.hand_over, self._stop = hand_over, stop
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
         self._source = TruthSource(self.settings)
         # first, so that whoever has found the truth knows that there is an announcement
         self._announcements = qos.make_publisher(self, topics.RUN, depth)
         self._announcements.publish(self._source.announcement.pack())
-        self._lock, self._pace = None, LivePace(pacing, self._source, lambda: self._next)
+        self._lock = None
+        self._pace = LivePace(pacing, self._source, lambda: self._next, self._tell_time)
         if pacing.waits:
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(

@@ -5,6 +5,7 @@ from rclpy.parameter import Parameter
 
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.settings.catalogue import build, check_value, flatten, from_ros, values_of
+from ins_sim.settings.shown import shown
 from .net import described
 from .parameter_requests import refused
 
@@ -105,7 +106,7 @@ class LiveParameters:
 
     def _shown(self, name):
         value, unit = values_of(self._node.settings)[name], self._fields[name].metadata['unit']
-        text = str(list(value)) if isinstance(value, tuple) else str(value)
+        text = shown(list(value) if isinstance(value, tuple) else value)
         return f'{text} {unit}' if unit else text
 
 

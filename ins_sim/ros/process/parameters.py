@@ -51,7 +51,8 @@ def _descriptor(field, value, settable):
     if facts['choices']:
         descriptor.additional_constraints = 'one of: ' + ', '.join(facts['choices'])
     if facts['size']:
-        descriptor.additional_constraints = f"{facts['size']} entries"
+        one = ', or one number for all' if facts['equal_axes'] else ''
+        descriptor.additional_constraints = f"{facts['size']} entries{one}"
     if facts['low'] is not None:
         low, high = facts['low'], facts['high']
         if field.type is int:
