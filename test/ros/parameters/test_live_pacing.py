@@ -60,8 +60,8 @@ def test_time_goes_on_without_a_burst(factor, ticks, ros_domain):
         said = '\n'.join(generator.logs['motion_generator'].kept)
         assert f'{FACTOR} is now {float(factor)} from t = {1.0 + DT_S * (ticks > 1000):.9f} s on' \
             in said
-        assert said.count(f'with a real_time_factor of {factor:g} the stamps do not follow the wall '
-                          'clock: other nodes need use_sim_time: true and /clock') == 1
+        assert said.count(f'with a real_time_factor of {factor:g} the stamps do not follow the '
+                          'wall clock: other nodes need use_sim_time: true and /clock') == 1
         assert generator.set(1.0) == ''
         counts = generator.sent(1000)
         assert max(counts) == 1 and sum(counts) == pytest.approx(100, abs=1)
