@@ -2,6 +2,7 @@
 
 import math
 
+from hypothesis import given, HealthCheck, settings, strategies as st
 import pytest
 from support.hostile.fed_nodes import FedNodes
 from support.nodes.asked import ask, ask_at_once, value_of
@@ -260,6 +261,30 @@ def test_messages_that_no_tool_sends(running):
         "use_sim_time cannot be set: Wrong parameter type, expected 'Type.BOOL' got "
         "'Type.INTEGER'"]
     assert ask(node, {'': 3})[0].startswith("unknown parameter ''")
+
+
+NUMBERS = st.floats(width=64) | st.sampled_from([0.0, 0.5, 1.0, 1e7])
+VALUES = (st.booleans() | st.integers(-2 ** 63, 2 ** 63 - 1) | NUMBERS
+          | st.text(st.characters(codec='ascii'), max_size=80)
+          | st.lists(NUMBERS, max_size=4) | st.lists(st.integers(0, 9), min_size=3, max_size=3)
+          | st.lists(st.booleans(), max_size=3) | st.lists(st.text(max_size=3), max_size=3))
+
+
+@given(data=st.data())
+@settings(max_examples=150, deadline=None,
+          suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_whatever_is_asked_is_taken_or_refused_in_a_sentence(data, running):
+    """Any value of any parameter; what is taken is what is declared, and the nodes go on."""
+    name = data.draw(st.sampled_from(sorted(running.nodes)))
+    node = running.nodes[name]
+    names = st.sampled_from([*type(node.settings).SETTABLE, 'rate_hz', 'nothing'])
+    asked = data.draw(st.dictionaries(names, VALUES, max_size=3))
+    types = {key: node.get_parameter(key).type_ for key in asked if node.has_parameter(key)}
+    reason = ask_at_once(node, asked)
+    assert '\n' not in reason and len(reason) <= 430 and 'please report' not in running.said(name)
+    assert types == {key: node.get_parameter(key).type_ for key in types}
+    running.fly(1)
+    assert not node.monitor.faults and not running.bus.wrong
 
 
 def test_changes_are_counted_on_diagnostics(running):
