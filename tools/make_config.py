@@ -16,9 +16,12 @@ SHARED = ('datum', 'earth', 'frames', 'tf', 'time', 'motion', 'topics')
 AGREED = ('window', 'gnss')
 HEAD = """\
 # Every parameter of the nodes with its default.  Written by tools/make_config.py from
-# ins_sim/settings; a test keeps it in step.  Overlays beside this file hold the studies:
+# ins_sim/settings; a test keeps it in step.  One number stands for three equal ones in noise,
+# biases, scale factors and sigmas by axis.  Overlays beside this file hold the studies:
 #   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
 """
+FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bias_instability, '
+         'the B of IEEE Std 952, is that over 0.664.')
 
 
 def text(value):
@@ -30,8 +33,8 @@ def text(value):
     return repr(value) if isinstance(value, float) else f'"{value}"' if value == '' else str(value)
 
 
-def remark(f):
-    """Return the comment of a field: doc, unit, range, choices."""
+def remark(f, settable):
+    """Return the comment of a field: doc, unit, range, choices, whether it can be set later."""
     m = f.metadata
     parts = [m['doc']]
     if m['unit']:
@@ -40,21 +43,23 @@ def remark(f):
         parts.append(f'{m["low"]:g} to {m["high"]:g}')
     if m['choices']:
         parts.append('one of ' + ', '.join(m['choices']))
+    if settable:
+        parts.append('can be set while the node runs')
     return '; '.join(parts)
 
 
-def lines(cls, indent, skip=()):
-    """Yield the lines of a settings class."""
-    pad = ' ' * indent
+def lines(cls, indent, skip=(), settable=None, prefix=''):
+    """Yield the lines of a settings class; settable: names, by default those of the class."""
+    pad, settable = ' ' * indent, cls.SETTABLE if settable is None else settable
     for f in fields(cls):
         if f.name in skip:
             continue
         if is_dataclass(f.default_factory):
             doc = f.default_factory.__doc__.strip().splitlines()[0]
             yield f'{pad}{f.name}:  # {doc}'
-            yield from lines(f.default_factory, indent + 2)
+            yield from lines(f.default_factory, indent + 2, (), settable, f'{prefix}{f.name}.')
         else:
-            for line in textwrap.wrap(remark(f), 97 - indent):
+            for line in textwrap.wrap(remark(f, prefix + f.name in settable), 97 - indent):
                 yield f'{pad}# {line}'
             yield f'{pad}{f.name}: {text(f.default)}'
 
@@ -75,6 +80,7 @@ def preset_document(preset):
     """Return the overlay of an instrument preset."""
     out = [f'# Instrument errors of a {preset.datasheet}.', '#']
     out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
+    out += [f'# {line}' for line in textwrap.wrap(FLOOR, 95)]
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
             '/**/imu_sensor:', '  ros__parameters:']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]

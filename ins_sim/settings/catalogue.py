@@ -76,6 +76,12 @@ def from_ros(value, f):
     return value.tolist() if hasattr(value, 'tolist') else value
 
 
+def for_all_axes(value, f):
+    """Return a number as that of each axis where its field f takes one for all; else value."""
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return (value,) * f.metadata['size'] if is_number and f.metadata['equal_axes'] else value
+
+
 def check_value(name, value, f):
     """Return the value in the type of its field f; raise ValueError on anything unfit."""
     kind, unit = f.type, f.metadata['unit']
@@ -83,11 +89,13 @@ def check_value(name, value, f):
         value = _scalar(name, value, kind)
         values = (value,)
     else:
+        size = f.metadata['size']
+        value = for_all_axes(value, f)
         if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, '__iter__'):
-            raise ValueError(f'{name} is {shown(value)}; expected a list')
+            wanted = f'{size} numbers, or one for all' if f.metadata['equal_axes'] else 'a list'
+            raise ValueError(f'{name} is {shown(value)}; expected {wanted}')
         element = kind.__args__[0]
         value = values = tuple(_scalar(f'{name}[{k}]', v, element) for k, v in enumerate(value))
-        size = f.metadata['size']
         if size is not None and len(value) != size:
             raise ValueError(f'{name} has {len(value)} entries; expected {size}')
     low, high, choices = f.metadata['low'], f.metadata['high'], f.metadata['choices']

@@ -3,15 +3,17 @@
 from dataclasses import dataclass, field, FrozenInstanceError
 
 
-def setting(default, doc, unit='', low=None, high=None, choices=(), size=None):
+def setting(default, doc, unit='', low=None, high=None, choices=(), size=None,
+            equal_axes=False):
     """
     Return a dataclass field carrying its unit, closed bounds, choices, array size and doc.
 
     choices is kept, not copied, so that entries added to a table later are accepted as well.
+    equal_axes: whether one number may be given for all entries of the array.
     """
     return field(default=default, metadata={
         'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': choices,
-        'size': size})
+        'size': size, 'equal_axes': equal_axes})
 
 
 def column(what):
@@ -34,7 +36,12 @@ class SettingsGroup:
 
     What dataclass(frozen=True) would write for each class stands here once: to make thirty such
     classes takes 25 ms, on the way of every node's start, and this a quarter of it.
+
+    SETTABLE: names of what the node of these settings takes while it runs; SPANS: groups with
+    lists ``start_s`` and ``end_s`` among them.
     """
+
+    SETTABLE, SPANS = (), ()
 
     def __post_init__(self):
         """Check the values against each other."""

@@ -8,9 +8,9 @@ from .place import Datum, Earth, Frames, Tf
 Axes = tuple[float, ...]
 
 
-def enu(default, doc, unit, low, high):
+def enu(default, doc, unit, low, high, equal_axes=True):
     """Return a setting of three numbers, by East, North, Up."""
-    return setting(default, doc, unit, low, high, size=3)
+    return setting(default, doc, unit, low, high, size=3, equal_axes=equal_axes)
 
 
 def check_span(name, start, end):
@@ -55,7 +55,8 @@ class GnssJump(SettingsGroup):
 
     start_s: float = setting(0.0, 'the jump begins', 's', 0.0, 1e7)
     end_s: float = setting(0.0, 'and ends', 's', 0.0, 1e7)
-    offset_m: Axes = enu((0.0, 0.0, 0.0), 'offset of the position', 'm', -1e6, 1e6)
+    offset_m: Axes = enu((0.0, 0.0, 0.0), 'offset of the position', 'm', -1e6, 1e6,
+                         equal_axes=False)
 
     def check(self):
         """Refuse a jump that ends before it begins."""
@@ -77,6 +78,8 @@ class GnssReported(SettingsGroup):
 class GnssSettings(SettingsGroup):
     """Node gnss."""
 
+    SETTABLE = ('outages.start_s', 'outages.end_s', 'jump.start_s', 'jump.end_s', 'jump.offset_m')
+    SPANS = ('outages',)
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
     frames: Frames = group(Frames)

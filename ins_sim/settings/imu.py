@@ -69,6 +69,9 @@ OUTPUTS = ('rotation_vector', 'integrated')
 class ImuSensorSettings(SettingsGroup):
     """Node imu_sensor."""
 
+    SETTABLE = ('gyro.errors.bias_deg_h', 'accelerometer.errors.bias_ug', 'gyro.dtg.fault.channel',
+                'gyro.dtg.fault.bias_deg_h', 'gyro.dtg.fault.scale', 'gyro.dtg.fault.start_s',
+                'gyro.dtg.fault.end_s', 'sampling.drop_out_probability')
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
     frames: Frames = group(Frames)

@@ -1,13 +1,19 @@
 """
 Settings of the instrument errors; every default is the perfect instrument.
 
-Lists are by FLU axis (x, y, z).  Random terms are densities or standard deviations of processes,
-never the scatter of a sample, so that nothing changes meaning with the rate.  Key by key the two
-triads are alike; ``core.sensors.imu.triad_model`` brings both to SI.
+Lists are by FLU axis (x, y, z), and one number stands for three equal ones.  Random terms are
+densities or standard deviations of processes, never the scatter of a sample, so that nothing
+changes meaning with the rate.  Key by key the two triads are alike;
+``core.sensors.imu.triad_model`` brings both to SI.
+
+White noise is given as a random walk, in the units of data sheets, or as a density, in those of
+Kalibr, Gazebo and PX4: N of IEEE Std 952 both times, N^2/dt being the variance of a sample.
 """
 
+from dataclasses import fields
 import math
 
+from .catalogue import for_all_axes
 from .field import setting, settings_class, SettingsGroup
 
 Axes = tuple[float, ...]
@@ -16,7 +22,7 @@ MOST = 1e9
 
 def axes(doc, unit, low=0.0, high=MOST, default=0.0):
     """Return a setting of three numbers, by axis."""
-    return setting((default,) * 3, doc, unit, low, high, size=3)
+    return setting((default,) * 3, doc, unit, low, high, size=3, equal_axes=True)
 
 
 BIAS = 'bias, the same in every run'
@@ -25,7 +31,10 @@ GAUSS_MARKOV = 'in-run bias, stationary Gauss-Markov process, standard deviation
 GAUSS_MARKOV_TIME = ('its correlation time; infinite = random walk of that standard deviation '
                      'after one hour')
 INSTABILITY = ('bias instability B of IEEE Std 952, flicker noise: the Allan deviation lies flat '
-               'at 0.664 B')
+               'at 0.664 B, sqrt(2 ln 2/pi) B; that floor is the figure of data sheets, so give '
+               'it over 0.664')
+DENSITY = ('density N of the white noise, as Kalibr, Gazebo and PX4 give it: N^2 rate_hz is the '
+           'variance of a sample; in place of ')
 SCALE = 'scale factor error, the same in every run'
 SCALE_SIGMA = 'scale factor error drawn once a run, standard deviation'
 ASYMMETRY = 'scale factor error of positive inputs; that of negative ones is its opposite'
@@ -40,15 +49,41 @@ REPORTED = ('standard deviation reported in place of that of the noise; negative
             'noise')
 
 
+class TriadSettings(SettingsGroup):
+    """
+    What the errors of both triads share: one number for three axes, one unit for the white noise.
+
+    NAME: of the group in the settings of a node; WHITE: the names of the white noise.
+    """
+
+    NAME, WHITE = '', ('', '')
+
+    def check(self):
+        """Take a number for all axes; refuse white noise that is given twice."""
+        for f in fields(self):
+            self.__dict__[f.name] = for_all_axes(self.__dict__[f.name], f)
+        values = [getattr(self, name) for name in self.WHITE]
+        if all(isinstance(value, tuple) and any(value) for value in values):
+            one, other = (f'{self.NAME}.{name} is {list(value)}'
+                          for name, value in zip(self.WHITE, values))
+            raise ValueError(f'{one} and {other}; expected one of them, and 0 for the other: both '
+                             'are the white noise')
+
+
 @settings_class
-class GyroErrors(SettingsGroup):
+class GyroErrors(TriadSettings):
     """Errors of the gyro triad."""
+
+    NAME = 'gyro.errors'
+    WHITE = ('angle_random_walk_deg_sqrt_h', 'noise_density_rad_s_sqrt_hz')
 
     bias_deg_h: Axes = axes(BIAS, 'deg/h', -MOST)
     turn_on_bias_sigma_deg_h: Axes = axes(TURN_ON, 'deg/h')
     gauss_markov_sigma_deg_h: Axes = axes(GAUSS_MARKOV, 'deg/h')
     gauss_markov_time_s: Axes = axes(GAUSS_MARKOV_TIME, 's', 1e-3, math.inf, default=300.0)
     angle_random_walk_deg_sqrt_h: Axes = axes('angle random walk N', 'deg/sqrt(h)')
+    noise_density_rad_s_sqrt_hz: Axes = axes(DENSITY + 'angle_random_walk_deg_sqrt_h',
+                                             'rad/s/sqrt(Hz)')
     rate_random_walk_deg_h_sqrt_h: Axes = axes('rate random walk K', 'deg/h/sqrt(h)')
     bias_instability_deg_h: Axes = axes(INSTABILITY, 'deg/h')
     scale_factor_ppm: Axes = axes(SCALE, 'ppm', -1e6)
@@ -74,14 +109,19 @@ class GyroErrors(SettingsGroup):
 
 
 @settings_class
-class AccelerometerErrors(SettingsGroup):
+class AccelerometerErrors(TriadSettings):
     """Errors of the accelerometer triad."""
+
+    NAME = 'accelerometer.errors'
+    WHITE = ('velocity_random_walk_m_s_sqrt_h', 'noise_density_m_s2_sqrt_hz')
 
     bias_ug: Axes = axes(BIAS, 'ug', -MOST)
     turn_on_bias_sigma_ug: Axes = axes(TURN_ON, 'ug')
     gauss_markov_sigma_ug: Axes = axes(GAUSS_MARKOV, 'ug')
     gauss_markov_time_s: Axes = axes(GAUSS_MARKOV_TIME, 's', 1e-3, math.inf, default=300.0)
     velocity_random_walk_m_s_sqrt_h: Axes = axes('velocity random walk N', 'm/s/sqrt(h)')
+    noise_density_m_s2_sqrt_hz: Axes = axes(DENSITY + 'velocity_random_walk_m_s_sqrt_h',
+                                            'm/s^2/sqrt(Hz)')
     acceleration_random_walk_ug_sqrt_h: Axes = axes('acceleration random walk K', 'ug/sqrt(h)')
     bias_instability_ug: Axes = axes(INSTABILITY, 'ug')
     scale_factor_ppm: Axes = axes(SCALE, 'ppm', -1e6)

@@ -174,6 +174,8 @@ class MotionSettings(SettingsGroup):
 class MotionGeneratorSettings(SettingsGroup):
     """Node motion_generator."""
 
+    SETTABLE = ('pacing.real_time_factor',)
+
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
     frames: Frames = group(Frames)

@@ -4,9 +4,9 @@ Instrument error presets, each a class of instruments with the figures of its da
 A value marked with the name of an instrument in the comments is that of its published data sheet
 or brochure; every other one is engineering judgement, as data sheets leave it out (rate random
 walk, temperature, non-linearity, pulses).  Data sheets give the lowest Allan deviation as "in-run
-stability": B is that over 0.664, so the lowest point of a record, where N and K add to B, lies
-somewhat above.  Presets cannot be changed: ``preset`` returns a new dict of settings to be read
-below one's own.
+stability" or "bias instability": it is 0.664 B, and the setting bias_instability is B, so that
+figure over 0.664.  The lowest point of a record, where N and K add to B, lies somewhat above.
+Presets cannot be changed: ``preset`` returns a new dict of settings to be read below one's own.
 """
 
 from dataclasses import dataclass

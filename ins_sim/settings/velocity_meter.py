@@ -112,6 +112,7 @@ class DropOuts(SettingsGroup):
 class VelocityMeterSettings(SettingsGroup):
     """Node velocity_meter."""
 
+    SETTABLE, SPANS = ('drop_outs.start_s', 'drop_outs.end_s'), ('drop_outs',)
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
     frames: Frames = group(Frames)

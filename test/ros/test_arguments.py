@@ -15,6 +15,14 @@ def test_help(name, capsys):
         == (name == 'recorder')
 
 
+def test_help_says_what_can_be_set_later(capsys):
+    """Of the generator its pace, and nothing else."""
+    assert answer('motion_generator', ['motion_generator', '-h']) == 0
+    said = capsys.readouterr().out
+    assert said.count('can be set while it runs') == 1
+    assert '(implies lock_step) (default: 1.0; can be set while it runs)' in said
+
+
 @pytest.mark.parametrize('words, bad', [
     (['strapdown', '--bogus'], '--bogus'), (['strapdown', '--ros-args', '--', 'more'], 'more'),
     (['strapdown', 'x\x1b[2J'], r'x\x1b[2J')])

@@ -83,7 +83,7 @@ def test_two_publishers_are_named():
                            _parameter_overrides={},
                            count_publishers=lambda name: 2,
                            get_publishers_info_by_topic=lambda name: infos)
-    queue = SimpleNamespace(gaps=Gaps())
+    queue = SimpleNamespace(gaps=Gaps(), subscription=object())
     wrong, values = SolePublishers(node, {'truth/imu': queue}).describe()
     assert wrong.startswith('/run/truth/imu has 2 publishers, /run/motion_generator, '
                             '/run/second\\x1b; expected one: two of them (two generators')

@@ -33,7 +33,7 @@ def three(value):
     (GyroErrors, 'gauss_markov_time_s', three(0.0), 'is 0 s; expected 0.001 to'),
     (GyroErrors, 'gauss_markov_time_s', three(-5.0), 'is -5 s; expected 0.001 to'),
     (GyroErrors, 'gauss_markov_time_s', three(math.nan), 'expected a finite number'),
-    (GyroErrors, 'gauss_markov_time_s', 100.0, 'expected 3 correlation times'),
+    (GyroErrors, 'gauss_markov_time_s', (9.0, 9.0), 'expected 3 correlation times'),
     (GyroErrors, 'turn_on_bias_sigma_deg_h', three(-1.0), 'expected 0 to'),
     (GyroErrors, 'bias_deg_h', three(math.inf), 'expected a finite number'),
     (GyroErrors, 'bias_deg_h', (1.0, 2.0), 'has 2 entries; expected 3'),

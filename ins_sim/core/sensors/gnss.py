@@ -39,9 +39,7 @@ class Gnss(Sensor):
                              'the truth')
         self.latency_ns = round(1e6 * settings.gnss.latency_ms)
         self._spin = ellipsoid.rotation_rate(settings.earth.rotation)
-        self._outages = _spans(settings.outages.start_s, settings.outages.end_s)
-        jump = settings.jump
-        self._jumps = _spans((jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
+        self.change(settings)
         errors, reported = settings.errors, settings.reported
         self._position_sigma = tuple(
             max(LEAST_SIGMA, math.sqrt(noise * noise + drift * drift)) if given < 0.0 else given
@@ -58,6 +56,20 @@ class Gnss(Sensor):
         """Forget the stream; the next sample is the first."""
         self._last_ns = None
         self._alone = False
+
+    def change(self, settings):
+        """Take the outages and the jump of other GnssSettings from the next fix on."""
+        self._outages = _spans(settings.outages.start_s, settings.outages.end_s)
+        jump = settings.jump
+        self._jumps = _spans((jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
+        self._jump_m = jump.offset_m
+
+    @property
+    def next_ns(self):
+        """Motion time of the next fix, None before the first sample."""
+        if self._last_ns is None:
+            return None
+        return (self._last_ns // self.period_ns + 1) * self.period_ns
 
     def force_outage(self, forced):
         """Let no fix be one from now on, or let the schedule decide again."""
@@ -131,7 +143,7 @@ class Gnss(Sensor):
             self._errors = _Errors(self._settings, self._run, self.period_ns)
         off, slip = self._errors.at(t_ns // self.period_ns)
         if _inside(t_ns, self._jumps):
-            off = _sum(off, self._settings.jump.offset_m)
+            off = _sum(off, self._jump_m)
         lever = self._settings.lever_arm_m
         off = _sum(off, quaternion.rotate(q_nb, lever))
         v_n = _sum(_sum(v_n, quaternion.rotate(q_nb, quaternion.cross(rate, lever))), slip)

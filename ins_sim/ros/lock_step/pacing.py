@@ -22,8 +22,21 @@ class Pace:
     """
 
     def __init__(self, factor, dt_s):
-        self._step_s = dt_s / factor if factor else 0.0
+        self._dt_s, self._step_s = dt_s, dt_s / factor if factor else 0.0
         self._start = 0.0
+
+    def set_factor(self, factor, k):
+        """
+        Go at another factor from now on, the next sample being k.
+
+        What is left of the wait for it is stretched, so that time goes on without a jump; what
+        was due and has not been sent is due from now on at the new pace.
+        """
+        now, left = time.monotonic(), 0.0
+        if self._step_s:
+            left = min(1.0, max(0.0, (self._start + k * self._step_s - now) / self._step_s))
+        self._step_s = self._dt_s / factor if factor else 0.0
+        self._start = now + (left - k) * self._step_s
 
     def anchor(self, k):
         """Let sample k be due now."""
@@ -38,6 +51,37 @@ class Pace:
     def wait_s(self, k):
         """Return how long it is until sample k is due."""
         return self._start + k * self._step_s - time.monotonic()
+
+
+class LivePace(Pace):
+    """
+    The pace of a generator, whose real_time_factor may be set while it runs.
+
+    pacing: settings; source: TruthSource; sent: function that returns how many samples were sent;
+    tell: called when stamps may follow the wall clock no longer.
+    """
+
+    def __init__(self, pacing, source, sent, tell):
+        super().__init__(pacing.real_time_factor, source.dt_ns * 1e-9)
+        self._waits, self._source, self._sent, self._tell = pacing.waits, source, sent, tell
+
+    def check_change(self, settings):
+        """Refuse a factor of 0 where the run has no lock-step."""
+        if settings.pacing.waits and not self._waits:
+            raise ValueError('pacing.real_time_factor is 0 without pacing.lock_step; expected '
+                             'more than 0: lock-step begins with the run or not at all')
+
+    def effective_ns(self, name):
+        """Return the motion time of the next sample, None before the first."""
+        sent, source = self._sent(), self._source
+        return source.first_ns + sent * source.dt_ns if sent else None
+
+    def change(self, settings):
+        """Go at the real_time_factor of other settings."""
+        self.set_factor(settings.pacing.real_time_factor, self._sent())
+        if not self._waits:
+            # with lock-step that was said at the start
+            self._tell()
 
 
 class LockStep:

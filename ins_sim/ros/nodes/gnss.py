@@ -64,6 +64,14 @@ class GnssNode(StageNode):
             self.monitor.sent += 1
         self.seen(t_ns)
 
+    def change(self, settings):
+        """Take outages and a jump from the next fix on."""
+        self._receiver.change(settings)
+
+    def effective_ns(self, name):
+        """Return the motion time of the next fix."""
+        return self._receiver.next_ns
+
     def _describe(self):
         """Return nothing that is wrong, and the values for /diagnostics."""
         return '', (('fixes', self._fixes), ('outages', self._outages),

@@ -6,7 +6,7 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.sensors.imu.stream import make_imu
-from ins_sim.core.sensors.imu.with_errors import reported_variances
+from ins_sim.core.sensors.imu.with_errors import changed, reported_variances
 from ins_sim.core.streams.grid import SampleGrid
 from ins_sim.messages import topics
 from ins_sim.messages.placements import imu_mounting
@@ -47,7 +47,7 @@ class ImuSensorNode(StageNode):
         settings = self.settings
         self._dt_ns = period_ns(settings.rate_hz)
         self._grid, self._reading_ns = SampleGrid(self._dt_ns), None
-        self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
+        self._take_sampling(settings)
         self._publisher = qos.make_publisher(self, topics.IMU_RAW, self.depth)
         topic = topics.imu_raw(*reported_variances(settings)).named(self.names)
         self._reader, self._writer = PlausibleReader(topics.TRUTH_IMU), topic.writer()
@@ -75,8 +75,7 @@ class ImuSensorNode(StageNode):
         self._parity_publisher = qos.make_publisher(self, topics.IMU_PARITY, self.depth)
         self._parity_writer = topics.IMU_PARITY.named(self.names).writer()
         self.monitor.add(self._describe_parity)
-        if self.stage.pair.has_fault:
-            self.create_service(SetBool, '~/fault', self._on_fault)
+        self.create_service(SetBool, '~/fault', self._on_fault)
 
     def on_message(self, data):
         """Give one truth message to the IMU and publish what it completes."""
@@ -118,7 +117,29 @@ class ImuSensorNode(StageNode):
                      f'{most:.4g} deg/h: a channel has a fault')
         return wrong, (('parity deg/h', f'{mean:.6g}'), ('parity threshold deg/h', f'{most:.6g}'))
 
+    def change(self, settings):
+        """Take biases, the fault of a tuned gyro and drop-outs from the next reading on."""
+        self.stage = changed(self.stage, settings)
+        self._take_sampling(settings)
+        if self._parity is not None:
+            self._parity.expect(settings, self.stage.pair)
+
+    def _take_sampling(self, settings):
+        self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
+
+    def effective_ns(self, name):
+        """Return the motion time of the next reading; of tuned gyros, that is not made yet."""
+        if self._reading_ns is None:
+            return None
+        if self.stage.pair is not None and name.startswith('gyro.'):
+            return self.stage.next_made_ns
+        return self._reading_ns + self._dt_ns
+
     def _on_fault(self, request, response):
+        if not self.stage.pair.has_fault:
+            response.message = ('gyro.dtg.fault.channel is none; expected the channel that is to '
+                                'have the fault')
+            return response
         self.stage.pair.force_fault(request.data)
         response.success = True
         response.message = (f'{self.settings.gyro.dtg.fault.channel} '

@@ -11,11 +11,12 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.settings.motion import MotionGeneratorSettings
-from ..lock_step.pacing import LockStep, Pace
+from ..lock_step.pacing import LivePace, LockStep
 from ..lock_step.standard_services import offer_standard_services
 from ..lock_step.steerer import Steerer
 from ..lock_step.truth_source import STAMP_END_S, TruthSource
 from ..process.diagnostics import Monitor
+from ..process.live_parameters import LiveParameters
 from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
@@ -44,16 +45,15 @@ class MotionGeneratorNode(Node):
 
     def __init__(self, stop=None, hand_over=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
-        self.hand_over = hand_over
-        self._stop = stop
+        self.hand_over, self._stop = hand_over, stop
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
         self._source = TruthSource(self.settings)
         # first, so that whoever has found the truth knows that there is an announcement
         self._announcements = qos.make_publisher(self, topics.RUN, depth)
         self._announcements.publish(self._source.announcement.pack())
-        self._pace = Pace(pacing.real_time_factor, self._source.dt_ns * 1e-9)
         self._lock = None
+        self._pace = LivePace(pacing, self._source, lambda: self._next, self._tell_time)
         if pacing.waits:
             self._lock = LockStep(pacing.required, pacing.window, pacing.timeout_s)
             self._acks, self._ack_reader = HandQueue(self, topics.ACK, qos.ACK_DEPTH), Reader(
@@ -81,6 +81,7 @@ class MotionGeneratorNode(Node):
         self.create_service(Trigger, '~/reset', self._on_reset)
         offer_standard_services(self)
         self._paused, self._single, self._next = False, 0, 0
+        LiveParameters(self, self._pace)
 
     def _make_steerer(self):
         name, depth = self.settings.guidance.topic, self.settings.topics.depth

@@ -12,6 +12,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader, SECOND, stamp_of
 from ..lock_step.pacing import LockStep, Pace
 from ..process.diagnostics import Monitor
+from ..process.parameter_requests import answer_requests
 from ..process.runtime import EXIT_CONSUMER, EXIT_FAULT
 from ..recording.playing import ABSOLUTE, PlaybackStart, Playing
 from ..recording.run_clock import JUMP_NS
@@ -38,6 +39,7 @@ class PlayerNode(Node):
 
     def __init__(self, stop=None, path=None, options=None, **kwargs):
         super().__init__(self.NAME, **kwargs)
+        answer_requests(self)
         self._options = options
         self._playing = playing = Playing(path, options)
         log = self.get_logger()

@@ -9,6 +9,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
 from ..process.announced import AnnouncedRun
 from ..process.diagnostics import Monitor
+from ..process.live_parameters import LiveParameters
 from ..process.net import caught
 from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
@@ -26,7 +27,9 @@ class StageNode(Node):
     A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
     pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
     is a fault too, after which the node starts anew.  CHECKS_STAMPS: whether stamps outside the
-    announced run are refused; TRUTH: what the node reads of the generator.
+    announced run are refused; TRUTH: what the node reads of the generator.  Where the SETTINGS
+    have SETTABLE ones, the node has ``change(settings)`` and ``effective_ns(name)``, as a part of
+    LiveParameters.
     """
 
     CHECKS_STAMPS = True
@@ -59,6 +62,8 @@ class StageNode(Node):
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
         self.monitor.add(SolePublishers(self, {topics.RUN.name: None, **queues}).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
+        if self.SETTINGS.SETTABLE:
+            LiveParameters(self)
 
     @property
     def knows_run(self):
@@ -91,6 +96,9 @@ class StageNode(Node):
     def start_anew(self):
         """Forget all that has come."""
         self.stage.reset()
+
+    def check_change(self, settings):
+        """Raise ValueError on new settings that cannot be taken amid a run."""
 
     def make_broadcaster(self):
         """Return the Broadcaster of what the node places."""

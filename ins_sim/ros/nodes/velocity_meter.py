@@ -120,6 +120,14 @@ class VelocityMeterNode(StageNode):
                 self._reason = fix.status
             self.monitor.sent += 1
 
+    def change(self, settings):
+        """Take drop-outs from the next window to end on."""
+        self._meter.change(settings)
+
+    def effective_ns(self, name):
+        """Return the motion time at which the next window ends."""
+        return self._meter.next_end_ns
+
     def _describe(self):
         """Return nothing that is wrong, and the values for /diagnostics."""
         return '', (('windows', self._windows), ('invalid fits', self._invalid),

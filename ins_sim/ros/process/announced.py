@@ -8,6 +8,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.run_announcement import read_announcement, UNANNOUNCED
 from ..transport import qos
 from ..transport.patience import MISSING_S
+from ..transport.qos_overrides import subscribe
 
 # An announcement whose publisher is known comes; a busy machine may take its time.
 PATIENCE_S = 30.0
@@ -47,9 +48,8 @@ class AnnouncedRun:
 
     def subscribe(self):
         """Hear the announcements by DDS."""
-        self._node.create_subscription(qos.message_class(topics.RUN), topics.RUN.name,
-                                       self._node.guarded(self.take), qos.latched_profile(),
-                                       raw=True)
+        subscribe(self._node, qos.message_class(topics.RUN), topics.RUN.name,
+                  self._node.guarded(self.take), qos.latched_profile(), raw=True)
 
     def accept(self, patience):
         """Return the function that takes an announcement in this process."""

@@ -45,8 +45,10 @@ def _help_lines(name):
     if name in ALL_NODES:
         yield ''
         yield 'parameters:'
-        for parameter, field in flatten(ALL_NODES[name]).items():
+        cls = ALL_NODES[name]
+        for parameter, field in flatten(cls).items():
             unit, default = field.metadata['unit'], field.default
             shown = list(default) if isinstance(default, tuple) else default
+            later = '; can be set while it runs' if parameter in cls.SETTABLE else ''
             yield (f'  {parameter}: {field.metadata["doc"]}{f" [{unit}]" if unit else ""} '
-                   f'(default: {shown!r})')
+                   f'(default: {shown!r}{later})')

@@ -1,14 +1,18 @@
 """The catalogue of settings as declared ROS parameters."""
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.parameter import Parameter
 
 from ins_sim.settings.catalogue import build, flatten, from_ros, is_of_ros, values_of
 from ins_sim.settings.suggest import unknown_key
+from .parameter_requests import answer_requests
 
 
 def declare_settings(node, cls):
     """
-    Declare the parameters of a settings class, read-only, and return the settings.
+    Declare the parameters of a settings class, and return the settings.
+
+    They are read-only but for its SETTABLE, see ``live_parameters``.
 
     Raises ValueError, one sentence, on an unknown key, a wrong type or a bad value.  All that
     was given is checked by the catalogue before it is declared, so that a whole number serves as
@@ -25,23 +29,30 @@ def declare_settings(node, cls):
                 raise ValueError(unknown_key(name, ALL_NAMES))
     settings = build(cls, {name: from_ros(value, fields[name]) for name, value in given.items()
                            if name in fields})
+    values = values_of(settings)
     node.declare_parameters('', [(name, list(value) if isinstance(value, tuple) else value,
-                                  _descriptor(fields[name], value))
-                                 for name, value in values_of(settings).items()],
+                                  _descriptor(fields[name], value, name in cls.SETTABLE))
+                                 for name, value in values.items()],
                             ignore_override=True)
+    empty = [name for name in cls.SETTABLE if values[name] == ()]
+    if empty:
+        node.set_parameters([Parameter(name, Parameter.Type.DOUBLE_ARRAY, []) for name in empty])
+    answer_requests(node)
     return settings
 
 
-def _descriptor(field, value):
+def _descriptor(field, value, settable):
     facts = field.metadata
     text = f"{facts['doc']} [{facts['unit']}]" if facts['unit'] else facts['doc']
-    # rclpy takes an empty list for bytes, which only a dynamically typed parameter survives
-    descriptor = ParameterDescriptor(description=text, read_only=True,
-                                     dynamic_typing=value == ())
+    # rclpy takes an empty list for bytes, which only a dynamically typed parameter survives; and
+    # what is set is to be refused in our words, which name it
+    descriptor = ParameterDescriptor(description=text, read_only=not settable,
+                                     dynamic_typing=settable or value == ())
     if facts['choices']:
         descriptor.additional_constraints = 'one of: ' + ', '.join(facts['choices'])
     if facts['size']:
-        descriptor.additional_constraints = f"{facts['size']} entries"
+        one = ', or one number for all' if facts['equal_axes'] else ''
+        descriptor.additional_constraints = f"{facts['size']} entries{one}"
     if facts['low'] is not None:
         low, high = facts['low'], facts['high']
         if field.type is int:

@@ -41,7 +41,9 @@ class SolePublishers:
 
     def _suit(self, name, queue):
         """Read a topic best effort if a publisher offers no more, unless a parameter forbids."""
-        if name in self._suited or 'reliability' in given(self._node, name, 'subscription'):
+        if queue.subscription is None or name in self._suited:
+            return
+        if 'reliability' in given(self._node, name, 'subscription'):
             return
         infos = self._node.get_publishers_info_by_topic(name)
         weak = [info for info in infos

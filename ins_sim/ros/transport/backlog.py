@@ -46,7 +46,7 @@ class HandQueue:
     def __init__(self, node, topic, depth, profile=None):
         self.topic, self.gaps, self.dropped = topic.name, Gaps(), 0
         self._node, self._depth, self._profile = node, depth, profile or qos.data_profile(depth)
-        self._group = NeverReady()
+        self._group, self.subscription = NeverReady(), None
         self._class = qos.message_class(topic)
         hand_over = qos.hand_over_of(node)
         if hand_over is not None and profile is None and hand_over.serves(topic):
@@ -64,7 +64,13 @@ class HandQueue:
         self._take = self.subscription.handle.take_message
 
     def read_best_effort(self):
-        """Subscribe anew, so that a publisher that is no more than best effort is heard."""
+        """
+        Subscribe anew, so that a publisher that is no more than best effort is heard.
+
+        Nothing is to be done where the messages come in memory, without a subscription.
+        """
+        if self.subscription is None:
+            return
         self._node.destroy_subscription(self.subscription)
         self._profile = qos.best_effort_profile(self._depth)
         self.subscribe()
@@ -113,7 +119,7 @@ class DrivingQueue:
         self.gaps, self.dropped, self._may_drop = Gaps(), 0, may_drop
         self._on_data, self._on_drained, self._linger_s = on_data, on_drained, linger_s
         self._node, self._depth = node, depth
-        self.topic, self._profile = topic.name, qos.data_profile(depth)
+        self.topic, self._profile, self.subscription = topic.name, qos.data_profile(depth), None
         self._class = qos.message_class(topic)
         hand_over = qos.hand_over_of(node)
         if hand_over is None:
@@ -132,6 +138,8 @@ class DrivingQueue:
 
     def read_best_effort(self):
         """Subscribe anew, as a HandQueue does."""
+        if self.subscription is None:
+            return
         self._node.destroy_subscription(self.subscription)
         self._profile = qos.best_effort_profile(self._depth)
         self.subscribe()

@@ -101,6 +101,48 @@ class Told:
 
 
 @pytest.mark.live
+def test_the_announcement_is_read_as_the_parameters_say(make_node, talker):
+    """The subscription of sim/run takes overrides as every other one does."""
+    key = 'qos_overrides./sim/run.subscription.durability'
+    node, said = make_node('strapdown', **{key: 'volatile'}), []
+    info, = wait_for(lambda: talker.node.get_subscriptions_info_by_topic('/sim/run'))
+    assert info.qos_profile.durability.name == 'VOLATILE'
+    assert node.get_parameter(key).value == 'volatile'
+    node.get_logger = lambda: Told(said)
+    node.monitor.publish()
+    assert not any('qos_overrides' in text for text in said)
+
+
+@pytest.mark.live
+def test_what_is_handed_over_in_memory_is_not_subscribed_to(make_node, talker):
+    """A best-effort publisher, our own or another one's, changes nothing there and raises none."""
+    simulation = make_node('simulation', **{
+        f'qos_overrides./{name}.publisher.reliability': 'best_effort'
+        for name in ('truth/imu', 'truth/odometry', 'imu/data_raw')})
+    talker.publisher(import_odometry(), 'truth/odometry', 'best_effort')
+    wait_for(lambda: talker.node.count_publishers('/truth/odometry') == 2)
+    for member in simulation.members[1:]:
+        said = []
+        member.get_logger = lambda said=said: Told(said)
+        for name in ('/truth/imu', '/truth/odometry', '/imu/data_raw'):
+            wait_for(lambda: member.get_publishers_info_by_topic(name))
+        member.monitor.publish()
+        assert not any('best effort' in text or 'Error' in text for text in said), said
+        for queue in (member._queue, *member.hand_queues().values()):
+            queue.read_best_effort()
+            assert queue.subscription is None
+        heard = [s.topic_name for s in member.subscriptions]
+        assert not any('truth' in name or 'imu' in name for name in heard), heard
+    assert simulation.step() is not None
+
+
+def import_odometry():
+    """Return the class, which is imported only where ROS is."""
+    from nav_msgs.msg import Odometry
+    return Odometry
+
+
+@pytest.mark.live
 @pytest.mark.parametrize('key, value, sentence', [
     ('ins/odometry.publisher.depht', 5, "no policy 'depht' can be set; expected one of history, "
      r'depth, reliability, durability \(nearest: depth\)'),

@@ -86,6 +86,11 @@ class StreamImu(Sensor):
         self._next_ns = None
         self._q_start = None
 
+    @property
+    def next_made_ns(self):
+        """Motion time of the next reading that is not made yet; None before the first."""
+        return self._next_ns
+
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
         Take one truth sample (motion time) and return the readings it completes.
@@ -198,6 +203,11 @@ class PacedImu(Sensor):
         """Forget everything; the next stamp is the first instant."""
         self._imu = None
         self._ready = []
+
+    @property
+    def next_made_ns(self):
+        """Motion time of the next reading that is not made yet, a block ahead; None at first."""
+        return None if self._imu is None else self._imu.next_ns
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """Return the readings up to the stamp t_ns, as StreamImu.push does."""

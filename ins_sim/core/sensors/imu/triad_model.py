@@ -65,12 +65,15 @@ _COMMON = {
     'bandwidth_order': ('order', None),
     'temperature_scale_ppm_c': ('temperature_scale', 1e-6),
 }
-# Settings key to (coefficient, its SI value of one unit).
+# Settings key to (coefficient, its SI value of one unit).  The white noise has two keys, of which
+# settings give one: its density is N in SI, and 1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz), as one
+# m/s/sqrt(h) is 1/60 m/s^2/sqrt(Hz).
 KEYS = {
     GyroErrors: _COMMON | {
         'bias_deg_h': ('bias', DEG_H),
         'turn_on_bias_sigma_deg_h': ('turn_on_sigma', DEG_H),
         'gauss_markov_sigma_deg_h': ('gauss_markov_sigma', DEG_H),
+        'noise_density_rad_s_sqrt_hz': ('white', 1.0),
         'angle_random_walk_deg_sqrt_h': ('white', DEG / SQRT_H),
         'rate_random_walk_deg_h_sqrt_h': ('walk', DEG_H / SQRT_H),
         'bias_instability_deg_h': ('flicker', DEG_H),
@@ -86,6 +89,7 @@ KEYS = {
         'bias_ug': ('bias', UG),
         'turn_on_bias_sigma_ug': ('turn_on_sigma', UG),
         'gauss_markov_sigma_ug': ('gauss_markov_sigma', UG),
+        'noise_density_m_s2_sqrt_hz': ('white', 1.0),
         'velocity_random_walk_m_s_sqrt_h': ('white', 1.0 / SQRT_H),
         'acceleration_random_walk_ug_sqrt_h': ('walk', UG / SQRT_H),
         'bias_instability_ug': ('flicker', UG),
@@ -115,7 +119,8 @@ def triad_model(settings, dt_s, name=''):
             _check_times(prefix + key, value, known[key])
         else:
             value = check_value(prefix + key, value, known[key])
-        values[coefficient] = value if unit is None else tuple(unit * v for v in value)
+        if coefficient not in values or any(value):
+            values[coefficient] = value if unit is None else tuple(unit * v for v in value)
     model = TriadModel(**values)
     _check_range(settings, model, dt_s, prefix)
     return model
@@ -130,6 +135,7 @@ def _check_times(name, value, f):
 
 def _check_range(settings, model, dt_s, prefix):
     names = {coefficient: key for key, (coefficient, _) in KEYS[type(settings)].items()}
+    names['white'] = next((name for name in settings.WHITE if any(getattr(settings, name))), '')
     units = dict(KEYS[type(settings)].values())
     key = prefix + names['saturation']
     for axis, most, white, quantum in zip('xyz', model.saturation, model.white, model.quantum):

@@ -61,6 +61,10 @@ class InstrumentErrors:
             TriadErrors(errors, settings.seed, run, name, dt, settings.temperature)
             for errors, name in triads)
 
+    def take_over(self, before):
+        """Go on where other InstrumentErrors are: from their lags and remainders of pulses."""
+        self.gyro.state, self.accelerometer.state = before.gyro.state, before.accelerometer.state
+
     def step(self, t_ns, omega, f):
         """Return omega, f of the instrument for those of the ideal IMU at motion time t_ns."""
         index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
@@ -78,23 +82,48 @@ class InstrumentErrors:
         return ImuSamples(imu.t_ns, omega, f, imu.parity)
 
 
+def changed(imu, settings):
+    """
+    Return the IMU with the biases and the fault of other ImuSensorSettings, from now on.
+
+    imu: of ``stream.make_imu``; its readings go on where they are, with what it carries, and are
+    those of an IMU that had these settings from the start as far as nothing is carried.
+    """
+    before = None
+    if isinstance(imu, ImuWithErrors):
+        imu, before = imu.ideal, imu.errors
+    if imu.pair is not None:
+        imu.pair.change(settings)
+    errors = with_errors(settings)
+    if errors is None:
+        return imu
+    if before is not None:
+        errors.take_over(before)
+    return ImuWithErrors(imu, errors)
+
+
 class ImuWithErrors(Sensor):
-    """An IMU with push and reset whose readings pass through InstrumentErrors."""
+    """An IMU, ``ideal``, with push and reset whose readings pass through InstrumentErrors."""
 
     def __init__(self, imu, errors):
-        self._imu, self._errors = imu, errors
+        self.ideal, self.errors = imu, errors
         self.reset, self.pair, self.samples = imu.reset, imu.pair, imu.samples
+
+    @property
+    def next_made_ns(self):
+        """Motion time of the next reading that is not made yet, of the ideal IMU."""
+        return self.ideal.next_made_ns
 
     def push(self, *sample):
         """Return the readings that a truth sample completes, as the ideal IMU does."""
-        return [(t_ns, *self._errors.step(t_ns, omega, f), parity)
-                for t_ns, omega, f, parity in self._imu.push(*sample)]
+        return [(t_ns, *self.errors.step(t_ns, omega, f), parity)
+                for t_ns, omega, f, parity in self.ideal.push(*sample)]
 
     def advance(self, truth):
         """Return the ImuSamples of a Truth record or of a part of one, those of single pushes."""
         try:
-            ideal = self._imu.advance(truth)
+            ideal = self.ideal.advance(truth)
         except StreamFault as fault:
-            fault.readings = self._errors.advance(fault.readings)
+            fault.readings = self.errors.advance(fault.readings)
             raise
-        return self._errors.advance(ideal)
+        return self.errors.advance(ideal)

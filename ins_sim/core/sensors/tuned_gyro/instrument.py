@@ -111,6 +111,11 @@ class PairInstrument:
         if replace(errors, speed_ppm=(0.0, 0.0), hunting_hz=perfect.hunting_hz) != perfect:
             from .pair_errors import RotorErrors
             self._disturbances = RotorErrors(errors, self.pair, settings.seed, self.dt_s)
+        self._read_errors(settings)
+        self._schedule_fault(dtg.fault)
+
+    def _read_errors(self, settings):
+        """Take the errors of the read-out."""
         self._read_out = None
         # by body axis first, as a sentence about an axis names that of the settings
         self._reported = triad_model(settings.gyro.errors, self.dt_s,
@@ -122,14 +127,29 @@ class PairInstrument:
             self._read_out = tuple(
                 TriadErrors(case_errors(settings.gyro.errors, axes), settings.seed, 0, name,
                             self.dt_s, settings.temperature) for axes, name in zip(CASES, NAMES))
-        self._schedule_fault(dtg.fault)
+
+    def change(self, settings):
+        """
+        Take the biases and the fault of other ImuSensorSettings from the next step on.
+
+        What is carried stays. A fault that was forced stays so, unless its times change too.
+        """
+        before = self._read_out
+        self._read_errors(settings)
+        for new, old in zip(self._read_out or (), before or ()):
+            new.state = old.state
+        on, forced, times = self.pair.faults is not None, not self._scheduled, self._fault_ns
+        self._schedule_fault(settings.gyro.dtg.fault)
+        if forced and self._fault_ns == times:
+            self._scheduled = False
+        self._set_fault(on and not self._scheduled and self._fault is not None)
 
     def _schedule_fault(self, fault):
         self._fault = None
+        self._fault_ns = (round(fault.start_s * 1e9), round(fault.end_s * 1e9))
+        self._scheduled = fault.start_s >= 0.0
         if fault.channel != 'none':
             self._fault = (fault.channel, fault.bias_deg_h * DEG_H, fault.scale)
-            self._fault_ns = (round(fault.start_s * 1e9), round(fault.end_s * 1e9))
-            self._scheduled = fault.start_s >= 0.0
 
     @property
     def has_fault(self):

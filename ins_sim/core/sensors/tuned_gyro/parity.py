@@ -73,6 +73,11 @@ class ParityTest:
     """
 
     def __init__(self, settings, instrument):
+        self.expect(settings, instrument)
+        self.reset()
+
+    def expect(self, settings, instrument):
+        """Find what the parity may be with such settings."""
         gyro, errors = settings.gyro, settings.gyro.dtg.errors
         model = triad_model(gyro.errors, instrument.dt_s, 'gyro.errors')
         self._fixed = gyro.dtg.parity.threshold_deg_h * DEG_H
@@ -104,7 +109,6 @@ class ParityTest:
         self._coupling_s = max(float((magnitude(cross) / BAND).max()) for cross in crosses)
         self._product_s = abs(errors.spin_rate_product) * abs(
             p.input_inertia - p.transverse_inertia) / (p.input_inertia * p.omega)
-        self.reset()
 
     def reset(self):
         """Begin anew."""

@@ -48,8 +48,7 @@ class VelocityMeter:
         self._latency_ns = round(settings.window.latency_ms * 1e6)
         self._sin, self._cos = sincos(math.radians(settings.antennas.mounting_yaw_arcmin / 60.0))
         self._waits = settings.attack_angle == 'ins'
-        self._calm_ns = [(round(a * 1e9), round(b * 1e9)) for a, b in
-                         zip(settings.drop_outs.start_s, settings.drop_outs.end_s)]
+        self.change(settings)
         if settings.mode == 'signal':
             from .pulses import SignalWindows
             self._method = SignalWindows(settings, run)
@@ -65,6 +64,19 @@ class VelocityMeter:
         self._waiting = deque()
         self._repeatable = False
         self._open.forget()
+
+    def change(self, settings):
+        """Take the drop-outs of other VelocityMeterSettings from the next window to end on."""
+        self._calm_ns = [(round(a * 1e9), round(b * 1e9)) for a, b in
+                         zip(settings.drop_outs.start_s, settings.drop_outs.end_s)]
+
+    @property
+    def next_end_ns(self):
+        """Motion time at which the next window ends, None before the first sample."""
+        if self._last is None:
+            return None
+        index = (self._last[0] + self._dt_ns // 2) // self._dt_ns
+        return (index // self._step + 1) * self._step * self._dt_ns
 
     def push_truth(self, t_ns, v_b, height):
         """
