@@ -117,6 +117,13 @@ class ImuSensorNode(StageNode):
                      f'{most:.4g} deg/h: a channel has a fault')
         return wrong, (('parity deg/h', f'{mean:.6g}'), ('parity threshold deg/h', f'{most:.6g}'))
 
+    def check_change(self, settings):
+        """Refuse a fault of gyros that have none."""
+        gyro = settings.gyro
+        if gyro.model != 'dtg' and gyro.dtg.fault != self.settings.gyro.dtg.fault:
+            raise ValueError(f'gyro.model is {gyro.model}; expected dtg: the fault is one of a '
+                             'tuned gyro')
+
     def change(self, settings):
         """Take biases, the fault of a tuned gyro and drop-outs from the next reading on."""
         self.stage = changed(self.stage, settings)
