@@ -4,20 +4,16 @@ from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
-from ins_sim.settings.aided_navigator import AidedNavigatorSettings
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.by_node import ALL_NODES
-from ins_sim.settings.presets import PRESETS, strapdown_values
-from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.catalogue import flatten
+from ins_sim.settings.presets import navigator_values, PRESETS
 
-SHARED = ('datum', 'earth', 'frames', 'tf', 'time', 'motion', 'topics')
-# of an instrument and the navigator: a file over this one sets them in its section /** as well,
-# where they would lose against those of a node here
-AGREED = ('window', 'gnss')
 HEAD = """\
-# Every parameter of the nodes with its default.  Written by tools/make_config.py from
-# ins_sim/settings; a test keeps it in step.  Overlays beside this file hold the studies:
-#   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
+# Every parameter of the nodes with its default, to look up and to copy from: nobody has to load it,
+# for the nodes have these defaults.  Written by tools/make_config.py from ins_sim/settings; a test
+# keeps it in step.  Under /** is whatever has one default in all nodes that know it, under the
+# node the rest.  The files beside this one hold motions, delays, instruments and studies.
 """
 
 
@@ -43,31 +39,69 @@ def remark(f):
     return '; '.join(parts)
 
 
-def lines(cls, indent, skip=()):
+def lines(cls, indent):
     """Yield the lines of a settings class."""
+    yield from written(tree(cls), indent)
+
+
+def tree(cls):
+    """Return {name: field, or (doc, tree) of a group} of a settings class."""
+    return {f.name: (f.default_factory.__doc__.strip().splitlines()[0], tree(f.default_factory))
+            if is_dataclass(f.default_factory) else f for f in fields(cls)}
+
+
+def merged(one, other):
+    """Return the tree with the names of both."""
+    found = dict(one)
+    for name, entry in other.items():
+        if name in found and isinstance(entry, tuple):
+            entry = found[name][0], merged(found[name][1], entry[1])
+        elif name in found:
+            entry = found[name]
+        found[name] = entry
+    return found
+
+
+def written(names, indent):
+    """Yield the lines of a tree."""
     pad = ' ' * indent
-    for f in fields(cls):
-        if f.name in skip:
-            continue
-        if is_dataclass(f.default_factory):
-            doc = f.default_factory.__doc__.strip().splitlines()[0]
-            yield f'{pad}{f.name}:  # {doc}'
-            yield from lines(f.default_factory, indent + 2)
+    for name, entry in names.items():
+        if isinstance(entry, tuple):
+            yield f'{pad}{name}:  # {entry[0]}'
+            yield from written(entry[1], indent + 2)
         else:
-            for line in textwrap.wrap(remark(f), 97 - indent):
+            for line in textwrap.wrap(remark(entry), 97 - indent):
                 yield f'{pad}# {line}'
-            yield f'{pad}{f.name}: {text(f.default)}'
+            yield f'{pad}{name}: {text(entry.default)}'
+
+
+def of_nodes_alone():
+    """Return the names, groups as a whole, that have another default in another node."""
+    defaults = {}
+    for cls in ALL_NODES.values():
+        for name, f in flatten(cls).items():
+            defaults.setdefault(name, set()).add(repr(f.default))
+    return {name.partition('.')[0] for name, found in defaults.items() if len(found) > 1}
 
 
 def document():
     """Return the whole file."""
+    alone, common = of_nodes_alone(), {}
+    for cls in ALL_NODES.values():
+        common = merged(common, tree(cls))
     out = [HEAD.rstrip(), '', '/**:', '  ros__parameters:']
-    own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
-    out += lines(MotionGeneratorSettings, 4, skip=own)
-    out += lines(AidedNavigatorSettings, 4, skip=[f.name for f in fields(AidedNavigatorSettings)
-                                                  if f.name not in AGREED])
+    before = None
+    for name, entry in common.items():
+        if name not in alone:
+            knowing = [node for node, cls in ALL_NODES.items() if name in tree(cls)]
+            if knowing != before:
+                out += [f'    # --- {line}' for line in textwrap.wrap(', '.join(knowing), 90)]
+            out += written({name: entry}, 4)
+            before = knowing
     for node, cls in ALL_NODES.items():
-        out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED + AGREED)]
+        own = {name: entry for name, entry in tree(cls).items() if name in alone}
+        if own:
+            out += ['', f'/**/{node}:', '  ros__parameters:', *written(own, 4)]
     return '\n'.join(out) + '\n'
 
 
@@ -76,13 +110,13 @@ def preset_document(preset):
     out = [f'# Instrument errors of a {preset.datasheet}.', '#']
     out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
-            '/**/imu_sensor:', '  ros__parameters:']
+            '/**:', '  ros__parameters:',
+            '    # of imu_sensor, and of strapdown for its covariances']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
-    out += ['', '# The covariances of ins/* are of the same instrument.', '/**/strapdown:',
-            '  ros__parameters:']
-    out += [f'    {key}: {text(value)}' for key, value in strapdown_values(preset).items()]
     if 'output' in preset.values:
         out += [f'    input: {preset.values["output"]}']
+    out += ['    # of aided_navigator']
+    out += [f'    {key}: {text(value)}' for key, value in navigator_values(preset).items()]
     return '\n'.join(out) + '\n'
 
 
