@@ -43,17 +43,17 @@ def _description(path, known, make):
 
 
 def _simulation(context, texts):
-    made = plan.simulation(texts)
-    nodes = _nodes(context, made, texts['namespace'])
+    made = plan.simulation(texts, _full(context, texts['namespace']))
+    nodes = _nodes(made)
     return [*(LogInfo(msg=sentence) for sentence in made.said), *_ends(nodes, texts),
             GroupAction([PushRosNamespace(texts['namespace']), *nodes.values()])]
 
 
 def _replay(context, texts):
-    made, played, value = plan.replay(texts)
-    nodes = _nodes(context, made, texts['namespace'])
+    made, played, value = plan.replay(texts, _full(context, texts['namespace']))
+    nodes = _nodes(made)
     player = ExecuteProcess(name='player', output='screen', cmd=play_command(
-        value['bag'], played, plan.play_options(value), _full(context, texts['namespace'])))
+        value['bag'], played, plan.play_options(value), made.namespace))
     return [*_ends({'player': player, **nodes}, texts),
             GroupAction([PushRosNamespace(texts['namespace']), *nodes.values()]), player]
 
@@ -64,14 +64,16 @@ def _full(context, namespace):
     return '/'.join(part for part in (before.strip('/'), namespace.strip('/')) if part)
 
 
-def _nodes(context, made, namespace):
+def _nodes(made):
     """Return {name: Node} of a Plan."""
-    with NamedTemporaryFile('w', prefix='ins_sim_launch_', suffix='.yaml', delete=False,
-                            encoding='utf-8') as stream:
-        stream.write(made.overrides_text(_full(context, namespace)))
-    atexit.register(Path(stream.name).unlink, missing_ok=True)
-    # a file without parameters is none to ROS
-    last = [stream.name] if any(made.overrides.values()) else []
+    last = []
+    if made.overrides_text:
+        with NamedTemporaryFile('w', prefix='ins_sim_launch_', suffix='.yaml', delete=False,
+                                encoding='utf-8') as stream:
+            stream.write(made.overrides_text)
+        # the nodes have ended by then
+        atexit.register(Path(stream.name).unlink, missing_ok=True)
+        last.append(stream.name)
     return {process.name: Node(
         package='ins_sim', executable=process.executable, output='screen',
         # the nodes of one process keep their names

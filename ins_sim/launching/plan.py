@@ -13,10 +13,11 @@ import yaml
 
 from ins_sim import graph
 from ins_sim.messages import topics
+from ins_sim.ros_parameters import Parameters
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import check_value, flatten
 from ins_sim.settings.place import Frames
-from ins_sim.yaml_text import Dumper
+from ins_sim.yaml_text import Dumper, read_bytes
 from . import arguments
 
 LOSSES = ('record without lock_step: where the machine is too slow samples are lost; the recorder '
@@ -29,22 +30,23 @@ class Plan:
     What is started, and with what.
 
     processes: of ``graph``; files: paths of parameter files, in order; defaults: {parameter:
-    value} below these; overrides: {node name: {parameter: value}} above these; said: sentences
-    for the user.
+    value} below these; overrides: {node name: {parameter: value}} above these; namespace: of the
+    nodes; said: sentences for the user.
     """
 
     processes: tuple
     files: tuple
     defaults: dict
     overrides: dict
+    namespace: str = ''
     said: tuple = ()
 
-    def overrides_text(self, namespace=''):
-        """Return the text of a parameter file with the overrides of the nodes in a namespace."""
-        full = '/' + namespace.strip('/') if namespace.strip('/') else ''
-        return yaml.dump({f'{full}/{node}': {'ros__parameters': values}
-                          for node, values in self.overrides.items() if values},
-                         Dumper=Dumper, sort_keys=False)
+    @property
+    def overrides_text(self):
+        """Return the text of a parameter file with the overrides, '' where there are none."""
+        sections = {_full(self.namespace, node): {'ros__parameters': values}
+                    for node, values in self.overrides.items() if values}
+        return yaml.dump(sections, Dumper=Dumper, sort_keys=False) if sections else ''
 
     @property
     def named(self):
@@ -58,11 +60,12 @@ class Plan:
                                                                            f'{name}:={value}')]
 
 
-def simulation(texts):
+def simulation(texts, namespace=''):
     """
     Return the Plan of the launch file simulation for {argument: text}.
 
-    Raises ValueError or OSError in one sentence.
+    namespace: of the nodes, with those that the including files have given.  Raises ValueError or
+    OSError in one sentence.
     """
     value = arguments.read_values(texts, arguments.SIMULATION)
     if value['tf'] == 'aided' and not value['aided']:
@@ -78,32 +81,34 @@ def simulation(texts):
     if value['one_process']:
         overrides[graph.ONE_PROCESS.name] = {'aided': value['aided']}
     _pace(overrides[graph.MASTER], value, added)
+    files, defaults = (*files, *_files(value)), {'tf.source': 'aided' if value['aided'] else 'ins'}
+    read = _read(files, defaults, namespace)
     if value['record']:
-        overrides[graph.RECORDER.name] = {'record.topics': _recorded(value),
+        overrides[graph.RECORDER.name] = {'record.topics': _recorded(value, read),
                                           'storage.path': value['record']}
     said = (LOSSES,) if value['record'] and value['lock_step'] is False else ()
     processes = nodes
     if value['one_process']:
         # the recorder first: it has to be there for the first sample
         processes = (*(p for p in added if p is graph.RECORDER), graph.ONE_PROCESS)
-    return _checked(processes, (*files, *_files(value)), {
-        'tf.source': 'aided' if value['aided'] else 'ins'}, overrides, said)
+    return _checked(Plan(processes, files, defaults, overrides, namespace, said))
 
 
-def replay(texts):
+def replay(texts, namespace=''):
     """
     Return (Plan, graph.Replay, values) of the launch file replay for {argument: text}.
 
-    Raises ValueError or OSError in one sentence.
+    namespace: as for ``simulation``.  Raises ValueError or OSError in one sentence.
     """
     value = arguments.read_values(texts, arguments.REPLAY)
     played = graph.REPLAYS[value['source']]
     if value['imu'] and value['source'] == 'imu':
         raise ValueError(f'imu is {value["imu"]!r} with source:=imu, whose readings are in the '
                          'bag; expected source:=truth with it')
-    plan = _checked(played.processes, _files(value), {'tf.source': 'ins'},
-                    _common(played.processes, value), ())
-    return plan, played, value
+    plan = Plan(played.processes, _files(value), {'tf.source': 'ins'},
+                _common(played.processes, value), namespace)
+    _read(plan.files, plan.defaults, namespace)
+    return _checked(plan), played, value
 
 
 def play_options(value):
@@ -152,20 +157,39 @@ def _pace(parameters, value, added):
         parameters['pacing.required'] = ['strapdown', *(process.name for process in added)]
 
 
-def _recorded(value):
-    """Return the names of the topics that the recorder is to record."""
-    aiding = (*topics.AIDING, *topics.GUIDANCE) if value['aided'] else ()
-    transforms = () if value['tf'] == 'none' else (topics.TF, topics.TF_STATIC)
-    return [topic.name for topic in (topics.RUN, *topics.DATA, *aiding, *transforms)]
+def _full(namespace, node):
+    """Return the full name of a node."""
+    return '/'.join(['', *(part for part in (namespace.strip('/'), node) if part)])
 
 
-def _checked(processes, files, defaults, overrides, said):
-    """Return the Plan; refuse values that a node would refuse, before any of them starts."""
-    for node, values in overrides.items():
+def _read(files, defaults, namespace):
+    """Return {name: value} of the generator as ROS reads the files; refuse what is no such file."""
+    parameters = Parameters()
+    for name, value in defaults.items():
+        parameters.add_value('/**', name, value, 'the launch file')
+    for path in files:
+        parameters.add_file(read_bytes(path), path)
+    found = parameters.of(_full(namespace, graph.MASTER))
+    return {name: one.value for name, one in found.items()}
+
+
+def _recorded(value, read):
+    """Return the names of the topics that the recorder is to record, and that are published."""
+    recorded = [topics.RUN, *topics.DATA, *(topics.AIDING if value['aided'] else ())]
+    if read.get('motion.kind') == 'guided':
+        recorded += topics.GUIDANCE
+    if (value['tf'] or read['tf.source']) != 'none':
+        recorded += topics.TF, topics.TF_STATIC
+    return [topic.name for topic in recorded]
+
+
+def _checked(plan):
+    """Return a Plan; refuse values that a node would refuse, before any of them starts."""
+    for node, values in plan.overrides.items():
         known = flatten(ALL_NODES[node])
         for name, value in values.items():
             if name in known:
                 check_value(name, value, known[name])
         if 'frames.prefix' in values:
             Frames(prefix=values['frames.prefix'])
-    return Plan(tuple(processes), tuple(files), defaults, overrides, said)
+    return plan
