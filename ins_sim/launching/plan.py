@@ -8,6 +8,7 @@ but ``/**``, and the launch arguments stand in a last file, by the full name of 
 """
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 import yaml
 
@@ -22,6 +23,8 @@ from . import arguments
 
 LOSSES = ('record without lock_step: where the machine is too slow samples are lost; the recorder '
           'says how many, and lock_step:=true loses none')
+NO_TRANSFORMS = ('tf2_msgs is not installed (apt: ros-jazzy-tf2-msgs): the nodes publish no '
+                 'transforms')
 
 
 @dataclass(frozen=True)
@@ -81,12 +84,14 @@ def simulation(texts, namespace=''):
     if value['one_process']:
         overrides[graph.ONE_PROCESS.name] = {'aided': value['aided']}
     _pace(overrides[graph.MASTER], value, added)
-    files, defaults = (*files, *_files(value)), {'tf.source': 'aided' if value['aided'] else 'ins'}
+    files, (defaults, said) = (*files, *_files(value)), _transforms(
+        'aided' if value['aided'] else 'ins')
     read = _read(files, defaults, namespace)
     if value['record']:
         overrides[graph.RECORDER.name] = {'record.topics': _recorded(value, read),
                                           'storage.path': value['record']}
-    said = (LOSSES,) if value['record'] and value['lock_step'] is False else ()
+    if value['record'] and value['lock_step'] is False:
+        said = (*said, LOSSES)
     processes = nodes
     if value['one_process']:
         # the recorder first: it has to be there for the first sample
@@ -105,8 +110,9 @@ def replay(texts, namespace=''):
     if value['imu'] and value['source'] == 'imu':
         raise ValueError(f'imu is {value["imu"]!r} with source:=imu, whose readings are in the '
                          'bag; expected source:=truth with it')
-    plan = Plan(played.processes, _files(value), {'tf.source': 'ins'},
-                _common(played.processes, value), namespace)
+    defaults, said = _transforms('ins')
+    plan = Plan(played.processes, _files(value), defaults, _common(played.processes, value),
+                namespace, said)
     _read(plan.files, plan.defaults, namespace)
     return _checked(plan), played, value
 
@@ -121,6 +127,13 @@ def play_options(value):
     if value['use_sim_time']:
         words.append('--clock')
     return words
+
+
+def _transforms(source):
+    """Return the default of tf.source, where transforms can be published, and what is said."""
+    if find_spec('tf2_msgs') is None:
+        return {}, (NO_TRANSFORMS,)
+    return {'tf.source': source}, ()
 
 
 def _files(value):
@@ -163,7 +176,7 @@ def _full(namespace, node):
 
 
 def _read(files, defaults, namespace):
-    """Return {name: value} of the generator as ROS reads the files; refuse what is no such file."""
+    """Return {name: value} of the generator as ROS reads the files; refuse what is none."""
     parameters = Parameters()
     for name, value in defaults.items():
         parameters.add_value('/**', name, value, 'the launch file')
@@ -178,7 +191,7 @@ def _recorded(value, read):
     recorded = [topics.RUN, *topics.DATA, *(topics.AIDING if value['aided'] else ())]
     if read.get('motion.kind') == 'guided':
         recorded += topics.GUIDANCE
-    if (value['tf'] or read['tf.source']) != 'none':
+    if (value['tf'] or read.get('tf.source', 'none')) != 'none':
         recorded += topics.TF, topics.TF_STATIC
     return [topic.name for topic in recorded]
 
