@@ -12,8 +12,8 @@ from ins_sim.settings.presets import navigator_values, PRESETS
 HEAD = """\
 # Every parameter of the nodes with its default, to look up and to copy from: nobody has to load
 # it, for the nodes have these defaults.  Written by tools/make_config.py from ins_sim/settings; a
-# test keeps it in step.  Under /** is whatever has one default in all nodes that know it, under the
-# node the rest.  The files beside this one hold motions, delays, instruments and studies.
+# test keeps it in step.  Under /** is whatever has one default in all nodes that know it, under
+# the node the rest.  The files beside this one hold motions, delays, instruments and studies.
 """
 
 
