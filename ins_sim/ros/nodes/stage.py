@@ -7,6 +7,7 @@ from std_srvs.srv import Trigger
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
+from ins_sim.settings.told import told
 from ..process.announced import AnnouncedRun
 from ..process.diagnostics import Monitor
 from ..process.net import caught
@@ -59,6 +60,7 @@ class StageNode(Node):
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
         self.monitor.add(SolePublishers(self, {topics.RUN.name: None, **queues}).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
+        self.get_logger().info(told(self.NAME, self.settings))
 
     @property
     def knows_run(self):
