@@ -8,11 +8,10 @@ from ins_sim.messages import topics
 
 @dataclass(frozen=True)
 class Process:
-    """A node process: its node name, its executable and the parameter files it always gets."""
+    """A node process: its node name and its executable."""
 
     name: str
     executable: str
-    config: tuple[str, ...] = ('default',)
 
 
 # Consumers first, so that the generator finds them waiting; any order works.
@@ -33,6 +32,9 @@ AIDING = (
 MASTER = 'motion_generator'
 
 RECORDER = Process('recorder', 'recorder')
+
+# All nodes but the recorder in one process.
+ONE_PROCESS = Process('simulation', 'simulation')
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,18 @@ SHIPPED = ('default', 'aggressive', 'cruise', 'motion_1', 'motion_2', 'motion_2_
            'racetrack', 'route_flight', 'dtg_motion_2', 'imu_navigation_rlg', 'imu_tactical_dtg',
            'imu_tactical_fog', 'imu_tactical_mems', 'grade_mid', 'grade_navigation',
            'grade_tactical')
+# The delays of the studies over these motions.
+DELAYS = {'motion_1': 'delay_x_1us', 'motion_2': 'delay_y_1us', 'motion_2_detuned': 'delay_y_1us',
+          **dict.fromkeys(('aggressive', 'cruise', 'racetrack', 'recorded_flight'),
+                          'delays_2_1_3us')}
+# What holds no motion is run over motion 2.
+MOVED = ('route_flight', 'dtg_motion_2', *DELAYS)
+# What the filter believes of an IMU where no file says it.
+BELIEVED = tuple(f'imu_model.{name}:={value}' for name, value in (
+    ('gyro_bias_sigma_deg_h', 0.05), ('gyro_bias_walk_deg_h_sqrt_h', 0.0),
+    ('angle_random_walk_deg_sqrt_h', 0.01), ('gyro_scale_sigma_ppm', 0.0),
+    ('accelerometer_bias_sigma_ug', 200.0), ('accelerometer_bias_walk_ug_sqrt_h', 0.0),
+    ('velocity_random_walk_m_s_sqrt_h', 0.018)))
 LATE = ('gyro.delay_us.x:=1.0', 'gyro.delay_us.y:=2.0', 'gyro.delay_us.z:=3.0')
 FLIGHT = ('duration_s:=90.0', 'gnss_model.use:=true', 'window.cycles:=100',
           'outages.start_s:=[60.0]', 'outages.end_s:=[300.0]',
@@ -42,18 +54,23 @@ def words(files, assignments):
         word for text in assignments for word in ('-p', text)]
 
 
+def with_delays(*names):
+    """Return files, behind the motions among them the delays of their studies."""
+    return [file for name in names for file in (name, DELAYS.get(name)) if file]
+
+
 def simulations():
     """Yield (name, arguments of simulate)."""
     for name in SHIPPED:
-        # default.yaml says what holds without it, but its sections would overrule -p
-        files = [] if name == 'default' else [name]
-        yield name, words(files, ['duration_s:=20.0'])
-        yield f'{name}-motion', words(files, ['duration_s:=20.0', 'source:=motion', *LATE])
+        files = with_delays(name)
+        common = ['duration_s:=20.0', *(() if name in MOVED else ['motion.kind:=two_axis'])]
+        yield name, words(files, common)
+        yield f'{name}-motion', words(files, [*common, 'source:=motion', *LATE])
     for channel in ('truth', 'free', 'damped'):
         for orientation in ('quaternion', 'poisson', 'euler_vector'):
             for output in ('rotation_vector', 'integrated'):
                 yield f'strapdown-{channel}-{orientation}-{output}', words(
-                    ['imu_tactical_fog', 'aggressive'],
+                    with_delays('imu_tactical_fog', 'aggressive'),
                     ['duration_s:=10.0', f'vertical.channel:={channel}',
                      f'orientation:={orientation}', f'output:={output}', f'input:={output}',
                      'initial.after_s:=1.0', 'initial.position_error_m:=[10.0, -20.0, 5.0]',
@@ -62,12 +79,13 @@ def simulations():
     for kind in ('static', 'coning', 'sculling', 'sinusoids', 'harmonics'):
         yield f'bench-{kind}', words([], [f'motion.kind:={kind}', 'duration_s:=10.0', *LATE,
                                           'history:=frozen'])
-    yield 'drop-outs', words(['imu_tactical_mems', 'motion_2'], [
+    yield 'drop-outs', words(with_delays('imu_tactical_mems', 'motion_2'), [
         'duration_s:=30.0', 'sampling.drop_out_probability:=0.002'])
-    yield 'jitter', words(['imu_tactical_mems', 'motion_2'], [
+    yield 'jitter', words(with_delays('imu_tactical_mems', 'motion_2'), [
         'duration_s:=20.0', 'sampling.jitter_us:=200.0', 'sampling.latency_us:=500.0',
         'imu_time:=nominal', 'imu_latency_us:=500.0'])
-    yield 'still-earth', words(['motion_2'], ['duration_s:=20.0', 'earth.rotation:=false'])
+    yield 'still-earth', words(with_delays('motion_2'), ['duration_s:=20.0',
+                                                         'earth.rotation:=false'])
 
 
 def aided_simulations():
@@ -83,7 +101,8 @@ def aided_simulations():
     yield 'aided-free-channel', words(['gnss_outage_flight', 'grade_tactical'], [
         *FLIGHT, 'aided_navigator:vertical.channel:=free', 'output_every:=5'])
     yield 'aided-integrated', words(['gnss_outage_flight', 'imu_tactical_dtg'], [
-        *FLIGHT, 'aided_navigator:input:=integrated', 'sampling.drop_out_probability:=0.0005'])
+        *FLIGHT, *BELIEVED, 'aided_navigator:input:=integrated',
+        'sampling.drop_out_probability:=0.0005'])
     yield 'aided-straight', words(['gnss_outage_flight', 'grade_mid'], [
         'duration_s:=60.0', 'filter:=paper', 'window.cycles:=100', 'motion.route.weave_deg:=0.0'])
     yield 'aided-guided', words(['guided_flight', 'grade_mid'], [
@@ -103,7 +122,7 @@ def recorded(data, folder):
     flights, imu, bags = data / 'flights', data / 'imu_ref', data / 'rosbags'
     for name, start in (('cruise_gv_acclip_rf01.csv.gz', 1000.0),
                         ('uavcircuit_umn_thor_fl75.csv.gz', 100.0)):
-        yield f'recorded-{name[:6]}', 'simulate', words(['recorded_flight'], [
+        yield f'recorded-{name[:6]}', 'simulate', words(with_delays('recorded_flight'), [
             f'motion.recording.path:={flights / name}', f'motion.recording.start_s:={start}',
             'motion.recording.smoothing_s:=0.5', 'motion.recording.on_gap:=cut',
             'duration_s:=20.0'])
@@ -165,10 +184,10 @@ def printed(folder):
     """Yield (name, part, digest) of the verbs that only print or write figures."""
     for name in ('motion_1', 'motion_2', 'dtg_motion_2', 'cruise'):
         yield name, 'predict', of_text(command(
-            ['predict', *words([name], ['duration_s:=600.0'])])[1])
+            ['predict', *words(with_delays(name), ['duration_s:=600.0'])])[1])
     yield 'dtg_motion_2', 'dtg-report', of_text(command(
         ['dtg-report', *words(['dtg_motion_2'], [])])[1])
-    yield 'motion_2', 'truth.csv', of_csv(folder, ['motion_2'])
+    yield 'motion_2', 'truth.csv', of_csv(folder, with_delays('motion_2'))
 
 
 def of_csv(folder, files):

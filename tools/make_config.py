@@ -4,21 +4,17 @@ from dataclasses import is_dataclass, fields
 from pathlib import Path
 import textwrap
 
-from ins_sim.settings.aided_navigator import AidedNavigatorSettings
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.by_node import ALL_NODES
-from ins_sim.settings.presets import PRESETS, strapdown_values
-from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.catalogue import flatten
+from ins_sim.settings.presets import navigator_values, PRESETS
 
-SHARED = ('datum', 'earth', 'frames', 'tf', 'time', 'motion', 'topics')
-# of an instrument and the navigator: a file over this one sets them in its section /** as well,
-# where they would lose against those of a node here
-AGREED = ('window', 'gnss')
 HEAD = """\
-# Every parameter of the nodes with its default.  Written by tools/make_config.py from
-# ins_sim/settings; a test keeps it in step.  One number stands for three equal ones in noise,
-# biases, scale factors and sigmas by axis.  Overlays beside this file hold the studies:
-#   ros2 run ins_sim strapdown --ros-args --params-file default.yaml --params-file motion_1.yaml
+# Every parameter of the nodes with its default, to look up and to copy from: nobody has to load
+# it, for the nodes have these defaults.  Written by tools/make_config.py from ins_sim/settings; a
+# test keeps it in step.  Under /** is whatever has one default in all nodes that know it, under
+# the node the rest.  One number stands for three equal ones in noise, biases, scale factors and
+# sigmas by axis.  The files beside this one hold motions, delays, instruments and studies.
 """
 FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bias_instability, '
          'the B of IEEE Std 952, is that over 0.664.')
@@ -48,31 +44,75 @@ def remark(f, settable):
     return '; '.join(parts)
 
 
-def lines(cls, indent, skip=(), settable=None, prefix=''):
-    """Yield the lines of a settings class; settable: names, by default those of the class."""
-    pad, settable = ' ' * indent, cls.SETTABLE if settable is None else settable
-    for f in fields(cls):
-        if f.name in skip:
-            continue
-        if is_dataclass(f.default_factory):
-            doc = f.default_factory.__doc__.strip().splitlines()[0]
-            yield f'{pad}{f.name}:  # {doc}'
-            yield from lines(f.default_factory, indent + 2, (), settable, f'{prefix}{f.name}.')
+def lines(cls, indent):
+    """Yield the lines of a settings class."""
+    yield from written(tree(cls), indent)
+
+
+def tree(cls, settable=None, prefix=''):
+    """
+    Return {name: (field, whether it can be set later), or (doc, tree) of a group} of a class.
+
+    settable: names, by default those of the class.
+    """
+    settable = cls.SETTABLE if settable is None else settable
+    return {f.name: (f.default_factory.__doc__.strip().splitlines()[0],
+                     tree(f.default_factory, settable, f'{prefix}{f.name}.'))
+            if is_dataclass(f.default_factory) else (f, prefix + f.name in settable)
+            for f in fields(cls)}
+
+
+def merged(one, other):
+    """Return the tree with the names of both; what can be set later in one of them is so."""
+    found = dict(one)
+    for name, (head, rest) in other.items():
+        if name in found:
+            head, before = found[name]
+            rest = merged(before, rest) if isinstance(rest, dict) else before or rest
+        found[name] = head, rest
+    return found
+
+
+def written(names, indent):
+    """Yield the lines of a tree."""
+    pad = ' ' * indent
+    for name, (head, rest) in names.items():
+        if isinstance(rest, dict):
+            yield f'{pad}{name}:  # {head}'
+            yield from written(rest, indent + 2)
         else:
-            for line in textwrap.wrap(remark(f, prefix + f.name in settable), 97 - indent):
+            for line in textwrap.wrap(remark(head, rest), 97 - indent):
                 yield f'{pad}# {line}'
-            yield f'{pad}{f.name}: {text(f.default)}'
+            yield f'{pad}{name}: {text(head.default)}'
+
+
+def of_nodes_alone():
+    """Return the names, groups as a whole, that have another default in another node."""
+    defaults = {}
+    for cls in ALL_NODES.values():
+        for name, f in flatten(cls).items():
+            defaults.setdefault(name, set()).add(repr(f.default))
+    return {name.partition('.')[0] for name, found in defaults.items() if len(found) > 1}
 
 
 def document():
     """Return the whole file."""
+    alone, common = of_nodes_alone(), {}
+    for cls in ALL_NODES.values():
+        common = merged(common, tree(cls))
     out = [HEAD.rstrip(), '', '/**:', '  ros__parameters:']
-    own = [f.name for f in fields(MotionGeneratorSettings) if f.name not in SHARED]
-    out += lines(MotionGeneratorSettings, 4, skip=own)
-    out += lines(AidedNavigatorSettings, 4, skip=[f.name for f in fields(AidedNavigatorSettings)
-                                                  if f.name not in AGREED])
+    before = None
+    for name, entry in common.items():
+        if name not in alone:
+            knowing = [node for node, cls in ALL_NODES.items() if name in tree(cls)]
+            if knowing != before:
+                out += [f'    # --- {line}' for line in textwrap.wrap(', '.join(knowing), 90)]
+            out += written({name: entry}, 4)
+            before = knowing
     for node, cls in ALL_NODES.items():
-        out += ['', f'/**/{node}:', '  ros__parameters:', *lines(cls, 4, skip=SHARED + AGREED)]
+        own = {name: entry for name, entry in tree(cls).items() if name in alone}
+        if own:
+            out += ['', f'/**/{node}:', '  ros__parameters:', *written(own, 4)]
     return '\n'.join(out) + '\n'
 
 
@@ -82,13 +122,13 @@ def preset_document(preset):
     out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
     out += [f'# {line}' for line in textwrap.wrap(FLOOR, 95)]
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
-            '/**/imu_sensor:', '  ros__parameters:']
+            '/**:', '  ros__parameters:',
+            '    # of imu_sensor, and of strapdown for its covariances']
     out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
-    out += ['', '# The covariances of ins/* are of the same instrument.', '/**/strapdown:',
-            '  ros__parameters:']
-    out += [f'    {key}: {text(value)}' for key, value in strapdown_values(preset).items()]
     if 'output' in preset.values:
         out += [f'    input: {preset.values["output"]}']
+    out += ['    # of aided_navigator']
+    out += [f'    {key}: {text(value)}' for key, value in navigator_values(preset).items()]
     return '\n'.join(out) + '\n'
 
 

@@ -11,6 +11,9 @@ HELP = 'run the three nodes over DDS and show the result'
 DESCRIPTION = ('Start the three nodes, run them in lock-step, record their topics into a bag and '
                'compare with the prediction.')
 EVERY = 10
+# the parts, with the delays of their studies
+MOTION_2 = ('motion_2', 'delay_y_1us')
+CRUISE, RECORDED = ('cruise', 'delays_2_1_3us'), ('recorded_flight', 'delays_2_1_3us')
 
 
 def add_arguments(parser):
@@ -34,14 +37,14 @@ def run(chosen):
     from ins_sim.report.console import PlainConsole
     console = PlainConsole()
     folder = Path(chosen.output)
-    parts = [('motion_2', _settings('motion_2', chosen.duration))]
+    parts = [('motion_2', _settings(MOTION_2, chosen.duration))]
     if chosen.recording is None:
-        parts.append(('cruise', _settings('cruise', chosen.duration)))
+        parts.append(('cruise', _settings(CRUISE, chosen.duration)))
         console.print('no recorded flight given (--recording CSV): the second part is the '
                       'closed-form cruise')
     else:
         parts.append(('recorded_flight', _settings(
-            'recorded_flight', chosen.duration,
+            RECORDED, chosen.duration,
             [f'motion_generator:motion.recording.path:="{Path(chosen.recording).resolve()}"',
              f'motion_generator:motion.recording.start_s:={chosen.start}'])))
     for name, settings in parts:
@@ -53,13 +56,13 @@ def run(chosen):
     return 0
 
 
-def _settings(name, duration_s, assignments=()):
-    """Return the settings of a shipped study as the demo runs it: lock-step, recorded."""
+def _settings(names, duration_s, assignments=()):
+    """Return the settings of shipped files as the demo runs them: lock-step, recorded."""
     from ins_sim import parameter_files, resources
     from ins_sim.io.motion import read_motion
     from ins_sim.settings.node import Pacing
     settings = parameter_files.read(
-        [resources.config('default'), resources.config(name)],
+        [resources.config(name) for name in names],
         [*assignments, f'strapdown:output_every:={EVERY}',
          f'motion_generator:duration_s:={duration_s}'])
     generator = settings.motion_generator

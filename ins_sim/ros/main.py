@@ -33,12 +33,13 @@ def run_node(name, args=None, **options):
     arguments of the class.
     """
     end_at_once()
-    from .process.arguments import answer
+    from .process.arguments import answer, with_paths
     from .process.runtime import node_main
-    code = answer(name, sys.argv if args is None else args)
+    words = sys.argv if args is None else args
+    code = answer(name, words)
     if code is not None:
         return code
-    return node_main(partial(_load, name), args, **options)
+    return node_main(partial(_load, name), with_paths(words), **options)
 
 
 def _load(name):

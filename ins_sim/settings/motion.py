@@ -141,7 +141,7 @@ MOTIONS = {
 class MotionSettings(SettingsGroup):
     """The motion; only the group of its kind is used."""
 
-    kind: str = setting('two_axis', 'which motion', choices=MOTIONS)
+    kind: str = setting('racetrack', 'which motion', choices=MOTIONS)
     psi_deg: float = setting(0.0, 'mean or initial psi, counter-clockwise from north (bench '
                              'motions)', 'deg', -360.0, 360.0)
     theta_deg: float = setting(-30.0, 'mean or initial theta, nose up (bench motions)', 'deg',

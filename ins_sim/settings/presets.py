@@ -10,6 +10,7 @@ Presets cannot be changed: ``preset`` returns a new dict of settings to be read 
 """
 
 from dataclasses import dataclass
+import math
 from types import MappingProxyType
 
 from .instrument_errors import AccelerometerErrors, GyroErrors
@@ -165,6 +166,36 @@ def preset(name):
         raise ValueError(f'unknown instrument preset {name!r}; the nearest known one is '
                          f'{nearest_name(name, PRESETS)!r}')
     return dict(PRESETS[name].values)
+
+
+def navigator_values(entry):
+    """
+    Return {dotted key of aided_navigator: value} of a Preset: what its filter believes.
+
+    In level flight a scale factor of the gyros is one with an axis out of place, which is also a
+    bias of the accelerometers; what a gyro drifts for 1 g is a bias.
+    """
+    def one(key):
+        return max(map(abs, entry.values.get(key, (0.0,))))
+
+    def together(*parts):
+        # as many digits as a data sheet has
+        return float(f'{math.hypot(*parts):.4g}')
+
+    of_g = (one(GYRO + 'g_sensitivity_deg_h_g'), one(ROTORS + 'mass_unbalance_deg_h_g'))
+    gyros_out, forces_out = (1e3 * one(triad + 'misalignment_sigma_mrad')
+                             for triad in (GYRO, ACCELEROMETER))
+    return {f'imu_model.{key}': value for key, value in (
+        ('gyro_bias_sigma_deg_h', together(one(GYRO + 'turn_on_bias_sigma_deg_h'), *of_g)),
+        ('gyro_bias_walk_deg_h_sqrt_h', one(GYRO + 'rate_random_walk_deg_h_sqrt_h')),
+        ('angle_random_walk_deg_sqrt_h', one(GYRO + 'angle_random_walk_deg_sqrt_h')),
+        ('gyro_scale_sigma_ppm', together(one(GYRO + 'scale_factor_sigma_ppm'), gyros_out)),
+        ('accelerometer_bias_sigma_ug', together(
+            one(ACCELEROMETER + 'turn_on_bias_sigma_ug'), forces_out)),
+        ('accelerometer_bias_walk_ug_sqrt_h',
+         one(ACCELEROMETER + 'acceleration_random_walk_ug_sqrt_h')),
+        ('velocity_random_walk_m_s_sqrt_h',
+         one(ACCELEROMETER + 'velocity_random_walk_m_s_sqrt_h')))}
 
 
 def strapdown_values(entry):

@@ -93,6 +93,7 @@ MAY_IMPORT = {
     'parameter_files': {'settings', 'ros_parameters', 'yaml_text'},
     'resources': {'settings.suggest'},
     'graph': {'messages'},
+    'launching': {'graph', 'messages', 'resources', 'ros_parameters', 'settings', 'yaml_text'},
     # it stands before all others
     'entry': {'cli'},
     '__main__': {'entry'},

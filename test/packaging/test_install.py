@@ -57,11 +57,10 @@ def test_versions_agree():
 
 def test_graph_names_executables():
     """Each process of the table is an installed executable, started by the same module."""
-    for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER):
+    for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER, graph.ONE_PROCESS):
         module, function = SCRIPTS[process.executable].split(':')
         assert function == process.executable
         assert graph.process_command(process)[2:4] == [module, process.executable]
-        assert all(resources.config(name).is_file() for name in process.config)
     assert graph.MASTER in {process.name for process in graph.PROCESSES}
 
 

@@ -3,14 +3,13 @@
 import pytest
 
 from ins_sim import resources
+from ins_sim.ros.process.arguments import with_paths
 from ins_sim.ros.process.refusals import sentence
 
 RCL = RuntimeError("failed to initialize rcl: Couldn't parse\n at /src/arguments.c:415")
 
 
 @pytest.mark.parametrize('words, says', [
-    (['--params-file', 'motion_2'], 'the parameter file motion_2 does not exist; a node takes the '
-     f'path of a shipped one: --params-file {resources.config("motion_2")}'),
     (['--params-file', 'motion_22'], "no config named 'motion_22'; expected one of "),
     (['--params-file', 'x/motion_33.yaml'], 'the parameter file x/motion_33.yaml does not exist'),
     (['--params-file', 'here.yaml'], 'here.yaml is not YAML: line '),
@@ -24,8 +23,19 @@ def test_a_refusal_of_rcl_is_one_sentence(words, says, tmp_path, monkeypatch):
     assert text.startswith(says) and '\n' not in text
 
 
+def test_names_of_shipped_files_become_paths(tmp_path, monkeypatch):
+    """In ROS arguments alone; a file of that name in the working directory is that one."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'cruise').write_text('')
+    words = ['strapdown', '--params-file', 'motion_2', '--ros-args', '--params-file', 'motion_2',
+             '-p', 'x:=1', '--params-file', 'motion_22', '--params-file', 'cruise', '--',
+             '--params-file', 'motion_2']
+    assert with_paths(words) == [*words[:5], str(resources.config('motion_2')), *words[6:]]
+    assert words[5] == 'motion_2'
+
+
 def test_a_node_says_it(chain):
-    """The exit code is that of bad parameters."""
-    node = chain.start('strapdown', {}, ['--params-file', 'motion_2'])
+    """The exit code is that of bad parameters; the name of a shipped file is taken."""
+    node = chain.start('strapdown', {}, ['--params-file', 'motion_2', '--params-file', 'motin_2'])
     assert node.wait(60.0) == 2
-    assert 'motion_2 does not exist; a node takes the path of a shipped one' in chain.text(node)
+    assert "no config named 'motin_2'; expected one of" in chain.text(node)

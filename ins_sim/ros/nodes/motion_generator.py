@@ -7,10 +7,12 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
+from ins_sim.core.numerics.instants import seconds
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.told import clock_needed, told
 from ..lock_step.pacing import LivePace, LockStep
 from ..lock_step.standard_services import offer_standard_services
 from ..lock_step.steerer import Steerer
@@ -82,6 +84,8 @@ class MotionGeneratorNode(Node):
         offer_standard_services(self)
         self._paused, self._single, self._next = False, 0, 0
         LiveParameters(self, self._pace)
+        self.get_logger().info(f'{told(self.NAME, self.settings)}; the first stamp is '
+                               f'{seconds(self._source.stamp_ns(0))}')
 
     def _make_steerer(self):
         name, depth = self.settings.guidance.topic, self.settings.topics.depth
@@ -105,7 +109,8 @@ class MotionGeneratorNode(Node):
             self.get_logger().warning(
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
-        self._tell_time()
+        if sentence := clock_needed(self.settings):
+            self.get_logger().info(sentence)
         self._pace.anchor(0)
         serve_s = 0.0
         while not stop:
@@ -118,16 +123,6 @@ class MotionGeneratorNode(Node):
                 serve_s = served + min(REST_S, max(SERVE_S, SHARE * (served - now)))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
-
-    def _tell_time(self):
-        """Say that the stamps are not those of the wall clock, and what others need then."""
-        factor = self.settings.pacing.real_time_factor
-        if self._lock or factor != 1.0:
-            why = 'lock-step' if self._lock else f'a real_time_factor of {factor:g}'
-            clock = '' if self._clock_every else \
-                ', which publish_clock: true publishes (in the launch file use_sim_time:=true)'
-            self.get_logger().info(f'with {why} the stamps do not follow the wall clock: other '
-                                   f'nodes need use_sim_time: true and /clock{clock}')
 
     def _advance(self, stop):
         """Publish what may be published; return how long there is nothing to do, s."""

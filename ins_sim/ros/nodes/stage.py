@@ -7,6 +7,7 @@ from std_srvs.srv import Trigger
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
+from ins_sim.settings.told import told
 from ..process.announced import AnnouncedRun
 from ..process.diagnostics import Monitor
 from ..process.live_parameters import LiveParameters
@@ -64,6 +65,7 @@ class StageNode(Node):
         self.monitor.add(MessageLosses(queues, self.depth).describe)
         if self.SETTINGS.SETTABLE:
             LiveParameters(self)
+        self.get_logger().info(told(self.NAME, self.settings))
 
     @property
     def knows_run(self):

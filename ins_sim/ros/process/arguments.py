@@ -2,11 +2,13 @@
 
 import sys
 
+from ins_sim import resources
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten
 from ins_sim.visible_text import visible
 
-ROS_ARGS, ROS_END = '--ros-args', '--'
+ROS_ARGS, ROS_END, FILE_FLAG = '--ros-args', '--', '--params-file'
+INSIDE, OUTSIDE, BOUND = range(3)
 HELP = ('-h', '--help')
 BAD = 2
 
@@ -29,14 +31,36 @@ def answer(name, words):
     return None
 
 
+def with_paths(words):
+    """
+    Return a command line in which parameter files are paths, as rcl takes them.
+
+    Names of shipped files are replaced by their paths.  What is neither stays, and is refused
+    with all else that rcl does not take.
+    """
+    found = list(words)
+    for k, (word, place) in enumerate(_placed(words)):
+        if place == INSIDE and words[k - 1] == FILE_FLAG:
+            try:
+                found[k] = str(resources.parameter_file(word))
+            except OSError:
+                continue
+    return found
+
+
 def _others(words):
-    others, inside = [], False
-    for k, word in enumerate(words):
+    return [word for k, (word, place) in enumerate(_placed(words)) if k and place == OUTSIDE]
+
+
+def _placed(words):
+    """Yield each word, and whether it is INSIDE the ROS arguments, OUTSIDE, or their BOUND."""
+    inside = False
+    for word in words:
         if word == ROS_ARGS or inside and word == ROS_END:
             inside = word == ROS_ARGS
-        elif not inside and k:
-            others.append(word)
-    return others
+            yield word, BOUND
+        else:
+            yield word, INSIDE if inside else OUTSIDE
 
 
 def _help_lines(name):

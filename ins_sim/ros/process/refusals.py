@@ -1,14 +1,14 @@
 """One sentence for the ROS arguments that rcl refuses, in the words of the offline commands."""
 
-from pathlib import Path
 import sys
 
 from ins_sim import resources
 from ins_sim.ros_parameters import Parameters
 from ins_sim.settings.shown import cut
 from ins_sim.yaml_text import read_bytes
+from .arguments import FILE_FLAG
 
-FILE_FLAG, VALUE_FLAGS = '--params-file', ('-p', '--param')
+VALUE_FLAGS = '-p', '--param'
 LONGEST = 400
 
 
@@ -34,14 +34,4 @@ def sentence(error, arguments=None):
 
 
 def _check_file(name, parameters):
-    if Path(name).exists():
-        parameters.add_file(read_bytes(name), name)
-        return
-    try:
-        shipped = resources.config(Path(name).stem)
-    except FileNotFoundError as error:
-        if Path(name).parent != Path('.') or Path(name).suffix:
-            raise FileNotFoundError(f'the parameter file {name} does not exist') from None
-        raise error from None
-    raise FileNotFoundError(f'the parameter file {name} does not exist; a node takes the path of '
-                            f'a shipped one: {FILE_FLAG} {shipped}')
+    parameters.add_file(read_bytes(resources.parameter_file(name)), name)

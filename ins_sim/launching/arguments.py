@@ -1,0 +1,150 @@
+"""The arguments of the launch files, and their values with every check that needs no ROS."""
+
+from dataclasses import dataclass
+from pathlib import Path
+import re
+
+from ins_sim import resources
+from ins_sim.settings.shown import shown
+from ins_sim.settings.suggest import nearest_name
+
+# Shipped parameter files that hold a motion and nothing else; a test compares with the files.
+MOTIONS = ('aggressive', 'cruise', 'gnss_outage_flight', 'guided_flight', 'motion_1', 'motion_2',
+           'motion_2_detuned', 'racetrack', 'recorded_flight', 'route_flight')
+INSTRUMENTS = ('imu_navigation_rlg', 'imu_tactical_dtg', 'imu_tactical_fog', 'imu_tactical_mems')
+# what launch itself makes of arguments, for every launch file
+OF_LAUNCH = ('launch-prefix', 'launch-prefix-filter', 'emulate_tty', 'sigterm_timeout',
+             'sigkill_timeout')
+BOOLEANS = {'true': True, 'false': False}
+
+
+@dataclass(frozen=True)
+class Argument:
+    """
+    An argument of a launch file.
+
+    kind: str, float or bool; of the last two '' is None, not given.  choices: its values, where
+    there are few.  default: None where one has to be given.
+    """
+
+    name: str
+    default: str | None
+    doc: str
+    kind: type = str
+    choices: tuple[str, ...] = ()
+
+
+_FILES = Argument('params_file', '', 'parameter files, separated by commas or spaces, of which '
+                  'the same section of a later one wins: paths, or names of shipped ones')
+_IMU = Argument('imu', '', 'instrument errors: ' + ', '.join(INSTRUMENTS) + ', or a path; empty = '
+                'those of the parameter files, or an ideal IMU')
+_NAMESPACE = Argument('namespace', '', 'namespace of the nodes')
+_RATE = Argument('rate_hz', '', 'rate of the truth and of the IMU in all nodes, Hz; empty = as '
+                 'the parameter files say, or 100', float)
+_PREFIX = Argument('prefix', '', 'prefix of all frames, such as uav1; empty = as the parameter '
+                   'files say')
+_SHUTDOWN = Argument('shutdown', 'true', 'true or false: the end of the run ends the whole '
+                     'launch, else the nodes of this file alone. A node that fails ends it always',
+                     bool)
+
+SIMULATION = (
+    Argument('motion', '', 'motion: ' + ', '.join(MOTIONS) + ', or a path; empty = that of the '
+             'parameter files, or the racetrack'),
+    _IMU, _FILES, _RATE,
+    Argument('aided', 'false', 'true or false: velocity_meter, gnss and aided_navigator run as '
+             'well', bool),
+    Argument('one_process', 'false', 'true or false: all nodes but the recorder in the one '
+             'process simulation', bool),
+    _NAMESPACE, _PREFIX,
+    Argument('tf', '', 'who places the vehicle on /tf: none, truth, ins or aided; empty = as the '
+             'parameter files say, or ins, with aided:=true aided',
+             choices=('none', 'truth', 'ins', 'aided')),
+    Argument('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; '
+             'empty = as the parameter files say, or 1', float),
+    Argument('lock_step', '', 'true or false: wait for the consumers, so that nothing is lost; '
+             'empty = true with record, else as the parameter files say, or false', bool),
+    Argument('record', '', 'folder of a new bag for the topics of the nodes; empty = none'),
+    Argument('use_sim_time', 'false', 'true or false: the nodes take their time from /clock, '
+             'which the generator then publishes', bool),
+    _SHUTDOWN)
+
+REPLAY = (
+    Argument('bag', None, 'folder of the bag; it has truth/odometry, and truth/imu or '
+             'imu/data_raw'),
+    Argument('source', 'imu', 'imu: its readings go into the strapdown; truth: its motion goes '
+             'into the IMU, and that into the strapdown', choices=('imu', 'truth')),
+    _IMU, _FILES, _RATE, _NAMESPACE, _PREFIX,
+    Argument('tf', '', 'who places the vehicle on /tf: none or ins; empty = as the parameter '
+             'files say, or ins', choices=('none', 'ins')),
+    Argument('rate', '', 'seconds of the bag per second, 0 = as fast as possible; empty = 1, and '
+             '0 in lock-step', float),
+    Argument('lock_step', 'true', 'true or false: wait for the strapdown, so that nothing is '
+             'lost', bool),
+    Argument('loop', 'false', 'true or false: begin again at the end', bool),
+    Argument('use_sim_time', 'false', 'true or false: the nodes take their time from /clock, '
+             'which is then played or published', bool),
+    _SHUTDOWN)
+
+
+def check_names(given, arguments):
+    """Raise ValueError for a name that none of the arguments has."""
+    known = {argument.name for argument in arguments}
+    for name in given:
+        if name not in known and name not in OF_LAUNCH:
+            raise ValueError(f'unknown launch argument {shown(name)}; the nearest known one is '
+                             f'{nearest_name(name, known)!r}')
+
+
+def read_values(texts, arguments):
+    """
+    Return {name: value} of {name: text}; values that were not given are None or ''.
+
+    Raises ValueError in one sentence that names argument, value and expectation.
+    """
+    return {argument.name: _value(argument, texts[argument.name]) for argument in arguments}
+
+
+def _value(argument, text):
+    name = argument.name
+    if argument.kind is str:
+        if argument.choices and text and text not in argument.choices:
+            raise ValueError(f'{name} is {shown(text)}; expected one of '
+                             f'{", ".join(argument.choices)} (nearest: '
+                             f'{nearest_name(text, argument.choices)})')
+        return text
+    if not text:
+        return None
+    if argument.kind is bool:
+        if text.lower() not in BOOLEANS:
+            raise ValueError(f'{name} is {shown(text)}; expected true or false')
+        return BOOLEANS[text.lower()]
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f'{name} is {shown(text)}; expected a number') from None
+
+
+def preset_file(argument, name, presets):
+    """
+    Return the path of a preset given by its name, one of presets, or by its path.
+
+    Raises ValueError, with the nearest name, or FileNotFoundError.
+    """
+    if name in presets or _is_path(name):
+        return str(resources.parameter_file(name))
+    raise ValueError(f'{argument} is {shown(name)}; expected a path or one of '
+                     f'{", ".join(presets)} (nearest: {nearest_name(name, presets)})')
+
+
+def parameter_files(text):
+    """
+    Return the paths of the parameter files in the text of params_file.
+
+    The text is one path where a file has that name, whatever commas and spaces it holds.
+    """
+    names = [text] if Path(text).is_file() else re.split(r'[,\s]+', text)
+    return [str(resources.parameter_file(name)) for name in names if name]
+
+
+def _is_path(name):
+    return bool(Path(name).suffix) or Path(name).parent != Path('.') or Path(name).is_file()
