@@ -9,7 +9,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation import alignment, standstill
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
@@ -111,16 +111,16 @@ class _Search:
     def _judge_gravity(self, first, last):
         """Refuse a specific force that is not that of rest, where the IMU is at rest at all."""
         try:
-            still = alignment.find_standstill(self._imu[first:last], self._s.alignment,
-                                              self._speed_at)
+            still = standstill.find_standstill(self._imu[first:last], self._s.alignment,
+                                               self._speed_at)
         except ValueError:
             return
         check_gravity(still, self._s.alignment.gravity_m_s2)
 
     def _standstill(self, first, last, expected, longest=False):
         try:
-            return alignment.find_standstill(self._imu[first:last], self._s.alignment,
-                                             self._speed_at, longest)
+            return standstill.find_standstill(self._imu[first:last], self._s.alignment,
+                                              self._speed_at, longest)
         except ValueError as error:
             raise ValueError(f'{error}; expected {expected}') from None
 
