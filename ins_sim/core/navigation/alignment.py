@@ -18,6 +18,11 @@ from ins_sim.core.numerics.elementary import sincos
 from ins_sim.core.numerics.fixed_order import dot, length
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 
+# A vehicle that stands is not tilted by more, deg.
+UPRIGHT_DEG = 45.0
+TILTED = ('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or mounting.source '
+          'level) Or does it measure gravity instead of specific force, which points up at rest?')
+
 
 @dataclass(frozen=True)
 class Gyrocompass:
@@ -85,6 +90,19 @@ def is_trusted(compass, still, lat, sigma):
     return compass.sigma <= sigma and max(abs(compass.excess), abs(compass.excess_up)) <= allowed
 
 
+def trusted_gyrocompass(still, lat, limits):
+    """
+    Return the Gyrocompass of a Standstill if it is to be taken, else None, and why not.
+
+    lat: rad; limits: AlignmentSettings.
+    """
+    compass = gyrocompass(still, lat, limits.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
+    if is_trusted(compass, still, lat, math.radians(limits.heading_sigma_deg)):
+        return compass, ''
+    return None, (f'the gyros are too coarse to see the Earth turn ({compass.describe()}; '
+                  f'expected at most {limits.heading_sigma_deg:g} deg)')
+
+
 def level_attitude(force, heading):
     """
     Return q_nb of a mean specific force (3,) at rest and a heading, clockwise, rad.
@@ -114,3 +132,9 @@ def gyro_bias(still, q_nb, lat, spin):
     """Return the mean rate less that of the Earth, (3,) rad/s, of a Standstill; spin: rad/s."""
     earth_b = quaternion.rotate_back(q_nb, (0.0, *_spin(lat, spin)))
     return still.rate - np.array(earth_b)
+
+
+def bias_sentence(bias):
+    """Return the sentence on a gyro bias (3,), rad/s, that is taken off."""
+    text = ', '.join(f'{b * DEG_PER_HOUR:.4g}' for b in bias)
+    return f'gyro bias of the standstill taken off: {text} deg/h in base_link'

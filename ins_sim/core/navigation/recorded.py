@@ -12,7 +12,7 @@ class RecordedNavigator:
     """
     The strapdown of a recorded IMU, from an initial state at the first sample.
 
-    kind: one of settings.navigate.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
+    kind: one of settings.recorded_imu.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
     height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one;
     gravity: one of ``ellipsoid.GRAVITY_TERMS``.
     """

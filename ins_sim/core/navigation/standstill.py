@@ -46,6 +46,14 @@ class Standstill:
     windows: int
     together: int = 1
 
+    def describe(self):
+        """Return where it lies and how still it is."""
+        return (f'stationary from {seconds(self.start_ns)} for '
+                f'{(self.end_ns - self.start_ns) * 1e-9:.3f} s: standard deviation '
+                f'{self.force_sd:.3g} m/s^2 and {self.rate_sd:.3g} rad/s in {self.windows} '
+                'windows' + (f', of means over {self.together} samples' if self.together > 1
+                             else ''))
+
 
 class Window(NamedTuple):
     """
