@@ -55,7 +55,7 @@ class Standstill:
                              else ''))
 
 
-class Window(NamedTuple):
+class StillWindow(NamedTuple):
     """
     Samples first to last (not included) of a record, of a length of time.
 
@@ -75,7 +75,7 @@ class Window(NamedTuple):
     moving: bool = False
 
 
-class _Windows:
+class WindowMoments:
     """
     Counts, means and standard deviations of the windows of a record.
 
@@ -116,11 +116,11 @@ class _Windows:
         return np.add.reduceat(off, start) / size, first, counts[:, None]
 
     def each(self, moving):
-        """Yield the Windows; moving (n,): of a reference."""
+        """Yield the StillWindows; moving (n,): of a reference."""
         for values in zip(self.first.tolist(), self.last.tolist(), self.middle_ns.tolist(),
                           self.full.tolist(), self.force, self.rate, self.force_sd.tolist(),
                           self.rate_sd.tolist(), moving.tolist()):
-            yield Window(*values)
+            yield StillWindow(*values)
 
 
 def together_at(step_ns):
@@ -228,7 +228,7 @@ def find_standstill(imu, limits, speed_at=None, longest=False):
         raise ValueError(f'{len(imu)} samples are too few to find a standstill in')
     step_ns = imu.step_ns
     length_ns = window_length_ns(limits, step_ns)
-    windows, search, found = _Windows(imu, step_ns, length_ns), StandstillSearch(
+    windows, search, found = WindowMoments(imu, step_ns, length_ns), StandstillSearch(
         limits, length_ns), None
     moving = np.zeros(len(windows.first), dtype=bool)
     if speed_at is not None:
@@ -244,7 +244,7 @@ def find_standstill(imu, limits, speed_at=None, longest=False):
 
 
 def standstill_of(imu, run, together):
-    """Return the Standstill of a run of Windows of a RecordedImu."""
+    """Return the Standstill of a run of StillWindows of a RecordedImu."""
     first, last = run[0].first, run[-1].last
     return Standstill(
         first, last, int(imu.t_ns[first]), int(imu.t_ns[last - 1]),

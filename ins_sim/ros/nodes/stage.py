@@ -45,8 +45,7 @@ class StageNode(Node):
         self._ack_publisher = qos.ack_publisher(self)
         self._last_stamp = self._seen_ns = None
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
-        self._announced = AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced,
-                                       self._give_held)
+        self._announced = self.make_announced()
         self.broadcaster = self.make_broadcaster()
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
@@ -59,6 +58,10 @@ class StageNode(Node):
         queues = {self.DRIVER.name: self._queue, **self.hand_queues()}
         self.monitor.add(SolePublishers(self, {topics.RUN.name: None, **queues}).describe)
         self.monitor.add(MessageLosses(queues, self.depth).describe)
+
+    def make_announced(self):
+        """Return the AnnouncedRun, or Unannounced."""
+        return AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced, self._give_held)
 
     @property
     def knows_run(self):
@@ -172,5 +175,9 @@ class StageNode(Node):
 
     def _on_reset(self, request, response):
         self.start_anew()
-        response.success, response.message = True, 'started anew'
+        response.success, response.message = True, self.describe_reset()
         return response
+
+    def describe_reset(self):
+        """Return the answer to ~/reset."""
+        return 'started anew'
