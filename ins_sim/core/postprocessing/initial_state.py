@@ -110,7 +110,7 @@ class _Search:
                                                self._speed_at)
         except ValueError:
             return
-        check_gravity(still, self._s.alignment.gravity_m_s2)
+        check_gravity(still.force, self._s.alignment.gravity_m_s2)
 
     def _standstill(self, first, last, expected, longest=False):
         try:
@@ -180,7 +180,7 @@ class _Search:
                                  'initial.attitude given, reference or imu')
         k = first + still.last - 1
         notes = [still.describe()]
-        check_gravity(still, limits.gravity_m_s2)
+        check_gravity(still.force, limits.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
             raise ValueError('the mean specific force at rest is zero, so that it does not show '
                              'up; expected initial.attitude given, reference or imu')

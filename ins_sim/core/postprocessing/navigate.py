@@ -120,7 +120,7 @@ def _mounting(settings, sources, imu, first, notes):
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
         still = standstill.find_standstill(imu[first:], settings.alignment)
-        check_gravity(still, settings.alignment.gravity_m_s2)
+        check_gravity(still.force, settings.alignment.gravity_m_s2)
         notes.append('mounting: levelled by the specific force of the standstill')
         return mounting.levelled_mounting(still.force, yaw)
     if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):

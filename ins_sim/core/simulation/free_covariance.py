@@ -26,7 +26,7 @@ def sigmas_of(settings):
             triad_sigmas(settings.accelerometer.errors, dt_s, 'accelerometer.errors'))
 
 
-class InitialSigmas(NamedTuple):
+class StartSigmas(NamedTuple):
     """
     Standard deviations at a start.
 
@@ -42,16 +42,16 @@ class InitialSigmas(NamedTuple):
 
 
 def initial_sigmas(initial):
-    """Return the InitialSigmas of the settings of the start."""
-    return InitialSigmas(initial.position_sigma_m, initial.velocity_sigma_m_s,
-                         1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad)
+    """Return the StartSigmas of the settings of the start."""
+    return StartSigmas(initial.position_sigma_m, initial.velocity_sigma_m_s,
+                       1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad)
 
 
 def free_covariance(settings, show=None, start=None, dt_s=None):
     """
     Return the FreeCovariance of StrapdownSettings: of its initial errors and its instruments.
 
-    show: as of FreeCovariance; start: InitialSigmas, by default those of the settings; dt_s:
+    show: as of FreeCovariance; start: StartSigmas, by default those of the settings; dt_s:
     sampling period, by default that of rate_hz.  Raises ValueError where the figures of the
     instruments are none.
     """

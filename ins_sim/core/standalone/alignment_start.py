@@ -120,7 +120,7 @@ class AlignmentStart:
     def _check(self, still, samples):
         """Raise ValueError for a standstill that is none, or no accelerometer in m/s^2."""
         without_zeros(recorded(samples[still.first:still.last]), 'refuse', [])
-        check_gravity(still, self._s.alignment.gravity_m_s2)
+        check_gravity(still.force, self._s.alignment.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
             raise ValueError('the mean specific force at rest is zero, so that it does not show '
                              'up')

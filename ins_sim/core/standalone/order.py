@@ -8,6 +8,8 @@ from .samples import ImuSample, JUMP, TypicalStep
 
 # Samples that wait for the mounting.
 MOST_EARLY = 2000
+# Lock-step repeats the first sample until it is answered, which is no fault.
+MOST_REPEATS = 1000
 
 NEXT, REPLACE, HOLD, RELEASE, DROP, RESTART = range(6)
 
@@ -16,7 +18,8 @@ class SampleOrder:
     """
     What becomes of a sample, by its stamp: the fewest possible are dropped of those out of order.
 
-    NEXT: it follows; REPLACE: it follows the one before the last, which was ahead of its time;
+    NEXT: it follows; REPLACE: it follows the one before the last, whose stamp it repeats or
+    which was ahead of its time;
     HOLD: it is far ahead, and the next one shows whether time has leapt or this stamp is wrong;
     RELEASE: time has leapt, the held sample is taken and then this one; DROP; RESTART: time has
     jumped back for good.
@@ -24,7 +27,7 @@ class SampleOrder:
 
     def __init__(self):
         self._last_ns = self._before_ns = self._held_ns = None
-        self._older = []
+        self._older, self._repeats = [], 0
 
     def judge(self, t_ns, gap_ns):
         """Return what becomes of the sample of a stamp; gap_ns: the longest step that is none."""
@@ -40,11 +43,11 @@ class SampleOrder:
                 self._held_ns = t_ns
                 return HOLD
             return self._follows(t_ns)
-        if t_ns == last_ns:
-            return DROP
         if self._before_ns is not None and t_ns > self._before_ns:
             self._last_ns = t_ns
             return REPLACE
+        if t_ns == last_ns:
+            return DROP
         self._older = [*self._older, t_ns] if self._older and t_ns > self._older[-1] else [t_ns]
         return RESTART if len(self._older) >= JUMP else DROP
 
@@ -66,10 +69,10 @@ class SampleOrder:
     def describe(self, t_ns):
         """Return the sentence on the sample just dropped, or ''."""
         if t_ns == self._last_ns:
-            # lock-step repeats the first sample until it is answered
-            return '' if self._before_ns is None else (
-                f'imu repeats the stamp {seconds(t_ns)}; expected a later one; the sample was '
-                'dropped')
+            self._repeats += 1
+            return '' if self._repeats < MOST_REPEATS else (
+                f'imu repeats the stamp {seconds(t_ns)} again and again; expected a later one, in '
+                'header.stamp, with every reading')
         return (f'imu goes back from {seconds(self._last_ns)} to {seconds(t_ns)}; expected rising '
                 'stamps; the sample was dropped')
 
@@ -143,7 +146,9 @@ class OrderedSamples:
             held, self._held = self._held, None
             return [(HOLD, self._passed(held)), (NEXT, self._passed(sample))]
         elif fate == REPLACE:
-            self._drop(f'imu goes back to {seconds(t_ns)}, behind a sample that was ahead of its '
+            self._drop(f'imu repeats the stamp {seconds(t_ns)}; expected a later one; the sample '
+                       'before was dropped' if t_ns == self._last_ns else
+                       f'imu goes back to {seconds(t_ns)}, behind a sample that was ahead of its '
                        'time; that one was dropped')
             self._last_ns = t_ns
             return [(REPLACE, sample)]

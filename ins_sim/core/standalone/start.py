@@ -9,11 +9,14 @@ from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.numerics import elementary
+from ins_sim.core.postprocessing.gravity_check import check_gravity
 from ins_sim.core.postprocessing.reference import LONGEST_STEP_S
-from ins_sim.core.simulation.free_covariance import InitialSigmas
+from ins_sim.core.simulation.free_covariance import StartSigmas
 
 # Samples that a start on the move keeps for a fix that comes late, s.
 KEPT_S = 10.0
+# What the mean specific force of the first readings may differ from gravity by, on the move.
+MOST_OFF_M_S2 = 6.0
 
 
 class Start(NamedTuple):
@@ -21,14 +24,14 @@ class Start(NamedTuple):
     The start of a navigation.
 
     samples: ImuSamples from the first one on; state: lat, lon, height, v_n, q_nb at the first;
-    bias: (3,) rad/s that is taken off the gyros, or None; sigmas: InitialSigmas; located: whether
+    bias: (3,) rad/s that is taken off the gyros, or None; sigmas: StartSigmas; located: whether
     position and heading are known, so that odom has a place in map; infos, warnings: sentences.
     """
 
     samples: list
     state: tuple
     bias: tuple | None
-    sigmas: InitialSigmas
+    sigmas: StartSigmas
     located: bool
     infos: list
     warnings: list
@@ -53,10 +56,10 @@ def attitude_text(q_nb):
 
 
 def given_sigmas(initial, position=None, azimuth=None):
-    """Return the InitialSigmas of the settings, some replaced."""
+    """Return the StartSigmas of the settings, some replaced."""
     tilt = 1e-3 * initial.tilt_sigma_mrad
-    return InitialSigmas(initial.position_sigma_m or position or 0.0, initial.velocity_sigma_m_s,
-                         tilt, 1e-3 * initial.azimuth_sigma_mrad if azimuth is None else azimuth)
+    return StartSigmas(initial.position_sigma_m or position or 0.0, initial.velocity_sigma_m_s,
+                       tilt, 1e-3 * initial.azimuth_sigma_mrad if azimuth is None else azimuth)
 
 
 class GivenStart:
@@ -72,7 +75,7 @@ class GivenStart:
 
     def __init__(self, settings, fixes):
         self._initial, self._fixes = settings.initial, fixes
-        self._samples, self.notes = [], []
+        self._samples, self.notes, self._weighed = [], [], False
 
     def push(self, sample):
         """Take a sample."""
@@ -85,6 +88,8 @@ class GivenStart:
     def decide(self):
         """Return the Start, or None as long as there is none."""
         initial, place, sigma = self._initial, None, None
+        if not self._weighs():
+            return None
         if self._fixes is None:
             place = given_place(initial) if self._samples else None
         else:
@@ -98,6 +103,20 @@ class GivenStart:
                      given_sigmas(initial, sigma), True,
                      [f'start from initial.source {initial.source}: {attitude_text(q_nb)[2]}'],
                      [])
+
+    def _weighs(self):
+        """Return whether the first readings have a force that a vehicle can have; say so."""
+        if self._weighed or not self._samples:
+            return self._weighed
+        force = np.array([s.f for s in self._samples]).mean(axis=0)
+        try:
+            check_gravity(force, MOST_OFF_M_S2)
+        except ValueError as error:
+            self.notes.append(f'start: {error}; nothing is begun')
+            self._samples.clear()
+        else:
+            self._weighed = True
+        return self._weighed
 
     def _covered(self):
         """Return the place at the first sample that has one, and forget those before it."""
@@ -133,6 +152,8 @@ class CourseStart(GivenStart):
     def decide(self):
         """Return the Start, or None as long as there is none."""
         samples, fixes = self._samples, self._fixes.fixes
+        if not self._weighs():
+            return None
         while samples and samples[-1].t_ns - samples[0].t_ns > KEPT_S * 1e9:
             samples.pop(0)
         if len(fixes) < 2 or not samples or not samples[0].t_ns <= fixes[-1].t_ns <= \
