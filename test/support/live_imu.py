@@ -133,3 +133,9 @@ def vehicle(rest_s=20.0, length_s=60.0, rate_hz=50.0, heading=1.2, lat=0.87, noi
                       float(0.1 + w * np.sin(heading) / r_e / np.cos(lat)), 100.0)
              for stamp, w in zip(t_ns[some], way[some])]
     return imu, fixes
+
+
+def as_sent(fixes):
+    """Return PlaceFixes as they are when they have been messages, in degrees."""
+    return [f._replace(lat=float(np.radians(np.degrees(f.lat))),
+                       lon=float(np.radians(np.degrees(f.lon)))) for f in fixes]

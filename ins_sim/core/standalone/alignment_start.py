@@ -57,8 +57,10 @@ class AlignmentStart:
         self._begin()
 
     def _begin(self):
-        self._stream = StandstillStream(self._s.alignment, self._inputs.samples.step,
-                                        self._first_ns)
+        limits = self._s.alignment
+        self._stream = StandstillStream(
+            limits, self._inputs.samples.step, self._first_ns,
+            lambda force: check_gravity(force, limits.gravity_m_s2))
         self._levels = self._s.mounting.source == 'level' and self.turn is None
         self._still = self._course = self._place = None
         self._samples, self._placed, self._gyrocompass = [], False, None

@@ -1,6 +1,7 @@
 """The navigator of a live IMU without truth: its readings in, its solutions out."""
 
 from collections import deque
+import math
 
 from ins_sim.core.attitude import quaternion
 from .alignment_start import AlignmentStart
@@ -209,6 +210,11 @@ class StandaloneNavigator:
         self.infos += start.infos
         self.warnings += start.warnings
         self.run = RunningNavigation(self._s, start, self.samples.step.median_ns, self._heights)
+        if self.run.begins_map:
+            lat, lon, height = start.state[:3]
+            self.infos.append('datum is the default, so the origin of map is the start: latitude '
+                              f'{math.degrees(lat):.7f} deg, longitude {math.degrees(lon):.7f} '
+                              f'deg, height {height:.2f} m')
         self._waiting, self._start, self._realigning = deque(start.samples), None, None
         self.begun += 1
 

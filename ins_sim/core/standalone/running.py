@@ -42,6 +42,7 @@ class RunningNavigation:
     ----------
     frame : MapFrame, of the datum, or of the start where the datum is the default
     located : as of Start
+    begins_map : whether it is located, and the origin of map is its start
     t_ns : stamp of the last sample, or None
 
     """
@@ -49,6 +50,7 @@ class RunningNavigation:
     def __init__(self, settings, start, step_ns, heights):
         lat, lon, height = start.state[:3]
         datum = settings.datum
+        self.begins_map = start.located and datum == Datum()
         if datum == Datum():
             datum = Datum(math.degrees(lat), math.degrees(lon), height)
         self.frame = MapFrame(datum, settings.earth.rotation)

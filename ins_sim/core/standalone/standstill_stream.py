@@ -1,5 +1,7 @@
 """The search for a standstill in samples that come one by one, as in a recording of all."""
 
+import numpy as np
+
 from ins_sim.core.navigation.standstill import (standstill_of, StandstillSearch, together_at,
                                                 window_length_ns, WindowMoments)
 from .samples import recorded
@@ -17,6 +19,8 @@ class StandstillStream:
     limits : AlignmentSettings
     step : TypicalStep of the samples
     first_ns : stamp of the first sample of the record, from which the windows are counted
+    check : function of the mean specific force (3,) of an interval that is just long enough, which
+        raises ValueError, one sentence, where it is none of a vehicle at rest
 
     Attributes
     ----------
@@ -25,8 +29,9 @@ class StandstillStream:
 
     """
 
-    def __init__(self, limits, step, first_ns):
+    def __init__(self, limits, step, first_ns, check):
         self._limits, self._step, self._first_ns = limits, step, first_ns
+        self._check = check
         self.samples, self.notes = [], []
         self._base = self._count = self._windows = 0
         self._search = self._index = None
@@ -84,13 +89,28 @@ class StandstillStream:
             base = self._base
             run = [w._replace(first=w.first - base, last=w.last - base) for w in run]
             return standstill_of(recorded(samples), run, together_at(step_ns))
+        if len(self._search.run) == self._search.needed:
+            self._look()
         if under_way and self._search.moved:
             self.notes.append(f'alignment begins anew: {self._search.moved}')
             self._search.moved = ''
         elif self._windows % SAY_EVERY == 0 and not self._search.run:
             self.notes.append(f'alignment: {self._search.describe()}; expected a vehicle at rest, '
                               'or other alignment.* limits')
+        self._forget_before()
+        return None
+
+    def _look(self):
+        """Begin anew where the force of the interval is none of a vehicle at rest."""
+        try:
+            self._check(np.mean([w.force for w in self._search.run], axis=0))
+        except ValueError as error:
+            self.notes.append(f'alignment: {error}; nothing is aligned, it begins anew')
+            self._search.end()
+
+    def _forget_before(self):
+        """Forget the samples before the interval under way."""
+        samples = self.samples
         kept = self._search.run[0].first if self._search.run else self._base + len(samples)
         del samples[:kept - self._base]
         self._base = kept
-        return None
