@@ -2,6 +2,9 @@
 
 from .field import column, group, setting, settings_class, SettingsGroup
 
+# What a sample of an IMU is, see the setting ``input``.
+INPUTS = ('instant', 'integrated', 'rotation_vector')
+
 
 @settings_class
 class ImuColumns(SettingsGroup):
@@ -17,14 +20,20 @@ class ImuColumns(SettingsGroup):
 
 
 @settings_class
-class RecordUnits(SettingsGroup):
+class SampleUnits(SettingsGroup):
+    """Units of an IMU; auto: those in the headers of a CSV file, else SI."""
+
+    rate: str = setting('auto', 'unit of the angular rate', choices=('auto', 'rad/s', 'deg/s'))
+    force: str = setting('auto', 'unit of the specific force; g is 9.80665 m/s^2',
+                         choices=('auto', 'm/s^2', 'g', 'mg'))
+
+
+@settings_class
+class RecordUnits(SampleUnits):
     """Units of a recorded IMU; auto: those in the headers of a CSV file, else SI."""
 
     time: str = setting('auto', 'unit of the column of time; of a bag without use',
                         choices=('auto', 's', 'ms', 'us', 'ns'))
-    rate: str = setting('auto', 'unit of the angular rate', choices=('auto', 'rad/s', 'deg/s'))
-    force: str = setting('auto', 'unit of the specific force; g is 9.80665 m/s^2',
-                         choices=('auto', 'm/s^2', 'g', 'mg'))
 
 
 @settings_class

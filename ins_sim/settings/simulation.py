@@ -26,6 +26,10 @@ class SimulationSettings:
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
                              f'{sends:g} Hz')
+        if self.strapdown.standalone:
+            raise ValueError(f'strapdown: initial.source is {self.strapdown.initial.source}; '
+                             'expected truth in a simulation without nodes, which compares with '
+                             'it (ins_sim navigate needs none)')
         check_frames(self.motion_generator, imu_sensor=self.imu_sensor, strapdown=self.strapdown)
         if self.motion_generator.motion.kind == 'guided':
             check_guided(self.motion_generator, self.imu_sensor, self.lead_ns)

@@ -5,6 +5,9 @@ from .imu import OUTPUTS
 from .instrument_errors import AccelerometerErrors, GyroErrors
 from .node import Topics
 from .place import Datum, Earth, Frames, Tf
+from .recorded_imu import INPUTS, SampleUnits
+from .self_alignment import AlignmentSettings, MountingAngles
+from .standalone import GapSettings, StandaloneInputs, StandaloneStart
 
 
 @settings_class
@@ -14,15 +17,19 @@ class Vertical(SettingsGroup):
     channel: str = setting('truth', 'height and vertical velocity from truth, free, or damped '
                            'towards the height of the truth', choices=('truth', 'free', 'damped'))
     time_constant_s: float = setting(20.0, 'time constant of the damped channel', 's', 0.1, 1e4)
+    reference: str = setting('fix', 'without truth, towards what height the channel is damped: '
+                             'that of inputs.fix, or by inputs.pressure in the standard '
+                             'atmosphere, from the height of the start on',
+                             choices=('fix', 'pressure'))
 
 
 @settings_class
-class Initial(SettingsGroup):
+class Initial(StandaloneStart):
     """
-    Initial errors, added to the truth, resolved in East, North, Up.
+    The state at the start, and its errors.
 
-    The standard deviations are those that the covariances of ins/* begin with; the errors are
-    squared in.
+    The errors are added to the truth, resolved in East, North, Up. The standard deviations are
+    those that the covariances of ins/* begin with; the errors are squared in.
     """
 
     after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
@@ -37,6 +44,15 @@ class Initial(SettingsGroup):
     velocity_sigma_m_s: float = setting(0.0, 'that of the velocity, each axis', 'm/s', 0.0, 1e3)
     tilt_sigma_mrad: float = setting(0.0, 'that of the tilt, each axis', 'mrad', 0.0, 500.0)
     azimuth_sigma_mrad: float = setting(0.0, 'that of the azimuth', 'mrad', 0.0, 3142.0)
+
+    def check(self):
+        """Refuse values that the source of the start leaves unused."""
+        self.check_used()
+        given = [key for key in ('attitude_error_deg', 'velocity_error_m_s', 'position_error_m')
+                 if any(getattr(self, key))]
+        if given and self.source != 'truth':
+            raise ValueError(f'initial.{given[0]} is {list(getattr(self, given[0]))} and would '
+                             f'not be used with initial.source {self.source}; expected zeros')
 
 
 @settings_class
@@ -66,9 +82,15 @@ class StrapdownSettings(SettingsGroup):
     gyro: GyroFigures = group(GyroFigures)
     accelerometer: AccelerometerFigures = group(AccelerometerFigures)
     topics: Topics = group(Topics)
+    inputs: StandaloneInputs = group(StandaloneInputs)
+    units: SampleUnits = group(SampleUnits)
+    mounting: MountingAngles = group(MountingAngles)
+    alignment: AlignmentSettings = group(AlignmentSettings)
+    gaps: GapSettings = group(GapSettings)
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
-    input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output)',
-                         choices=OUTPUTS)
+    input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output). instant: '
+                         'the value at its stamp, as from most drivers; only without truth',
+                         choices=INPUTS)
     orientation: str = setting('quaternion', 'attitude algorithm: quaternion (exact), or by RK4 '
                                'the matrix of Poisson\'s equation or the Euler vector',
                                choices=('quaternion', 'poisson', 'euler_vector'))
@@ -83,3 +105,14 @@ class StrapdownSettings(SettingsGroup):
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
                             'anew from truth (reset) or end the node (stop)',
                             choices=('reset', 'stop'))
+
+    @property
+    def standalone(self):
+        """Whether the node needs no truth."""
+        return self.initial.source != 'truth'
+
+    def check(self):
+        """Refuse readings that the strapdown beside the truth does not take."""
+        if self.input not in OUTPUTS and not self.standalone:
+            raise ValueError(f'input is {self.input} and initial.source truth; expected one of '
+                             f'{", ".join(OUTPUTS)}, as imu_sensor sends them')

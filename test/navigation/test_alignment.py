@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from ins_sim import parameter_files, resources
 from ins_sim.core.attitude import angles, quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation import alignment, standstill
 from ins_sim.core.postprocessing import mounting
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.settings.catalogue import build
@@ -94,7 +94,7 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
     b_a = size[0] * np.array(force) / np.linalg.norm(force)
     b_g = size[1] * DEG_H * np.array(rate) / np.linalg.norm(rate)
     imu = resting(q_nb, lat, bias=(b_g, b_a))
-    still = alignment.find_standstill(imu, AlignmentSettings())
+    still = standstill.find_standstill(imu, AlignmentSettings())
     compass = alignment.gyrocompass(still, lat)
     tilt, azimuth = errors(compass.q_nb, q_nb)
     g = ellipsoid.gravity(math.sin(lat), 0.0)
@@ -135,7 +135,7 @@ def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
     squares, sizes = [], []
     for seed in range(200):
         imu = resting(q_nb, lat, count=2000, rate_hz=100.0, noise=(1e-5, 1e-3), seed=seed)
-        still = alignment.find_standstill(imu, AlignmentSettings())
+        still = standstill.find_standstill(imu, AlignmentSettings())
         compass = alignment.gyrocompass(still, lat)
         e = quaternion.logarithm(quaternion.multiply(compass.q_nb, quaternion.conjugate(q_nb)))[2]
         squares.append((e / compass.sigma) ** 2)
@@ -167,7 +167,7 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
                       for n in ('t_ns', 'omega', 'f'))
     truth = motion.at(t_ns)
     imu = RecordedImu(t_ns, omega, f, np.full((len(t_ns), 4), np.nan))
-    still = alignment.find_standstill(imu, AlignmentSettings(longest_s=120.0))
+    still = standstill.find_standstill(imu, AlignmentSettings(longest_s=120.0))
     lat = float(truth.lat[0])
     compass = alignment.gyrocompass(still, lat)
     assert alignment.is_trusted(compass, still, lat, math.radians(2.0))
@@ -197,7 +197,7 @@ def test_gyros_too_coarse_are_not_trusted(bias, trust):
     lat = math.radians(50.0)
     imu = resting((0.0, 0.0, 0.0, 1.0), lat, bias=(np.array([0.0, 0.0, bias * DEG_H]),
                                                    np.zeros(3)))
-    still = alignment.find_standstill(imu, AlignmentSettings())
+    still = standstill.find_standstill(imu, AlignmentSettings())
     compass = alignment.gyrocompass(still, lat)
     assert alignment.is_trusted(compass, still, lat, math.radians(2.0)) == trust
 
@@ -206,8 +206,8 @@ def test_the_bias_is_the_mean_rate_less_that_of_the_earth():
     """Exactly what was put in comes out, at any attitude."""
     lat, q_nb = -0.5, tuple(from_compass(2.0, 0.3, 4.0)[0].tolist())
     bias = np.array([1e-3, -2e-3, 3e-3])
-    still = alignment.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
-                                      AlignmentSettings())
+    still = standstill.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
+                                       AlignmentSettings())
     found = alignment.gyro_bias(still, q_nb, lat, OMEGA)
     assert np.abs(found - bias).max() < 1e-15
 
@@ -230,22 +230,22 @@ def test_the_standstill_is_found_where_it_is():
     """First one long enough, no longer than asked, and never a window that moves."""
     imu = moving([3.0, 4.0, 20.0, 5.0, 40.0])
     limits = AlignmentSettings()
-    still = alignment.find_standstill(imu, limits)
+    still = standstill.find_standstill(imu, limits)
     assert (still.start_ns, still.last - still.first) == (7_000_000_000, 1000)
-    assert alignment.find_standstill(imu, AlignmentSettings(longest_s=8.0)).windows == 8
-    assert alignment.find_standstill(imu, limits, longest=True).start_ns == 32_000_000_000
+    assert standstill.find_standstill(imu, AlignmentSettings(longest_s=8.0)).windows == 8
+    assert standstill.find_standstill(imu, limits, longest=True).start_ns == 32_000_000_000
     with pytest.raises(ValueError, match='no stationary interval of 50 s in 72 s: the longest '
                                          'has 40 s'):
-        alignment.find_standstill(imu, AlignmentSettings(shortest_s=50.0, longest_s=60.0))
+        standstill.find_standstill(imu, AlignmentSettings(shortest_s=50.0, longest_s=60.0))
 
 
 def test_uniform_motion_is_no_standstill_where_the_reference_moves():
     """No IMU tells rest from uniform motion; the speed of the reference does."""
     imu = moving([20.0])
     with pytest.raises(ValueError, match='in 20 quiet windows the reference moves faster'):
-        alignment.find_standstill(imu, AlignmentSettings(), lambda t: np.full(len(t), 11.0))
-    still = alignment.find_standstill(imu, AlignmentSettings(),
-                                      lambda t: np.where(t < 5e9, 11.0, np.nan))
+        standstill.find_standstill(imu, AlignmentSettings(), lambda t: np.full(len(t), 11.0))
+    still = standstill.find_standstill(imu, AlignmentSettings(),
+                                       lambda t: np.where(t < 5e9, 11.0, np.nan))
     assert still.start_ns == 5_000_000_000
 
 
@@ -253,7 +253,7 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
     """Turned in between within a gap: both sides are quiet, the means differ."""
     imu = moving([20.0])
     force = np.where((imu.t_ns >= 10_000_000_000)[:, None], [1.0, 0.0, 9.75], imu.f)
-    still = alignment.find_standstill(replace(imu, f=force), AlignmentSettings())
+    still = standstill.find_standstill(replace(imu, f=force), AlignmentSettings())
     assert still.windows == 10
 
 

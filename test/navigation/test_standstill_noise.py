@@ -9,8 +9,8 @@ from support.studies import settings as simulation
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment
-from ins_sim.core.navigation.alignment import standard_error
+from ins_sim.core.navigation import alignment, standstill
+from ins_sim.core.navigation.standstill import standard_error
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.postprocessing.navigate import navigate
@@ -49,7 +49,7 @@ def test_the_heading_of_fog_gyros_is_within_what_is_stated():
     """
     squares, largest = [], 0.0
     for seed in range(24):
-        still = alignment.find_standstill(fog(seed), AlignmentSettings())
+        still = standstill.find_standstill(fog(seed), AlignmentSettings())
         compass = alignment.gyrocompass(still, LAT, 1.0 * DEG_H)
         error = heading_error(compass.q_nb, (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)))
         squares.append((error / compass.sigma) ** 2)
@@ -117,7 +117,7 @@ def test_a_parked_vehicle_that_rocks(frequency_hz, noise):
     """
     ratios, sigmas = [], []
     for seed in range(40):
-        still = alignment.find_standstill(rocking(seed, frequency_hz, noise), AlignmentSettings())
+        still = standstill.find_standstill(rocking(seed, frequency_hz, noise), AlignmentSettings())
         compass = alignment.gyrocompass(still, LAT)
         error = heading_error(compass.q_nb, (0.0, 0.0, 0.0, 1.0))
         ratios.append(error / compass.sigma)
@@ -154,9 +154,9 @@ def test_noise_is_judged_by_its_rate(rate_hz):
                       [0.0, 0.0, 9.8] + 0.2 * rng.standard_normal((n, 3)), np.full((n, 4), np.nan))
     if rate_hz == 100.0:
         with pytest.raises(ValueError, match='no stationary interval'):
-            alignment.find_standstill(imu, AlignmentSettings())
+            standstill.find_standstill(imu, AlignmentSettings())
         return
-    still = alignment.find_standstill(imu, AlignmentSettings())
+    still = standstill.find_standstill(imu, AlignmentSettings())
     assert still.together == 20 and still.windows >= 5
     # 0.2 / sqrt(20), of 400 means a window
     assert still.force_sd == pytest.approx(0.2 / math.sqrt(20.0), rel=0.05)

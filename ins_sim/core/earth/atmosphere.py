@@ -32,6 +32,22 @@ def pressure(height):
     return found
 
 
+def pressure_height(static_pa):
+    """Return the height, m, at which the static pressure is static_pa > 0, Pa."""
+    at_base = SEA_LEVEL_PA
+    for k, (base, temperature, rate) in enumerate(LAYERS):
+        at_top = 0.0
+        if k + 1 < len(LAYERS):
+            at_top = at_base * _ratio(LAYERS[k + 1][0] - base, temperature, rate)
+        if static_pa > at_top:
+            break
+        at_base = at_top
+    fallen = log(static_pa / at_base)
+    if rate == 0.0:
+        return base - temperature / LAPSE * fallen
+    return base + temperature / rate * (exp(-rate / LAPSE * fallen) - 1.0)
+
+
 def _ratio(rise, temperature, rate):
     """Return the pressure after a rise in a layer over that at its base."""
     if rate == 0.0:

@@ -62,9 +62,9 @@ def uneven_increments(kind, last, now, dt, dt_last):
     """
     Return the rotation vector and the velocity increment of the interval that ends now.
 
-    kind: one of settings.navigate.INPUTS; last, now: (omega, f) at the stamps; dt, dt_last: this
-    interval and the one before, s.  Rate and force are taken to be straight lines in time.  Two
-    values at the ends of one interval have the cross products of twice their product with the
+    kind: one of settings.recorded_imu.INPUTS; last, now: (omega, f) at the stamps; dt, dt_last:
+    this interval and the one before, s.  Rate and force are taken to be straight lines in time.
+    Two values at the ends of one interval have the cross products of twice their product with the
     trapezoid; two means over unequal intervals those of the earlier one, scaled.
     """
     (w0, f0), (w1, f1) = last, now

@@ -1,5 +1,7 @@
 """The inertial navigator of a recorded IMU: any initial state, uneven intervals, gaps."""
 
+import copy
+
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.streams.faults import StreamFault
 from .increments import uneven_increments
@@ -12,7 +14,7 @@ class RecordedNavigator:
     """
     The strapdown of a recorded IMU, from an initial state at the first sample.
 
-    kind: one of settings.navigate.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
+    kind: one of settings.recorded_imu.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
     height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one;
     gravity: one of ``ellipsoid.GRAVITY_TERMS``.
     """
@@ -24,6 +26,18 @@ class RecordedNavigator:
         if time_constant_s is not None:
             self._channel, self._damping = DAMPED, damping(time_constant_s)
         self._strapdown = self._bridge_ns = None
+
+    @property
+    def solution(self):
+        """Return lat, lon, height, v_n, q_nb at the last sample."""
+        return self._strapdown.solution
+
+    def copy(self):
+        """Return a snapshot."""
+        other = copy.copy(self)
+        if self._strapdown is not None:
+            other._strapdown = self._strapdown.copy()
+        return other
 
     def bridge_next(self, step_ns):
         """

@@ -1,5 +1,6 @@
 """The heading at a standstill from the way that a reference goes afterwards."""
 
+from collections import deque
 import math
 
 import numpy as np
@@ -23,35 +24,84 @@ def navigated_headings(imu, state, kind, spin):
         yield sample[0], float(to_compass(np.array(nav.step(*sample)[4]))[2])
 
 
+class CourseSearch:
+    """
+    Finds the heading at a standstill from the ways that a reference goes afterwards.
+
+    Each way from stamp to stamp is turned back by what the heading has changed since the start;
+    the sum then points along the heading at the start, if the vehicle goes forwards.  The noise
+    of positions cancels in the sum but for that of its ends.
+
+    Parameters
+    ----------
+    start_ns : instant of the standstill's end
+    distance_m : length of the sum that is needed
+    search_s : time within which it must be reached
+    """
+
+    def __init__(self, start_ns, distance_m, search_s):
+        self._start_ns, self._distance_m, self._search_s = start_ns, distance_m, search_s
+        self._ways, self._parts = deque(), []
+        self._along = self._across = 0.0
+
+    def add(self, middle_ns, way):
+        """Take the next way: its middle, and (east, north), m."""
+        if middle_ns >= self._start_ns:
+            self._ways.append((middle_ns, way))
+
+    def is_over(self, t_ns):
+        """Return whether the time of the search is over at a stamp."""
+        return t_ns > self._start_ns + round(self._search_s * 1e9)
+
+    def turn(self, t_ns, turned):
+        """
+        Take the heading that a navigation from heading zero has at a stamp, rad.
+
+        All ways whose middle is up to there must have been added. Returns the heading at the
+        start, rad, and how it was found, or None.
+        """
+        while self._ways and self._ways[0][0] <= t_ns:
+            _, (east, north) = self._ways.popleft()
+            s, c = elementary.sincos(turned)
+            part = north * c + east * s, east * c - north * s
+            self._parts.append(part)
+            self._along, self._across = self._along + part[0], self._across + part[1]
+        along, across, way = self._along, self._across, self.way
+        if way < self._distance_m:
+            return None
+        aside = np.array([(b * along - a * across) / way for a, b in self._parts])
+        self.scatter = length(aside) / way
+        return elementary.atan2(across, along), (
+            f'over {way:.1f} m until {(t_ns - self._start_ns) * 1e-9:.1f} s after the start, '
+            f'scatter {math.degrees(self.scatter):.2g} deg')
+
+    @property
+    def way(self):
+        """Return the length of the sum so far, m."""
+        return math.sqrt(self._along * self._along + self._across * self._across)
+
+    def describe(self):
+        """Return why nothing was found."""
+        return (f'moves {self.way:.3g} m on one course within {self._search_s:g} s '
+                f'(alignment.course_distance_m {self._distance_m:g})')
+
+
 def find_course(turning, displacements, start_ns, distance_m, search_s):
     """
     Return the heading at the start, rad, and how it was found; or None and why not.
 
     turning: of ``navigated_headings`` from heading zero; displacements: of
-    Reference.displacements.  Each way from stamp to stamp is turned back by what the heading has
-    changed since the start; the sum then points along the heading at the start, if the vehicle
-    goes forwards.  The noise of positions cancels in the sum but for that of its ends.
+    Reference.displacements; the others as of CourseSearch.
     """
     if displacements is None:
         return None, 'has no way to show a course'
-    middles, ways = displacements
-    j = int(np.searchsorted(middles, start_ns))
-    along, across, parts = 0.0, 0.0, []
+    search = CourseSearch(start_ns, distance_m, search_s)
+    for middle_ns, way in zip(*displacements):
+        search.add(middle_ns, way)
     for t_ns, turned in turning:
-        if t_ns > start_ns + round(search_s * 1e9):
+        if search.is_over(t_ns):
             break
-        while j < len(middles) and middles[j] <= t_ns:
-            east, north = ways[j]
-            s, c = elementary.sincos(turned)
-            parts.append((north * c + east * s, east * c - north * s))
-            along, across = along + parts[-1][0], across + parts[-1][1]
-            j += 1
-        way = math.sqrt(along * along + across * across)
-        if way >= distance_m:
-            aside = np.array([(b * along - a * across) / way for a, b in parts])
-            scatter = math.degrees(length(aside) / way)
-            return elementary.atan2(across, along), (
-                f'over {way:.1f} m until {(t_ns - start_ns) * 1e-9:.1f} s after the start, '
-                f'scatter {scatter:.2g} deg')
-    return None, (f'moves {math.sqrt(along * along + across * across):.3g} m on one course within '
-                  f'{search_s:g} s (alignment.course_distance_m {distance_m:g})')
+        found = search.turn(t_ns, turned)
+        if found is not None:
+            return found
+    return None, search.describe()

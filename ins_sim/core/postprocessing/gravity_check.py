@@ -12,13 +12,13 @@ _GUESSES = ((1.0, 'is it in g?', 'units.force:=g reads it so; '),
 _PART = 0.15
 
 
-def check_gravity(still, limit):
+def check_gravity(force, limit):
     """
-    Raise ValueError where the mean specific force of a Standstill is not that of gravity.
+    Raise ValueError where the mean specific force at rest, (3,), is not that of gravity.
 
     limit: what its length may differ from 9.8 m/s^2 by.
     """
-    force = length(still.force)
+    force = length(force)
     if abs(force - STANDARD_GRAVITY) <= limit:
         return
     what, way = next((guess for size, *guess in _GUESSES if abs(force - size) <= _PART * size),

@@ -9,17 +9,12 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation import alignment, standstill
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
-from ins_sim.core.numerics.units import DEG_PER_HOUR
 from .course import find_course, navigated_headings
 from .gravity_check import check_gravity, LEAST_FORCE
-from .reference import LONGEST_STEP_S
-
-# a vehicle that stands is not tilted by more, deg
-UPRIGHT_DEG = 45.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +95,7 @@ class _Search:
         if self._s.alignment.gyro_bias == 'subtract':
             still = self._standstill(0, k, 'a standstill before the start, or '
                                      'alignment.gyro_bias keep', longest=True)
-            notes.append(_described(still))
+            notes.append(still.describe())
             q_still = None
             if self._reference is not None:
                 q_still = self._reference.attitude_at(still.end_ns)
@@ -111,16 +106,16 @@ class _Search:
     def _judge_gravity(self, first, last):
         """Refuse a specific force that is not that of rest, where the IMU is at rest at all."""
         try:
-            still = alignment.find_standstill(self._imu[first:last], self._s.alignment,
-                                              self._speed_at)
+            still = standstill.find_standstill(self._imu[first:last], self._s.alignment,
+                                               self._speed_at)
         except ValueError:
             return
-        check_gravity(still, self._s.alignment.gravity_m_s2)
+        check_gravity(still.force, self._s.alignment.gravity_m_s2)
 
     def _standstill(self, first, last, expected, longest=False):
         try:
-            return alignment.find_standstill(self._imu[first:last], self._s.alignment,
-                                             self._speed_at, longest)
+            return standstill.find_standstill(self._imu[first:last], self._s.alignment,
+                                              self._speed_at, longest)
         except ValueError as error:
             raise ValueError(f'{error}; expected {expected}') from None
 
@@ -157,11 +152,7 @@ class _Search:
             raise ValueError(f'the latitude is unknown, for {self._without_position}; expected '
                              'initial.position given with initial.latitude_deg, longitude_deg '
                              'and height_m')
-        p = track.at([t_ns])[0]
-        if np.isnan(p).any() and near:
-            j = int(np.argmin(np.abs(track.t_ns - t_ns)))
-            if abs(int(track.t_ns[j]) - t_ns) <= LONGEST_STEP_S * 1e9:
-                p = track.values[j]
+        p = track.near(t_ns) if near else track.at([t_ns])[0]
         if np.isnan(p).any():
             raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has it '
                               f'from {seconds(track.t_ns[0])} to {seconds(track.t_ns[-1])}; '
@@ -188,8 +179,8 @@ class _Search:
         still = self._standstill(first, last, 'a standstill, other alignment.* limits, or '
                                  'initial.attitude given, reference or imu')
         k = first + still.last - 1
-        notes = [_described(still)]
-        check_gravity(still, limits.gravity_m_s2)
+        notes = [still.describe()]
+        check_gravity(still.force, limits.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
             raise ValueError('the mean specific force at rest is zero, so that it does not show '
                              'up; expected initial.attitude given, reference or imu')
@@ -212,10 +203,8 @@ class _Search:
         figures.update(roll_deg=roll, pitch_deg=pitch, heading_deg=heading)
         notes.append(f'start at {seconds(still.end_ns)}: roll {roll:.3f}, pitch {pitch:.3f}, '
                      f'heading {heading:.3f} deg')
-        if max(abs(roll), abs(pitch)) > UPRIGHT_DEG:
-            notes.append('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or '
-                         'mounting.source level) Or does it measure gravity instead of specific '
-                         'force, which points up at rest?')
+        if max(abs(roll), abs(pitch)) > alignment.UPRIGHT_DEG:
+            notes.append(alignment.TILTED)
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):
@@ -226,17 +215,12 @@ class _Search:
                 still.force, math.radians(self._s.initial.heading_deg)), False
         refused = 'the Earth does not turn (earth.rotation)'
         if wanted in ('auto', 'gyrocompass', 'given') and self._spin:
-            compass = alignment.gyrocompass(still, where[0],
-                                            self._s.alignment.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
-            worst = math.radians(self._s.alignment.heading_sigma_deg)
-            seen = compass.describe()
-            if alignment.is_trusted(compass, still, where[0], worst):
-                notes.append(f'heading by gyrocompassing: {seen}')
+            compass, refused = alignment.trusted_gyrocompass(still, where[0], self._s.alignment)
+            if compass is not None:
+                notes.append(f'heading by gyrocompassing: {compass.describe()}')
                 figures.update(heading_source='gyrocompass',
                                heading_sigma_deg=math.degrees(compass.sigma))
                 return compass.q_nb, True
-            refused = (f'the gyros are too coarse to see the Earth turn ({seen}; expected at most '
-                       f'{self._s.alignment.heading_sigma_deg:g} deg)')
         if wanted == 'gyrocompass':
             raise ValueError(f'{refused}; expected another initial.heading than gyrocompass')
         heading, source = self._reference_heading(still, k, where, wanted, refused)
@@ -285,14 +269,6 @@ class _Search:
 
     def _bias(self, still, q_nb, lat, notes, figures):
         bias = alignment.gyro_bias(still, q_nb, lat, self._spin)
-        text = ', '.join(f'{b * DEG_PER_HOUR:.4g}' for b in bias)
-        notes.append(f'gyro bias of the standstill taken off: {text} deg/h in base_link')
+        notes.append(alignment.bias_sentence(bias))
         figures['gyro_bias_rad_s'] = bias.tolist()
         return bias
-
-
-def _described(still):
-    return (f'stationary from {seconds(still.start_ns)} for '
-            f'{(still.end_ns - still.start_ns) * 1e-9:.3f} s: standard deviation '
-            f'{still.force_sd:.3g} m/s^2 and {still.rate_sd:.3g} rad/s in {still.windows} windows'
-            + (f', of means over {still.together} samples' if still.together > 1 else ''))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation import standstill
 from ins_sim.core.navigation.recorded import RecordedLoop, RecordedNavigator
 from ins_sim.core.navigation.strapdown import runs_away
 from ins_sim.core.numerics.instants import seconds
@@ -119,8 +119,8 @@ def _mounting(settings, sources, imu, first, notes):
     wanted = settings.mounting
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
-        still = alignment.find_standstill(imu[first:], settings.alignment)
-        check_gravity(still, settings.alignment.gravity_m_s2)
+        still = standstill.find_standstill(imu[first:], settings.alignment)
+        check_gravity(still.force, settings.alignment.gravity_m_s2)
         notes.append('mounting: levelled by the specific force of the standstill')
         return mounting.levelled_mounting(still.force, yaw)
     if wanted.source == 'tf' or wanted.source == 'auto' and not any(wanted.rpy_deg):

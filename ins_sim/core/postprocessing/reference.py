@@ -40,6 +40,15 @@ class SampledTrack:
         held |= (part[:, 0] == 0.0) | (part[:, 0] == 1.0)
         return np.where(held[:, None], value, np.nan)
 
+    def near(self, t_ns):
+        """Return the values at a stamp, or the nearest within LONGEST_STEP_S, (k,), or NaN."""
+        p = self.at([t_ns])[0]
+        if np.isnan(p).any():
+            j = int(np.argmin(np.abs(self.t_ns - t_ns)))
+            if abs(int(self.t_ns[j]) - t_ns) <= LONGEST_STEP_S * 1e9:
+                return self.values[j]
+        return p
+
 
 @dataclass(frozen=True, eq=False)
 class Reference:

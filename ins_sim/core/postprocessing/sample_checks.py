@@ -21,7 +21,7 @@ def checked_samples(imu, stamps, zero_readings):
     """
     imu, notes = stamped_samples(imu, stamps)
     imu = _without_spikes(imu, notes)
-    return _without_zeros(imu, zero_readings, notes), notes
+    return without_zeros(imu, zero_readings, notes), notes
 
 
 def stamped_samples(imu, stamps):
@@ -93,8 +93,12 @@ def _without_spikes(imu, notes):
     return imu[~_spikes(imu)]
 
 
-def _without_zeros(imu, zero_readings, notes):
-    """Return the samples where rates and forces are not zero in turns."""
+def without_zeros(imu, zero_readings, notes):
+    """
+    Return the samples where rates and forces are not zero in turns.
+
+    zero_readings and errors as of ``checked_samples``; notes: list that takes what was done.
+    """
     no_force, in_part = _zero_forces(imu)
     if zero_readings == 'keep' or not in_part:
         return imu

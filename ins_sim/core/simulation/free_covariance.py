@@ -26,20 +26,44 @@ def sigmas_of(settings):
             triad_sigmas(settings.accelerometer.errors, dt_s, 'accelerometer.errors'))
 
 
-def free_covariance(settings, show=None):
+class StartSigmas(NamedTuple):
+    """
+    Standard deviations at a start.
+
+    position, velocity: of each axis, m and m/s; tilt, azimuth: rad; gyro_bias: of each axis,
+    rad/s, or None for that of the settings.
+    """
+
+    position: float
+    velocity: float
+    tilt: float
+    azimuth: float
+    gyro_bias: float | None = None
+
+
+def initial_sigmas(initial):
+    """Return the StartSigmas of the settings of the start."""
+    return StartSigmas(initial.position_sigma_m, initial.velocity_sigma_m_s,
+                       1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad)
+
+
+def free_covariance(settings, show=None, start=None, dt_s=None):
     """
     Return the FreeCovariance of StrapdownSettings: of its initial errors and its instruments.
 
-    show: as of FreeCovariance.  Raises ValueError where the figures of the instruments are none.
+    show: as of FreeCovariance; start: StartSigmas, by default those of the settings; dt_s:
+    sampling period, by default that of rate_hz.  Raises ValueError where the figures of the
+    instruments are none.
     """
     initial, channel = settings.initial, settings.vertical.channel
     gyro, accelerometer = sigmas_of(settings)
-    tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
+    start = start or initial_sigmas(initial)
+    position, velocity, tilt, azimuth, bias = start
+    gyro_bias = gyro.bias if bias is None else (bias * bias,) * 3
     errors = (*initial.position_error_m, *initial.velocity_error_m_s,
               *map(math.radians, initial.attitude_error_deg))
-    sigmas = ((initial.position_sigma_m,) * 3 + (initial.velocity_sigma_m_s,) * 3
-              + (tilt, tilt, azimuth))
-    variances = (*np.square(sigmas).tolist(), *accelerometer.bias, *gyro.bias,
+    sigmas = (position,) * 3 + (velocity,) * 3 + (tilt, tilt, azimuth)
+    variances = (*np.square(sigmas).tolist(), *accelerometer.bias, *gyro_bias,
                  *accelerometer.scale, *gyro.scale, *accelerometer.misalignment,
                  *gyro.misalignment)
     densities = ((0.0,) * 3 + accelerometer.white + gyro.white + accelerometer.walk + gyro.walk
@@ -49,7 +73,7 @@ def free_covariance(settings, show=None):
         (fixed_errors(settings.accelerometer.errors), fixed_errors(settings.gyro.errors)),
         ellipsoid.rotation_rate(settings.earth.rotation), channel == 'truth',
         damping(settings.vertical.time_constant_s)[:2] if channel == 'damped' else (0.0, 0.0),
-        period_ns(settings.rate_hz) * 1e-9, show)
+        dt_s or period_ns(settings.rate_hz) * 1e-9, show)
 
 
 def disagreement(settings, stated):
@@ -87,9 +111,14 @@ class PublishedCovariance(NamedTuple):
     place: tuple
 
 
-def published_covariance(settings):
-    """Return the FreeCovariance of StrapdownSettings that shows a PublishedCovariance."""
-    frame, (gyro, _) = MapFrame(settings.datum, settings.earth.rotation), sigmas_of(settings)
+def published_covariance(settings, frame=None, start=None, dt_s=None):
+    """
+    Return the FreeCovariance of StrapdownSettings that shows a PublishedCovariance.
+
+    frame: MapFrame, by default that of the datum; the others as of ``free_covariance``.
+    """
+    frame = frame or MapFrame(settings.datum, settings.earth.rotation)
+    gyro, _ = sigmas_of(settings)
     sample = np.diag(gyro.sample)
 
     def show(free):
@@ -107,7 +136,7 @@ def published_covariance(settings):
                                    tuple((free.p[BG, BG] + sample).ravel().tolist()),
                                    tuple(p[:3, :3].ravel().tolist()))
 
-    return free_covariance(settings, show)
+    return free_covariance(settings, show, start, dt_s)
 
 
 def _carried(a, p):

@@ -38,16 +38,20 @@ class NavigatorNode(StageNode):
 
     def make_outputs(self):
         """Make publishers, readers, writers and the queue of truth."""
-        self._imu_reader = PlausibleReader(topics.IMU_RAW)
-        # the rate of the body is not needed: pose and velocity only
-        self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
+        self._imu_reader = PlausibleReader(self.DRIVER)
         self._outputs = [(qos.make_publisher(self, topic, self.depth),
                           topic.named(self.names).writer().pack) for topic in self.PUBLISHED]
+        self.make_queues()
+        self._patience = Patience(self, self.waits, self.progress, self.take, self.miss,
+                                  self._settle)
+
+    def make_queues(self):
+        """Make the queue of truth."""
+        # the rate of the body is not needed: pose and velocity only
+        self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
         # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
         # message would cost a cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
-        self._patience = Patience(self, self.waits, self.progress, self.take, self.miss,
-                                  self._settle)
 
     def hand_queues(self):
         """Return the queue of truth."""
@@ -63,13 +67,22 @@ class NavigatorNode(StageNode):
         """Return the instant of a reading by its stamp, motion time."""
         return stamp_ns
 
+    def read_imu(self, data):
+        """Return instant, rate and specific force of a message, or None after a report."""
+        sample = self.read(self._imu_reader, data)
+        return None if sample is None else (self.instant(sample[0]), *sample[1:])
+
     def on_message(self, data):
         """Give one IMU message to the navigator, and what it waits for."""
-        sample = self.read(self._imu_reader, data)
+        sample = self.read_imu(data)
         if sample is None:
             return
-        sample = (self.instant(sample[0]), *sample[1:])
         self._newest_ns = sample[0]
+        self.push_reading(sample, data)
+        self._patience.wait()
+
+    def push_reading(self, sample, data):
+        """Give one reading to the navigator, and what it waits for."""
         if len(self._readings) > self.depth:
             # of readings that are refused, none is ever needed
             self._readings.clear()
@@ -77,7 +90,6 @@ class NavigatorNode(StageNode):
         # the rest first: it may have jumped back as the IMU is about to
         self.take()
         self.publish(self.push(self.stage.push_imu, sample))
-        self._patience.wait()
 
     def waits(self):
         """Return whether something has to come before what was taken is done."""

@@ -49,8 +49,7 @@ class StageNode(Node):
         self._ack_publisher = qos.ack_publisher(self)
         self._last_stamp = self._seen_ns = None
         self.monitor = Monitor(self, self.DRIVER.name, max(2.0, 5.0 / self.settings.rate_hz))
-        self._announced = AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced,
-                                       self._give_held)
+        self._announced = self.make_announced()
         self.broadcaster = self.make_broadcaster()
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
@@ -66,6 +65,10 @@ class StageNode(Node):
         if self.SETTINGS.SETTABLE:
             LiveParameters(self)
         self.get_logger().info(told(self.NAME, self.settings))
+
+    def make_announced(self):
+        """Return the AnnouncedRun, or Unannounced."""
+        return AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced, self._give_held)
 
     @property
     def knows_run(self):
@@ -182,5 +185,9 @@ class StageNode(Node):
 
     def _on_reset(self, request, response):
         self.start_anew()
-        response.success, response.message = True, 'started anew'
+        response.success, response.message = True, self.describe_reset()
         return response
+
+    def describe_reset(self):
+        """Return the answer to ~/reset."""
+        return 'started anew'

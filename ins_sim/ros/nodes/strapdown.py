@@ -1,5 +1,8 @@
 """Node strapdown: readings of an IMU in, navigation solution and its errors out."""
 
+from std_srvs.srv import Trigger
+
+from ins_sim.core.attitude import quaternion
 from ins_sim.core.navigation.live import Navigator
 from ins_sim.core.navigation.sample_clock import SampleClock
 from ins_sim.core.numerics.instants import period_ns
@@ -10,13 +13,18 @@ from ins_sim.messages.convert import fix_one, ins_odometry_one, odometry_one, or
 from ins_sim.messages.imu_data import with_orientation
 from ins_sim.messages.placements import INS_FIXED, INS_MOVES
 from ins_sim.settings.strapdown import StrapdownSettings
+from ..process.announced import Unannounced
 from ..transport import qos
 from ..transport.broadcaster import Broadcaster
 from .following import NavigatorNode
 
 
 class StrapdownNode(NavigatorNode):
-    """Reads imu/data_raw and truth/odometry, publishes ins/odometry, ins/fix, ins/error/*."""
+    """
+    Reads imu/data_raw and truth/odometry, publishes ins/odometry, ins/fix, ins/error/*.
+
+    With another initial.source than truth it needs none, and publishes no errors: StandaloneDrive.
+    """
 
     NAME = 'strapdown'
     SETTINGS = StrapdownSettings
@@ -29,12 +37,45 @@ class StrapdownNode(NavigatorNode):
     def make_navigator(self):
         """Return the navigator."""
         self._sample_clock = SampleClock(self.settings, period_ns(self.settings.rate_hz))
+        self._drive = None
+        if self.settings.standalone:
+            self._drive = self._make_drive()
+            return self._drive.stage
         return Navigator(self.settings, self.settings.topics.depth,
                          published_covariance(self.settings))
 
+    def _make_drive(self):
+        # Imported lazily: a strapdown beside the truth starts faster without it.
+        from .standalone import StandaloneDrive
+        drive = StandaloneDrive(self)
+        self.epoch_ns = 0
+        self.DRIVER, self.PUBLISHED = drive.driver, (topics.INS_ODOMETRY, topics.INS_FIX)
+        return drive
+
+    def make_announced(self):
+        """Return the AnnouncedRun; without truth the stamps are all there is of time."""
+        return super().make_announced() if self._drive is None else Unannounced()
+
+    def make_queues(self):
+        """Make the queues of what comes beside the IMU."""
+        (super() if self._drive is None else self._drive).make_queues()
+
+    def hand_queues(self):
+        """Return them by the names of their topics."""
+        return super().hand_queues() if self._drive is None else self._drive.queues
+
+    def take(self):
+        """Take what has come beside the readings."""
+        (super() if self._drive is None else self._drive).take()
+
+    def publish(self, outputs):
+        """Publish solutions, and report what ended them."""
+        (super() if self._drive is None else self._drive).publish(outputs)
+
     def make_outputs(self):
-        """Make publishers, that of imu/data too if it is asked for."""
+        """Make publishers, that of imu/data too if it is asked for, and the service ~/align."""
         super().make_outputs()
+        self.create_service(Trigger, '~/align', self._on_align)
         self._imu_data, self._compared = None, False
         if self.settings.imu_data:
             self._imu_data = qos.make_publisher(self, topics.IMU_DATA, self.depth)
@@ -50,6 +91,26 @@ class StrapdownNode(NavigatorNode):
             self._compare(data)
         super().on_message(data)
 
+    def push_reading(self, sample, data):
+        """Give one reading to the navigator, and what it waits for."""
+        if self._drive is None:
+            super().push_reading(sample, data)
+        else:
+            self._drive.on_message(data, sample)
+
+    def _on_align(self, request, response):
+        if self._drive is None:
+            response.success, response.message = False, (
+                'initial.source is truth, from which the solution starts; expected alignment: '
+                'nothing is aligned')
+        else:
+            response.success, response.message = self.stage.align()
+        return response
+
+    def describe_reset(self):
+        """Return the answer to ~/reset."""
+        return (super() if self._drive is None else self._drive).describe_reset()
+
     def _compare(self, data):
         try:
             _, rate, force = Reader(topics.IMU, ((16, 25), (28, 37))).read(data)
@@ -61,7 +122,9 @@ class StrapdownNode(NavigatorNode):
             self.get_logger().warning(sentence)
 
     def messages(self, rate, solution, errors, known):
-        """Return the runs of each topic."""
+        """Return the runs of each topic; of a place that is not known in map, no fix."""
+        if self._drive is not None and not self.stage.located:
+            return (ins_odometry_one(self.frame, solution, rate, known),)
         return (ins_odometry_one(self.frame, solution, rate, known),
                 (fix_one(solution), known.place), *((e,) for e in errors))
 
@@ -71,5 +134,8 @@ class StrapdownNode(NavigatorNode):
         if self._imu_data is not None and self.reading is not None \
                 and self._imu_data.get_subscription_count():
             pose, _ = odometry_one(self.frame, solution, rate)
-            self._imu_data.publish(with_orientation(self.reading, stamp_ns,
-                                                    *orientation_one(pose, known)))
+            q, covariance = orientation_one(pose, known)
+            if self._drive is not None:
+                # of the frame of the IMU
+                q = quaternion.multiply(q, self.stage.q_bs)
+            self._imu_data.publish(with_orientation(self.reading, stamp_ns, q, covariance))

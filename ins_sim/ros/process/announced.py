@@ -16,6 +16,16 @@ PATIENCE_S = 30.0
 LATER_NS = 10_000_000_000
 
 
+class Unannounced:
+    """In the place of AnnouncedRun for a node that asks for no run: motion time is the stamp."""
+
+    run = UNANNOUNCED
+
+    def holds(self, data):
+        """Return that no message has to wait."""
+        return False
+
+
 class AnnouncedRun:
     """
     Epoch and end of the run of a node, which it learns and never sets.

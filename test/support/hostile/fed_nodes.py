@@ -244,6 +244,8 @@ class FedNodes:
         broadcaster = getattr(node, 'broadcaster', None)
         if broadcaster is not None and broadcaster.queue is not None:
             self.bus.join(broadcaster.queue, topics.TF.name, False)
+        if getattr(node, '_drive', None) is not None and node._drive._static is not None:
+            self.bus.join(node._drive._static, topics.TF_STATIC.name, False)
         if getattr(node, '_acks', None) is not None:
             self.bus.join(node._acks, topics.ACK.name, False)
 

@@ -1,0 +1,278 @@
+"""
+A standstill in the samples of an IMU: windows whose scatter is small and whose means agree.
+
+The windows are counted from the first sample, so that samples that come one by one have the same
+windows as a recording of all of them (``StandstillSearch``).
+"""
+
+from dataclasses import dataclass
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ins_sim.core.numerics.elementary import sincos
+from ins_sim.core.numerics.fixed_order import length
+from ins_sim.core.numerics.instants import seconds
+
+# A window of fewer samples has no variance to speak of.
+FEWEST = 5
+# The standard deviation of a standstill is that of means over at least 1 / BAND_HZ, s.
+BAND_HZ = 400.0
+# Of a shorter standstill the power at so many frequencies is taken all the same.
+FEWEST_FREQUENCIES = 3
+
+
+@dataclass(frozen=True)
+class Standstill:
+    """
+    A stationary interval: samples first to last (not included) of a record.
+
+    start_ns, end_ns: stamps of the first and the last sample; force, rate (3,): means, m/s^2 and
+    rad/s; force_sd, rate_sd: mean standard deviation of an axis within a window, of means over
+    ``together`` samples; rate_error (3,): standard error of the mean rate, ``standard_error``;
+    windows: how many.
+    """
+
+    first: int
+    last: int
+    start_ns: int
+    end_ns: int
+    force: np.ndarray
+    rate: np.ndarray
+    force_sd: float
+    rate_sd: float
+    rate_error: np.ndarray
+    windows: int
+    together: int = 1
+
+    def describe(self):
+        """Return where it lies and how still it is."""
+        return (f'stationary from {seconds(self.start_ns)} for '
+                f'{(self.end_ns - self.start_ns) * 1e-9:.3f} s: standard deviation '
+                f'{self.force_sd:.3g} m/s^2 and {self.rate_sd:.3g} rad/s in {self.windows} '
+                'windows' + (f', of means over {self.together} samples' if self.together > 1
+                             else ''))
+
+
+class StillWindow(NamedTuple):
+    """
+    Samples first to last (not included) of a record, of a length of time.
+
+    middle_ns: its instant; full: whether it has most of its samples; force, rate (3,): means;
+    force_sd, rate_sd: standard deviations, mean of the axes; moving: whether a reference that
+    measures velocity moves.
+    """
+
+    first: int
+    last: int
+    middle_ns: int
+    full: bool
+    force: np.ndarray
+    rate: np.ndarray
+    force_sd: float
+    rate_sd: float
+    moving: bool = False
+
+
+class WindowMoments:
+    """
+    Counts, means and standard deviations of the windows of a record.
+
+    step_ns: typical step of the stamps; windows are counted from the first stamp.
+    """
+
+    def __init__(self, imu, step_ns, length_ns):
+        index = (imu.t_ns - imu.t_ns[0]) // length_ns
+        self.first = np.flatnonzero(np.diff(index, prepend=-1))
+        self.last = np.append(self.first[1:], len(imu))
+        self.count = self.last - self.first
+        self.full = self.count >= max(FEWEST, 0.5 * length_ns / step_ns)
+        self.together = together_at(step_ns)
+        self.force, self.force_sd = self._moments(imu.f)
+        self.rate, self.rate_sd = self._moments(imu.omega)
+        self.middle_ns = (imu.t_ns[self.first] + imu.t_ns[self.last - 1]) // 2
+
+    def _moments(self, x):
+        count = self.count[:, None]
+        mean = np.add.reduceat(x, self.first) / count
+        off, first = x - np.repeat(mean, self.count, axis=0), self.first
+        if self.together > 1:
+            off, first, count = self._grouped(off)
+        variance = np.add.reduceat(off * off, first) / np.maximum(count - 1, 1)
+        return mean, np.sqrt((variance[:, 0] + variance[:, 1] + variance[:, 2]) / 3.0)
+
+    def _grouped(self, off):
+        """
+        Return the means of ``together`` samples each, where the windows begin, and their counts.
+
+        Those that are left at the end of a window make a mean of their own.
+        """
+        within = np.arange(len(off)) - np.repeat(self.first, self.count)
+        start = np.flatnonzero(within % self.together == 0)
+        size = np.diff(np.append(start, len(off)))[:, None]
+        counts = -(-self.count // self.together)
+        first = np.append(0, np.cumsum(counts)[:-1])
+        return np.add.reduceat(off, start) / size, first, counts[:, None]
+
+    def each(self, moving):
+        """Yield the StillWindows; moving (n,): of a reference."""
+        for values in zip(self.first.tolist(), self.last.tolist(), self.middle_ns.tolist(),
+                          self.full.tolist(), self.force, self.rate, self.force_sd.tolist(),
+                          self.rate_sd.tolist(), moving.tolist()):
+            yield StillWindow(*values)
+
+
+def together_at(step_ns):
+    """
+    Return over how many samples means are taken before their scatter is judged.
+
+    The limits hold for the motion of a vehicle; white noise grows with the rate.
+    """
+    return max(1, math.floor(1e9 / step_ns / BAND_HZ))
+
+
+def window_length_ns(limits, step_ns):
+    """Return the length of a window; limits: AlignmentSettings."""
+    return max(round(limits.window_s * 1e9), round(2 * FEWEST * step_ns))
+
+
+class StandstillSearch:
+    """
+    Finds runs of quiet windows that are long enough, window by window.
+
+    limits: AlignmentSettings; length_ns: of a window.  run: the windows of the run under way;
+    moved: why the last one has ended, '' if it was long enough.
+    """
+
+    def __init__(self, limits, length_ns):
+        self._limits, self.length_s = limits, length_ns * 1e-9
+        self.needed = math.ceil(limits.shortest_s / self.length_s - 1e-9)
+        self._used = max(self.needed, math.floor(limits.longest_s / self.length_s + 1e-9))
+        self.run, self.moved = [], ''
+        self._best = self._full = self._quiet_moving = 0
+        self._quietest = None
+
+    def take(self, window):
+        """Take the next window; return the run that ends with it or before it, or None."""
+        self._note(window)
+        still, found = self._is_quiet(window) and not window.moving, None
+        if self.run and not (still and self._joins(window)):
+            found = self.end()
+            self.moved = '' if found else self._why(window)
+        if still or self.run:
+            self.run.append(window)
+        if len(self.run) == self._used:
+            found = self.end()
+        return found
+
+    def end(self):
+        """End the run under way; return it if it is long enough, or None."""
+        run, self.run = self.run, []
+        self._best = max(self._best, len(run))
+        return run if len(run) >= self.needed else None
+
+    def _is_quiet(self, window):
+        limits = self._limits
+        return (window.full and window.force_sd <= limits.force_sd_m_s2
+                and window.rate_sd <= limits.rate_sd_rad_s
+                and length(window.rate) <= limits.rate_rad_s)
+
+    def _joins(self, window):
+        """Return whether a window points the same way as those of the run."""
+        turned, changed = self._off_run(window)
+        return turned <= self._limits.force_sd_m_s2 and changed <= self._limits.rate_sd_rad_s
+
+    def _off_run(self, window):
+        return (np.abs(window.force - np.array([w.force for w in self.run]).mean(axis=0)).max(),
+                np.abs(window.rate - np.array([w.rate for w in self.run]).mean(axis=0)).max())
+
+    def _note(self, window):
+        self._full += window.full
+        self._quiet_moving += window.moving and self._is_quiet(window)
+        best = self._quietest
+        if best is None or window.full and not (best.full and best.force_sd <= window.force_sd):
+            self._quietest = window
+
+    def _why(self, window):
+        limits = self._limits
+        return (f'the vehicle has moved at {seconds(window.middle_ns)}: standard deviation '
+                f'{window.force_sd:.3g} m/s^2 (limit {limits.force_sd_m_s2:g}) and '
+                f'{window.rate_sd:.3g} rad/s (limit {limits.rate_sd_rad_s:g}), mean rate '
+                f'{length(window.rate):.3g} rad/s (limit {limits.rate_rad_s:g})')
+
+    def describe(self):
+        """Return why nothing was found, after at least one window."""
+        limits, quietest = self._limits, self._quietest
+        what = (f'no stationary interval of {limits.shortest_s:g} s in '
+                f'{self._full * self.length_s:g} s: the longest has '
+                f'{self._best * self.length_s:g} s, the quietest window, at '
+                f'{seconds(quietest.middle_ns)}, a standard deviation of '
+                f'{quietest.force_sd:.3g} m/s^2 (limit {limits.force_sd_m_s2:g}) and '
+                f'{quietest.rate_sd:.3g} rad/s (limit {limits.rate_sd_rad_s:g})')
+        if self._quiet_moving:
+            what += (f', and in {self._quiet_moving} quiet windows the reference moves faster '
+                     f'than {limits.speed_m_s:g} m/s')
+        return what
+
+
+def find_standstill(imu, limits, speed_at=None, longest=False):
+    """
+    Return the first (or the longest) Standstill of a RecordedImu.
+
+    limits: AlignmentSettings; speed_at: function of stamps (n,) that returns the speed of a
+    reference, m/s, NaN where unknown.  Raises ValueError, saying what was found, where no run of
+    quiet windows is long enough.
+    """
+    if len(imu) < 2 * FEWEST:
+        raise ValueError(f'{len(imu)} samples are too few to find a standstill in')
+    step_ns = imu.step_ns
+    length_ns = window_length_ns(limits, step_ns)
+    windows, search, found = WindowMoments(imu, step_ns, length_ns), StandstillSearch(
+        limits, length_ns), None
+    moving = np.zeros(len(windows.first), dtype=bool)
+    if speed_at is not None:
+        moving = np.nan_to_num(speed_at(windows.middle_ns)) > limits.speed_m_s
+    for run in (*map(search.take, windows.each(moving)), search.end()):
+        if run is not None and not longest:
+            return standstill_of(imu, run, windows.together)
+        if run is not None and (found is None or len(run) >= len(found)):
+            found = run
+    if found is not None:
+        return standstill_of(imu, found, windows.together)
+    raise ValueError(search.describe())
+
+
+def standstill_of(imu, run, together):
+    """Return the Standstill of a run of StillWindows of a RecordedImu."""
+    first, last = run[0].first, run[-1].last
+    return Standstill(
+        first, last, int(imu.t_ns[first]), int(imu.t_ns[last - 1]),
+        imu.f[first:last].mean(axis=0), imu.omega[first:last].mean(axis=0),
+        _mean([w.force_sd for w in run]), _mean([w.rate_sd for w in run]),
+        standard_error(imu.omega[first:last], len(run)), len(run), together)
+
+
+def standard_error(rate, windows):
+    """
+    Return the standard error (3,) of the mean of rates (n, 3) over some windows.
+
+    Square root of the power at the lowest frequencies that are not zero, up to a quarter of a
+    cycle a window (Heidelberger and Welch, "A Spectral Method for Confidence Interval
+    Generation", CACM 24, 1981). Of white noise it is the scatter over root n; slow noise counts;
+    and on a base that rocks, where the angle is bounded and the rate averages out, it is small as
+    the error is.
+    """
+    count = max(FEWEST_FREQUENCIES, windows // 4)
+    turn = 2.0 * math.pi / len(rate) * np.arange(len(rate))
+    off, power = rate - rate.mean(axis=0), np.zeros(3)
+    for k in range(1, count + 1):
+        for wave in sincos(k * turn):
+            total = np.cumsum(wave[:, None] * off, axis=0)[-1] / len(rate)
+            power = power + total * total
+    return np.sqrt(power / count)
+
+
+def _mean(values):
+    """Return the mean of values (n,), added in their order."""
+    return float(np.cumsum(values)[-1]) / len(values)

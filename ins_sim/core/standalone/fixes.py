@@ -1,0 +1,110 @@
+"""The fixes of a live receiver: where the vehicle is, and which way it goes."""
+
+from collections import deque
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.postprocessing.reference import LONGEST_STEP_S, SampledTrack
+
+# Fixes that are kept; a standstill is at most as long.
+MOST = 10_000
+# Of a fix whose covariance is not known, m.
+UNKNOWN_SIGMA_M = 5.0
+
+
+class PlaceFix(NamedTuple):
+    """A fix: stamp, ns; latitude, longitude, rad, height, m; standard deviation, m, or None."""
+
+    t_ns: int
+    lat: float
+    lon: float
+    height: float
+    sigma: float | None = None
+
+    @property
+    def place(self):
+        """Return latitude, longitude and height."""
+        return self[1:4]
+
+
+class FixTrack:
+    """
+    Fixes in the order of their stamps; later ones that go back are left out.
+
+    heights: (t_ns, height) of those that a damped vertical channel has not taken yet.
+    """
+
+    def __init__(self):
+        self.fixes, self._new = deque(maxlen=MOST), deque(maxlen=MOST)
+
+    def push(self, fix):
+        """Take a PlaceFix; return whether it was used."""
+        if self.fixes:
+            last = self.fixes[-1]
+            if fix.t_ns <= last.t_ns:
+                return False
+            turns = round((fix.lon - last.lon) / (2.0 * math.pi))
+            if turns:
+                fix = fix._replace(lon=fix.lon - 2.0 * math.pi * turns)
+            way = position_error(*fix.place, *last.place)[:2]
+            self._new.append(((last.t_ns + fix.t_ns) // 2, way))
+        self.fixes.append(fix)
+        return True
+
+    @property
+    def newest_ns(self):
+        """Return the stamp of the last fix, or None."""
+        return self.fixes[-1].t_ns if self.fixes else None
+
+    def take_ways(self):
+        """Return (middle, way) of the new ways from fix to fix: stamps, ns; east, north, m."""
+        ways = list(self._new)
+        self._new.clear()
+        return ways
+
+    def forget_ways(self, t_ns):
+        """Leave out the ways before a stamp: those of a standstill."""
+        while self._new and self._new[0][0] < t_ns:
+            self._new.popleft()
+
+    def covers(self, t_ns):
+        """Return whether nothing that is still to come changes the position at a stamp."""
+        return bool(self.fixes) and self.fixes[-1].t_ns >= t_ns
+
+    def _track(self, t_ns):
+        around = [f for f in self.fixes if abs(f.t_ns - t_ns) <= 2e9 * LONGEST_STEP_S]
+        if not around:
+            return None
+        return SampledTrack(np.array([f.t_ns for f in around], dtype=np.int64),
+                            np.array([f.place for f in around]))
+
+    def place(self, t_ns, near=False):
+        """
+        Return latitude, longitude and height at a stamp, or None.
+
+        near: whether the nearest fix within LONGEST_STEP_S serves where none is on either side.
+        """
+        track = self._track(t_ns)
+        if track is None:
+            return None
+        found = track.near(t_ns) if near else track.at([t_ns])[0]
+        return None if np.isnan(found).any() else tuple(found.tolist())
+
+    def sigma(self, t_ns):
+        """Return the standard deviation of the position at a stamp, m."""
+        known = [f for f in self.fixes if f.sigma is not None]
+        if not known:
+            return UNKNOWN_SIGMA_M
+        return min(known, key=lambda f: abs(f.t_ns - t_ns)).sigma
+
+    def moved(self, start_ns, end_ns):
+        """Return how far apart the first and the last fix between two stamps are, m, and s."""
+        inside = [f for f in self.fixes if start_ns <= f.t_ns <= end_ns]
+        if len(inside) < 2:
+            return 0.0, 0.0
+        east, north, _ = position_error(*inside[-1].place, *inside[0].place)
+        return (math.sqrt(east * east + north * north),
+                1e-9 * (inside[-1].t_ns - inside[0].t_ns))

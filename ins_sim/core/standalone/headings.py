@@ -1,0 +1,113 @@
+"""Headings of an alignment that the gyros cannot give: course of the fixes, magnetic field."""
+
+from collections import deque
+import math
+
+import numpy as np
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.attitude.angles import to_compass
+from ins_sim.core.navigation import alignment
+from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.numerics import elementary
+from ins_sim.core.postprocessing.course import CourseSearch
+
+# Of the field of the Earth, T.
+LEAST_FIELD, MOST_FIELD = 2e-5, 7e-5
+# Magnetic samples that are kept.
+MOST = 20_000
+
+
+class LiveCourse:
+    """
+    The course of the fixes after a standstill, as ``course.find_course`` finds it in a recording.
+
+    A sample is navigated when the fixes have come as far: the way to the next one could still
+    belong to it.
+
+    Parameters
+    ----------
+    settings : StrapdownSettings
+    still : Standstill
+    place : latitude, longitude, rad, height, m
+    spin : rotation rate of the Earth, rad/s
+    """
+
+    def __init__(self, settings, still, place, spin):
+        limits = settings.alignment
+        q_nb = alignment.level_attitude(still.force, 0.0)
+        self._bias = tuple(alignment.gyro_bias(still, q_nb, place[0], spin).tolist())
+        self._search = CourseSearch(still.end_ns, limits.course_distance_m,
+                                    limits.course_search_s)
+        self._navigator = RecordedNavigator(settings.input, spin, (*place, (0.0, 0.0, 0.0), q_nb))
+        self._taken = 0
+        self.over, self.scatter = False, math.pi
+
+    def advance(self, samples, fixes, gap_ns):
+        """
+        Navigate as far as the fixes go; return the heading, rad, and how it was found, or None.
+
+        samples: all ImuSamples from the end of the standstill on; fixes: FixTrack; gap_ns: the
+        longest step that is no gap, at which the search ends.  ``over`` is set when it is over.
+        """
+        for way in fixes.take_ways():
+            self._search.add(*way)
+        b = self._bias
+        while self._taken < len(samples) and not self.over and (
+                fixes.covers(samples[self._taken].t_ns)
+                or self._search.is_over(samples[self._taken].t_ns)):
+            t_ns, omega, f, _ = samples[self._taken]
+            if self._taken and t_ns - samples[self._taken - 1].t_ns > gap_ns:
+                self.over = True
+                break
+            solution = self._navigator.step(
+                t_ns, (omega[0] - b[0], omega[1] - b[1], omega[2] - b[2]), f)
+            self._taken += 1
+            if self._taken == 1:
+                continue
+            if self._search.is_over(t_ns):
+                self.over = True
+                break
+            found = self._search.turn(t_ns, float(to_compass(np.array(solution[4]))[2]))
+            if found is not None:
+                self.scatter = self._search.scatter
+                return found
+        return None
+
+    @property
+    def state(self):
+        """Return what is waited for."""
+        return self._search.describe()
+
+
+class FieldSamples:
+    """The magnetic field in the frame of the IMU, as it comes."""
+
+    def __init__(self):
+        self._samples = deque(maxlen=MOST)
+
+    def push(self, t_ns, field):
+        """Take a field, T, with the stamp t_ns."""
+        self._samples.append((t_ns, field))
+
+    def mean(self, start_ns, end_ns):
+        """Return the mean field between two stamps, (3,) T, or None where there is none."""
+        inside = [field for t_ns, field in self._samples if start_ns <= t_ns <= end_ns]
+        return np.array(inside).mean(axis=0) if inside else None
+
+
+def magnetic_heading(field_b, force, declination):
+    """
+    Return the heading of a field at rest, rad.
+
+    field_b, force (3,): mean field, T, and specific force in b; declination: of the field, East
+    of true north, rad.  Raises ValueError, one sentence, for a field that is not the Earth's.
+    """
+    size = math.sqrt(float(field_b @ field_b))
+    if not LEAST_FIELD <= size <= MOST_FIELD:
+        raise ValueError(f'the magnetic field is {1e6 * size:.3g} uT; expected '
+                         f'{1e6 * LEAST_FIELD:g} to {1e6 * MOST_FIELD:g} uT: is the magnetometer '
+                         'calibrated, and in T?')
+    q_nb = alignment.level_attitude(force, 0.0)
+    east, north, _ = quaternion.rotate(q_nb, tuple(field_b.tolist()))
+    return declination - elementary.atan2(east, north)

@@ -1,0 +1,93 @@
+"""How a live IMU sits in the vehicle: by angles, by /tf_static, or levelled at rest."""
+
+import math
+
+from ins_sim.core.attitude import angles, quaternion
+from ins_sim.core.postprocessing.mounting import chained_mounting
+from .samples import ImuSample
+
+# So much of the stream waits for /tf_static.
+PATIENCE_S = 2.0
+
+
+def turned_samples(samples, q):
+    """Return ImuSamples turned by a quaternion."""
+    return [ImuSample(s.t_ns, quaternion.rotate(q, s.omega), quaternion.rotate(q, s.f), s.tag)
+            for s in samples]
+
+
+class LiveMounting:
+    """
+    Finds the quaternion from the frame of the IMU to base_link.
+
+    Parameters
+    ----------
+    settings : MountingAngles
+    base : name of the frame of the vehicle
+    has_transforms : whether /tf_static can be heard
+
+    Attributes
+    ----------
+    q_bs : quaternion, or None as long as it is not known
+    notes : sentences on where it comes from
+
+    """
+
+    def __init__(self, settings, base, has_transforms):
+        self._settings, self._base = settings, base
+        self._asks = has_transforms and (
+            settings.source == 'tf' or settings.source == 'auto' and not any(settings.rpy_deg))
+        if settings.source == 'tf' and not has_transforms:
+            raise ValueError('mounting.source is tf and tf2_msgs cannot be imported; expected '
+                             'mounting.source given with mounting.rpy_deg, or that ROS package '
+                             '(apt: ros-jazzy-tf2-msgs)')
+        self._transforms, self._first_ns, self._complained = {}, None, False
+        self.q_bs, self.notes, self.faults = None, [], []
+        if not self._asks:
+            self._as_given()
+
+    def _as_given(self):
+        roll, pitch, yaw = map(math.radians, self._settings.rpy_deg)
+        if self._settings.source == 'level':
+            roll = pitch = yaw = 0.0
+        self.q_bs = angles.from_rpy(roll, pitch, yaw)
+
+    def add(self, transforms):
+        """Take transforms {(parent, child): q from child to parent}."""
+        self._transforms.update(transforms)
+        self._complained = False
+
+    def find(self, frame, t_ns):
+        """
+        Look for the mounting of a frame, once a sample has the stamp t_ns.
+
+        Return q_bs, or None as long as it may come.
+        """
+        if self.q_bs is not None:
+            return self.q_bs
+        self._first_ns = t_ns if self._first_ns is None else self._first_ns
+        frame, base = frame.lstrip('/'), self._base.lstrip('/')
+        late = t_ns - self._first_ns > PATIENCE_S * 1e9
+        if frame == base:
+            self._as_given()
+        elif self._transforms:
+            try:
+                self.q_bs = chained_mounting(self._transforms, base, frame, self.notes)
+                self.notes.append(f'mounting: /tf_static from {base} to {frame}')
+            except ValueError as error:
+                if late:
+                    self._complain(str(error))
+        elif late and self._settings.source == 'auto':
+            self.notes.append(f'mounting: no /tf_static in {PATIENCE_S:g} s, so the frame '
+                              f'{frame!r} of the IMU is taken for {base}: set mounting.rpy_deg if '
+                              'it is turned')
+            self._as_given()
+        elif late:
+            self._complain(f'/tf_static has brought nothing in {PATIENCE_S:g} s (mounting.source '
+                           f'tf); expected a transform from {base} to {frame!r}')
+        return self.q_bs
+
+    def _complain(self, sentence):
+        if not self._complained:
+            self._complained = True
+            self.faults.append(f'mounting: {sentence}; nothing is navigated until then')

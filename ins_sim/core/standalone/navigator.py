@@ -1,0 +1,273 @@
+"""The navigator of a live IMU without truth: its readings in, its solutions out."""
+
+from collections import deque
+import math
+
+from ins_sim.core.attitude import quaternion
+from .alignment_start import AlignmentStart
+from .fixes import FixTrack
+from .headings import FieldSamples
+from .order import HOLD, OrderedSamples, REPLACE, RESTART
+from .running import RunningNavigation
+from .start import CourseStart, GivenStart
+from .vertical_reference import VerticalReference
+
+# Samples that are navigated at once where many wait.
+AT_ONCE = 500
+
+
+class StandaloneNavigator:
+    """
+    Finds its start, then navigates, as ``core.postprocessing.navigate`` does on a recording.
+
+    Parameters
+    ----------
+    settings : StrapdownSettings
+    mounting : LiveMounting
+    declination : function (stamp ns, (lat, lon, height)) -> declination of the field, rad, and
+        where it is from
+
+    Attributes
+    ----------
+    faults, warnings, infos : sentences; the owner empties them
+    samples : OrderedSamples
+    fixes : FixTrack
+    field : FieldSamples
+    run : RunningNavigation, or None before the start
+    begun : how many navigations have begun
+    gaps : how many gaps there were
+    """
+
+    def __init__(self, settings, mounting, declination):
+        self._s, self.declination = settings, declination
+        self._mounting, self.samples = mounting, OrderedSamples(settings.gaps, mounting)
+        self.faults, self.warnings, self.infos = [], [], []
+        self.begun = self.gaps = 0
+        self._forget()
+
+    def reset(self):
+        """Start anew, as at first."""
+        self.samples.restart()
+        self._forget()
+
+    rejoin = reset
+
+    def _forget(self, again=False):
+        """Forget solution and start; again: behind a gap, where given values hold no longer."""
+        self._last_place = self.run.place if again and self.run is not None else None
+        self._again = again
+        if not again:
+            self.fixes, self.field = FixTrack(), FieldSamples()
+        self._heights = VerticalReference(self._s.vertical.reference == 'pressure')
+        self.run = self._start = self._realigning = self._turn = self._published_ns = None
+        self._waiting, self._count, self.newest_ns = deque(), 0, None
+
+    @property
+    def q_bs(self):
+        """Return the quaternion from the frame of the IMU to base_link, or None."""
+        q_bs = self._mounting.q_bs
+        return q_bs if q_bs is None or self._turn is None else quaternion.multiply(self._turn,
+                                                                                   q_bs)
+
+    @property
+    def waiting(self):
+        """Return whether samples wait to be navigated."""
+        return self.run is not None and bool(self._waiting)
+
+    @property
+    def processed_ns(self):
+        """Return the stamp of the last solution, or None."""
+        return self._published_ns
+
+    @property
+    def located(self):
+        """Return whether there is a solution, and its odom has a place in map."""
+        return self.run is not None and self.run.located
+
+    @property
+    def state(self):
+        """Return what is done now, in a few words."""
+        if self.run is not None:
+            return 'navigating' if self.located else 'navigating in odom alone'
+        if self._mounting.q_bs is None:
+            return 'waiting for /tf_static'
+        if self._again and self._s.initial.source == 'given':
+            return 'waiting for ~/reset'
+        return 'waiting for readings' if self._start is None else self._start.state
+
+    def push_fix(self, fix):
+        """Take a PlaceFix; return the solutions that it leads to."""
+        if not self.fixes.push(fix):
+            return []
+        self._heights.push_fix(fix.t_ns, fix.height)
+        return self._decided()
+
+    def push_transforms(self, transforms):
+        """Take transforms of /tf_static, {(parent, child): q from child to parent}."""
+        self._mounting.add(transforms)
+
+    def push_pressure(self, t_ns, static_pa):
+        """Take a static pressure, Pa."""
+        self._heights.push_pressure(t_ns, static_pa)
+
+    def push_field(self, t_ns, field):
+        """Take a magnetic field in the frame of the IMU, T."""
+        if self.q_bs is not None:
+            self.field.push(t_ns, quaternion.rotate(self.q_bs, field))
+
+    def push_imu(self, t_ns, omega, f, tag=None):
+        """
+        Take a reading in the axes of the sensor; return the solutions (Solved) that it leads to.
+
+        omega, f: tuples, rad/s and m/s^2; tag: given back with the solution.
+        """
+        outputs = []
+        for kind, sample in self.samples.push(t_ns, omega, f, tag):
+            outputs += self._taken(kind, sample)
+        for source in (self.samples, self._mounting):
+            self.faults += source.faults
+            source.faults.clear()
+        self.infos += self._mounting.notes
+        self._mounting.notes.clear()
+        return outputs
+
+    def _taken(self, kind, sample):
+        if kind == RESTART:
+            self._forget()
+        elif kind == REPLACE and not self._took_back():
+            return []
+        elif kind == HOLD and not self._bridges(sample):
+            self._forget(again=self._again or self.run is not None)
+            self._complain()
+        self.newest_ns = sample.t_ns
+        if self._turn is not None:
+            sample = sample._replace(omega=quaternion.rotate(self._turn, sample.omega),
+                                     f=quaternion.rotate(self._turn, sample.f))
+        if self.run is not None:
+            self._waiting.append(sample)
+            return self.drain() + self._realigned(sample)
+        if self._start is None:
+            self._start = self._make_start(sample.t_ns)
+        if self._start is None:
+            return []
+        self._start.push(sample)
+        self._hear(self._start)
+        self._turn = self._start.turn
+        return self._decided()
+
+    def _complain(self):
+        if self._again and self._s.initial.source == 'given':
+            self.warnings.append('initial.source is given, which holds no longer behind a gap; '
+                                 'expected ~/reset where the vehicle is in that state again, or '
+                                 'initial.source alignment or fix')
+
+    def _took_back(self):
+        """Take the last sample back; return whether that was possible."""
+        if self._waiting:
+            self._waiting.pop()
+            return True
+        if self.run is not None:
+            return self.run.undo()
+        return self._start is not None and self._start.pop()
+
+    def _bridges(self, sample):
+        """Return whether the gap before a sample is bridged, and say what is done."""
+        gap_s, longest_s = 1e-9 * (sample.t_ns - self.newest_ns), self._s.gaps.longest_bridge_s
+        self.gaps += 1
+        if gap_s <= longest_s:
+            self.faults.append(f'imu has a gap of {gap_s:.6g} s: bridged by straight lines of '
+                               f'rate and force (gap {self.gaps})')
+            return True
+        self.faults.append(f'imu has a gap of {gap_s:.6g} s; expected at most '
+                           f'gaps.longest_bridge_s, {longest_s:g} s: starting anew (gap '
+                           f'{self.gaps})')
+        return False
+
+    def _make_start(self, first_ns):
+        initial = self._s.initial
+        if initial.source == 'alignment':
+            return AlignmentStart(self._s, self, first_ns, self._again, self._last_place)
+        if initial.source == 'given':
+            return None if self._again else GivenStart(self._s, None)
+        return (CourseStart if initial.heading == 'course' else GivenStart)(self._s, self.fixes)
+
+    def _hear(self, start):
+        self.warnings += start.notes
+        start.notes.clear()
+
+    def _decided(self):
+        """Begin to navigate if the start is known; return the solutions."""
+        if self.run is not None or self._start is None or not self.samples.step.known:
+            return []
+        start = self._start.decide()
+        self._hear(self._start)
+        if start is None:
+            return []
+        self._begin(start)
+        return self.drain()
+
+    def _begin(self, start):
+        self.infos += start.infos
+        self.warnings += start.warnings
+        self.run = RunningNavigation(self._s, start, self.samples.step.median_ns, self._heights)
+        if self.run.begins_map:
+            lat, lon, height = start.state[:3]
+            self.infos.append('datum is the default, so the origin of map is the start: latitude '
+                              f'{math.degrees(lat):.7f} deg, longitude {math.degrees(lon):.7f} '
+                              f'deg, height {height:.2f} m')
+        self._waiting, self._start, self._realigning = deque(start.samples), None, None
+        self.begun += 1
+
+    def drain(self, count=AT_ONCE):
+        """Navigate samples that wait, at most so many; return the solutions."""
+        outputs = []
+        while self._waiting and count:
+            sample, count = self._waiting.popleft(), count - 1
+            try:
+                solved = self.run.step(sample, self.samples.gap_ns)
+            except ValueError as error:
+                self.faults.append(f'{error}: starting anew')
+                self._forget(again=True)
+                self._complain()
+                return outputs
+            if self._published_ns is not None and solved.t_ns <= self._published_ns:
+                # after ~/align the new solution begins where the one before has been
+                continue
+            self._published_ns = solved.t_ns
+            if self._count % self._s.output_every == 0:
+                outputs.append(solved)
+            self._count += 1
+        return outputs
+
+    def align(self):
+        """Begin another alignment; return whether, and a sentence."""
+        limits, initial = self._s.alignment, self._s.initial
+        if initial.source != 'alignment':
+            return False, (f'initial.source is {initial.source}; expected alignment: nothing is '
+                           'aligned')
+        if self.newest_ns is None:
+            return False, f'nothing comes on {self._s.inputs.imu} to align with'
+        if self.run is None:
+            return False, f'an alignment is under way: {self.state}'
+        self._realigning = AlignmentStart(self._s, self, self.newest_ns, turn=self._turn)
+        return True, (f'an alignment begins: it takes {limits.shortest_s:g} to '
+                      f'{limits.longest_s:g} s at rest; until then the solution goes on, and if '
+                      'the vehicle moves before, it stays')
+
+    def _realigned(self, sample):
+        """Give a sample to the alignment that was asked for, if any; return the solutions."""
+        again = self._realigning
+        if again is None:
+            return []
+        again.push(sample)
+        if again.refused:
+            self._realigning = None
+            self.warnings.append(f'the alignment asked for by ~/align is given up: '
+                                 f'{again.refused}; the solution goes on as before')
+            return []
+        start = again.decide()
+        self._hear(again)
+        if start is None:
+            return []
+        self._begin(start)
+        return self.drain()

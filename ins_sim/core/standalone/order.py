@@ -1,0 +1,169 @@
+"""The order of live samples: what becomes of each by its stamp."""
+
+import math
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.numerics.instants import seconds
+from .samples import ImuSample, JUMP, TypicalStep
+
+# Samples that wait for the mounting.
+MOST_EARLY = 2000
+# Lock-step repeats the first sample until it is answered, which is no fault.
+MOST_REPEATS = 1000
+
+NEXT, REPLACE, HOLD, RELEASE, DROP, RESTART = range(6)
+
+
+class SampleOrder:
+    """
+    What becomes of a sample, by its stamp: the fewest possible are dropped of those out of order.
+
+    NEXT: it follows; REPLACE: it follows the one before the last, whose stamp it repeats or
+    which was ahead of its time;
+    HOLD: it is far ahead, and the next one shows whether time has leapt or this stamp is wrong;
+    RELEASE: time has leapt, the held sample is taken and then this one; DROP; RESTART: time has
+    jumped back for good.
+    """
+
+    def __init__(self):
+        self._last_ns = self._before_ns = self._held_ns = None
+        self._older, self._repeats = [], 0
+
+    def judge(self, t_ns, gap_ns):
+        """Return what becomes of the sample of a stamp; gap_ns: the longest step that is none."""
+        last_ns = self._last_ns
+        if last_ns is None:
+            self._last_ns = t_ns
+            return NEXT
+        if self._held_ns is not None and t_ns > last_ns:
+            return self._after_held(t_ns, gap_ns)
+        if t_ns > last_ns:
+            self._older = []
+            if t_ns - last_ns > gap_ns:
+                self._held_ns = t_ns
+                return HOLD
+            return self._follows(t_ns)
+        if self._before_ns is not None and t_ns > self._before_ns:
+            self._last_ns = t_ns
+            return REPLACE
+        if t_ns == last_ns:
+            return DROP
+        self._older = [*self._older, t_ns] if self._older and t_ns > self._older[-1] else [t_ns]
+        return RESTART if len(self._older) >= JUMP else DROP
+
+    def _follows(self, t_ns):
+        self._before_ns, self._last_ns = self._last_ns, t_ns
+        return NEXT
+
+    def _after_held(self, t_ns, gap_ns):
+        held_ns, self._held_ns = self._held_ns, None
+        if t_ns > held_ns:
+            self._before_ns, self._last_ns = held_ns, t_ns
+            return RELEASE
+        # the held one was ahead of its time
+        if t_ns - self._last_ns > gap_ns:
+            self._held_ns = t_ns
+            return HOLD
+        return self._follows(t_ns)
+
+    def describe(self, t_ns):
+        """Return the sentence on the sample just dropped, or ''."""
+        if t_ns == self._last_ns:
+            self._repeats += 1
+            return '' if self._repeats < MOST_REPEATS else (
+                f'imu repeats the stamp {seconds(t_ns)} again and again; expected a later one, in '
+                'header.stamp, with every reading')
+        return (f'imu goes back from {seconds(self._last_ns)} to {seconds(t_ns)}; expected rising '
+                'stamps; the sample was dropped')
+
+
+class OrderedSamples:
+    """
+    Mounts the readings of a live IMU and puts them in order.
+
+    Parameters
+    ----------
+    gaps : GapSettings
+    mounting : LiveMounting
+
+    Attributes
+    ----------
+    step : TypicalStep
+    frame_id : name of the frame of the IMU, which the owner sets
+    faults : sentences on what was dropped; the owner empties it
+    dropped : how many samples
+    """
+
+    def __init__(self, gaps, mounting):
+        self._gaps, self._mounting = gaps, mounting
+        self.frame_id, self.faults, self.dropped = '', [], 0
+        self.restart()
+
+    def restart(self):
+        """Forget what has come."""
+        self.step, self._order = TypicalStep(), SampleOrder()
+        self._held, self._early, self._last_ns = None, [], None
+
+    @property
+    def gap_ns(self):
+        """Return the longest step that is no gap."""
+        return self._gaps.factor * self.step.median_ns if self.step.known else math.inf
+
+    def push(self, t_ns, omega, f, tag):
+        """
+        Take a reading in the axes of the sensor.
+
+        Returns [(kind, ImuSample)]: NEXT; HOLD for one behind a gap; REPLACE for one in whose
+        place another was given before; RESTART for the first behind a jump back.
+        """
+        if not math.isfinite(sum(omega) + sum(f)):
+            self._drop(f'imu at {seconds(t_ns)} holds what is no number; expected finite '
+                       'readings; the sample was dropped')
+            return []
+        q_bs = self._mounting.find(self.frame_id, t_ns)
+        if q_bs is None:
+            self._early.append(ImuSample(t_ns, omega, f, tag))
+            del self._early[:-MOST_EARLY]
+            return []
+        early, self._early, found = self._early, [], []
+        for sample in (*early, ImuSample(t_ns, omega, f, tag)):
+            found += self._judged(sample._replace(omega=quaternion.rotate(q_bs, sample.omega),
+                                                  f=quaternion.rotate(q_bs, sample.f)))
+        return found
+
+    def _drop(self, sentence):
+        self.dropped += 1
+        self.faults.append(sentence)
+
+    def _judged(self, sample):
+        t_ns = sample.t_ns
+        fate = self._order.judge(t_ns, self.gap_ns)
+        if fate == NEXT:
+            return [(NEXT, self._passed(sample))]
+        if fate == HOLD:
+            self._held = sample
+        elif fate == RELEASE:
+            held, self._held = self._held, None
+            return [(HOLD, self._passed(held)), (NEXT, self._passed(sample))]
+        elif fate == REPLACE:
+            self._drop(f'imu repeats the stamp {seconds(t_ns)}; expected a later one; the sample '
+                       'before was dropped' if t_ns == self._last_ns else
+                       f'imu goes back to {seconds(t_ns)}, behind a sample that was ahead of its '
+                       'time; that one was dropped')
+            self._last_ns = t_ns
+            return [(REPLACE, sample)]
+        elif fate == RESTART:
+            self.faults.append(f'imu has jumped back to {seconds(t_ns)}; expected rising stamps: '
+                               'starting anew')
+            self.restart()
+            self._order.judge(t_ns, math.inf)
+            return [(RESTART, self._passed(sample))]
+        elif sentence := self._order.describe(t_ns):
+            self._drop(sentence)
+        return []
+
+    def _passed(self, sample):
+        if self._last_ns is not None:
+            self.step.take(sample.t_ns - self._last_ns)
+        self._last_ns = sample.t_ns
+        return sample

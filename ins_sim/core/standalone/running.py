@@ -1,0 +1,106 @@
+"""A navigation without truth from its start on, with its covariance."""
+
+import math
+from typing import NamedTuple
+
+from ins_sim.core.earth import ellipsoid
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.navigation.recorded import RecordedNavigator
+from ins_sim.core.navigation.strapdown import runs_away
+from ins_sim.core.numerics.instants import seconds
+from ins_sim.core.simulation.free_covariance import PublishedCovariance, published_covariance
+from ins_sim.settings.place import Datum
+
+
+class Solved(NamedTuple):
+    """
+    A solution.
+
+    t_ns; state: lat, lon, height, v_n, q_nb; rate: of the body, rad/s, less the bias; tag: what
+    came with the sample; known: PublishedCovariance.
+    """
+
+    t_ns: int
+    state: tuple
+    rate: tuple
+    tag: object
+    known: PublishedCovariance
+
+
+class RunningNavigation:
+    """
+    Steps a RecordedNavigator and its covariance through the samples from a Start on.
+
+    Parameters
+    ----------
+    settings : StrapdownSettings
+    start : Start
+    step_ns : typical step of the stamps
+    heights : VerticalReference
+
+    Attributes
+    ----------
+    frame : MapFrame, of the datum, or of the start where the datum is the default
+    located : as of Start
+    begins_map : whether it is located, and the origin of map is its start
+    t_ns : stamp of the last sample, or None
+
+    """
+
+    def __init__(self, settings, start, step_ns, heights):
+        lat, lon, height = start.state[:3]
+        datum = settings.datum
+        self.begins_map = start.located and datum == Datum()
+        if datum == Datum():
+            datum = Datum(math.degrees(lat), math.degrees(lon), height)
+        self.frame = MapFrame(datum, settings.earth.rotation)
+        self.located, self.t_ns, self._before = start.located, None, None
+        self._bias = start.bias or (0.0, 0.0, 0.0)
+        self._step_ns, self._heights = step_ns, heights
+        vertical = settings.vertical
+        damped_s = None if vertical.channel == 'free' else vertical.time_constant_s
+        self._navigator = RecordedNavigator(
+            settings.input, ellipsoid.rotation_rate(settings.earth.rotation), start.state,
+            damped_s, ellipsoid.GRAVITY_TERMS[settings.earth.gravity])
+        self._covariance = published_covariance(settings, self.frame, start.sigmas,
+                                                1e-9 * step_ns)
+        self._covered_ns = None
+        heights.begin(height)
+
+    @property
+    def place(self):
+        """Return latitude, longitude and height."""
+        return self._navigator.solution[:3]
+
+    def step(self, sample, gap_ns):
+        """
+        Take an ImuSample; return the Solved.
+
+        gap_ns: the longest step that is no gap; a longer one is bridged.  Raises ValueError where
+        the solution runs away.
+        """
+        (t_ns, omega, f, tag), b = sample, self._bias
+        omega = omega[0] - b[0], omega[1] - b[1], omega[2] - b[2]
+        navigator, first = self._navigator.copy(), self.t_ns is None
+        if not first and t_ns - self.t_ns > gap_ns:
+            navigator.bridge_next(self._step_ns)
+        solution = navigator.step(t_ns, omega, f, self._heights.at(t_ns))
+        if not first and (runs_away(solution) or not math.isfinite(sum(solution[4]))):
+            raise ValueError(f'the solution runs away at {seconds(t_ns)} and ends there: the '
+                             'initial values or the units of the IMU cannot be right')
+        self._before = self._navigator, self.t_ns
+        self._navigator, self.t_ns = navigator, t_ns
+        if first:
+            self._covariance.begin(t_ns, solution)
+        elif t_ns > self._covered_ns:
+            self._covariance.take(t_ns, omega, f, navigator)
+        self._covered_ns = t_ns
+        return Solved(t_ns, solution, omega, tag, self._covariance.shown)
+
+    def undo(self):
+        """Go back to before the last sample; return whether that was possible."""
+        if self._before is None or self._before[1] is None:
+            return False
+        self._navigator, self.t_ns = self._before
+        self._before = None
+        return True

@@ -1,0 +1,59 @@
+"""Live samples of an IMU: their order, and the step of their stamps."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ins_sim.core.postprocessing.imu_record import RecordedImu
+
+# Steps that are looked at for the typical one.
+MOST_STEPS = 1000
+# So many samples in a row that are older than the newest one: the clock has jumped back.
+JUMP = 10
+
+
+class ImuSample(NamedTuple):
+    """A sample: stamp, ns; rate, rad/s, and specific force, m/s^2, in b; what came with it."""
+
+    t_ns: int
+    omega: tuple
+    f: tuple
+    tag: object = None
+
+
+def recorded(samples):
+    """Return the RecordedImu of ImuSamples."""
+    return RecordedImu(np.array([s.t_ns for s in samples], dtype=np.int64),
+                       np.array([s.omega for s in samples]), np.array([s.f for s in samples]),
+                       np.full((len(samples), 4), np.nan))
+
+
+class TypicalStep:
+    """
+    The median step of the stamps, of the first MOST_STEPS of them.
+
+    known: whether there are enough of them.
+    """
+
+    FEWEST = 10
+
+    def __init__(self):
+        self._steps, self._median = [], None
+
+    def take(self, step_ns):
+        """Take a step, ns."""
+        if len(self._steps) < MOST_STEPS:
+            self._steps.append(step_ns)
+            self._median = None
+
+    @property
+    def known(self):
+        """Return whether there are steps enough."""
+        return len(self._steps) >= self.FEWEST
+
+    @property
+    def median_ns(self):
+        """Return the median step, ns."""
+        if self._median is None:
+            self._median = float(np.median(self._steps))
+        return self._median

@@ -1,0 +1,215 @@
+"""The node strapdown on a real IMU: no truth, what it publishes, what it says, its services."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from support.live_imu import as_sent, play, stage_of, vehicle
+from support.nodes.real_imu import messages_of, RealImuGraph
+
+from ins_sim.core.attitude import quaternion
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.messages import topics
+from ins_sim.messages.convert import fix_one, odometry_one
+from ins_sim.settings.place import Datum
+
+pytest.importorskip('rclpy')
+
+DATUM = {'datum.latitude_deg': 49.8, 'datum.longitude_deg': 5.7, 'datum.height_m': 90.0}
+ODOMETRY = topics.INS_ODOMETRY.reader(((0, 7), (43, 49), (7, 43)))
+
+
+def test_the_messages_are_those_of_the_stage():
+    """Odometry and fix of every solution, none of them an error topic, all acknowledged."""
+    imu, fixes = vehicle(length_s=40.0)
+    said = play(stage_of(), imu, as_sent(fixes))
+    frame = MapFrame(Datum(49.8, 5.7, 90.0), True)
+    with RealImuGraph(imu_data=True, **DATUM) as graph:
+        graph.send(messages_of(imu, fixes))
+        assert not graph.bus.wrong and graph.node.monitor.faults == 0, graph.said
+        odometry, fix = graph.heard[topics.INS_ODOMETRY.name], graph.heard[topics.INS_FIX.name]
+        assert set(graph.heard) == {topics.INS_ODOMETRY.name, topics.INS_FIX.name,
+                                    topics.IMU_DATA.name, topics.ACK.name}
+        assert max(graph.heard[topics.ACK.name]) == imu.t_ns[-1]
+        assert np.array_equal(said.t_ns, [*odometry]) and [*odometry] == [*fix]
+        for solved in said.solved:
+            pose, twist = odometry_one(frame, solved.state, solved.rate)
+            found = ODOMETRY.read(odometry[solved.t_ns])
+            assert found[1] == pose and found[2] == twist
+            assert topics.INS_FIX.reader(((0, 3),)).read(fix[solved.t_ns])[1] == fix_one(
+                solved.state)
+
+
+def test_a_stage_fed_by_the_node_has_the_bits_of_navigate():
+    """Whatever the node does with the messages, its stage keeps the bits."""
+    imu, fixes = vehicle(length_s=40.0)
+    other = play(stage_of(), imu, as_sent(fixes))
+    with RealImuGraph() as graph:
+        kept = []
+        graph.node.publish_one = lambda *output: kept.append(output)
+        graph.send(messages_of(imu, fixes))
+        assert [(stamp, state) for stamp, _, state, _, _ in kept] == [
+            (s.t_ns, s.state) for s in other.solved]
+
+
+def test_levelled_alone_without_fixes():
+    """Heading 0 along x of odom, sigma pi; no fix, no map -> odom; one warning says what helps."""
+    imu, _ = vehicle(rest_s=70.0, length_s=70.0, rate_hz=25.0)
+    with RealImuGraph(**{'tf.source': 'ins'}) as graph:
+        graph.send(messages_of(imu))
+        assert topics.INS_FIX.name not in graph.heard
+        assert topics.TF_STATIC.name not in graph.heard and graph.heard[topics.TF.name]
+        _, pose, _, covariance = ODOMETRY.read(next(iter(graph.heard[
+            topics.INS_ODOMETRY.name].values())))
+        assert max(map(abs, pose[:3])) < 1e-6 and abs(pose[6]) > 0.9999
+        assert abs(math.sqrt(covariance[35]) - math.pi) < 1e-3
+        assert graph.said.count('levelled only, the heading is unknown') == 1
+        assert 'What would help: initial.position given' in graph.said
+
+
+def test_map_to_odom_where_the_heading_is_known():
+    """With position and heading it stands fixed from the start on."""
+    imu, fixes = vehicle(length_s=40.0)
+    with RealImuGraph(**{'tf.source': 'ins'}) as graph:
+        graph.send(messages_of(imu, fixes))
+        assert len(graph.heard[topics.TF_STATIC.name]) == 1
+        assert 'the origin of map is the start' in graph.said
+        pose = ODOMETRY.read(next(iter(graph.heard[topics.INS_ODOMETRY.name].values())))[1]
+        assert max(map(abs, pose[:3])) < 1e-6
+
+
+def test_a_mounting_from_tf_is_waited_for():
+    """Readings wait for /tf_static; imu/data has the orientation of the frame of the IMU."""
+    imu, fixes = vehicle(length_s=40.0)
+    turn = quaternion.exponential((math.pi, 0.0, 0.0))
+    messages = messages_of(imu.turned(quaternion.conjugate(turn)), fixes, 'imu_upside_down')
+    with RealImuGraph(imu_data=True) as graph:
+        graph.send(messages[:10])
+        graph.transforms('base_link', 'mast', turn)
+        graph.transforms('mast', 'imu_upside_down', quaternion.IDENTITY)
+        graph.send(messages[10:])
+        assert '/tf_static from base_link to imu_upside_down' in graph.said
+        assert 'no vehicle stands so' not in graph.said
+        same_bits_within(graph, play(stage_of(), imu, fixes))
+        stamp_ns, data = next(iter(graph.heard[topics.IMU_DATA.name].items()))
+        pose = ODOMETRY.read(graph.heard[topics.INS_ODOMETRY.name][stamp_ns])[1]
+        q = topics.IMU_DATA.reader(((0, 4),)).read(data)[1]
+        off = quaternion.multiply(quaternion.conjugate(q), quaternion.multiply(pose[3:], turn))
+        assert abs(abs(off[3]) - 1.0) < 1e-12
+
+
+def same_bits_within(graph, said):
+    """Assert that the fixes of the node are solutions, to the rounding of a turn and back."""
+    read = topics.INS_FIX.reader(((0, 3),)).read
+    for solved in said.solved[::50]:
+        lat, lon, height = read(graph.heard[topics.INS_FIX.name][solved.t_ns])[1]
+        assert abs(math.radians(lat) - solved.state[0]) * 6.4e6 < 1e-6
+        assert abs(height - solved.state[2]) < 1e-6
+
+
+@pytest.mark.parametrize('source, sentence', [
+    ('auto', 'is taken for base_link: set mounting.rpy_deg'),
+    ('tf', 'expected a transform from base_link to')])
+def test_a_frame_without_a_transform(source, sentence):
+    """Two seconds of readings wait; then it is said once, and tf goes on waiting."""
+    imu, fixes = vehicle(length_s=12.0)
+    with RealImuGraph(**{'mounting.source': source}) as graph:
+        graph.send(messages_of(imu, fixes, 'imu_frame'))
+        assert graph.said.count(sentence) == 1
+        assert (graph.node.stage.q_bs is None) == (source == 'tf')
+
+
+def test_a_frame_that_tf_does_not_know():
+    """The nearest one is named, and nothing is aligned."""
+    imu, _ = vehicle(length_s=12.0)
+    with RealImuGraph() as graph:
+        graph.transforms('base_link', 'imu_link', quaternion.IDENTITY)
+        graph.send(messages_of(imu, frame='imu_lnk'))
+        assert "no frame 'imu_lnk'; the nearest is 'imu_link'" in graph.said
+        assert graph.node.stage.state == 'waiting for /tf_static'
+
+
+def test_services_answer_in_a_sentence():
+    """~/align and ~/reset, before, while and after an alignment, and with truth."""
+    imu, fixes = vehicle(rest_s=25.0, length_s=60.0)
+    messages = messages_of(imu, fixes)
+    with RealImuGraph(**{'alignment.longest_s': 8.0, 'initial.heading': 'given',
+                         'initial.heading_deg': 70.0}) as graph:
+        assert graph.call('align') == (False, 'nothing comes on imu/data_raw to align with')
+        graph.send(messages[:200])
+        done, text = graph.call('align')
+        assert not done and 'an alignment is under way: at rest for' in text
+        graph.send(messages[200:600])
+        first = len(graph.heard[topics.INS_ODOMETRY.name])
+        done, text = graph.call('align')
+        assert done and 'the solution goes on' in text
+        graph.send(messages[600:1200])
+        assert graph.node.stage.begun == 2
+        stamps = [*graph.heard[topics.INS_ODOMETRY.name]]
+        assert stamps == sorted(set(stamps)) and len(stamps) > first + 500
+        done, _ = graph.call('align')
+        assert done
+        graph.send(messages[1200:1600])
+        assert graph.node.stage.begun == 2
+        assert 'the alignment asked for by ~/align is given up' in graph.said
+        assert graph.call('reset') == (
+            True, 'started anew from initial.source alignment: expected a vehicle at rest')
+        assert graph.node.stage.run is None
+    with RealImuGraph(**{'initial.source': 'truth', 'input': 'rotation_vector'}) as graph:
+        assert not graph.call('align')[0] and 'initial.source is truth' in graph.call('align')[1]
+        assert graph.call('reset') == (True, 'started anew')
+
+
+def test_a_damped_channel_follows_fix_and_pressure():
+    """
+    Height of the fixes, or that by pressure from the start on, 10 m higher 12 s after it.
+
+    After 40 s, eight time constants of 5 s, the triple pole leaves (1 + 8 + 32) exp(-8) of 10 m,
+    0.14 m.
+    """
+    from ins_sim.core.earth.atmosphere import pressure
+    imu, fixes = vehicle(rest_s=60.0, length_s=60.0, rate_hz=25.0)
+    t_s = 1e-9 * (imu.t_ns - imu.t_ns[0])
+    rise = np.where(t_s > 20.0, 10.0, 0.0)
+    pack = topics.IMU_PRESSURE.writer().pack
+    raised = [replace_height(f, imu.t_ns, rise) for f in fixes]
+    common = {'alignment.longest_s': 8.0, 'vertical.channel': 'damped', 'initial.heading': 'given',
+              'initial.heading_deg': 70.0, 'vertical.time_constant_s': 5.0}
+    for source in ('fix', 'pressure'):
+        with RealImuGraph(**common, **{'vertical.reference': source}) as graph:
+            messages = messages_of(imu, raised if source == 'fix' else fixes)
+            if source == 'pressure':
+                messages = [m for k, one in enumerate(messages) for m in (
+                    (topics.IMU_PRESSURE.name, pack(int(imu.t_ns[min(k, len(imu) - 1)]), (
+                        pressure(250.0 + rise[min(k, len(imu) - 1)]),))), one)]
+            graph.send(messages)
+            heights = [topics.INS_FIX.reader(((0, 3),)).read(data)[1][2]
+                       for data in graph.heard[topics.INS_FIX.name].values()]
+            assert abs(heights[0] - 100.0) < 0.1 and abs(heights[-1] - 110.0) < 0.2
+
+
+def replace_height(fix, t_ns, rise):
+    """Return a fix higher by the rise at its stamp."""
+    return fix._replace(height=fix.height + float(np.interp(fix.t_ns, t_ns, rise)))
+
+
+def test_truth_as_the_vertical_channel_is_replaced_and_said():
+    """There is none: damped, in one sentence."""
+    imu, fixes = vehicle(length_s=30.0)
+    with RealImuGraph(**{'vertical.channel': 'truth'}) as graph:
+        graph.send(messages_of(imu, fixes))
+        assert graph.said.count('the channel is damped towards vertical.reference, fix') == 1
+        assert graph.heard[topics.INS_FIX.name]
+
+
+def test_an_accelerometer_in_g_is_named_and_its_unit_can_be_set():
+    """Nothing is aligned; units.force g reads it."""
+    imu, fixes = vehicle(length_s=40.0)
+    in_g = messages_of(replace(imu, f=imu.f / 9.80665), fixes)
+    with RealImuGraph() as graph:
+        graph.send(in_g)
+        assert graph.said.count('is it in g?') == 1 and not graph.heard[topics.INS_FIX.name]
+    with RealImuGraph(**{'units.force': 'g'}) as graph:
+        graph.send(in_g)
+        assert graph.heard[topics.INS_FIX.name]
