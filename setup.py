@@ -26,6 +26,8 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
         ('share/' + package_name + '/config', sorted(glob('config/*.*ml'))),
+        ('share/' + package_name + '/config/view', sorted(glob('config/view/*'))),
+        ('share/' + package_name + '/config/recipes', sorted(glob('config/recipes/*'))),
         ('share/' + package_name + '/launch', sorted(glob('launch/*.launch.py'))),
     ],
     python_requires='>=3.10',

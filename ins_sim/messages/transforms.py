@@ -21,26 +21,42 @@ AT_PARENT = (0.0, 0.0, 0.0, *quaternion.IDENTITY)
 
 
 class TransformWriter:
-    """Packs TFMessages of one transform, from the frame child to the frame parent."""
+    """
+    Packs TFMessages of fixed frames.
 
-    def __init__(self, parent, child):
-        body = bytearray(_LENGTH_OF.pack(1) + bytes(_STAMP.size))
-        for text in (parent, child):
-            body += bytes(aligned_offset(len(body), 4) - len(body))
-            name = text.encode() + b'\x00'
-            body += _LENGTH_OF.pack(len(name)) + name
-        body += bytes(aligned_offset(len(body), 8) - len(body))
-        self._first = len(ENCAPSULATION) + len(body)
-        self._buffer = bytearray(ENCAPSULATION + body + bytes(_DOUBLES.size))
+    pairs: (parent, child) of each transform of a message.
+    """
 
-    def pack(self, stamp_ns, pose):
-        """Return the bytes of a message; ValueError where the pose is not finite."""
-        if not math.isfinite(sum(pose)):
-            raise ValueError(f'a transform of {stamp_ns / SECOND:.9f} s would hold {pose}; '
-                             'expected finite numbers; it is not sent')
-        _STAMP.pack_into(self._buffer, len(ENCAPSULATION) + 4, *divmod(stamp_ns, SECOND))
-        _DOUBLES.pack_into(self._buffer, self._first, *pose)
+    def __init__(self, *pairs):
+        body = bytearray(_LENGTH_OF.pack(len(pairs)))
+        self._places = []
+        for pair in pairs:
+            _align(body, 4)
+            stamp = len(body)
+            body += bytes(_STAMP.size)
+            for text in pair:
+                _align(body, 4)
+                name = text.encode() + b'\x00'
+                body += _LENGTH_OF.pack(len(name)) + name
+            _align(body, 8)
+            self._places.append((len(ENCAPSULATION) + stamp, len(ENCAPSULATION) + len(body)))
+            body += bytes(_DOUBLES.size)
+        self._buffer = bytearray(ENCAPSULATION + body)
+
+    def pack(self, stamp_ns, *poses):
+        """Return the bytes of a message; ValueError where a pose is not finite."""
+        for (stamp, first), pose in zip(self._places, poses, strict=True):
+            if not math.isfinite(sum(pose)):
+                raise ValueError(f'a transform of {stamp_ns / SECOND:.9f} s would hold {pose}; '
+                                 'expected finite numbers; it is not sent')
+            _STAMP.pack_into(self._buffer, stamp, *divmod(stamp_ns, SECOND))
+            _DOUBLES.pack_into(self._buffer, first, *pose)
         return bytes(self._buffer)
+
+
+def _align(body, size):
+    """Fill a body up to a multiple of a size."""
+    body += bytes(aligned_offset(len(body), size) - len(body))
 
 
 def pose_between(pose, other):

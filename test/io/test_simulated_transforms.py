@@ -92,6 +92,8 @@ def test_the_run_is_announced(bags):
 def test_instruments_stand_fixed(source, bags):
     """/tf_static holds lever arms and mounting, and with the free INS its odom in map."""
     fixed = transforms(bags(source), '/tf_static')
+    with open_bag(bags(source)) as bag:
+        assert len([*bag.messages(['/tf_static'])]) == 1
     where = {child: (parent, *poses.items()) for (parent, child), poses in fixed.items()}
     odom = where.pop('uav1/ins_odom', None)
     assert (odom is not None) == (source == 'ins')

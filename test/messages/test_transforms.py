@@ -18,7 +18,7 @@ POSE = (1.0, -2.0, 3.5, 0.5, -0.5, 0.5, 0.5)
                                            ('abcd', 'abcde'), ('odom', 'x')])
 def test_bytes_are_those_of_the_definition(parent, child):
     """rosbags packs the same message to the same bytes; ours reads both."""
-    data = TransformWriter(parent, child).pack(1735689600123456789, POSE)
+    data = TransformWriter((parent, child)).pack(1735689600123456789, POSE)
     message = STORE.deserialize_cdr(data, topics.TRANSFORMS)
     one, = message.transforms
     assert (one.header.frame_id, one.child_frame_id) == (parent, child)
@@ -32,9 +32,20 @@ def test_bytes_are_those_of_the_definition(parent, child):
     assert first_stamp(data[:30]) is None and first_stamp(data[:4] + bytes(4)) is None
 
 
+def test_several_transforms_of_one_instant():
+    """Names of any length between them: rosbags packs the same bytes."""
+    pairs = ('map', 'odom'), ('uav1/odom', 'uav1/base_link'), ('a', 'b')
+    poses = [(float(k), *POSE[1:]) for k in range(3)]
+    data = TransformWriter(*pairs).pack(10**9 + 5, *poses)
+    message = STORE.deserialize_cdr(data, topics.TRANSFORMS)
+    assert bytes(STORE.serialize_cdr(message, topics.TRANSFORMS)) == data
+    assert read_transforms(data) == [(*pair, 10**9 + 5, pose) for pair, pose in zip(pairs, poses)]
+    assert first_stamp(data) == 10**9 + 5
+
+
 def test_a_pose_that_is_not_finite_is_not_sent():
     with pytest.raises(ValueError, match='a transform of 1.000000000 s would hold'):
-        TransformWriter('map', 'odom').pack(10**9, (float('nan'), *POSE[1:]))
+        TransformWriter(('map', 'odom')).pack(10**9, (float('nan'), *POSE[1:]))
 
 
 def test_map_to_odom_brings_the_free_pose_onto_the_aided_one():

@@ -1,5 +1,6 @@
 """What a transport drops comes: soon while a node runs, and before it has left."""
 
+from importlib import metadata
 import os
 import re
 import signal
@@ -9,7 +10,7 @@ import xml.etree.ElementTree as ElementTree
 from ins_sim import resources
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
-from ins_sim.ros.transport.repairs import use_profile, VARIABLES
+from ins_sim.ros.transport.repairs import BEFORE_3, FROM_3, profiles, use_profile
 from support.live import Chain, GUARD_S
 import pytest
 
@@ -22,29 +23,52 @@ RATE_HZ = 1000
 @pytest.fixture
 def chain(ros_domain, tmp_path, monkeypatch):
     """Yield a Chain whose nodes must find the profile themselves, and end it."""
-    for variable in VARIABLES:
-        monkeypatch.delenv(variable)
+    for variable, _ in (BEFORE_3, FROM_3):
+        monkeypatch.delenv(variable, raising=False)
     chain = Chain(ros_domain, tmp_path)
     yield chain
     chain.end()
 
 
-@pytest.mark.parametrize('variable', VARIABLES)
-def test_a_profile_that_the_user_has_named_stays(variable, monkeypatch):
-    """Without one it is ours, and a file; for releases of both kinds."""
-    monkeypatch.setenv(variable, '/theirs.xml')
-    use_profile()
-    assert os.environ[variable] == '/theirs.xml'
-    monkeypatch.delenv(variable)
-    use_profile()
-    assert os.path.isfile(os.environ[variable])
+RELEASES = {'7.1.6': [BEFORE_3], '9.1.2': [FROM_3], 'odd': [BEFORE_3, FROM_3],
+            None: [BEFORE_3, FROM_3]}
 
 
-def test_writers_ask_what_readers_miss_every_tenth_of_a_second():
-    """The heartbeat of our profile; Fast DDS alone asks every 3 s."""
-    root = ElementTree.parse(resources.middleware_profile('fastdds')).getroot()
-    period, = (e for e in root.iter() if e.tag.endswith('heartbeatPeriod'))
+@pytest.mark.parametrize('version', RELEASES)
+def test_a_profile_that_the_user_has_named_stays(version, monkeypatch):
+    """Without one it is ours, for Jazzy, for Kilted, and for both where rclpy is unknown."""
+    def installed(name):
+        if version is None:
+            raise metadata.PackageNotFoundError(name)
+        return version
+
+    monkeypatch.setattr(metadata, 'version', installed)
+    assert [*profiles()] == RELEASES[version]
+    for variable, name in RELEASES[version]:
+        monkeypatch.setenv(variable, '/theirs.xml')
+        use_profile()
+        assert os.environ[variable] == '/theirs.xml'
+        monkeypatch.delenv(variable)
+        use_profile()
+        assert os.environ[variable] == str(resources.middleware_profile(name))
+
+
+@pytest.mark.parametrize('name, element', [('fastdds', 'heartbeatPeriod'),
+                                           ('fastdds3', 'heartbeat_period')])
+def test_writers_ask_what_readers_miss_every_tenth_of_a_second(name, element):
+    """The heartbeat of our profile, as either release spells it; Fast DDS alone asks every 3 s."""
+    root = ElementTree.parse(resources.middleware_profile(name)).getroot()
+    period, = (e for e in root.iter() if e.tag.endswith(element))
     assert {e.tag.split('}')[-1]: e.text for e in period} == {'nanosec': '100000000'}
+
+
+@pytest.mark.live
+def test_the_middleware_takes_the_profile(chain):
+    """A profile in the words of another release is refused in red, and heartbeats are 3 s."""
+    node = chain.start('motion_generator', {'motion.kind': 'racetrack', 'duration_s': 0.1})
+    assert node.wait(GUARD_S) == 0
+    text = chain.text(node)
+    assert 'XML' not in text and 'PROFILES_FILE' not in text
 
 
 @pytest.mark.live

@@ -67,7 +67,7 @@ class TruthSource:
                              'there the stamps of ROS end')
         self._transforms = None
         if settings.tf.source == 'truth':
-            self._transforms = TransformWriter(*topics.TRUTH_ODOMETRY.named(names).frames).pack
+            self._transforms = TransformWriter(topics.TRUTH_ODOMETRY.named(names).frames).pack
         self.announcement = RunAnnouncement(self.epoch_ns, self.first_ns, settings.rate_hz,
                                             self.first_ns + (self.count - 1) * self.dt_ns)
         self.restart()

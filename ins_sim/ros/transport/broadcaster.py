@@ -50,7 +50,7 @@ class Broadcaster:
         publisher = qos.make_publisher(self._node, topics.TF, DEPTH)
         self.queue = HandQueue(self._node, topics.TF, DEPTH)
         self._placed = [self._names[frame] for frame in moving]
-        self._pack, self._publish = TransformWriter(*self._placed).pack, publisher.publish
+        self._pack, self._publish = TransformWriter(self._placed).pack, publisher.publish
         self.publish = self._remember
         self._node.monitor.add(self.describe)
 
@@ -68,7 +68,7 @@ class Broadcaster:
         if self._static is not None:
             parent, child, pose = self._fixed
             self._static.publish(TransformWriter(
-                self._names[parent], self._names[child]).pack(stamp_ns, pose))
+                (self._names[parent], self._names[child])).pack(stamp_ns, pose))
 
     def describe(self):
         """Return who else places our frame, or '', and no values: as ``Monitor.add`` takes it."""

@@ -135,8 +135,8 @@ def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domai
     """Another tf.source, another localization, or a second vehicle of the same prefix."""
     with Placed(source) as flight:
         flight.good(10)
-        flight.fed.bus.put('/tf', TransformWriter(parent, child).pack(0, POSE))
-        flight.fed.bus.put('/tf', TransformWriter('uav2/map', 'uav2/base_link').pack(0, POSE))
+        flight.fed.bus.put('/tf', TransformWriter((parent, child)).pack(0, POSE))
+        flight.fed.bus.put('/tf', TransformWriter(('uav2/map', 'uav2/base_link')).pack(0, POSE))
         flight.look()
         mine = 'map' if child.endswith('odom') else 'odom'
         assert f"/tf places '{child}' in '{parent}', and this node places it in 'uav1/{mine}'; " \
