@@ -109,8 +109,7 @@ class MotionGeneratorNode(Node):
             self.get_logger().warning(
                 f'no reader on {topics.TRUTH_IMU.name} yet; samples are lost until one joins '
                 '(pacing.lock_step: true waits for the consumers and loses none)')
-        if sentence := clock_needed(self.settings):
-            self.get_logger().info(sentence)
+        self._tell_time()
         self._pace.anchor(0)
         serve_s = 0.0
         while not stop:
@@ -123,6 +122,11 @@ class MotionGeneratorNode(Node):
                 serve_s = served + min(REST_S, max(SERVE_S, SHARE * (served - now)))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
+
+    def _tell_time(self):
+        """Say what others need where the stamps are not those of the wall clock."""
+        if sentence := clock_needed(self.settings):
+            self.get_logger().info(sentence)
 
     def _advance(self, stop):
         """Publish what may be published; return how long there is nothing to do, s."""
