@@ -170,7 +170,8 @@ def test_ends(file, given, names, started):
                 assert ended == [node for other, node in nodes.items() if other != name]
             with pytest.raises(RuntimeError, match=f'^{name} ended with exit code 2$'):
                 on_exit(SimpleNamespace(returncode=2), context)
-            assert on_exit(SimpleNamespace(returncode=2), SimpleNamespace(is_shutdown=True)) is None
+            ending = SimpleNamespace(is_shutdown=True)
+            assert on_exit(SimpleNamespace(returncode=2), ending) is None
 
 
 def test_replay(started):

@@ -62,10 +62,12 @@ def test_refusals(word, sentence):
 
 
 @pytest.mark.live
-def test_an_included_run_ends_alone(installed, ros_domain):
+def test_an_included_run_ends_alone(installed, ros_domain, tmp_path):
     """With shutdown:=false the nodes end, the parent goes on, the exit code is 0."""
+    short = tmp_path / 'short.yaml'
+    short.write_text('/**: {ros__parameters: {duration_s: 2.0}}')
     code, said = launched('shutdown:=false', 'one_process:=true', 'real_time_factor:=0.0',
-                          'rate_hz:=10', f'params_file:={resources.config("motion_2")}',
+                          'rate_hz:=10', f'params_file:={short}',
                           after_s=6.0)
     assert code == 0 and 'left.motion_generator' in said
     assert said.index('process has finished cleanly') < said.index('the parent is still here')

@@ -26,7 +26,7 @@ FLIGHT = {'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0, 'gyro.delay_u
 
 
 def settings(values=None, **more):
-    """Return Settings of {dotted name: value}, of motion 2; in keywords double underscores are dots."""
+    """Return Settings of {dotted name: value}, over motion 2; __ in keywords are dots."""
     values = {'source': 'motion', 'motion.kind': 'two_axis', **(values or {}),
               **{k.replace('__', '.'): v for k, v in more.items()}}
     known = {node: flatten(cls) for node, cls in NODES.items()}
