@@ -46,7 +46,7 @@ def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress
     Examples
     --------
     >>> import ins_sim
-    >>> settings = ins_sim.read_settings('motion_2', {'duration_s': 10.0})
+    >>> settings = ins_sim.read_settings(['motion_2', 'delay_y_1us'], {'duration_s': 10.0})
     >>> run = ins_sim.simulate(settings)
     >>> run.errors.position.shape
     (1001, 3)
@@ -91,7 +91,7 @@ def predict(settings: SimulationSettings, motion: Motion | None = None) -> Predi
     Examples
     --------
     >>> import ins_sim
-    >>> settings = ins_sim.read_settings('motion_2', {'duration_s': 60.0})
+    >>> settings = ins_sim.read_settings(['motion_2', 'delay_y_1us'], {'duration_s': 60.0})
     >>> east, north, up = ins_sim.predict(settings).drift
     >>> f'{east * 180 / 3.141592653589793 * 3600:.4f} deg/h'
     '0.0335 deg/h'

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from support.imu_records import record_at_rest
 from support.places import ROOT
+from support.studies import LATE_MOTION_2, LATE_MOTION_2_WORDS
 
 FUNCTIONS = ('read_settings', 'simulate', 'predict', 'simulate_aided', 'navigate', 'open_motion',
              'open_bag', 'presets')
@@ -23,7 +24,7 @@ AIDED = {'duration_s': 3.0, 'window.cycles': 100}
 @pytest.fixture(scope='module')
 def run():
     """Return two seconds of motion 2."""
-    return ins_sim.simulate(ins_sim.read_settings('motion_2', SHORT))
+    return ins_sim.simulate(ins_sim.read_settings(LATE_MOTION_2, SHORT))
 
 
 @pytest.fixture(scope='module')
@@ -56,7 +57,7 @@ def test_examples_of_the_docstring(name, tmp_path, monkeypatch):
     """Each function has an Examples section that runs."""
     monkeypatch.chdir(tmp_path)
     if name == 'open_bag':
-        assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=2.0', '-o', 'run',
+        assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=2.0', '-o', 'run',
                      '--bag', 'motion_2_bag']) == 0
     function = getattr(ins_sim, name)
     assert 'Examples\n' in function.__doc__
@@ -79,7 +80,7 @@ def test_types():
 def test_values_are_taken_bit_by_bit():
     """A float, a NumPy number and an array pass without being written as text."""
     third = 1.0 / 3.0
-    settings = ins_sim.read_settings('motion_2', {
+    settings = ins_sim.read_settings(LATE_MOTION_2, {
         'gyro.delay_us.y': third, 'gyro.delay_us.x': np.float64(third),
         'strapdown:output_every': np.int64(10),
         'gyro.errors.bias_deg_h': np.array([third, 0.0, 1e-17])})
@@ -91,7 +92,7 @@ def test_values_are_taken_bit_by_bit():
 
 def test_a_saved_run_is_that_of_the_command_line(run, tmp_path):
     """Arrays, parameters and summary are the same; the folder is not overwritten unasked."""
-    assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=2.0', '-o',
+    assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'verb')]) == 0
     run.save(tmp_path / 'api')
     same_folders(tmp_path / 'verb', tmp_path / 'api')
@@ -185,8 +186,8 @@ def test_arrays_into_navigate(tmp_path):
 
 def test_a_motion_of_settings_and_of_a_bag(tmp_path):
     """The truth of a bag is that of the motion it was written from."""
-    settings = ins_sim.read_settings('motion_2', {'duration_s': 12.0})
-    assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=12.0', '-o',
+    settings = ins_sim.read_settings(LATE_MOTION_2, {'duration_s': 12.0})
+    assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=12.0', '-o',
                  str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag')]) == 0
     recorded = ins_sim.open_motion(tmp_path / 'bag')
     t_ns = np.array([1_000_000_000])

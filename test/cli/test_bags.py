@@ -13,11 +13,11 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.messages import convert, topics
 import numpy as np
 import pytest
-from support.studies import run_offline
+from support.studies import LATE_MOTION_2, LATE_MOTION_2_WORDS, run_offline
 
 NAMES = {'/' + topic.name for topic in (topics.RUN, *topics.DATA)}
 EPOCH_NS = 1735689600 * 10**9
-MOTION = ['--params-file', 'motion_2', '--no-twin', '-p', 'duration_s:=5.0']
+MOTION = [*LATE_MOTION_2_WORDS, '--no-twin', '-p', 'duration_s:=5.0']
 
 
 def bag_of(tmp_path, *arguments, name='bag', motion=MOTION):
@@ -35,7 +35,8 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
     shown = capsys.readouterr().out
     assert 'written: ' in shown and f'{1 + 11 * 501} messages on 12 topics' in shown.replace(
         '\n', ' ')
-    settings = parameter_files.read([resources.config('motion_2')], ['duration_s:=5.0'])
+    settings = parameter_files.read([resources.config(name) for name in LATE_MOTION_2],
+                                    ['duration_s:=5.0'])
     run = run_offline(settings, twin=False)
     generator = settings.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)

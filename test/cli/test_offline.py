@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from support.studies import LATE_MOTION_2_WORDS
 
 from ins_sim.cli.main import main
 from ins_sim import own_folders
@@ -13,7 +14,7 @@ from ins_sim.report import figure
 def test_simulate_writes_a_run(tmp_path, capsys):
     """Arrays, parameters, summary and a figure that is a picture; the parameters run again."""
     out = tmp_path / 'run'
-    arguments = ['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=5.0']
+    arguments = ['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=5.0']
     assert main([*arguments, '-o', str(out)]) == 0
     shown = capsys.readouterr().out
     assert 'mean drift east' in shown and 'predicted' in shown and 'zero-delay twin' in shown
@@ -33,10 +34,10 @@ def test_simulate_writes_a_run(tmp_path, capsys):
 
 def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys):
     """The column of the paper appears for the hour of motion 2 and not for another run."""
-    assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=5.0', '-o',
+    assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=5.0', '-o',
                  str(tmp_path / 'run'), '--no-twin']) == 0
     assert 're-derived' not in capsys.readouterr().out
-    assert main(['predict', '--params-file', 'motion_2']) == 0
+    assert main(['predict', *LATE_MOTION_2_WORDS]) == 0
     shown = capsys.readouterr().out
     assert '4472.1' in shown and '0.0334932' in shown and "psi' = -2 gamma'" in shown
 
@@ -137,7 +138,7 @@ def test_dtg_report(capsys):
 
 def test_compare_orientation(capsys):
     """One table of the three."""
-    assert main(['compare-orientation', '--params-file', 'motion_2', '-p',
+    assert main(['compare-orientation', *LATE_MOTION_2_WORDS, '-p',
                  'duration_s:=20.0']) == 0
     text = capsys.readouterr().out
     assert all(word in text for word in ('quaternion', 'poisson', 'euler_vector',
@@ -164,6 +165,6 @@ def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
 
 def test_tables_show_their_units(capsys, tmp_path):
     """No unit is taken for markup."""
-    assert main(['predict', '--params-file', 'motion_2', '-p', 'duration_s:=10.0']) == 0
+    assert main(['predict', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=10.0']) == 0
     text = ' '.join(capsys.readouterr().out.split())
     assert "psi' [rad/s]" in text and 'drift north [deg/h]' in text

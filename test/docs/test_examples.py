@@ -77,8 +77,9 @@ def test_the_arrays_of_a_run_are_documented(tmp_path, monkeypatch):
             assert key not in dimensions, key
             dimensions[key] = shape
     found = set()
-    for words in ('--params-file motion_2', '--params-file motion_2 --params-file '
-                  'imu_tactical_dtg', '--aided --params-file route_flight --params-file grade_mid '
+    for words in ('--params-file motion_2 --params-file delay_y_1us',
+                  '--params-file motion_2 --params-file imu_tactical_dtg',
+                  '--aided --params-file route_flight --params-file grade_mid '
                   '-p window.cycles:=100', '--params-file guided_flight'):
         assert main(['simulate', *words.split(), '-p', 'duration_s:=3.0', '-o', 'run',
                      '--force']) == 0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.studies import MOTION_2, prediction_of, run_offline, settings
+from support.studies import LATE_MOTION_2_WORDS, MOTION_2, prediction_of, run_offline, settings
 
 from ins_sim.cli.main import main
 from ins_sim.core.motion.factory import make_motion
@@ -123,7 +123,7 @@ def test_long_turns_are_the_exact_response_of_the_channel():
 
 def test_predict_says_what_it_covers(capsys):
     """Its bound always; that instrument errors are not in it where they are on."""
-    words = ['predict', '--params-file', 'motion_2', '-p', 'duration_s:=60.0']
+    words = ['predict', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=60.0']
     assert main(words) == 0
     said = ' '.join(capsys.readouterr().out.split())
     assert ('the prediction covers delays, tuned gyros and initial errors, linear in the errors; '
@@ -145,7 +145,7 @@ def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsy
         drawn.append(prediction), draw(path, title, errors, prediction)))
     import json
     for name, more in (('on', ['--params-file', 'imu_tactical_fog']), ('off', [])):
-        assert main(['simulate', '--params-file', 'motion_2', *more, '-p', 'duration_s:=60.0',
+        assert main(['simulate', *LATE_MOTION_2_WORDS, *more, '-p', 'duration_s:=60.0',
                      '-o', str(tmp_path / name)]) == 0
     capsys.readouterr()
     on, off = ({row['name']: row for row in json.loads(
@@ -164,7 +164,7 @@ def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsy
 def test_a_delay_beyond_what_a_stream_is_continued_by_is_said_once(more, count, tmp_path, capsys):
     """60 ms, of the 50 that a stream with its analytic history is continued backwards."""
     words = ['gyro.delay_us.x:=6e4', 'duration_s:=1.0', *more]
-    assert main(['simulate', '--params-file', 'motion_2', '-o', str(tmp_path / 'run'),
+    assert main(['simulate', *LATE_MOTION_2_WORDS, '-o', str(tmp_path / 'run'),
                  *(word for a in words for word in ('-p', a))]) == 0
     said = capsys.readouterr().err
     assert said.count('a channel is delayed by 60 ms, but a stream is continued backwards by 50 '

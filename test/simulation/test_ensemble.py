@@ -10,13 +10,14 @@ from ins_sim.core.ensemble import group, many_runs
 from ins_sim.core.numerics import compilation
 from ins_sim.core.simulation.inertial import ideal_blocks, simulate
 from ins_sim.io.motion import read_motion
+from support.studies import LATE_MOTION_2
 
 NOISY = ('imu_tactical_fog',)
 LAGGED = ('accelerometer.errors.bandwidth_hz:=[20.0, 0.0, 30.0]',
           'gyro.errors.quantisation_arcsec:=[0.1, 0.1, 0.0]')
 
 
-def settings_of(*assignments, names=('motion_2',), seconds=12.0):
+def settings_of(*assignments, names=LATE_MOTION_2, seconds=12.0):
     """Return SimulationSettings of shipped files."""
     return parameter_files.read([resources.parameter_file(name) for name in names],
                                 [f'duration_s:={seconds}', *assignments])
@@ -46,10 +47,11 @@ def errors_of(result):
 
 
 @pytest.mark.parametrize('names, assignments', [
-    (('motion_2',), ('vertical.channel:=truth',)),
-    (('motion_2', *NOISY), ('vertical.channel:=free', 'initial.after_s:=1.003')),
-    (('cruise', *NOISY), ('vertical.channel:=damped', 'input:=integrated', 'output:=integrated')),
-    (('motion_2', *NOISY), LAGGED)])
+    (LATE_MOTION_2, ('vertical.channel:=truth',)),
+    ((*LATE_MOTION_2, *NOISY), ('vertical.channel:=free', 'initial.after_s:=1.003')),
+    (('cruise', 'delays_2_1_3us', *NOISY),
+     ('vertical.channel:=damped', 'input:=integrated', 'output:=integrated')),
+    ((*LATE_MOTION_2, *NOISY), LAGGED)])
 def test_a_lane_is_the_single_run(names, assignments):
     """Solution and errors of a run are those of simulate with that run, whatever the channel."""
     settings = settings_of(*assignments, names=names)
@@ -80,7 +82,7 @@ def same(a, b):
 @pytest.mark.parametrize('count', [0, 1, 15, 16, 17, 1000])
 def test_any_number_of_runs_and_of_threads(count):
     """One and two threads give the same bits; a run does not depend on how many there are."""
-    settings = settings_of('rate_hz:=20.0', names=('motion_2', *NOISY), seconds=3.0)
+    settings = settings_of('rate_hz:=20.0', names=(*LATE_MOTION_2, *NOISY), seconds=3.0)
     motion = read_motion(settings.motion_generator)
     one, two = (many_runs.simulate_runs(settings, motion, range(count), [1.0, 3.0],
                                         threads=threads) for threads in (1, 2))
@@ -93,7 +95,7 @@ def test_any_number_of_runs_and_of_threads(count):
 
 def test_plain_python_gives_the_same_bits():
     """Loops in plain Python and compiled ones are equal."""
-    settings = settings_of(names=('motion_2', *NOISY), seconds=7.0)
+    settings = settings_of(names=(*LATE_MOTION_2, *NOISY), seconds=7.0)
     motion = read_motion(settings.motion_generator)
     usual = many_runs.simulate_runs(settings, motion, range(3), [7.0])
     with compilation.plain_only():
@@ -102,7 +104,7 @@ def test_plain_python_gives_the_same_bits():
 
 def test_instants_and_their_statistics():
     """The statistics are those of the errors of the single runs at the instants named."""
-    settings = settings_of('initial.after_s:=0.5', names=('motion_2', *NOISY), seconds=4.0)
+    settings = settings_of('initial.after_s:=0.5', names=(*LATE_MOTION_2, *NOISY), seconds=4.0)
     motion, runs = read_motion(settings.motion_generator), range(20)
     found = many_runs.simulate_runs(settings, motion, runs, [4.0, 0.1, 1.995, 1.995])
     flown = [single(settings, motion, run) for run in runs]
@@ -118,7 +120,7 @@ def test_instants_and_their_statistics():
 
 def test_cutting_and_a_lost_lane_change_no_other():
     """Samples in pieces of any length give the same states, beside a run that has diverged too."""
-    settings = settings_of('vertical.channel:=free', names=('motion_2', *NOISY))
+    settings = settings_of('vertical.channel:=free', names=(*LATE_MOTION_2, *NOISY))
     motion = read_motion(settings.motion_generator)
     imu = next(ideal_blocks(settings, motion))
     truth, rng = motion.at(imu.t_ns), np.random.default_rng(4)

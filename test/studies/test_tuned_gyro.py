@@ -172,8 +172,10 @@ def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
 
 def test_files_of_another_kind_are_refused(tmp_path, capsys):
     """A study is no run and a run no study; two files of one name would share a figure."""
+    assert main(['dtg-study', '--params-file', 'other_simulator']) == 2
+    assert "unknown section '/**/truth_adapter'; the nearest known one" in capsys.readouterr().err
     assert main(['dtg-study', '--params-file', 'imu_tactical_fog']) == 2
-    assert "unknown section '/**/imu_sensor'; the nearest known one is" in capsys.readouterr().err
+    assert "unknown parameter 'gyro.errors.turn_on_bias_sigma_deg_h'" in capsys.readouterr().err
     assert main(['predict', '--params-file', 'dtg_study_speed']) == 2
     assert "unknown section '/**/dtg_study'" in capsys.readouterr().err
     copy = tmp_path / 'dtg_study_speed.yaml'

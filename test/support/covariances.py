@@ -11,7 +11,8 @@ from ins_sim.core.simulation.free_covariance import free_covariance
 from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 from ins_sim.io.motion import read_motion
 
-FILES = {'rest': [], 'racetrack': ['racetrack'], 'motion_2': ['motion_2']}
+FILES = {'rest': [], 'racetrack': ['racetrack', 'delays_2_1_3us'],
+         'motion_2': ['motion_2', 'delay_y_1us']}
 REST = {'motion.kind': 'static', 'motion.theta_deg': 0.0}
 SIGMAS = {'initial.position_sigma_m': 1.0, 'initial.velocity_sigma_m_s': 0.05,
           'initial.tilt_sigma_mrad': 0.3, 'initial.azimuth_sigma_mrad': 1.5}

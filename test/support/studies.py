@@ -20,14 +20,17 @@ DEG_PER_HOUR = 206264.806
 
 MOTION_1 = {'motion.kind': 'rocking', 'motion.psi_deg': 45.0, 'motion.theta_deg': 0.0,
             'gyro.delay_us.x': 1.0}
+# Shipped files of motion 2 with its delay, and how the command line names them.
+LATE_MOTION_2 = ['motion_2', 'delay_y_1us']
+LATE_MOTION_2_WORDS = [word for name in LATE_MOTION_2 for word in ('--params-file', name)]
 MOTION_2 = {'motion.kind': 'two_axis', 'gyro.delay_us.y': 1.0}
 FLIGHT = {'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0, 'gyro.delay_us.y': 1.0,
           'gyro.delay_us.x': 2.0, 'gyro.delay_us.z': 3.0}
 
 
 def settings(values=None, **more):
-    """Return Settings of {dotted name: value}; double underscores in keywords are dots."""
-    values = {'source': 'motion', **(values or {}),
+    """Return Settings of {dotted name: value}, over motion 2; __ in keywords are dots."""
+    values = {'source': 'motion', 'motion.kind': 'two_axis', **(values or {}),
               **{k.replace('__', '.'): v for k, v in more.items()}}
     known = {node: flatten(cls) for node, cls in NODES.items()}
     unused = set(values) - set().union(*known.values())

@@ -3,6 +3,9 @@
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.run_announcement import RunAnnouncement
+from ins_sim.settings.catalogue import build
+from ins_sim.settings.motion import MotionGeneratorSettings
+from ins_sim.settings.told import clock_needed
 import pytest
 from support.hostile.fed_nodes import FedNodes
 from support.hostile.flight import COMMON, HostileFlight
@@ -181,12 +184,10 @@ def test_what_is_no_announcement_is_dropped(flight):
                'publishes'),
     ({'pacing.real_time_factor': 10.0, 'publish_clock': True}, 'with a real_time_factor of 10 the '
      'stamps do not follow the wall clock: other nodes need use_sim_time: true and /clock')])
-def test_the_generator_says_who_needs_the_clock(values, says, ros_domain):
-    with FedNodes({'motion_generator': {**COMMON, **values}}) as nodes:
-        nodes.nodes['motion_generator']._tell_time()
-        said = '\n'.join(nodes.logs['motion_generator'].kept)
-        assert (says in said) if says else not said
-        assert ('which publish_clock' in said) == ('lock-step' in said)
+def test_the_generator_says_who_needs_the_clock(values, says):
+    said = clock_needed(build(MotionGeneratorSettings, values))
+    assert (says in said) if says else not said
+    assert ('which publish_clock' in said) == ('lock-step' in said)
 
 
 def test_two_clocks_are_named(ros_domain):
