@@ -5,9 +5,8 @@ from .imu import OUTPUTS
 from .instrument_errors import AccelerometerErrors, GyroErrors
 from .node import Topics
 from .place import Datum, Earth, Frames, Tf
-from .recorded_imu import INPUTS, SampleUnits
-from .self_alignment import AlignmentSettings, MountingAngles
-from .standalone import GapSettings, StandaloneInputs, StandaloneStart
+from .recorded_imu import (AlignmentSettings, GapSettings, INPUTS, MountingAngles, SampleUnits,
+                           StandaloneInputs, StandaloneStart)
 
 
 @settings_class

@@ -13,7 +13,7 @@ from ins_sim.core.postprocessing.standstill import find_standstill
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.simulation.inertial import imu_blocks
-from ins_sim.settings.self_alignment import AlignmentSettings
+from ins_sim.settings.recorded_imu import AlignmentSettings
 
 # Turn-on bias of the gyros of the presets, deg/h.
 BIAS_DEG_H = {'imu_tactical_fog': 1.0, 'imu_tactical_mems': 10.0, 'imu_navigation_rlg': 0.0035}
