@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.live_imu import as_sent, play, stage_of, vehicle
+from support.nodes.live_imu import as_sent, play, stage_of, vehicle
 from support.nodes.real_imu import messages_of, RealImuGraph
 
 from ins_sim.core.attitude import quaternion
@@ -159,6 +159,22 @@ def test_services_answer_in_a_sentence():
     with RealImuGraph(**{'initial.source': 'truth', 'input': 'rotation_vector'}) as graph:
         assert not graph.call('align')[0] and 'initial.source is truth' in graph.call('align')[1]
         assert graph.call('reset') == (True, 'started anew')
+
+
+def test_the_shipped_parameters():
+    """config/real_imu.yaml aligns a car by the course of its fixes, damped, with imu/data."""
+    import yaml
+    from ins_sim import resources
+    text = yaml.safe_load(resources.config('real_imu').read_text())
+    values = {f'{key}.{name}' if isinstance(value, dict) else key: entry
+              for key, value in text['/**/strapdown']['ros__parameters'].items()
+              for name, entry in (value.items() if isinstance(value, dict) else [('', value)])}
+    imu, fixes = vehicle(length_s=40.0)
+    with RealImuGraph(**values) as graph:
+        graph.send(messages_of(imu, fixes))
+        assert graph.node.monitor.faults == 0, graph.said
+        fixes = graph.heard[topics.INS_FIX.name]
+        assert len(graph.heard[topics.IMU_DATA.name]) == len(fixes) > 900
 
 
 def test_a_damped_channel_follows_fix_and_pressure():

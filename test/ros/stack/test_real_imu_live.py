@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support.live import GUARD_S, Listener
-from support.live_imu import LIVE, OFFLINE, read, vehicle
+from support.nodes.live_imu import LIVE, OFFLINE, read, vehicle
 from support.nodes.real_imu import FIX, IMU, messages_of
 
 import ins_sim
@@ -75,7 +75,7 @@ def test_a_made_bag(chain, ros_domain, tmp_path):
      {'mounting.rpy_deg': [90.0, 0.0, -90.0]}),
     ('umn_thor_fl75_first90s_sqlite3', '/imu/data', '/gps/fix', (45.3, -93.2, 250.0), {})])
 def test_the_recorded_bags(name, imu, fix, datum, values, shared_data, chain, ros_domain):
-    """Two real robots, as in test/standalone, but over DDS."""
+    """Two real robots, as in test/navigation/standalone, but over DDS."""
     bag = shared_data / 'rosbags' / name
     result = ins_sim.navigate(bag, {**OFFLINE, **values})
     record, _ = read(bag, imu, fix)

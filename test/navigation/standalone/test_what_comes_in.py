@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.live_imu import play, stage_of, vehicle
+from support.nodes.live_imu import play, stage_of, vehicle
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import to_compass
