@@ -59,7 +59,8 @@ class StandaloneDrive:
         if self._hears_transforms:
             self._static = HandQueue(node, topics.TF_STATIC, STATIC_DEPTH, qos.keep_last(
                 STATIC_DEPTH, qos.ReliabilityPolicy.RELIABLE, qos.LATCHING))
-        self._texts = Reader(topics.IMU)
+        self._texts, self._measured = Reader(topics.IMU), Reader(topics.IMU, ((16, 17), (28, 29)))
+        self._looked = False
         node.monitor.add(lambda: ('', (('state', self.stage.state),)))
 
     def take(self):
@@ -105,12 +106,23 @@ class StandaloneDrive:
     def on_message(self, data, sample):
         """Give a reading of the IMU, (t_ns, rate, specific force), to the stage."""
         stage = self.stage
-        if not stage.samples.frame_id:
-            stage.samples.frame_id = self._texts.strings(data)[0]
+        if not self._looked:
+            self._looked = True
+            self._look(data)
         t_ns, omega, f = sample
         self.take()
         self.publish(stage.push_imu(t_ns, tuple(self._rate * w for w in omega),
                                     tuple(self._force * a for a in f), data))
+
+    def _look(self, data):
+        """Take the frame of the first message, and say what it says that it has not (REP-145)."""
+        self.stage.samples.frame_id = self._texts.strings(data)[0]
+        _, rate, force = self._measured.read(data)
+        missing = [name for name, (first,) in (('angular_velocity', rate),
+                                               ('linear_acceleration', force)) if first == -1.0]
+        if missing:
+            self._node.monitor.fault(f'{self.driver.name} says by a covariance of -1 that it has '
+                                     f'no {" and no ".join(missing)} (REP-145); expected both')
 
     def publish(self, outputs):
         """Publish solutions, and say what there is to say."""
