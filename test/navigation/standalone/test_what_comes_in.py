@@ -110,6 +110,17 @@ def test_a_clock_that_jumps_back():
     assert said.stage.begun == 2 and said.has('jumped back to 999999000.18')
 
 
+def test_a_fix_of_another_clock():
+    """It is dropped in a sentence, and those behind it are used."""
+    imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
+    fixes.insert(4, fixes[4]._replace(t_ns=fixes[4].t_ns + 10**12))
+    said = stage_of(GIVEN)
+    play(said, imu[:120], fixes[:3])
+    said.take(said.stage.push_fix(fixes[4]))
+    play(said, imu[120:], fixes[5:])
+    assert said.has('a fix on gnss/fix is 1000') and said.stage.located
+
+
 def test_a_solution_that_runs_away():
     """It ends, once, in a sentence."""
     imu, _ = vehicle(length_s=10.0, rest_s=10.0)
