@@ -118,7 +118,7 @@ def test_a_fix_of_another_clock():
     play(said, imu[:120], fixes[:3])
     said.take(said.stage.push_fix(fixes[4]))
     play(said, imu[120:], fixes[5:])
-    assert said.has('a fix on gnss/fix is 1000') and said.stage.located
+    assert said.has('a fix on gnss/fix is 1001') and said.stage.located
 
 
 def test_a_solution_that_runs_away():
