@@ -3,8 +3,8 @@
 from .field import group, setting, settings_class, SettingsGroup
 from .motion import FlightColumns
 from .place import Earth
-from .recorded_imu import AcceptNavigated, ImuColumns, INPUTS, RecordUnits, StampSettings
-from .self_alignment import AlignmentSettings, GivenState, MountingAngles
+from .recorded_imu import (AcceptNavigated, AlignmentSettings, GivenState, ImuColumns, INPUTS,
+                           MountingAngles, RecordUnits, StampSettings)
 
 
 @settings_class

@@ -5,9 +5,8 @@ from .imu import OUTPUTS
 from .instrument_errors import AccelerometerErrors, GyroErrors
 from .node import Topics
 from .place import Datum, Earth, Frames, Tf
-from .recorded_imu import INPUTS, SampleUnits
-from .self_alignment import AlignmentSettings, MountingAngles
-from .standalone import GapSettings, StandaloneInputs, StandaloneStart
+from .recorded_imu import (AlignmentSettings, GapSettings, INPUTS, MountingAngles, SampleUnits,
+                           StandaloneInputs, StandaloneStart)
 
 
 @settings_class
@@ -116,3 +115,10 @@ class StrapdownSettings(SettingsGroup):
         if self.input not in OUTPUTS and not self.standalone:
             raise ValueError(f'input is {self.input} and initial.source truth; expected one of '
                              f'{", ".join(OUTPUTS)}, as imu_sensor sends them')
+        if self.mounting.source == 'level' and self.initial.source != 'alignment':
+            raise ValueError(f'mounting.source is level and initial.source {self.initial.source}; '
+                             'expected initial.source alignment, whose standstill shows what is '
+                             'level')
+        if any(self.mounting.rpy_deg) and not self.standalone:
+            raise ValueError(f'mounting.rpy_deg is {list(self.mounting.rpy_deg)} and would not be '
+                             'used with initial.source truth; expected zeros')

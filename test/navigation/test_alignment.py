@@ -12,7 +12,8 @@ from scipy.stats import chi2
 from ins_sim import parameter_files, resources
 from ins_sim.core.attitude import angles, quaternion
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment, standstill
+from ins_sim.core.navigation import alignment
+from ins_sim.core.postprocessing import standstill
 from ins_sim.core.postprocessing import mounting
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.settings.catalogue import build

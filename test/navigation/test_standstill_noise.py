@@ -9,8 +9,9 @@ from support.studies import settings as simulation
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment, standstill
-from ins_sim.core.navigation.standstill import standard_error
+from ins_sim.core.navigation import alignment
+from ins_sim.core.postprocessing import standstill
+from ins_sim.core.postprocessing.standstill import standard_error
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.postprocessing.navigate import navigate

@@ -9,10 +9,11 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.angles import from_compass, to_compass
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import alignment, standstill
+from ins_sim.core.navigation import alignment
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
+from . import standstill
 from .course import find_course, navigated_headings
 from .gravity_check import check_gravity, LEAST_FORCE
 

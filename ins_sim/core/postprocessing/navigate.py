@@ -8,12 +8,11 @@ import numpy as np
 
 from ins_sim.core.attitude import angles
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.navigation import standstill
 from ins_sim.core.navigation.recorded import RecordedLoop, RecordedNavigator
 from ins_sim.core.navigation.strapdown import runs_away
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.histories import NavStates
-from . import mounting
+from . import mounting, standstill
 from .comparison import compare_with_reference
 from .gravity_check import check_gravity
 from .imu_record import find_gaps, gap_limit_ns, ordered_samples

@@ -152,7 +152,7 @@ class AlignmentStart:
         _, accelerometer = sigmas_of(self._s)
         sigmas = given_sigmas(self._s.initial, self._inputs.fixes.sigma(still.end_ns), sigma)
         tilt = math.sqrt(max(accelerometer.bias)) / STANDARD_GRAVITY
-        sigmas = sigmas._replace(tilt=math.hypot(sigmas.tilt, tilt), gyro_bias=bias_sigma)
+        sigmas = sigmas._replace(tilt=_joint(sigmas.tilt, tilt), gyro_bias=bias_sigma)
         return Start(self._samples, (*place, (0.0, 0.0, 0.0), q_nb), bias, sigmas,
                      known and self._place is not None, infos, warnings)
 
@@ -238,7 +238,7 @@ class AlignmentStart:
     def _by_field(self, wanted, infos):
         if wanted not in ('auto', 'magnetometer', 'given'):
             return None
-        mean = self._inputs.field.mean(self._still.start_ns, self._still.end_ns)
+        mean = self._inputs.field.between(self._still.start_ns, self._still.end_ns)
         if mean is None:
             self._refuse(f'there is no message on {self._s.inputs.magnetic_field}')
             return None
@@ -264,7 +264,7 @@ class AlignmentStart:
         infos.append(alignment.bias_sentence(bias))
         error = float(max(still.rate_error))
         # The level rate of the Earth has a direction in the vehicle that is not known.
-        return tuple(bias.tolist()), error if known else math.hypot(error, self._spin * cos(lat))
+        return tuple(bias.tolist()), error if known else _joint(error, self._spin * cos(lat))
 
     def _warning(self, heading_known):
         """Return the warning on a heading or a position that nobody knows."""
@@ -277,3 +277,8 @@ class AlignmentStart:
                 f'initial.heading given; fixes on {self._s.inputs.fix}, of a vehicle that moves; '
                 f'a magnetometer on {self._s.inputs.magnetic_field}; or gyros whose '
                 'alignment.gyro_bias_sigma_deg_h is known to be small')
+
+
+def _joint(one, other):
+    """Return the standard deviation of the sum of two errors."""
+    return math.sqrt(one * one + other * other)

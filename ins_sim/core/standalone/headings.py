@@ -10,6 +10,7 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.navigation import alignment
 from ins_sim.core.navigation.recorded import RecordedNavigator
 from ins_sim.core.numerics import elementary
+from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.postprocessing.course import CourseSearch
 
 # Of the field of the Earth, T.
@@ -90,7 +91,7 @@ class FieldSamples:
         """Take a field, T, with the stamp t_ns."""
         self._samples.append((t_ns, field))
 
-    def mean(self, start_ns, end_ns):
+    def between(self, start_ns, end_ns):
         """Return the mean field between two stamps, (3,) T, or None where there is none."""
         inside = [field for t_ns, field in self._samples if start_ns <= t_ns <= end_ns]
         return np.array(inside).mean(axis=0) if inside else None
@@ -103,7 +104,7 @@ def magnetic_heading(field_b, force, declination):
     field_b, force (3,): mean field, T, and specific force in b; declination: of the field, East
     of true north, rad.  Raises ValueError, one sentence, for a field that is not the Earth's.
     """
-    size = math.sqrt(float(field_b @ field_b))
+    size = length(field_b)
     if not LEAST_FIELD <= size <= MOST_FIELD:
         raise ValueError(f'the magnetic field is {1e6 * size:.3g} uT; expected '
                          f'{1e6 * LEAST_FIELD:g} to {1e6 * MOST_FIELD:g} uT: is the magnetometer '

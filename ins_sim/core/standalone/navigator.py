@@ -14,6 +14,8 @@ from .vertical_reference import VerticalReference
 
 # Samples that are navigated at once where many wait.
 AT_ONCE = 500
+# In lock-step fixes come before the readings of their time, by its window of samples.
+MOST_AHEAD_S = 60.0
 
 
 class StandaloneNavigator:
@@ -97,6 +99,12 @@ class StandaloneNavigator:
 
     def push_fix(self, fix):
         """Take a PlaceFix; return the solutions that it leads to."""
+        ahead_s = 0.0 if self.newest_ns is None else 1e-9 * (fix.t_ns - self.newest_ns)
+        if ahead_s > MOST_AHEAD_S:
+            self.faults.append(f'a fix on {self._s.inputs.fix} is {ahead_s:.6g} s ahead of the '
+                               f'readings of the imu; expected at most {MOST_AHEAD_S:g} s, and '
+                               'one clock for both; it was dropped')
+            return []
         if not self.fixes.push(fix):
             return []
         self._heights.push_fix(fix.t_ns, fix.height)

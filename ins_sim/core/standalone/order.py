@@ -116,7 +116,7 @@ class OrderedSamples:
         Returns [(kind, ImuSample)]: NEXT; HOLD for one behind a gap; REPLACE for one in whose
         place another was given before; RESTART for the first behind a jump back.
         """
-        if not math.isfinite(sum(omega) + sum(f)):
+        if not all(map(math.isfinite, (*omega, *f))):
             self._drop(f'imu at {seconds(t_ns)} holds what is no number; expected finite '
                        'readings; the sample was dropped')
             return []

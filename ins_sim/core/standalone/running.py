@@ -85,7 +85,7 @@ class RunningNavigation:
         if not first and t_ns - self.t_ns > gap_ns:
             navigator.bridge_next(self._step_ns)
         solution = navigator.step(t_ns, omega, f, self._heights.at(t_ns))
-        if not first and (runs_away(solution) or not math.isfinite(sum(solution[4]))):
+        if not first and (runs_away(solution) or not all(map(math.isfinite, solution[4]))):
             raise ValueError(f'the solution runs away at {seconds(t_ns)} and ends there: the '
                              'initial values or the units of the IMU cannot be right')
         self._before = self._navigator, self.t_ns

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ins_sim.core.navigation.standstill import (standstill_of, StandstillSearch, together_at,
-                                                window_length_ns, WindowMoments)
+from ins_sim.core.postprocessing.standstill import (
+    standstill_of, StandstillSearch, together_at, window_length_ns, WindowMoments)
 from .samples import recorded
 
 # After so many windows without a standstill it is said what is in the way.

@@ -180,7 +180,7 @@ class CourseStart(GivenStart):
         q_nb = tuple(from_compass(math.radians(initial.roll_deg), math.radians(initial.pitch_deg),
                                   heading)[0].tolist())
         velocity = max(initial.velocity_sigma_m_s, math.sqrt(2.0) * sigma / seconds_apart)
-        sigmas = given_sigmas(initial, sigma, math.atan2(math.sqrt(2.0) * sigma, way))
+        sigmas = given_sigmas(initial, sigma, elementary.atan2(math.sqrt(2.0) * sigma, way))
         return Start(samples, (*place, v, q_nb), None, sigmas._replace(velocity=velocity),
                      True, [f'start on the move: {attitude_text(q_nb)[2]}, by the course of the '
                             f'fixes over {way:.1f} m'], [])

@@ -18,6 +18,8 @@ from ..transport import qos
 from ..transport.backlog import HandQueue
 
 STATIC_DEPTH = 100
+# Of a field that is read at all, T.
+MOST_FIELD_T = 0.1
 
 
 class StandaloneDrive:
@@ -59,7 +61,8 @@ class StandaloneDrive:
         if self._hears_transforms:
             self._static = HandQueue(node, topics.TF_STATIC, STATIC_DEPTH, qos.keep_last(
                 STATIC_DEPTH, qos.ReliabilityPolicy.RELIABLE, qos.LATCHING))
-        self._texts = Reader(topics.IMU)
+        self._texts, self._measured = Reader(topics.IMU), Reader(topics.IMU, ((16, 17), (28, 29)))
+        self._looked = False
         node.monitor.add(lambda: ('', (('state', self.stage.state),)))
 
     def take(self):
@@ -98,19 +101,31 @@ class StandaloneDrive:
         self.stage.push_pressure(t_ns, pressure[0])
 
     def _on_field(self, data, t_ns, field):
-        if not math.isfinite(sum(field)):
-            raise ValueError(f'the field is {field} T; expected finite numbers')
+        # false for what is not a number
+        if not math.hypot(*field) < MOST_FIELD_T:
+            raise ValueError(f'the field is {field} T; expected less than {MOST_FIELD_T:g} T')
         self.stage.push_field(t_ns, field)
 
     def on_message(self, data, sample):
         """Give a reading of the IMU, (t_ns, rate, specific force), to the stage."""
         stage = self.stage
-        if not stage.samples.frame_id:
-            stage.samples.frame_id = self._texts.strings(data)[0]
+        if not self._looked:
+            self._looked = True
+            self._look(data)
         t_ns, omega, f = sample
         self.take()
         self.publish(stage.push_imu(t_ns, tuple(self._rate * w for w in omega),
                                     tuple(self._force * a for a in f), data))
+
+    def _look(self, data):
+        """Take the frame of the first message, and say what it says that it has not (REP-145)."""
+        self.stage.samples.frame_id = self._texts.strings(data)[0]
+        _, rate, force = self._measured.read(data)
+        missing = [name for name, (first,) in (('angular_velocity', rate),
+                                               ('linear_acceleration', force)) if first == -1.0]
+        if missing:
+            self._node.monitor.fault(f'{self.driver.name} says by a covariance of -1 that it has '
+                                     f'no {" and no ".join(missing)} (REP-145); expected both')
 
     def publish(self, outputs):
         """Publish solutions, and say what there is to say."""

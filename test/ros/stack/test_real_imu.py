@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.live_imu import as_sent, play, stage_of, vehicle
+from support.nodes.live_imu import as_sent, play, stage_of, vehicle
 from support.nodes.real_imu import messages_of, RealImuGraph
 
 from ins_sim.core.attitude import quaternion
@@ -159,6 +159,46 @@ def test_services_answer_in_a_sentence():
     with RealImuGraph(**{'initial.source': 'truth', 'input': 'rotation_vector'}) as graph:
         assert not graph.call('align')[0] and 'initial.source is truth' in graph.call('align')[1]
         assert graph.call('reset') == (True, 'started anew')
+
+
+def test_damaged_messages_on_every_input():
+    """Cut, turned over or filled with noise: faults in words, nothing dies, nothing is NaN."""
+    imu, fixes = vehicle(length_s=30.0, rate_hz=25.0)
+    rng, messages = np.random.default_rng(5), []
+    good = messages_of(imu, fixes)
+    others = [(topic.name, topic.writer().pack(int(imu.t_ns[0]), run)) for topic, run in (
+        (topics.IMU_MAG, (2e-5, 0.0, -4e-5)), (topics.IMU_PRESSURE, (1e5,)))]
+    for name, data in good:
+        messages.append((name, data))
+        if rng.random() < 0.3:
+            name, data = (*others, (name, data))[rng.integers(3)]
+            spoiled = np.frombuffer(data, dtype=np.uint8).copy()
+            spoiled[rng.integers(4, len(spoiled), 1 + rng.integers(12))] = rng.integers(
+                0, 256, dtype=np.uint8)
+            messages.append((name, spoiled.tobytes()[:None if rng.random() < 0.7 else
+                                                     rng.integers(len(spoiled))]))
+    with RealImuGraph(**{'alignment.longest_s': 8.0, 'vertical.channel': 'damped'}) as graph:
+        graph.send(messages)
+        assert not graph.bus.wrong
+        for word in ('Error', 'Traceback', 'line '):
+            assert word not in graph.said, graph.said
+        assert graph.node.stage.newest_ns is not None and graph.call('reset')[0]
+
+
+def test_the_shipped_parameters():
+    """config/real_imu.yaml aligns a car by the course of its fixes, damped, with imu/data."""
+    import yaml
+    from ins_sim import resources
+    text = yaml.safe_load(resources.config('real_imu').read_text())
+    values = {f'{key}.{name}' if isinstance(value, dict) else key: entry
+              for key, value in text['/**/strapdown']['ros__parameters'].items()
+              for name, entry in (value.items() if isinstance(value, dict) else [('', value)])}
+    imu, fixes = vehicle(length_s=40.0)
+    with RealImuGraph(**values) as graph:
+        graph.send(messages_of(imu, fixes))
+        assert graph.node.monitor.faults == 0, graph.said
+        fixes = graph.heard[topics.INS_FIX.name]
+        assert len(graph.heard[topics.IMU_DATA.name]) == len(fixes) > 900
 
 
 def test_a_damped_channel_follows_fix_and_pressure():

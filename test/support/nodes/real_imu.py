@@ -4,7 +4,7 @@ from collections import defaultdict
 
 import numpy as np
 from support.hostile.fed_nodes import FedNodes
-from support.live_imu import LIVE
+from support.nodes.live_imu import LIVE
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from support.live_imu import (LIVE, OFFLINE, play, read, reference_of, same_bits, stage_of,
-                              vehicle)
+from support.nodes.live_imu import (LIVE, OFFLINE, play, read, reference_of, same_bits, stage_of,
+                                    vehicle)
 
 import ins_sim
 from ins_sim.core.attitude import quaternion
