@@ -89,15 +89,15 @@ class BagRecorder:
         except BaseException:
             self._node.destroy_subscription(queue.subscription)
             raise
-        seldom = name in [self._node.resolve_topic_name(t.name) for t in topics.SELDOM]
+        seldom = self._is_one_of(name, topics.SELDOM)
+        run = self._is_one_of(name, [topics.RUN])
         # their arrays are stamped with the time of the run, as that of /diagnostics need not be
-        run, record = (self._node.resolve_topic_name(t.name) for t in (
-            topics.RUN, topics.METER_RECORD))
-        by_stamp = is_stamped(topic.type_name) or name in (run, record)
+        by_stamp = is_stamped(topic.type_name) or run or self._is_one_of(
+            name, [topics.METER_RECORD])
         track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom, Holes())
         self.tracks[name] = track
         # a run need not be announced, and what is latched is not missed
-        if (track.stamped or seldom) and name not in (self._ack_name, run):
+        if (track.stamped or seldom) and name != self._ack_name and not run:
             self._silent.append(track)
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
         known = [n for n in order if n in self.tracks]
@@ -105,6 +105,11 @@ class BagRecorder:
         paced = {self._node.resolve_topic_name(t.name) for t in PACED}
         self._paced = [t for n, t in self.tracks.items() if n in paced]
         return track
+
+    def _is_one_of(self, name, wanted):
+        """Return whether a resolved name is that of one of our Topics, of any vehicle."""
+        return any(name == self._node.resolve_topic_name(topic.name)
+                   or name.endswith(f'/{topic.name}') for topic in wanted)
 
     def subscribe_anew(self, track, profile):
         """Replace the subscription of a topic, of which nothing has been heard."""
