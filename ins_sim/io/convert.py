@@ -23,6 +23,7 @@ from . import bag_imu, csv_flight, csv_imu, csv_writer
 from .bag_truth import read_poses
 from .csv_text import is_csv, SUFFIXES
 from .topic_choice import choose_topic, short_names
+from .whole_file import check_file
 
 WINDOW = 4096
 
@@ -49,7 +50,7 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
         raise ValueError(f'{source} and {target} are both {"bags" if from_bag else "CSV files"}; '
                          'expected a bag and a CSV file')
     if from_bag:
-        _check_file(target, force)
+        check_file(target, force)
         return _to_csv(source, target, settings, topic, imu)
     check_target(target, storage, compression, force)
     how = dict(storage=storage, compression=compression, replace=force)
@@ -59,13 +60,6 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
         raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, of which the '
                          'topics are truth/*; expected none')
     return _flight_to_bag(source, target, settings, how)
-
-
-def _check_file(path, force):
-    if path.exists() and not force:
-        raise ValueError(f'{path} exists; expected a new file (or --force)')
-    if path.exists() and not path.is_file():
-        raise ValueError(f'{path} is no file; --force replaces only a file')
 
 
 def _to_csv(source, target, settings, topic, chosen):
