@@ -2,9 +2,9 @@
 
 from . import arguments
 
-HELP = "write another program's file about the instrument"
-DESCRIPTION = ("Write the imu.yaml of Kalibr: the noise densities and the random walks of the "
-               "bias of the simulated IMU, its topic and its rate.")
+HELP = 'a file about the instrument for another program'
+DESCRIPTION = ('Write the imu.yaml of Kalibr: the noise densities and the random walks of the bias '
+               'of the simulated IMU, its topic and its rate.')
 
 
 def add_arguments(parser):
