@@ -3,8 +3,8 @@
 from . import arguments
 
 HELP = 'a file about the instrument for another program'
-DESCRIPTION = ('Write the imu.yaml of Kalibr: the noise densities and the random walks of the bias '
-               'of the simulated IMU, its topic and its rate.')
+DESCRIPTION = ('Write the imu.yaml of Kalibr: the noise densities and the random walks of the '
+               'bias of the simulated IMU, its topic and its rate.')
 
 
 def add_arguments(parser):

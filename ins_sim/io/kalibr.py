@@ -24,9 +24,9 @@ def bias_walk(model):
     """
     Return the densities by axis of the random walks nearest to the bias of a TriadModel.
 
-    They are in U/s/sqrt(Hz), U of the model.  Over RECORDING_S they have the Allan deviation of walk
-    and flicker noise together, K sqrt(t/3) and 0.664 B; a Gauss-Markov process adds the walk that
-    it begins as.
+    They are in U/s/sqrt(Hz), U of the model.  Over RECORDING_S they have the Allan deviation of
+    walk and flicker noise together, K sqrt(t/3) and 0.664 B; a Gauss-Markov process adds the walk
+    that it begins as.
     """
     found = []
     for k in range(3):
