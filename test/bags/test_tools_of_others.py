@@ -4,7 +4,7 @@ from ins_sim.bags.bag_reader import open_bag
 from ins_sim.io import simulated
 import numpy as np
 import pytest
-from support import bag_tools
+from support.bags import bag_tools
 from support.aided_runs import flown, settings
 
 # the shortest that the linters judge for drift is 5 s

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from support.studies import settings
-from support.truth_bags import record
+from support.bags.truth_bags import record
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter

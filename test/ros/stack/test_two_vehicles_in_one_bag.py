@@ -5,7 +5,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.run_announcement import read_announcement
 import numpy as np
 import pytest
-from support import bag_tools
+from support.bags import bag_tools
 from support.live import GUARD_S
 from support.nodes.recorder import end
 

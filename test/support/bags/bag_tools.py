@@ -6,7 +6,7 @@ import sys
 import time
 
 import pytest
-from support.foxglove import FoxgloveClient, GUARD_S
+from .foxglove import FoxgloveClient, GUARD_S
 
 # Some bags have several files: all are of one folder.
 MCAP = '*.mcap'
