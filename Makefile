@@ -35,8 +35,10 @@ test-slow:
 
 # The newest wheels, in an environment beside; docs/distributions.md.
 KILTED = build/kilted/bin/python
+SMOKE = $(addprefix test/ros/, test_graph.py test_repairs.py test_services.py test_bag.py one_process \
+	stack adapter recording/test_recorder.py recording/test_player.py aiding/test_aided.py)
 test-kilted: $(KILTED)
-	$(KILTED) -m pytest -q -m 'live and not slow' test/ros
+	$(KILTED) -m pytest -q -m 'live and not slow' $(SMOKE)
 
 $(KILTED):
 	$(PYTHON) -m venv build/kilted
