@@ -4,13 +4,14 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow figures bench bits fuzz soak lint lock clean
+.PHONY: help setup demo test test-slow test-kilted figures bench bits fuzz soak lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
 	@echo 'make demo       run the three nodes and show predicted against measured errors'
 	@echo 'make test       run the tests'
 	@echo 'make test-slow  run the slow tests'
+	@echo 'make test-kilted  run the live tests on the wheels of ROS 2 Kilted'
 	@echo 'make figures    compute the long studies and render docs/validation.md'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
 	@echo 'make bits       compare the bits of runs between processors and versions of NumPy'
@@ -31,6 +32,18 @@ test:
 
 test-slow:
 	$(RUN) python tools/run_tests.py slow
+
+# The newest wheels, in an environment beside; docs/distributions.md.
+KILTED = build/kilted/bin/python
+SMOKE = $(addprefix test/ros/, test_graph.py test_repairs.py test_services.py test_bag.py one_process \
+	stack adapter recording/test_recorder.py recording/test_player.py aiding/test_aided.py)
+test-kilted: $(KILTED)
+	$(KILTED) -m pytest -q -m 'live and not slow' $(SMOKE)
+
+$(KILTED):
+	$(PYTHON) -m venv build/kilted
+	$(KILTED) -m pip install --quiet 'ros-kilted-rclpy[fastrtps]' ros-kilted-common-interfaces \
+		--editable '.[test]'
 
 figures:
 	$(RUN) python tools/run_tests.py figures

@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
-               info, loop_study, navigate, play, predict, record, simulate)
+               export, info, loop_study, navigate, play, predict, record, simulate)
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
@@ -15,10 +15,11 @@ ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
 LONGEST = 2000
 # In the order of the printed list.
-VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'record': record, 'play': play,
-         'predict': predict, 'navigate': navigate, 'demo': demo, 'dtg-study': dtg_study,
-         'dtg-report': dtg_report, 'compare-orientation': compare_orientation,
-         'compare-filters': compare_filters, 'loop-study': loop_study, 'allan': allan}
+VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'export': export,
+         'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
+         'dtg-study': dtg_study, 'dtg-report': dtg_report,
+         'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
+         'loop-study': loop_study, 'allan': allan}
 NODE_VERBS = ('record', 'play')
 
 

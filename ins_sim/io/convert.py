@@ -23,8 +23,11 @@ from . import bag_imu, csv_flight, csv_imu, csv_writer
 from .bag_truth import read_poses
 from .csv_text import is_csv, SUFFIXES
 from .topic_choice import choose_topic, short_names
+from .whole_file import check_file
 
 WINDOW = 4096
+# 2005: what is before it is no time of a recording, s.
+OLDEST_S = 1104537600
 
 
 def convert_recording(source, target, settings, topic=None, storage='mcap', compression='none',
@@ -49,7 +52,7 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
         raise ValueError(f'{source} and {target} are both {"bags" if from_bag else "CSV files"}; '
                          'expected a bag and a CSV file')
     if from_bag:
-        _check_file(target, force)
+        check_file(target, force)
         return _to_csv(source, target, settings, topic, imu)
     check_target(target, storage, compression, force)
     how = dict(storage=storage, compression=compression, replace=force)
@@ -59,13 +62,6 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
         raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, of which the '
                          'topics are truth/*; expected none')
     return _flight_to_bag(source, target, settings, how)
-
-
-def _check_file(path, force):
-    if path.exists() and not force:
-        raise ValueError(f'{path} exists; expected a new file (or --force)')
-    if path.exists() and not path.is_file():
-        raise ValueError(f'{path} is no file; --force replaces only a file')
 
 
 def _to_csv(source, target, settings, topic, chosen):
@@ -96,7 +92,7 @@ def _imu_to_bag(source, target, settings, topic, how, chosen):
     imu, notes = csv_imu.read_imu(source, chosen.columns, chosen.units)
     imu, more = stamped_samples(imu, chosen.stamps)
     stamps_ns = imu.t_ns + _offset_ns(settings)
-    _check_stamps(source, stamps_ns)
+    notes += _check_stamps(source, stamps_ns, settings)
     written = topics.IMU_RAW.named(settings.frames.names())
     written = written if topic is None else replace(written, name=topic)
     values = np.concatenate([imu.omega, imu.f], axis=1)
@@ -115,7 +111,8 @@ def _flight_to_bag(source, target, settings, how):
     pad_ns, step_ns = round(PAD_S * SECOND), period_ns(settings.rate_hz)
     count = (round(motion.end_s * SECOND) + 2 * pad_ns) // step_ns + 1
     offset_ns = motion.zero_ns + _offset_ns(settings)
-    _check_stamps(source, np.array([-pad_ns, (count - 1) * step_ns - pad_ns]) + offset_ns)
+    notes = _check_stamps(source, np.array([-pad_ns, (count - 1) * step_ns - pad_ns]) + offset_ns,
+                          settings)
 
     def windows():
         for k in range(0, count, WINDOW):
@@ -126,7 +123,7 @@ def _flight_to_bag(source, target, settings, how):
 
     written = {topic: topic.named(names) for topic in topics.TRUTH}
     counts = write_windows(target, written, windows(), **how)
-    return _told(target, counts, *motion.warnings)
+    return _told(target, counts, *motion.warnings, *notes)
 
 
 def _offset_ns(settings):
@@ -137,10 +134,17 @@ def _offset_ns(settings):
     return settings.time.epoch_s * SECOND if settings.time.given else 0
 
 
-def _check_stamps(source, stamps_ns):
-    if stamps_ns.min() < 0:
-        raise ValueError(f'{source} begins at {stamps_ns.min() / SECOND:.9g} s; expected 0 s or '
-                         'later in a bag (time.epoch_s is added)')
+def _check_stamps(source, stamps_ns, settings):
+    """Return sentences on stamps of bags; ValueError where a bag cannot hold them."""
+    first_s = stamps_ns.min() / SECOND
+    if first_s < 0:
+        raise ValueError(f'{source} begins at {first_s:.9g} s; expected 0 s or later in a bag '
+                         '(time.epoch_s is added)')
+    if first_s >= OLDEST_S or settings.time.given:
+        return []
+    return [f'its stamps begin at {first_s:.9g} s, before 2005, as {source} has them, which TF '
+            'and linters take for a clock that was never set; -p time.epoch:=fixed adds '
+            f'{settings.time.epoch_s} s (time.epoch_s)']
 
 
 def _told(target, counts, *more):

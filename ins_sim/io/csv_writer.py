@@ -1,7 +1,6 @@
 """Write the CSV files that ``csv_flight`` and ``csv_imu`` read, without losing a bit."""
 
 import gzip
-import os
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from ins_sim.core.attitude.angles import to_compass, within_half_turn_deg
 from ins_sim.core.numerics.instants import seconds
 from . import csv_flight, csv_imu
+from .whole_file import write_whole
 
 
 def write_flight(path, poses):
@@ -34,11 +34,4 @@ def _write(path, t_ns, names, values):
     data = '\n'.join(lines).encode()
     if path.name.endswith('.gz'):
         data = gzip.compress(data, mtime=0)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # a name of this process: of two that write at once the last one's file stands, whole
-    part = path.with_name(f'.{path.name}.{os.getpid()}.part')
-    try:
-        part.write_bytes(data)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(path, data)

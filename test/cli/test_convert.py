@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from support.studies import settings
-from support.truth_bags import record
+from support.bags.truth_bags import record
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
@@ -278,3 +278,23 @@ def test_a_part_of_another_process_is_left_alone(tmp_path):
     other.write_text('of another process')
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
     assert other.read_text() == 'of another process' and len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize('content', ['flight', 'imu'])
+def test_stamps_of_an_unset_clock_are_told(content, tmp_path, capsys):
+    """With the remedy, after which nothing is said; stamps of a clock are left as they are."""
+    rows = [f'{0.1 * k:.1f},55.0,37.0,100.0,0,0,90,0,10.0,0' for k in range(200)]
+    head = ','.join(COLUMNS)
+    if content == 'imu':
+        rows = [f'{0.01 * k:.2f},0,0,0.1,0,0,9.8' for k in range(200)]
+        head = 't_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2'
+    path = tmp_path / 'x.csv'
+    path.write_text('\n'.join([head, *rows, '']))
+    assert convert(path, tmp_path / 'a') == 0
+    said = ' '.join(capsys.readouterr().out.split())
+    assert f'its stamps begin at 0 s, before 2005, as {path} has them' in said
+    assert '-p time.epoch:=fixed adds 1735689600 s' in said
+    assert convert(path, tmp_path / 'b', '-p', 'time.epoch:=fixed') == 0
+    assert 'linters' not in capsys.readouterr().out
+    with open_bag(tmp_path / 'b') as bag:
+        assert {span.first_ns for span in bag.spans().values()} == {1735689600 * SECOND}

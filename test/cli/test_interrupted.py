@@ -33,7 +33,8 @@ command()
 """
 WORDS = {'simulate': ['-p', 'duration_s:=600.0'], 'predict': ['-p', 'duration_s:=1e6'],
          'compare-filters': ['--runs', '1'], 'info': ['absent'], 'convert': ['absent.csv', 'bag'],
-         'navigate': ['absent.csv'], 'play': ['absent'], 'record': ['imu']}
+         'navigate': ['absent.csv'], 'play': ['absent'], 'record': ['imu'],
+         'export': ['kalibr', '--params-file', 'absent']}
 
 
 def interrupted(verb, at, number, folder):

@@ -16,7 +16,7 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.motion.recorded.spline import PAD_S, RecordedMotion
 from ins_sim.core.simulation.inertial import imu_blocks, simulate
 from ins_sim.messages import topics
-from support.truth_bags import record, recorded
+from support.bags.truth_bags import record, recorded
 
 SECOND = 1_000_000_000
 STUDIES = {'motion 2': MOTION_2, 'cruise': {**FLIGHT, 'motion.kind': 'cruise'},

@@ -8,7 +8,7 @@ from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.io.motion import read_motion
 from ins_sim.cli.main import main
 from ins_sim.messages import topics
-from support.truth_bags import record, recorded
+from support.bags.truth_bags import record, recorded
 
 SECOND = 1_000_000_000
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.studies import FLIGHT, settings
-from support.truth_bags import record, recorded
+from support.bags.truth_bags import record, recorded
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main

@@ -1,0 +1,22 @@
+"""Files that the documents name are there."""
+
+import re
+
+import pytest
+from support.places import ROOT
+
+PAGES = sorted([ROOT / 'README.md', *(ROOT / 'docs').rglob('*.md')])
+# A path of the repository in backticks; with a star or in capitals it stands for several.
+PATH = re.compile(r'`((?:config|docs|test|launch|tools|benchmarks|ins_sim)/[\w./-]+)`')
+LINK = re.compile(r'\]\(([\w./-]+\.md)[)#]')
+
+
+@pytest.mark.parametrize('page', PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_named_files_exist(page):
+    """Paths from the root in backticks, and links from the page."""
+    text = page.read_text(encoding='utf-8')
+    names = [ROOT / name for name in PATH.findall(text)]
+    names += [page.parent / name for name in LINK.findall(text)]
+    # modules are named without their suffix too
+    assert not [name for name in names if not name.exists()
+                and not name.with_suffix('.py').exists()]
