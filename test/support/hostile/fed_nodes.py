@@ -207,8 +207,13 @@ class FedNodes:
         class_of = qos.message_class
         self._patch(qos, 'message_class', lambda topic: class_of(
             replace(topic, type_name=STAND_IN) if topic.type_name == topics.TRANSFORMS else topic))
-        for name, parameters in self._parameters.items():
-            self._make(name, parameters)
+        try:
+            for name, parameters in self._parameters.items():
+                self._make(name, parameters)
+        except BaseException:
+            # a node that refuses its parameters leaves no patch behind for the tests that follow
+            self.__exit__(None, None, None)
+            raise
         return self
 
     def _patch(self, owner, name, value):
