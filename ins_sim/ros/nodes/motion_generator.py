@@ -12,7 +12,6 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.placements import TRUTH_MOVES
 from ins_sim.settings.motion import MotionGeneratorSettings
-from ins_sim.settings.told import clock_needed, told
 from ..lock_step.pacing import LivePace, LockStep
 from ..lock_step.standard_services import offer_standard_services
 from ..lock_step.steerer import Steerer
@@ -23,6 +22,7 @@ from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_CONSUMER
 from ..process.serving import serve_ready
+from ..process.told import clock_needed, told
 from ..transport import qos
 from ..transport.backlog import HandQueue
 from ..transport.broadcaster import Broadcaster

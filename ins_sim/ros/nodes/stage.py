@@ -7,7 +7,6 @@ from std_srvs.srv import Trigger
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
-from ins_sim.settings.told import told
 from ..process.announced import AnnouncedRun
 from ..process.diagnostics import Monitor
 from ..process.live_parameters import LiveParameters
@@ -15,6 +14,7 @@ from ..process.net import caught
 from ..process.parameters import declare_settings
 from ..process.publishers import MessageLosses, SolePublishers
 from ..process.runtime import EXIT_FAULT, Stop
+from ..process.told import told
 from ..transport import qos
 from ..transport.backlog import DrivingQueue, LINGER_S
 from ..transport.broadcaster import Broadcaster

@@ -10,7 +10,7 @@ from ins_sim.core.standalone.mounted import LiveMounting
 from ins_sim.core.standalone.navigator import StandaloneNavigator
 from ins_sim.io import positions
 from ins_sim.io.csv_names import UNITS
-from ins_sim.io.declination import declination_source
+from ins_sim.io.magnetic_field import declination_source
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 from ins_sim.messages.transforms import read_rotations

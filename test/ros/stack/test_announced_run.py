@@ -5,7 +5,7 @@ from ins_sim.messages.cdr import SECOND
 from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.settings.catalogue import build
 from ins_sim.settings.motion import MotionGeneratorSettings
-from ins_sim.settings.told import clock_needed
+from ins_sim.ros.process.told import clock_needed
 import pytest
 from support.hostile.fed_nodes import FedNodes
 from support.hostile.flight import COMMON, HostileFlight

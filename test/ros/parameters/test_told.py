@@ -4,7 +4,7 @@ import pytest
 
 from ins_sim import parameter_files, resources
 from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
-from ins_sim.settings.told import told
+from ins_sim.ros.process.told import told
 
 
 def lines(names=(), *assignments):

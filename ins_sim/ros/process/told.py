@@ -1,6 +1,6 @@
 """What a node simulates, in one line for its start: told(name of the node, its settings)."""
 
-from .catalogue import values_of
+from ins_sim.settings.catalogue import values_of
 
 # What is told with its figure; of the other errors only how many there are.
 GYRO = (('ARW', 'angle_random_walk_deg_sqrt_h', 'deg/sqrt(h)'),
