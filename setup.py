@@ -44,7 +44,9 @@ setup(
         'test': [*COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, 'pytest<9', 'pytest-xdist<4',
                  'hypothesis<7', 'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
                  # what results are compared with
-                 'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12'],
+                 'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12',
+                 # what reads our bags
+                 'evo<2', 'foxglove-sdk<1'],
         'bench': ['python-ins<2', 'inu<3', 'rosbags<0.12'],
     },
     zip_safe=False,
