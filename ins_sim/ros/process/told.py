@@ -75,8 +75,12 @@ def _sampling(sampling):
 
 
 def _strapdown(s):
-    return (f'strapdown for an IMU at {s.rate_hz:g} Hz, {s.input}; vertical channel '
-            f'{s.vertical.channel}, attitude by {s.orientation.replace("_", " ")}')
+    start, rate = '', f'an IMU at {s.rate_hz:g} Hz'
+    if s.initial.source != 'truth':
+        # the rate is that of the readings
+        start, rate = f' without truth, start from {s.initial.source}', 'any IMU'
+    return (f'strapdown for {rate}, {s.input}{start}; vertical channel {s.vertical.channel}, '
+            f'attitude by {s.orientation.replace("_", " ")}')
 
 
 def _meter(s):

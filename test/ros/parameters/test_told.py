@@ -1,10 +1,9 @@
 """The line that a node says at its start: what it simulates, or that it is ideal."""
 
-import pytest
-
 from ins_sim import parameter_files, resources
-from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
 from ins_sim.ros.process.told import told
+from ins_sim.settings.by_node import AIDING, ALL_NODES, NODES
+import pytest
 
 
 def lines(names=(), *assignments):
@@ -48,6 +47,8 @@ def test_an_instrument_with_delays():
      'consumers acknowledge, in lock-step'),
     (['gyro.model:=dtg', 'output:=integrated'], 'imu_sensor', 'integrated: two dynamically tuned '
      'gyros (tactical)'),
+    (['initial.source:=alignment'], 'strapdown', 'strapdown for any IMU, rotation_vector without '
+     'truth, start from alignment; '),
     (['gyro.delay_us.y:=1.0'], 'imu_sensor', 'rotation_vector: gyro delays [0, 1, 0] us'),
     (['gnss_model.use:=true', 'meter_model.use:=false'], 'aided_navigator', 'aided by GNSS'),
     (['outages.start_s:=[1.0]', 'outages.end_s:=[2.0]'], 'gnss', 'up), outages: 1')])
