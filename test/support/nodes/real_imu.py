@@ -51,7 +51,7 @@ class RealImuGraph(FedNodes):
 
     def transforms(self, parent, child, q):
         """Send a transform on /tf_static."""
-        data = TransformWriter(parent, child).pack(0, (0.0, 0.0, 0.0, *q))
+        data = TransformWriter((parent, child)).pack(0, (0.0, 0.0, 0.0, *q))
         self.send([(topics.TF_STATIC.name, data)])
 
 
