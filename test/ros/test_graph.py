@@ -18,7 +18,8 @@ from support.studies import run_offline
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
-VALUES = {'gyro.delay_us.y': 1.0, 'rate_hz': 100.0, 'duration_s': 30.0, 'imu_data': True}
+VALUES = {'motion.kind': 'two_axis', 'gyro.delay_us.y': 1.0, 'rate_hz': 100.0, 'duration_s': 30.0,
+          'imu_data': True}
 LOCK_STEP = {'pacing.real_time_factor': 0.0, 'pacing.required': '[strapdown, listener]'}
 HEARD = (topics.IMU_RAW, topics.IMU_DATA, topics.INS_ODOMETRY, topics.INS_FIX, *topics.ERRORS)
 FORWARD = ('motion_generator', 'imu_sensor', 'strapdown')
