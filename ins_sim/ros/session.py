@@ -77,7 +77,7 @@ class Session:
 
     def run(self, progress):
         """
-        Record until the generator has ended; progress is called with the last stamp, s.
+        Record until the generator has ended; progress is called with the recorded time, s.
 
         Return the number of messages by topic.  Raises RuntimeError with what a node said last
         if one ends with an exit code, KeyboardInterrupt after SIGINT or SIGTERM.
@@ -92,7 +92,7 @@ class Session:
             if time.monotonic() - looked < LOOK_S:
                 continue
             looked = time.monotonic()
-            progress(self._recorder.last_s)
+            progress(self._recorder.length_s)
             for name, process in self._processes.items():
                 if process.poll():
                     raise RuntimeError(self._obituary(name, process.returncode))

@@ -162,8 +162,11 @@ def test_nodes_play_and_sense_the_bag(ros_domain, tmp_path):
     offline = simulate(chosen, twin=False, motion=read_motion(chosen.motion_generator)).errors
     pacing = Pacing(real_time_factor=0.0, lock_step=True, required=('strapdown', 'recorder'))
     chosen = replace(chosen, motion_generator=replace(chosen.motion_generator, pacing=pacing))
+    told_s = []
     with Session(chosen, tmp_path, tmp_path / 'bag', 'truth_bag') as session:
-        session.run(lambda t_s: None)
+        session.run(told_s.append)
+    # of the run, whatever the epoch of its stamps
+    assert told_s == sorted(told_s) and 0.0 < told_s[-1] <= values['duration_s']
     live = read_errors(tmp_path / 'bag', 'truth_bag')
     off = np.abs(live.position - offline.position).max()
     print(f'\nlive against offline, 20 s: {off:.2e} m of {np.abs(offline.position).max():.3g} m')

@@ -68,7 +68,7 @@ class BagRecorder:
         self._ack_publisher = qos.ack_publisher(node)
         self._ack_name = node.resolve_topic_name(topics.ACK.name)
         self._answered, self._silent, self.settled = None, [], True
-        self._answered_ns, self._sent_ns, self._paced = None, None, []
+        self._first_ns, self._answered_ns, self._sent_ns, self._paced = None, None, None, []
         self._flushed = time.monotonic()
 
     def add(self, topic, profile=None, offered=None, definition=None, type_hash=''):
@@ -123,9 +123,9 @@ class BagRecorder:
         return {name: track.count for name, track in self.tracks.items()}
 
     @property
-    def last_s(self):
-        """Return the stamp of the last answered message, s."""
-        return (self._answered_ns or 0) / SECOND
+    def length_s(self):
+        """Return the time from the first to the last of the answered messages, s."""
+        return 0.0 if self._answered_ns is None else (self._answered_ns - self._first_ns) / SECOND
 
     def poll(self):
         """Take what has come; return how many messages."""
@@ -154,6 +154,7 @@ class BagRecorder:
         if track is self._answered and stamp_ns is not None:
             # a repeated sample is answered too: the first answer may have been lost
             self._answered_ns, self._sent_ns = stamp_ns, None
+            self._first_ns = stamp_ns if self._first_ns is None else self._first_ns
         if stamp_ns is not None:
             track.heard_ns = stamp_ns
         if data == track.last:
