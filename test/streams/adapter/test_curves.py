@@ -68,7 +68,8 @@ def test_the_rate_is_that_of_the_attitude(numbers):
         [x / (2.0 * d) for x in turned], abs=2e-9)
 
 
-@pytest.mark.parametrize('make', [PoseKnots, lambda: TwistKnots(False)], ids=['poses', 'twist'])
+@pytest.mark.parametrize('make', [PoseKnots, lambda: TwistKnots(False, 0.5)],
+                         ids=['poses', 'twist'])
 @pytest.mark.parametrize('name', ['aggressive', 'motion_2'])
 def test_pieces_join(make, name):
     """Position, velocity, acceleration, attitude and rate are continuous from piece to piece."""
@@ -84,8 +85,9 @@ def test_pieces_join(make, name):
             assert a == pytest.approx(b, abs=tolerance)
 
 
-@pytest.mark.parametrize('make, rate_hz', [(PoseKnots, 20.0), (lambda: TwistKnots(False), 20.0),
-                                           (lambda: TwistKnots(True), 20.0)])
+@pytest.mark.parametrize('make, rate_hz', [
+    (PoseKnots, 20.0), (lambda: TwistKnots(False, 0.5), 20.0),
+    (lambda: TwistKnots(True, 0.5), 20.0)])
 def test_it_is_late_by_at_most_three_periods(make, rate_hz):
     """A piece is there with the sample three periods behind its start."""
     knots = make()

@@ -8,6 +8,7 @@ from support.other_simulators import AdaptedRun, OtherSimulator, PLACE
 
 from ins_sim.core.streams.adapter.judgement import judged
 from ins_sim.core.streams.adapter.knots import Sample
+from ins_sim.core.streams.adapter.scheme import LOOSE, position_hold, TIGHT
 from ins_sim.core.streams.adapter.stage import TruthAdapter
 from ins_sim.core.streams.adapter.stamps import NominalClock, round_period_ns, steadiness
 from ins_sim.settings.catalogue import build
@@ -28,6 +29,17 @@ def test_noise_is_found_by_axis():
         assert value == pytest.approx(sigma, rel=0.3)
     assert not j.why_not() and not j.in_parent
     assert j.force_noise(True) == pytest.approx(2.7 * 2e-3 * 50.0, rel=0.3)
+
+
+def test_a_noisy_twist_is_held_tighter_where_the_positions_bear_it():
+    """Loose for noisy positions, tight for a noisy twist, and between by the square root."""
+    def hold(*noise):
+        return position_hold(judgement_of(OtherSimulator('racetrack', 50.0, 4.0).noisy(*noise)))
+    assert hold(1e-3) == LOOSE
+    assert hold(1e-3, 0.01, 1e-3, 0.01) == TIGHT
+    # by the noise of two estimates, 10 % each
+    assert hold(1.5e-2, 0.0, 1e-3) == pytest.approx(
+        math.sqrt(0.1 * 2.7 * 1e-3 * 50.0 / (math.sqrt(3.0) * 1.5e-2)), rel=0.3)
 
 
 @pytest.mark.parametrize('rate_hz', [20.0, 50.0])

@@ -8,6 +8,10 @@ from .stamps import Steadiness
 
 # Noise of the force, m/s^2, from which on a twist of zero holds what seems to be at rest.
 UNREST = 0.1
+# Bandwidth of the loop that holds the path to the positions, rad/s, at least and at most.
+LOOSE, TIGHT = 0.53, 1.0
+# What noise of the positions may add to the force, as a part of what that of the twist makes.
+SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -16,7 +20,8 @@ class Scheme:
     How truth is made of an input.
 
     by_twist: whether its twist is believed, in_parent in the axes of its parent frame; reason: why
-    it is not, or ''; settled: whether the twist could be judged; every, half_ns: as of KnotFit.
+    it is not, or ''; settled: whether the twist could be judged; every, half_ns: as of KnotFit;
+    hold: as of TwistKnots.
     """
 
     by_twist: bool
@@ -25,6 +30,7 @@ class Scheme:
     settled: bool
     every: int
     half_ns: float
+    hold: float
 
 
 def knot_count(period_ns, dt_ns):
@@ -49,7 +55,22 @@ def chosen(settings, judgement, steady, dt_ns):
     half_ns = 0.5 * every * steady.period_ns if every > 1 else 0.0
     if not by_twist:
         half_ns = max(half_ns, 0.5e9 * settings.smoothing_s)
-    return Scheme(by_twist, judgement.in_parent, reason, settled, every, half_ns)
+    return Scheme(by_twist, judgement.in_parent, reason, settled, every, half_ns,
+                  position_hold(judgement))
+
+
+def position_hold(judgement):
+    """
+    Return the bandwidth of the loop that holds the path to the positions, rad/s.
+
+    Noise of the twist and of the attitudes lets the path wander by one over the square root of the
+    bandwidth; noise of the positions becomes a force by its square (docs/theory.md, "Truth from
+    another simulator").
+    """
+    allowed = SHARE * judgement.force_noise(True) / math.sqrt(3.0)
+    if allowed >= TIGHT * TIGHT * judgement.sigma_m:
+        return TIGHT
+    return max(LOOSE, math.sqrt(allowed / judgement.sigma_m))
 
 
 def report(name, scheme: Scheme, judgement: Judgement, steady: Steadiness):

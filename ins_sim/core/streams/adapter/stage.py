@@ -68,7 +68,8 @@ class TruthAdapter:
         """Begin the knots of the scheme."""
         scheme = self._watch.scheme
         self._fit = KnotFit(scheme.every, scheme.half_ns, self._steady.period_ns)
-        self._knots = TwistKnots(scheme.in_parent) if scheme.by_twist else PoseKnots()
+        self._knots = TwistKnots(scheme.in_parent, scheme.hold) if scheme.by_twist \
+            else PoseKnots()
 
     @property
     def state(self):

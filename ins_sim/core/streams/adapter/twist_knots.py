@@ -11,11 +11,9 @@ from .knots import LastKnots, turn_between
 from .piece import Piece
 from .stencils import MIDDLE, POINTS, stencil, weighted
 
-# Bandwidth of the loop of the position, rad/s, and twice its damping; that of the attitude. A
-# velocity that is off leaves the path off by DAMPING / HOLD times as much, noise of the positions
-# becomes a force of HOLD^2 times as much, and attitudes that are off turn the velocity.
-HOLD, DAMPING = 0.53, 1.0
-TURN_HOLD = 1.5
+# Twice the damping of the loop of the position, with which the path wanders least; bandwidth of
+# that of the attitude, rad/s.
+DAMPING, TURN_HOLD = 1.0, 1.5
 # Looked at: the knots from two before the start of a piece to two behind its end.
 LOOKED = POINTS + 1
 START, END = MIDDLE, MIDDLE + 1
@@ -26,11 +24,12 @@ class TwistKnots:
     """
     Makes pieces of samples: that up to knot k is there with knot k + 2.
 
-    in_parent: whether the twist is in the axes of the parent frame, not of the child.
+    in_parent: whether the twist is in the axes of the parent frame, not of the child; hold:
+    bandwidth of the loop of the position, rad/s.
     """
 
-    def __init__(self, in_parent):
-        self._in_parent = in_parent
+    def __init__(self, in_parent, hold):
+        self._in_parent, self._hold = in_parent, hold
         self._last = LastKnots(LOOKED)
         # At the start of the next piece: attitude, rate of its correction, and what that is to be
         # at the end; acceleration, with the velocities there and before; position with its loop.
@@ -115,7 +114,7 @@ class TwistKnots:
         a, loops, h = self._slope(velocities, q_end, wanted), [], (end_ns - start_ns) * 1e-9
         path = []
         for axis in range(3):
-            c, loop = held(h, self._loops[axis], first.r[axis], velocities[1][axis],
+            c, loop = held(h, self._hold, self._loops[axis], first.r[axis], velocities[1][axis],
                            velocities[2][axis], self._a[axis], a[axis])
             path.append(c)
             loops.append(loop)
@@ -129,15 +128,15 @@ def _sum(a, b):
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-def held(h, loop, measured, v0, v1, a0, a1):
+def held(h, hold, loop, measured, v0, v1, a0, a1):
     """
     Return c0...c5 of one axis of position, and its loop at the end.
 
-    loop: position, velocity and acceleration of the correction at the start; measured: position
-    there; the others are velocity and its slope at both ends.
+    hold: bandwidth of the loop, rad/s; loop: position, velocity and acceleration of the correction
+    at the start; measured: position there; the others are velocity and its slope at both ends.
     """
     p, u, alpha = loop
-    alpha_end = HOLD * (HOLD * (measured - p) - DAMPING * u)
+    alpha_end = hold * (hold * (measured - p) - DAMPING * u)
     n = 1.0 / h
     mean = (v1 - v0) * n
     c = (p, v0 + u, 0.5 * (a0 + alpha),
