@@ -22,12 +22,16 @@ def played(chain, domain, bag, last_ns, parameters):
     """Play a bag in lock-step into strapdown; return {topic: {stamp_ns: doubles}}."""
     listener = Listener(domain, (topics.INS_ODOMETRY, topics.INS_FIX))
     node = chain.start('strapdown', {**LIVE, **parameters})
+    # the play is over within a second: what is published before they have met would be lost
+    listener.poll_until(lambda: all(map(listener.node.count_publishers, listener.heard)))
     player = chain.start_verb('play', bag, '--lock-step', 'strapdown', '--topics',
                               parameters.get('inputs.imu', '/' + IMU),
                               parameters.get('inputs.fix', '/' + FIX))
     heard = listener.heard
     listener.poll_until(lambda: last_ns in heard[topics.INS_ODOMETRY.name] or node.poll()
-                        is not None or player.poll() not in (None, 0), 4.0 * GUARD_S)
+                        is not None or player.poll() is not None, 4.0 * GUARD_S)
+    listener.poll_until(lambda: last_ns in heard[topics.INS_ODOMETRY.name] or node.poll()
+                        is not None or player.poll(), 0.25 * GUARD_S)
     assert last_ns in heard[topics.INS_ODOMETRY.name], (
         chain.text(player) + chain.text(node))
     listener.poll_for(0.5)
