@@ -62,6 +62,16 @@ def is_regular(step_ns, expected_ns):
     return abs(step_ns - expected_ns) <= INTERVAL_TOLERANCE * expected_ns
 
 
+def check_later(name, t_ns, last_ns):
+    """Raise StreamFault unless t_ns is after last_ns; a repeated stamp calls for no restart."""
+    if t_ns == last_ns:
+        raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '
+                          'sample was dropped', restart=False)
+    if t_ns < last_ns:
+        raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
+                          'expected rising stamps', restart=True)
+
+
 def check_interval(name, t_ns, last_ns, expected_ns):
     """
     Raise StreamFault unless t_ns follows last_ns by expected_ns within INTERVAL_TOLERANCE.
@@ -71,12 +81,7 @@ def check_interval(name, t_ns, last_ns, expected_ns):
     step = t_ns - last_ns
     if is_regular(step, expected_ns):
         return
-    if step == 0:
-        raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '
-                          'sample was dropped', restart=False)
-    if step < 0:
-        raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
-                          'expected rising stamps', restart=True)
+    check_later(name, t_ns, last_ns)
     what = 'has a gap' if step > expected_ns else 'comes at another rate'
     advice = '' if step > expected_ns else (': rate_hz must be the same in the node that sends it '
                                             'and in the one that reads it')

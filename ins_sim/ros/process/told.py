@@ -55,8 +55,7 @@ def _imu(s):
 
 
 def _triad(name, triad, listed):
-    errors, default = values_of(triad.errors), values_of(type(triad.errors)())
-    given = {key: value for key, value in errors.items() if value != default[key]}
+    given = _not_default(triad.errors)
     parts = [f'{label} {_axes(given.pop(key))} {unit}' for label, key, unit in listed
              if key in given]
     if given:
@@ -68,10 +67,14 @@ def _triad(name, triad, listed):
 
 
 def _sampling(sampling):
-    default = values_of(type(sampling)())
-    given = {key: value for key, value in values_of(sampling).items() if value != default[key]}
     return [f'{key.replace("_", " ")} {value:g}' if isinstance(value, float) else
-            f'{key.replace("_", " ")} {value}' for key, value in given.items()]
+            f'{key.replace("_", " ")} {value}' for key, value in _not_default(sampling).items()]
+
+
+def _not_default(settings):
+    """Return {name: value} of what is not the default in a group of settings."""
+    default = values_of(type(settings)())
+    return {key: value for key, value in values_of(settings).items() if value != default[key]}
 
 
 def _strapdown(s):

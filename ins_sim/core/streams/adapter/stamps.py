@@ -7,7 +7,7 @@ import numpy as np
 
 from ins_sim.core.numerics.fixed_order import dot, total
 from ins_sim.core.numerics.instants import seconds
-from ..faults import MOST_PERIODS, StreamFault
+from ..faults import check_later, MOST_PERIODS, StreamFault
 
 # A step longer than so many periods is a gap, and what jitter is added to that.
 GAP, JITTERS = 1.5, 5.0
@@ -97,16 +97,10 @@ class StampCheck:
         if last_ns is None:
             self._last_ns = t_ns
             return
-        step_ns, name = t_ns - last_ns, self._name
-        if step_ns == 0:
-            raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; '
-                              'the sample was dropped', restart=False)
-        if step_ns < 0:
-            raise StreamFault(f'{name} jumps back from {seconds(last_ns)} to {seconds(t_ns)}; '
-                              'expected rising stamps', restart=True)
+        check_later(self._name, t_ns, last_ns)
         longest_ns = MOST_PERIODS * self._dt_ns if steady is None else steady.longest_ns
-        if step_ns > longest_ns:
-            raise gap_fault(name, last_ns, t_ns, longest_ns, restart=True)
+        if t_ns - last_ns > longest_ns:
+            raise gap_fault(self._name, last_ns, t_ns, longest_ns, restart=True)
         self._last_ns = t_ns
 
 
