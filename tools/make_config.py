@@ -10,11 +10,12 @@ from ins_sim.settings.catalogue import flatten
 from ins_sim.settings.presets import navigator_values, PRESETS
 
 HEAD = """\
-# Every parameter of the nodes with its default, to look up and to copy from: nobody has to load
-# it, for the nodes have these defaults.  Written by tools/make_config.py from ins_sim/settings; a
-# test keeps it in step.  Under /** is whatever has one default in all nodes that know it, under
-# the node the rest.  One number stands for three equal ones in noise, biases, scale factors and
-# sigmas by axis.  The files beside this one hold motions, delays, instruments and studies.
+# Every parameter of the nodes with its default, to look up and to copy from.  It need not be
+# loaded, because the nodes have the same defaults.  Written by tools/make_config.py from
+# ins_sim/settings; a test keeps it in step.  Under /** is whatever has one default in all nodes
+# that know it, under the node the rest.  One number stands for three equal ones in noise, biases,
+# scale factors and sigmas by axis.  The files beside this one hold motions, delays, instruments
+# and studies.
 """
 FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bias_instability, '
          'the B of IEEE Std 952, is that over 0.664.')
