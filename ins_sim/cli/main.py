@@ -3,13 +3,14 @@
 import argparse
 import sys
 
-from . import (allan, compare_filters, compare_orientation, convert, demo, dtg_report, dtg_study,
-               export, info, loop_study, navigate, play, predict, record, simulate)
+from . import convert, demo, export, info, navigate, play, predict, record, simulate
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
+from .studies import (allan, compare_filters, compare_orientation, dtg_report, dtg_study,
+                      loop_study)
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.

@@ -33,8 +33,8 @@ def test_the_backend_of_the_program_stays():
     code = ('import matplotlib\n'
             'matplotlib.use("svg")\n'
             'import ins_sim.report.aided_figure, ins_sim.report.allan_figure\n'
-            'import ins_sim.report.tuned_gyro_study, ins_sim.report.figure\n'
-            'import ins_sim.report.filter_study, ins_sim.report.navigation\n'
+            'import ins_sim.report.studies.tuned_gyro, ins_sim.report.figure\n'
+            'import ins_sim.report.studies.filters, ins_sim.report.navigation\n'
             'from ins_sim.report.plotting import new_figure\n'
             'new_figure(2, 2)\n'
             'print(matplotlib.get_backend())\n')

@@ -14,7 +14,7 @@ from support.studies import spread
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
-from ins_sim.report.loop_study import loop_row
+from ins_sim.report.studies.closed_loop import loop_row
 from ins_sim.studies.closed_loop import (aiding_of, AT_THE_LIMIT, cases_near, CONDITIONS,
                                          flown_limits, fly_case, growth_of_flight,
                                          lateral_flight, linear_limits, LoopCase, LoopFlight,

@@ -9,7 +9,7 @@ from functools import partial
 
 from ins_sim import parameter_files, resources
 from ins_sim.studies.filters import FilterCase, fly_filters
-from ins_sim.report.filter_study import filter_row
+from ins_sim.report.studies.filters import filter_row
 import numpy as np
 import pytest
 from scipy.stats import chi2

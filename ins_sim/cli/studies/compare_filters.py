@@ -4,7 +4,7 @@ from dataclasses import asdict
 import json
 
 from ins_sim.settings.aided_navigator import FILTERS
-from . import arguments
+from .. import arguments
 
 HELP = 'all filters of the aided navigator over the same flights'
 DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and seeds, on all '
@@ -34,10 +34,10 @@ def run(chosen):
     from ins_sim.core.motion.factory import make_motion
     from ins_sim.core.motion.motion import check_length
     from ins_sim.own_folders import whole_folder
-    from ins_sim.report import filter_study as report
+    from ins_sim.report.studies import filters as report
     from ins_sim.report.console import PlainConsole
     from ins_sim.studies.filters import fly_filters, run_settings
-    from .workers import run_all
+    from ..workers import run_all
     settings = arguments.read_aided_settings(chosen, SHIPPED)
     if chosen.runs < 1 or chosen.jobs < 0:
         raise ValueError(f'--runs is {chosen.runs} and --jobs {chosen.jobs}; expected 1 or more '

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 import json
 
-from . import arguments
+from .. import arguments
 
 HELP = 'a vehicle steered by its own aided solution: the study of the loop'
 DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lateral scale error '
@@ -57,9 +57,9 @@ def run(chosen):
 
 
 def _table(chosen, settings, loop, console, folder):
-    from ins_sim.report import loop_study as report
+    from ins_sim.report.studies import closed_loop as report
     from ins_sim.studies.closed_loop import fly_case, lateral_flight, TABLE
-    from .workers import run_all
+    from ..workers import run_all
     flights = run_all([(fly_case, settings, case) for case in TABLE], chosen.jobs, console,
                       'flights')
     alone = run_all([(lateral_flight, settings, loop, case) for case in TABLE], chosen.jobs,
@@ -80,10 +80,10 @@ def _name(case):
 
 
 def _limits(chosen, settings, loop, console, folder):
-    from ins_sim.report import loop_study as report
+    from ins_sim.report.studies import closed_loop as report
     from ins_sim.studies.closed_loop import (AT_THE_LIMIT, cases_near, flown_limits,
                                              growth_of_flight, linear_limits)
-    from .workers import run_all
+    from ..workers import run_all
     linear = linear_limits(loop)
     growths = run_all([(growth_of_flight, settings, case) for case in cases_near(linear)],
                       chosen.jobs, console, 'flights')
@@ -95,9 +95,9 @@ def _limits(chosen, settings, loop, console, folder):
 
 def _conditions(chosen, settings, loop, console, folder):
     from ins_sim import parameter_files
-    from ins_sim.report import loop_study as report
+    from ins_sim.report.studies import closed_loop as report
     from ins_sim.studies.closed_loop import CONDITIONS, fly_case, VARIED
-    from .workers import run_all
+    from ..workers import run_all
     paths = arguments.parameter_paths(chosen, SHIPPED)
     flown = [(name, case, parameter_files.read_aided(paths, [*chosen.param, *more]))
              for name, more in CONDITIONS.items() for case in VARIED]
@@ -116,9 +116,9 @@ def _conditions(chosen, settings, loop, console, folder):
 
 def _map(chosen, settings, loop, console, folder):
     import math
-    from ins_sim.report import loop_study as report
+    from ins_sim.report.studies import closed_loop as report
     from ins_sim.studies.stability_map import map_curves, PANELS
-    from .workers import run_all
+    from ..workers import run_all
     most = math.radians(settings.simulation.motion_generator.guidance.limit_deg)
     curves = run_all([(map_curves, loop, panel, chosen.gains, most) for panel in PANELS],
                      chosen.jobs, console, 'panels')

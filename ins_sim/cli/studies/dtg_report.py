@@ -1,6 +1,6 @@
 """Verb dtg-report: what the tuned gyros of the parameters are good for."""
 
-from . import arguments
+from .. import arguments
 
 HELP = 'roots, bandwidth and margin of a tuned gyro'
 DESCRIPTION = ('Show what the tuned gyros of gyro.dtg.* are good for: roots, time constant, '

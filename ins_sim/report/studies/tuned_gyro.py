@@ -3,7 +3,7 @@
 from rich.table import Table
 
 from ins_sim.settings.tuned_gyro import SWEEPS
-from .plotting import new_figure, save_png
+from ..plotting import new_figure, save_png
 
 
 def study_title(settings):

@@ -3,7 +3,7 @@
 from itertools import count
 from pathlib import Path
 
-from . import arguments
+from .. import arguments
 
 HELP = 'the tables and figures of the tuned-gyro paper'
 DESCRIPTION = ('Recover a rocking base through two dynamically tuned gyros as the paper does, and '
@@ -26,7 +26,7 @@ def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
     from ins_sim import parameter_files
     from ins_sim.own_folders import whole_folder
-    from ins_sim.report import tuned_gyro_study as report
+    from ins_sim.report.studies import tuned_gyro as report
     from ins_sim.report.console import PlainConsole
     from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
     studies = {}
@@ -47,9 +47,9 @@ def run(chosen):
 
 def _study(name, settings, console):
     """Show one table; return the Cells of the curve, those of the table, and the limits."""
-    from ins_sim.report import tuned_gyro_study as report
+    from ins_sim.report.studies import tuned_gyro as report
     from ins_sim.studies import tuned_gyro as study
-    from .progress import progress_bars
+    from ..progress import progress_bars
     step_s, limits = 1e-3 * settings.step_ms, ()
     if settings.sweep == 'rotor_speed' and settings.method == 'rk4':
         limits = study.stability_limits(study.gyro_at(settings), step_s)

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from . import arguments
+from .. import arguments
 
 HELP = 'Allan deviation of a record or of simulated noise'
 DESCRIPTION = ('Show Allan deviations and the noise coefficients fitted to them: of a run of '
@@ -123,7 +123,7 @@ def _simulated(settings, length_s, console):
     from ins_sim.core.timeseries.histories import ImuSamples
     from ins_sim.report import allan
     from ins_sim.studies.at_rest import resting_record
-    from .progress import progress_bars
+    from ..progress import progress_bars
     dt_s = period_ns(settings.imu_sensor.rate_hz) * 1e-9
     if not allan.LEAST * dt_s <= length_s <= 1e7:
         raise ValueError(f'--duration is {length_s:g} s; expected {allan.LEAST * dt_s:g} to 1e+07 '

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from ins_sim.studies.closed_loop import QUIET_DEG
 from ins_sim.studies.stability_map import MOST_K_Z
-from .plotting import new_figure, save_png
+from ..plotting import new_figure, save_png
 
 
 @dataclass(frozen=True)

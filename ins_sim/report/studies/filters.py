@@ -6,8 +6,8 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
-from .consistency import mean_interval
-from .plotting import new_figure, save_png
+from ..consistency import mean_interval
+from ..plotting import new_figure, save_png
 
 COLOURS = {'free': 'tab:gray', 'conventional': 'tab:brown', 'paper': 'tab:red',
            'paper_corrected': 'tab:orange', 'window_kf': 'tab:blue', 'eskf': 'tab:green'}

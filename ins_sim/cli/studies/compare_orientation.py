@@ -2,7 +2,7 @@
 
 import math
 
-from . import arguments
+from .. import arguments
 
 HELP = 'the orientation algorithms on one run'
 DESCRIPTION = ("Navigate one offline run by quaternion, Poisson's equation and Euler vector, and "
@@ -23,7 +23,7 @@ def run(chosen):
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.table import number_text
     from ins_sim.studies.orientation import compare_orientations
-    from .progress import progress_bars
+    from ..progress import progress_bars
     settings = arguments.read_settings(chosen)
     console = PlainConsole()
     with progress_bars(console, 'algorithms') as add_bar:
