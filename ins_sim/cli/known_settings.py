@@ -1,6 +1,7 @@
 """What reads parameters, and what is known of a parameter or a group of them."""
 
 from dataclasses import dataclass
+from functools import cache
 
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten, groups_of, remark, sentence_of, value_text
@@ -37,20 +38,30 @@ class KnownGroup:
     readers: tuple
 
 
+@cache
 def known_parameters():
     """Return a list of KnownParameters; a name that differs from node to node comes repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
-            key = name, value_text(f.default), remark(f, name in cls.SETTABLE)
+            key = name, value_text(f.default), remark(f)
             found.setdefault(key, []).append(reader)
-    return [KnownParameter(*key, tuple(readers)) for key, readers in found.items()]
+    return [KnownParameter(name, default, words + _settable(name, readers), tuple(readers))
+            for (name, default, words), readers in found.items()]
 
 
+def _settable(name, readers):
+    """Return what is to be said of the nodes that take a parameter while they run."""
+    takers = [reader for reader in readers if name in READERS[reader].SETTABLE]
+    return f'; can be set while {" or ".join(takers)} runs' if takers else ''
+
+
+@cache
 def known_groups():
     """Return a list of KnownGroups; one that differs from node to node comes repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, group in groups_of(cls).items():
-            found.setdefault((name, sentence_of(group)), []).append(reader)
+            words = sentence_of(group).replace('``', '')
+            found.setdefault((name, words), []).append(reader)
     return [KnownGroup(*key, tuple(readers)) for key, readers in found.items()]
