@@ -9,7 +9,7 @@ from .chart import (Band, Bars, CIRCLE, CROSS, Curve, DASH_DOT, DASHED, DOT, DOT
                     Markers, SOLID, Stack, Stretch, TRIANGLE)
 from .extent import map_edges, positive
 from .palette import map_colours
-from .thinning import kept_points, thinned_curve
+from .thinning import band_points, kept_points, thinned_curve
 
 LINES = {SOLID: '-', DASHED: '--', DOTTED: ':', DASH_DOT: '-.'}
 POINTS = {DOT: {'marker': 'o', 'markeredgewidth': 0.0}, CROSS: {'marker': 'x'},
@@ -38,7 +38,7 @@ def _(mark: Markers, axes, panel):
 
 @draw.register
 def _(mark: Band, axes, panel):
-    kept = band_points(mark)
+    kept = band_points(mark.x, mark.low, mark.high)
     x, low, high = (np.asarray(values, dtype=float)[kept]
                     for values in (mark.x, mark.low, mark.high))
     axes.fill_between(x, low, high, color=mark.colour, alpha=PALE, lw=0.0, label=mark.label)
@@ -80,11 +80,6 @@ def _(mark: Map, axes, panel):
     return axes.imshow(mark.values, origin='lower', aspect='auto', cmap=colormaps[name], vmin=low,
                        vmax=high, extent=(*map_edges(mark.x), *map_edges(mark.y)),
                        interpolation='nearest')
-
-
-def band_points(band):
-    """Return the indices of the points that are drawn of a Band."""
-    return np.union1d(kept_points(band.x, band.low), kept_points(band.x, band.high))
 
 
 def _thinned(mark, panel):

@@ -45,3 +45,8 @@ def thinned_curve(x, y, stretches=STRETCHES):
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     kept = kept_points(x, y, stretches)
     return x[kept], y[kept]
+
+
+def band_points(x, low, high):
+    """Return the indices of the points that are drawn of the surface between two curves."""
+    return np.union1d(kept_points(x, low), kept_points(x, high))
