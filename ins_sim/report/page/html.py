@@ -47,4 +47,3 @@ def write_page(folder, page):
 
 def _section(title, content):
     return f'<section><h2>{text(title)}</h2>\n{content}</section>'
-
