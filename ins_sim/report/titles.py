@@ -9,8 +9,9 @@ from ins_sim.settings.presets import ACCELEROMETER, GYRO, PRESETS, ROTORS
 
 MOTIONS = {'static': 'At rest', 'two_axis': 'Two-axis rotation (motion 2)', 'coning': 'Coning',
            'sculling': 'Sculling', 'sinusoids': 'Sinusoidal motion',
-           'harmonics': 'Periodic motion', 'cruise': 'Cruise flight', 'racetrack': 'Racetrack flight',
-           'aggressive': 'Aggressive flight', 'route': 'Route flight', 'guided': 'Guided flight'}
+           'harmonics': 'Periodic motion', 'cruise': 'Cruise flight',
+           'racetrack': 'Racetrack flight', 'aggressive': 'Aggressive flight',
+           'route': 'Route flight', 'guided': 'Guided flight'}
 INSTRUMENTS = {'tactical_mems': 'tactical MEMS', 'tactical_fog': 'tactical FOG',
                'navigation_rlg': 'navigation RLG', 'tactical_dtg': 'tactical DTG'}
 ERRORS = (GYRO, ACCELEROMETER, ROTORS, 'gyro.dtg.fault.', 'gyro.model', 'sampling.')
@@ -84,6 +85,7 @@ def delay_words(sensor):
 def length_words(seconds):
     """Return a duration as it is said: 1 h, 50 min, 90 s."""
     for unit, size in (('h', 3600.0), ('min', 60.0)):
-        if seconds >= size and round(100.0 * seconds / size) == 100.0 * seconds / size:
-            return f'{seconds / size:g} {unit}'
+        amount = round(seconds / size, 2)
+        if amount >= 1.0 and abs(amount * size - seconds) < 1e-6 * seconds:
+            return f'{amount:g} {unit}'
     return f'{seconds:g} s'

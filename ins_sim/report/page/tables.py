@@ -40,8 +40,8 @@ def settings_section(page, bokeh):
                      f'{len(changed) or "none"}.</p>')
         if changed:
             parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed))
-    facts = [*_seeds(page.settings), *((f'digest of {name}', value) for name, value in page.digest.items()),
-             *_versions(bokeh)]
+    digests = [(f'digest of {name}', value) for name, value in page.digest.items()]
+    facts = [*_seeds(page.settings), *digests, *_versions(bokeh)]
     parts.append('<dl>' + ''.join(f'<dt>{text(name)}</dt><dd><code>{text(value)}</code></dd>'
                                   for name, value in facts) + '</dl>')
     return '\n'.join(parts)
