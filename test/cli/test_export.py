@@ -108,9 +108,10 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     '--params-file racetrack --params-file imu_tactical_fog',
     '--aided --params-file route_flight --params-file imu_tactical_fog -p window.cycles:=100'])
 def test_the_instrument_of_a_run(words, tmp_path):
-    """parameters.yaml of a run, aided or not, gives the file of the preset that it was run with."""
+    """parameters.yaml of a run, aided or not, gives the file of its preset."""
     assert main(['simulate', *words.split(), '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'run')]) == 0
-    assert export(tmp_path / 'run.yaml', '--params-file', tmp_path / 'run' / 'parameters.yaml') == 0
+    settings = tmp_path / 'run' / 'parameters.yaml'
+    assert export(tmp_path / 'run.yaml', '--params-file', settings) == 0
     assert export(tmp_path / 'preset.yaml', '--params-file', 'imu_tactical_fog') == 0
     assert (tmp_path / 'run.yaml').read_text() == (tmp_path / 'preset.yaml').read_text()
