@@ -6,7 +6,7 @@ from ins_sim.core.sensors.imu.triad_model import FLICKER_FLOOR
 from ..charts import palette
 from ..charts.chart import (Band, Chart, Curve, DASH_DOT, DASHED, DOTTED, Level, LOG, Markers,
                             Panel)
-from ..charts.scales import scale, TIMES
+from ..charts.scales import amount, TIMES
 from ..noise_terms import AXES, TRIADS
 from ..page.content import Page, PageTable
 
@@ -20,9 +20,8 @@ PERCENT = 100.0
 
 def record_words(name, noise):
     """Return what a Noise was found in: name, rate and length of the record."""
-    length_s = noise.allan.length_s
-    factor, unit = scale(TIMES, length_s)
-    return f'{name}, {1.0 / noise.allan.tau_s[0]:.4g} Hz, {length_s * factor:.3g} {unit}'
+    return (f'{name}, {1.0 / noise.allan.tau_s[0]:.4g} Hz, '
+            f'{amount(TIMES, noise.allan.length_s)}')
 
 
 def allan_chart(name, noise):

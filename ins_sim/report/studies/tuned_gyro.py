@@ -10,6 +10,9 @@ from ..charts import palette
 from ..charts.chart import (Chart, CIRCLE, Curve, DASHED, DOT, DOTTED, Level, Markers, Panel)
 from ..page.content import Page, PageTable
 
+# Of the values, left free on either side.
+ROOM = 0.03
+
 
 @dataclass(frozen=True)
 class TunedGyroStudy:
@@ -68,12 +71,8 @@ def study_chart(name, settings, curve, cells, limits=()):
     """
     true_deg, cause = settings.amplitude_deg, SWEEPS[settings.sweep]
     values = np.array([c.value for c in curve])
-    marks = [_limit(limit, f'RK4 unstable beyond {limit:.1f} Hz', palette.RED, DASHED)
-             for limit in limits if limit is not None]
-    marks += [_limit(limit, f'the same in the paper, {limit:g} Hz', palette.GREY, DOTTED)
-              for limit in settings.paper_limits_hz]
-    marks.append(Curve(values, np.array([c.poisson_deg for c in curve]) - true_deg, 'simulated',
-                       palette.BLUE))
+    marks = [Curve(values, np.array([c.poisson_deg for c in curve]) - true_deg, 'simulated',
+                   palette.BLUE)]
     printed = [c for c in cells if c.paper_deg is not None]
     panels = []
     if printed:
@@ -85,13 +84,21 @@ def study_chart(name, settings, curve, cells, limits=()):
         panels = [Panel((Level(y=0.0, colour=palette.BLACK),
                          Markers(causes, ours - paper, 'ours less the paper', palette.BLUE, DOT,
                                  7.0)), cause, 'difference [deg]')]
-    top = Panel(tuple(marks), cause, 'error of the amplitude [deg]', height=2.0)
+    for side, ours_hz, paper_hz in zip(('below', 'above'), limits or (None, None),
+                                       settings.paper_limits_hz or (None, None)):
+        if ours_hz is not None:
+            marks.append(Level(x=ours_hz, label=f'RK4 is unstable {side} {ours_hz:.1f} Hz',
+                               colour=palette.RED, dash=DASHED))
+        if paper_hz is not None:
+            marks.append(Level(x=paper_hz, label=f'in the paper {side} {paper_hz:g} Hz',
+                               colour=palette.GREY, dash=DOTTED))
+    lines = [mark.x for mark in marks if isinstance(mark, Level)]
+    first, last = min([*values, *lines]), max([*values, *lines])
+    room = ROOM * (last - first)
+    top = Panel(tuple(marks), cause, 'error of the amplitude [deg]', height=2.0,
+                x_range=(first - room, last + room))
     title = f'Roll of a rocking base through two tuned gyros: {study_title(settings)}'
     return Chart(name, title, (top, *panels))
-
-
-def _limit(hz, label, colour, dash):
-    return Level(x=hz, label=label, colour=colour, dash=dash)
 
 
 def study_page(studies):

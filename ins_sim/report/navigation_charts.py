@@ -1,0 +1,168 @@
+"""The charts of a recorded navigation: the track, and the errors against a reference over time."""
+
+import numpy as np
+
+from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.postprocessing.imu_record import find_gaps
+from ins_sim.core.postprocessing.reference import LONGEST_STEP_S
+from .charts import palette
+from .charts.chart import (Chart, CIRCLE, Curve, DASHED, DOTTED, Level, Markers, Panel, SOLID,
+                           Stretch)
+from .charts.scales import ANGLES, LENGTHS, scale, SPEEDS, TIMES
+
+DASHES = (SOLID, DASHED, DOTTED)
+REFERENCES = (palette.ORANGE, palette.PURPLE)
+# A step of a reference by this factor longer than its median one is a gap, if it is long at all.
+SPARSE = 10.0
+# What is compared: the units, and what the horizontal part and the other one are called.
+ERRORS = (('position', LENGTHS, 'horizontal position', 'height'),
+          ('velocity', SPEEDS, 'horizontal velocity', 'vertical velocity'),
+          ('attitude', ANGLES, 'tilt', 'heading'))
+PARTS = (palette.RED, palette.GREEN)
+# Two parts of an error have a panel each where one is larger than the other by this factor.
+APART = 10.0
+
+
+def navigation_charts(title, result, gap_factor):
+    """
+    Return the Charts of a NavigationResult: over time, and the track.
+
+    title: of the recording; gap_factor: a step of so many median ones is a gap.
+    """
+    step_ns = np.median(np.diff(result.states[0].t_ns))
+    title = f'{title} at {1e9 / step_ns:.4g} Hz'
+    over_time = _errors(title, result, gap_factor) if result.comparisons else _solution(
+        title, result, gap_factor)
+    return over_time, _track(title, result)
+
+
+class _Clock:
+    """The time since the start of the solution, in the unit of its length."""
+
+    def __init__(self, states):
+        self._start_ns = int(states[0].t_ns[0])
+        self._per_s, unit = scale(TIMES, (int(states[-1].t_ns[-1]) - self._start_ns) * 1e-9)
+        self.label = f'time since the start [{unit}]'
+
+    def __call__(self, t_ns):
+        return (t_ns - self._start_ns) * 1e-9 * self._per_s
+
+
+def _errors(title, result, gap_factor):
+    """Return the Chart of the solution less its references."""
+    clock, panels = _Clock(result.states), []
+    several = len(result.comparisons) > 1
+    for kind, units, *names in ERRORS:
+        parts = [[], []]
+        for comparison, dash in zip(result.comparisons, DASHES):
+            track = getattr(comparison, kind)
+            if track is not None:
+                east, north, up = track.values.T
+                # Rotation about up is counter-clockwise, a heading clockwise.
+                both = np.hypot(east, north), -up if kind == 'attitude' else up
+                for part, colour, values in zip(parts, PARTS, both):
+                    part.append((comparison.name, track.t_ns, values, colour, dash))
+        if parts[0]:
+            panels += [_error_panel(what, units, lines, several, result, gap_factor, clock)
+                       for what, lines in _together(kind, names, parts)]
+    reference = 'its references' if several else result.comparisons[0].name
+    return Chart('navigation', f'Solution of the strapdown on {title}, less {reference}',
+                 tuple(panels))
+
+
+def _together(kind, names, parts):
+    """
+    Return what each panel shows and its lines, {part: lines}.
+
+    Both parts in one, or a panel each where one part hides the other.
+    """
+    low, high = sorted(_largest(part) for part in parts)
+    found = dict(zip(names, parts))
+    return [(kind, found)] if high <= APART * low else [
+        (name, {name: lines}) for name, lines in found.items()]
+
+
+def _error_panel(what, units, lines, several, result, gap_factor, clock):
+    """Return the Panel of an error: the lines of each part, one a reference."""
+    factor, unit = scale(units, max(map(_largest, lines.values())))
+    marks = [*_gaps(result.states, gap_factor, clock),
+             Level(y=0.0, colour=palette.GREY, dash=DOTTED)]
+    for part, of_part in lines.items():
+        for reference, t_ns, values, colour, dash in of_part:
+            words = [part] * (len(lines) > 1) + [reference] * several
+            marks.append(Curve(*_broken(t_ns, values * factor, clock), ', '.join(words) or None,
+                               colour, dash, 1.2))
+    return Panel(tuple(marks), clock.label, f'{what} error [{unit}]')
+
+
+def _largest(lines):
+    return max(float(np.abs(values).max()) for _, _, values, _, _ in lines)
+
+
+def _solution(title, result, gap_factor):
+    """Return the Chart of velocity and height of a solution that has no reference."""
+    clock = _Clock(result.states)
+    gaps = _gaps(result.states, gap_factor, clock)
+    t_ns = np.concatenate([s.t_ns for s in result.states])
+    velocity = np.concatenate([s.v_n for s in result.states])
+    height = np.concatenate([s.height for s in result.states])
+    per_speed, speed_unit = scale(SPEEDS, float(np.abs(velocity).max()))
+    per_m, unit = scale(LENGTHS, float(np.abs(height).max()))
+    return Chart('navigation', f'Solution of the strapdown on {title}, which has no reference', (
+        Panel((*gaps, *(Curve(*_broken(t_ns, v * per_speed, clock), name, colour, width=1.2)
+                        for (name, colour), v in zip(palette.EAST_NORTH_UP.items(), velocity.T))),
+              clock.label, f'velocity [{speed_unit}]'),
+        Panel((*gaps, Curve(*_broken(t_ns, height * per_m, clock), None, palette.BLUE,
+                            width=1.2)), clock.label, f'height [{unit}]')))
+
+
+def _broken(t_ns, values, clock):
+    """Return times and values, interrupted where nothing is known for long."""
+    if len(t_ns) > 1:
+        steps = np.diff(t_ns)
+        breaks = 1 + np.flatnonzero(steps > max(LONGEST_STEP_S * 1e9, SPARSE * np.median(steps)))
+        t_ns, values = np.insert(t_ns, breaks, t_ns[breaks]), np.insert(values, breaks, np.nan)
+    return clock(t_ns), values
+
+
+def _gaps(states, factor, clock):
+    """Return the Stretches between the segments, and those that were bridged within one."""
+    spans = [(a.t_ns[-1], b.t_ns[0], 'no solution', palette.GREY)
+             for a, b in zip(states, states[1:])]
+    for segment in states:
+        spans += [(segment.t_ns[k], segment.t_ns[k + 1], 'gap, bridged', palette.SKY)
+                  for k in find_gaps(segment.t_ns, factor)]
+    named, marks = set(), []
+    for first, last, label, colour in spans:
+        marks.append(Stretch(float(clock(first)), float(clock(last)),
+                             None if label in named else label, colour))
+        named.add(label)
+    return marks
+
+
+def _track(title, result):
+    """Return the Chart of the ways of the solution and of the references."""
+    first = result.states[0]
+    start_ns, end_ns = int(first.t_ns[0]), int(result.states[-1].t_ns[-1])
+    origin = first.lat[0], first.lon[0], first.height[0]
+    ways = []
+    for k, s in enumerate(result.states):
+        ways.append((None if k else 'solution', palette.BLUE, SOLID,
+                     _places(np.stack([s.lat, s.lon, s.height], -1), origin)))
+    for reference, colour in zip(result.references, REFERENCES):
+        track = reference.position
+        if track is not None:
+            inside = (track.t_ns >= start_ns) & (track.t_ns <= end_ns)
+            if inside.any():
+                ways.append((reference.name, colour, DASHED,
+                             _places(track.values[inside], origin)))
+    factor, unit = scale(LENGTHS, max(float(np.abs(way).max()) for *_, way in ways))
+    marks = [Curve(*(way.T * factor), label, colour, dash) for label, colour, dash, way in ways]
+    marks.append(Markers(np.zeros(1), np.zeros(1), 'start', palette.BLACK, CIRCLE, 7.0))
+    return Chart('track', f'Way of the solution on {title}, from its start',
+                 (Panel(tuple(marks), f'east [{unit}]', f'north [{unit}]', equal=True),))
+
+
+def _places(values, origin):
+    """Return East and North of lat, lon, height (n, 3) from an origin, (n, 2), m."""
+    return np.stack(position_error(*values.T, *origin)[:2], axis=-1)
