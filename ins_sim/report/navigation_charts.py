@@ -21,6 +21,9 @@ ERRORS = (('position', LENGTHS, 'horizontal position', 'height'),
 PARTS = (palette.RED, palette.GREEN)
 # Two parts of an error have a panel each where one is larger than the other by this factor.
 APART = 10.0
+# Where the way of the solution is longer than those of the references by this factor, a second
+# panel shows theirs, with this room about them.
+DIVERGED, NEAR = 4.0, 1.2
 
 
 def navigation_charts(title, result, gap_factor):
@@ -156,11 +159,30 @@ def _track(title, result):
             if inside.any():
                 ways.append((reference.name, colour, DASHED,
                              _places(track.values[inside], origin)))
-    factor, unit = scale(LENGTHS, max(float(np.abs(way).max()) for *_, way in ways))
-    marks = [Curve(*(way.T * factor), label, colour, dash) for label, colour, dash, way in ways]
-    marks.append(Markers(np.zeros(1), np.zeros(1), 'start', palette.BLACK, CIRCLE, 7.0))
-    return Chart('track', f'Way of the solution on {title}, from its start',
-                 (Panel(tuple(marks), f'east [{unit}]', f'north [{unit}]', equal=True),))
+    shown = [_track_panel(ways)]
+    near = _size(way for *_, way in ways[len(result.states):])
+    if 0.0 < DIVERGED * near < _size(way for *_, way in ways):
+        # As far as the references go, all else cut off.
+        shown.append(_track_panel(ways, near))
+    return Chart('track', f'Way of the solution on {title}, from its start', tuple(shown),
+                 shared=False, columns=len(shown))
+
+
+def _size(ways):
+    return max((float(np.abs(way).max()) for way in ways), default=0.0)
+
+
+def _track_panel(ways, near=None):
+    """Return the Panel of ways (label, colour, dash, places), about the start if near, m."""
+    factor, unit = scale(LENGTHS, near or _size(way for *_, way in ways))
+    marks = [Curve(*(way.T * factor), label if near is None else None, colour, dash)
+             for label, colour, dash, way in ways]
+    marks.append(Markers(np.zeros(1), np.zeros(1), 'start' if near is None else None,
+                         palette.BLACK, CIRCLE, 7.0))
+    shown = None if near is None else (-NEAR * near * factor, NEAR * near * factor)
+    return Panel(tuple(marks), f'east [{unit}]', f'north [{unit}]',
+                 '' if near is None else 'about the start', x_range=shown, y_range=shown,
+                 equal=True)
 
 
 def _places(values, origin):

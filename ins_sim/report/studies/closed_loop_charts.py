@@ -6,11 +6,11 @@ import numpy as np
 
 from ins_sim.studies.stability_map import MOST_K_Z
 from ..charts import palette
-from ..charts.chart import (Chart, CIRCLE, CROSS, Curve, DASHED, DOTTED, LOG, Markers, Panel,
-                            SOLID)
+from ..charts.chart import (Chart, CIRCLE, CROSS, Curve, DASH_DOT, DASHED, DOTTED, LOG, Markers,
+                            Panel, SOLID)
 from ..charts.scales import LENGTHS, scale, TIMES
 
-DASHES = (SOLID, DASHED, DOTTED)
+DASHES = (SOLID, DASHED, DOTTED, DASH_DOT)
 GAINS = {('conventional', True): 'K_v [1/s]', ('conventional', False): 'gain of a fix',
          ('paper_corrected', False): 'K'}
 

@@ -121,7 +121,7 @@ def _answer(study):
     printed = [c for c in cells if c.paper_deg is not None]
     if printed:
         off = max(abs(c.poisson_deg - c.paper_deg) for c in printed)
-        text += f'; the paper is met within {off:.3f} deg'
+        text += f'; the paper is met within {off:.2g} deg'
     if study.limits:
         text += f'. {limits_sentence(settings, study.limits)}'
     return f'{text}.'
