@@ -11,9 +11,10 @@ from ins_sim.core.postprocessing.comparison import error_rows
 from .charts.png import save_chart
 from .charts.scales import amount, LENGTHS, TIMES
 from .console import PlainConsole
-from .navigation_charts import navigation_charts
+from .navigation_charts import navigation_charts, navigation_tracks
 from .page.content import Page, PageTable
 from .page.html import write_page
+from .runs.kml import FILE, write_tracks
 from .table import number_text
 
 MARK = 'nav.npz'
@@ -73,6 +74,7 @@ def write_navigation(work, settings, title, result):
     charts = navigation_charts(title, result, settings.gap_factor)
     for chart in charts:
         save_chart(work, chart)
+    write_tracks(work, title, navigation_tracks(result))
     write_page(work, _page(title, settings, result, charts))
 
 
@@ -90,7 +92,8 @@ def _page(title, settings, result, charts):
                 files={MARK: 'the solution and its errors (numpy.load)',
                        'summary.json': 'figures, notes and errors', 'parameters.yaml':
                        'the parameters, which navigate takes again',
-                       **{f'{chart.name}.png': chart.title for chart in charts}})
+                       **{f'{chart.name}.png': chart.title for chart in charts},
+                       FILE: 'the track for programs of maps'})
 
 
 def _answer(result):

@@ -2,13 +2,15 @@
 
 import numpy as np
 
-from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.earth import ellipsoid
 from ins_sim.core.postprocessing.imu_record import find_gaps
 from ins_sim.core.postprocessing.reference import LONGEST_STEP_S
 from .charts import palette
 from .charts.chart import (Chart, CIRCLE, Curve, DASHED, DOTTED, Level, Markers, Panel, SOLID,
                            Stretch)
 from .charts.scales import ANGLES, LENGTHS, scale, SPEEDS, TIMES
+from .charts.thinning import kept_points
+from .runs.track import Track
 
 DASHES = (SOLID, DASHED, DOTTED)
 REFERENCES = (palette.ORANGE, palette.PURPLE)
@@ -36,7 +38,7 @@ def navigation_charts(title, result, gap_factor):
     title = f'{title} at {1e9 / step_ns:.4g} Hz'
     over_time = _errors(title, result, gap_factor) if result.comparisons else _solution(
         title, result, gap_factor)
-    return over_time, _track(title, result)
+    return over_time, _track_chart(title, result)
 
 
 class _Clock:
@@ -130,38 +132,42 @@ def _broken(t_ns, values, clock):
 
 def _gaps(states, factor, clock):
     """Return the Stretches between the segments, and those that were bridged within one."""
-    spans = [(a.t_ns[-1], b.t_ns[0], 'no solution', palette.GREY)
-             for a, b in zip(states, states[1:])]
-    for segment in states:
-        spans += [(segment.t_ns[k], segment.t_ns[k + 1], 'gap, bridged', palette.SKY)
-                  for k in find_gaps(segment.t_ns, factor)]
-    named, marks = set(), []
-    for first, last, label, colour in spans:
-        marks.append(Stretch(float(clock(first)), float(clock(last)),
-                             None if label in named else label, colour))
-        named.add(label)
-    return marks
+    between = [(a.t_ns[-1], b.t_ns[0]) for a, b in zip(states, states[1:])]
+    bridged = [(s.t_ns[k], s.t_ns[k + 1]) for s in states for k in find_gaps(s.t_ns, factor)]
+    return [Stretch(*clock(np.array(spans)).T, label, colour) for spans, label, colour in (
+        (between, 'no solution', palette.GREY), (bridged, 'gap, bridged', palette.SKY)) if spans]
 
 
-def _track(title, result):
-    """Return the Chart of the ways of the solution and of the references."""
-    first = result.states[0]
-    start_ns, end_ns = int(first.t_ns[0]), int(result.states[-1].t_ns[-1])
-    origin = first.lat[0], first.lon[0], first.height[0]
-    ways = []
-    for k, s in enumerate(result.states):
-        ways.append((None if k else 'solution', palette.BLUE, SOLID,
-                     _places(np.stack([s.lat, s.lon, s.height], -1), origin)))
-    for reference, colour in zip(result.references, REFERENCES):
-        track = reference.position
-        if track is not None:
-            inside = (track.t_ns >= start_ns) & (track.t_ns <= end_ns)
+def navigation_tracks(result):
+    """Return the Tracks of a NavigationResult: one of each segment, then those of references."""
+    start_ns, end_ns = int(result.states[0].t_ns[0]), int(result.states[-1].t_ns[-1])
+    tracks = [_track('solution', s.lat, s.lon, s.height) for s in result.states]
+    for reference in result.references:
+        if reference.position is not None:
+            t_ns, values = reference.position.t_ns, reference.position.values
+            inside = (t_ns >= start_ns) & (t_ns <= end_ns)
             if inside.any():
-                ways.append((reference.name, colour, DASHED,
-                             _places(track.values[inside], origin)))
+                tracks.append(_track(reference.name, *values[inside].T))
+    return tracks
+
+
+def _track(name, lat, lon, height):
+    kept = kept_points(lon, lat)
+    return Track(name, lat[kept], lon[kept], height[kept])
+
+
+def _track_chart(title, result):
+    """Return the Chart of the ways of the solution and of the references."""
+    tracks, count = navigation_tracks(result), len(result.states)
+    start = tracks[0].start
+    looks = [(None if k else 'solution', palette.BLUE, SOLID) for k in range(count)]
+    looks += [(track.name, colour, DASHED)
+              for track, colour in zip(tracks[count:], REFERENCES)]
+    ways = [(*look, np.array(ellipsoid.offset(*start, (t.lat, t.lon, t.height))[:2]))
+            for look, t in zip(looks, tracks)]
     shown = [_track_panel(ways)]
-    near = _size(way for *_, way in ways[len(result.states):])
-    if 0.0 < DIVERGED * near < _size(way for *_, way in ways):
+    near = _size(ways[count:])
+    if 0.0 < DIVERGED * near < _size(ways):
         # As far as the references go, all else cut off.
         shown.append(_track_panel(ways, near))
     return Chart('track', f'Way of the solution on {title}, from its start', tuple(shown),
@@ -169,22 +175,17 @@ def _track(title, result):
 
 
 def _size(ways):
-    return max((float(np.abs(way).max()) for way in ways), default=0.0)
+    return max((float(np.abs(way).max()) for *_, way in ways), default=0.0)
 
 
 def _track_panel(ways, near=None):
     """Return the Panel of ways (label, colour, dash, places), about the start if near, m."""
-    factor, unit = scale(LENGTHS, near or _size(way for *_, way in ways))
-    marks = [Curve(*(way.T * factor), label if near is None else None, colour, dash)
+    factor, unit = scale(LENGTHS, near or _size(ways))
+    whole = near is None
+    marks = [Curve(*(way * factor), label if whole else None, colour, dash)
              for label, colour, dash, way in ways]
-    marks.append(Markers(np.zeros(1), np.zeros(1), 'start' if near is None else None,
-                         palette.BLACK, CIRCLE, 7.0))
-    shown = None if near is None else (-NEAR * near * factor, NEAR * near * factor)
-    return Panel(tuple(marks), f'east [{unit}]', f'north [{unit}]',
-                 '' if near is None else 'about the start', x_range=shown, y_range=shown,
-                 equal=True)
-
-
-def _places(values, origin):
-    """Return East and North of lat, lon, height (n, 3) from an origin, (n, 2), m."""
-    return np.stack(position_error(*values.T, *origin)[:2], axis=-1)
+    marks.append(Markers(np.zeros(1), np.zeros(1), 'start' if whole else None, palette.BLACK,
+                         CIRCLE, 7.0))
+    shown = None if whole else (-NEAR * near * factor, NEAR * near * factor)
+    return Panel(tuple(marks), f'east of the start [{unit}]', f'north of the start [{unit}]',
+                 '' if whole else 'about the start', x_range=shown, y_range=shown, equal=True)

@@ -41,6 +41,7 @@ def _analyse(chosen, work):
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.page.html import REPORT, write_page
     from ins_sim.report.studies import allan as report
+    from ins_sim.report.titles import instrument_words
     console, notes = PlainConsole(), []
 
     def note(sentence):
@@ -69,10 +70,11 @@ def _analyse(chosen, work):
             found.append(noise)
     if not found:
         raise ValueError(f'{name}: both triads are constant throughout; {EXPECTED}')
-    charts = [report.allan_chart(name, noise) for noise in found]
+    words = name if settings is None else f'{instrument_words(settings.imu_sensor)} ({name})'
+    charts = [report.allan_chart(words, noise) for noise in found]
     for chart in charts:
         save_chart(work, chart)
-    write_page(work, report.allan_page(name, found, notes, settings, charts))
+    write_page(work, report.allan_page(words, found, notes, settings, charts))
     rows = [row for noise in found for row in noise.rows()]
     (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
     title = f'{name}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'

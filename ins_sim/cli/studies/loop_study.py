@@ -39,6 +39,7 @@ def run(chosen):
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.page.html import REPORT, write_page
     from ins_sim.report.studies import closed_loop as report
+    from ins_sim.report.titles import instrument_words
     from ins_sim.studies.closed_loop import study_loop
     if chosen.gains < 1 or chosen.jobs < 0:
         raise ValueError(f'--gains is {chosen.gains} and --jobs {chosen.jobs}; expected 1 or more '
@@ -56,8 +57,9 @@ def run(chosen):
                  for part in dict.fromkeys(chosen.parts)}
         numbers = {name: part.numbers for name, part in found.items()}
         (folder / MARK).write_text(json.dumps(numbers, indent=1) + '\n', encoding='utf-8')
-        page = report.loop_page(f'{TITLE}: {", ".join(chosen.params_file or SHIPPED)}', settings,
-                                list(found.values()))
+        sensor = settings.simulation.imu_sensor
+        page = report.loop_page(f'{TITLE}: {instrument_words(sensor)}, {sensor.rate_hz:g} Hz',
+                                settings, list(found.values()))
         for chart in page.charts:
             save_chart(folder, chart)
         write_page(folder, page)

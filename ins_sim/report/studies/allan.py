@@ -96,19 +96,20 @@ def allan_page(name, found, notes, settings, charts):
 
 def _answer(noise):
     """Return the sentence about a Noise: first its floor, then the other coefficients."""
-    seen, hidden = {}, []
+    found, floor, hidden = [], '', []
     for term, row in zip(TRIADS[noise.triad], noise.rows()):
+        name = f'{term.name} {term.symbol}'
         if row['all'] is None:
-            hidden.append(f'{term.name} {term.symbol}')
+            hidden.append(name)
+        elif term.symbol == 'B':
+            floor = (f"The {noise.triad}'s flicker floor is {FLICKER_FLOOR * row['all']:.3g} "
+                     f'{term.unit}, {FLICKER_FLOOR:.3f} of its {name} = {row["all"]:.3g} '
+                     f'{term.unit}')
         else:
-            seen[term.symbol] = f'{term.name} {term.symbol} = {row["all"]:.3g} {term.unit}'
-            if term.symbol == 'B':
-                floor = FLICKER_FLOOR * row['all']
-                seen['B'] = (f'flicker floor {floor:.3g} {term.unit} (that is {FLICKER_FLOOR:.3f} '
-                             f'B, {term.name} B = {row["all"]:.3g} {term.unit})')
-    words = '; '.join(seen[symbol] for symbol in 'BNKQ' if symbol in seen) or 'no coefficient seen'
+            found.append(f'{name} = {row["all"]:.3g} {term.unit}')
+    words = '; '.join([floor or f'The {noise.triad} shows no flicker floor', *found])
     unseen = f' Not seen in this record: {", ".join(hidden)}.' if hidden else ''
-    return f'{noise.triad.capitalize()}: {words}.{unseen}'
+    return f'{words}.{unseen}'
 
 
 def _table(noise):

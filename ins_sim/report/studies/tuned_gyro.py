@@ -10,6 +10,7 @@ from ..charts import palette
 from ..charts.chart import (Chart, CIRCLE, Curve, DASHED, DOT, DOTTED, Level, Markers, Panel)
 from ..page.content import Page, PageTable
 
+METHODS = {'rk4': 'RK4', 'exact': 'matrix exponentials'}
 # Of the values, left free on either side.
 ROOM = 0.03
 
@@ -35,7 +36,7 @@ def study_title(settings):
     held = (f'rotors at {settings.rotor_speed_hz:g} Hz' if settings.sweep == 'base_rate' else
             f'base at {settings.base_rate_rad_s:g} rad/s')
     return (f'{settings.amplitude_deg:g} deg of roll, {held}, preset {settings.preset}, '
-            f'{settings.method} at {settings.step_ms:g} ms')
+            f'{METHODS[settings.method]} at {settings.step_ms:g} ms')
 
 
 def show_study(settings, cells, console):

@@ -87,9 +87,9 @@ def test_the_title_and_the_answer():
     assert chart.title == 'Allan deviation of the gyro: imu_tactical_fog, 100 Hz, 22.2 h'
     page = allan_page('imu_tactical_fog', [noise], ['said once'], None, [chart])
     assert page.answer == (
-        'Gyro: flicker floor 0.332 deg/h (that is 0.664 B, bias instability B = 0.5 deg/h); angle '
-        'random walk N = 0.02 deg/sqrt(h); rate random walk K = 0.4 deg/h/sqrt(h); quantisation '
-        'Q = 5 arcsec.')
+        "The gyro's flicker floor is 0.332 deg/h, 0.664 of its bias instability B = 0.5 deg/h; "
+        'quantisation Q = 5 arcsec; angle random walk N = 0.02 deg/sqrt(h); rate random walk '
+        'K = 0.4 deg/h/sqrt(h).')
     assert page.notes == ('said once',) and page.tables[0].rows[2][-2:] == pytest.approx(
         (0.5, 0.5))
     hidden = exact_noise((5.0, 0.02, 0.0, 0.0))

@@ -30,7 +30,7 @@ def test_the_paper_beside_ours():
     assert top.x_range[0] < 129.4 and top.x_range[1] > 337.4
     assert chart.name == 'dtg_study_speed'
     assert chart.title == ('Roll of a rocking base through two tuned gyros: 10 deg of roll, base '
-                           'at 1 rad/s, preset sapegin_2016, rk4 at 0.75 ms')
+                           'at 1 rad/s, preset sapegin_2016, RK4 at 0.75 ms')
 
 
 def test_a_study_without_a_paper_has_no_difference():
