@@ -24,12 +24,9 @@ FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'parameters.yaml': 'every setting; it gives the same run again',
          'manifest.yaml': 'where the numbers are the same to the last bit',
          'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
-         'track.png': 'the track from above', FILE: 'the track for programs of maps',
-         **{f'{name}.csv': f'a table of {name.replace("_", " ")}' for name in (
-             'truth', 'imu', 'states', 'errors', 'twin', 'aided_truth', 'aided_states',
-             'aided_errors')},
-         **{f'{name}.tum': f'the trajectory for evo, {name}' for name in (
-             'truth', 'ins', 'aided')}}
+         'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+# And of those that are written on request.
+KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
 
 
@@ -71,11 +68,18 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     for chart in charts:
         save_chart(work, chart)
     found = {path.name for path in work.iterdir()} - {REPORT}
+    files = {name: what for name, what in FILES.items() if name in found}
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
         tuple([*notes, OBJECT] if own_motion else notes),
         aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
-        {name: what for name, what in FILES.items() if name in found}))
+        {**files, **requested(work)}))
+
+
+def requested(work):
+    """Return {name: what it is} of the files in a folder that are written on request."""
+    return {path.name: KINDS[path.suffix] for path in sorted(work.iterdir())
+            if path.suffix in KINDS}
 
 
 def _table(rows):
