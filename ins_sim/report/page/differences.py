@@ -16,7 +16,7 @@ def changed_settings(settings):
     """
     rows, known = {}, Counter()
     for node, given in settings_by_node(settings).items():
-        known.update(values_of(given))
+        known.update(values_of(given).keys())
         described, defaults = flatten(type(given)), values_of(type(given)())
         for name, value in values_of(given).items():
             if value != defaults[name]:
