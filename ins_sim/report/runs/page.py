@@ -9,6 +9,7 @@ import numpy as np
 from ins_sim.core.timeseries.histories import BLOCK
 from .. import coverage
 from ..charts.png import save_chart
+from ..charts.scales import distance
 from ..guided import guided_lines
 from ..page.content import Page, PageTable
 from ..page.html import REPORT, write_page
@@ -18,7 +19,6 @@ from ..titles import length_words
 from .error_charts import error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
-from .words import distance
 
 # What is in the files of a run.
 FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',

@@ -153,8 +153,9 @@ def test_bokeh_is_loaded_by_what_writes_a_page_alone():
 
 
 @pytest.mark.parametrize('value, text', [
-    (1.23456, '1.235'), (11593.2, '11590'), (1e12, '1e+12'), (-0.0, '0'), (7, '7'), (np.int64(123456), '123456'), (None, '–'),
-    (float('nan'), '–'), (True, 'yes'), (np.float64(1e-9), '1e-09'), ('word', 'word')])
+    (1.23456, '1.235'), (11593.2, '11590'), (1e12, '1e+12'), (-0.0, '0'), (7, '7'),
+    (np.int64(123456), '123456'), (None, '–'), (float('nan'), '–'), (True, 'yes'),
+    (np.float64(1e-9), '1e-09'), ('word', 'word')])
 def test_cells(value, text):
     """Numbers with four digits, counts as a whole."""
     assert cell_text(value) == text
