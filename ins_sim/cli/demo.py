@@ -85,8 +85,7 @@ def _run(name, settings, work, folder, console):
     from ins_sim.io.motion import read_motion
     from ins_sim.io.published import read_errors
     from ins_sim.report import coverage, summary, table, titles
-    from ins_sim.report.charts.png import save_chart
-    from ins_sim.report.runs.error_charts import error_chart
+    from ins_sim.report.runs.page import write_error_report
     from ins_sim.ros.session import Session
     from .progress import progress_bars
     title = titles.title(settings)
@@ -98,9 +97,10 @@ def _run(name, settings, work, folder, console):
             counts = session.run(show)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
-    save_chart(work, error_chart(title, errors, coverage.comparable(settings, prediction)))
-    table.show_table(title, summary.summary_rows(settings, errors, None, prediction), console)
+    rows = summary.summary_rows(settings, errors, None, prediction)
+    write_error_report(work, settings, errors, rows, prediction, title)
+    table.show_table(title, rows, console)
     for line in coverage.coverage_lines(settings, prediction):
         console.print(line)
     console.print(f'{sum(counts.values())} messages recorded: {folder / "bag"}\n'
-                  f'figure: {folder / "errors.png"}')
+                  f'report: {folder / "report.html"}')

@@ -37,7 +37,8 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
     assert 'mean drift east' in log.read_text()
     files = {p: p.stat().st_mtime_ns for p in folder.rglob('*') if p.is_file()}
     for part in ('motion_2', 'cruise'):
-        assert {'errors.png', 'parameters.yaml'} <= {p.name for p in folder.glob(f'{part}/*')}
+        assert {'errors.png', 'report.html', 'parameters.yaml'} <= {
+            p.name for p in folder.glob(f'{part}/*')}
         assert (folder / part / 'bag' / 'metadata.yaml') in files
     for number in (signal.SIGTERM, signal.SIGINT):
         with open(log, 'w') as stream:

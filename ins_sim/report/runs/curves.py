@@ -8,6 +8,24 @@ from ..charts.thinning import kept_points, STRETCHES
 BLOCK = 65536
 
 
+class HistoryDifference:
+    """One History less another at the same instants, block by block."""
+
+    def __init__(self, one, other):
+        self._one, self._other, self.t_ns = one, other, one.t_ns
+
+    def __len__(self):
+        return len(self._one)
+
+    def blocks(self, length):
+        """Yield the difference in blocks of consecutive rows."""
+        for one, other in zip(self._one.blocks(length), self._other.blocks(length)):
+            taken = other.arrays()
+            yield type(one)(t_ns=one.t_ns, **{
+                name: values - taken[name] for name, values in one.arrays().items()
+                if name != 't_ns'})
+
+
 def history_curves(history, columns):
     """
     Return {name: [(t_ns, values), ...]} of the columns of a History, thinned.

@@ -6,7 +6,7 @@ from ..charts.chart import Chart, Curve, DASHED, Level, Panel
 from ..charts.palette import BLACK, EAST_NORTH_UP
 from ..charts.scales import ANGLES, LENGTHS, scale, TIMES
 from ..summary import DEG_PER_HOUR
-from .curves import history_curves, interpolated
+from .curves import history_curves, HistoryDifference, interpolated
 
 NAMES = tuple(EAST_NORTH_UP)
 # Measured and predicted coincide where they differ by less than this part of the largest error.
@@ -23,22 +23,47 @@ def error_chart(title, errors, prediction=None):
     curves = history_curves(errors, {
         'position': lambda block: block.position, 'attitude': lambda block: block.attitude,
         'drift': lambda block: block.drift})
-    start_ns = int(errors.t_ns[0])
-    factor, unit = scale(TIMES, (int(errors.t_ns[len(errors) - 1]) - start_ns) * 1e-9)
+    clock = _clock(errors.t_ns)
+    prediction = _telling(prediction)
+    return Chart('errors', f'{title}: errors of the strapdown', (
+        *_positions(curves['position'], clock, prediction),
+        _attitude(curves['attitude'], clock), _drift(curves['drift'], clock, prediction)))
 
-    def seconds(t_ns):
-        return (t_ns - start_ns) * 1e-9
 
-    clock = (seconds, factor, f'time [{unit}]')
-    if prediction is not None and not prediction.largest.max() > prediction.position_bound:
-        prediction = None
-    position = curves['position']
+def delay_chart(title, errors, twin, prediction=None):
+    """
+    Return the Chart of what the delays cause: NavErrors less those of the zero-delay twin.
+
+    prediction: Prediction of the difference, or None.
+    """
+    curves = history_curves(HistoryDifference(errors, twin), {
+        'position': lambda block: block.position, 'attitude': lambda block: block.attitude})
+    clock = _clock(errors.t_ns)
+    return Chart('delays', f'{title}: what the delays cause, run less zero-delay twin', (
+        *_positions(curves['position'], clock, _telling(prediction)),
+        _attitude(curves['attitude'], clock)))
+
+
+def _clock(t_ns):
+    """Return seconds since the start as a function of ns, a factor from s, and a label."""
+    start_ns, last_ns = int(t_ns[0]), int(t_ns[len(t_ns) - 1])
+    factor, unit = scale(TIMES, (last_ns - start_ns) * 1e-9)
+    return lambda t_ns: (t_ns - start_ns) * 1e-9, factor, f'time [{unit}]'
+
+
+def _telling(prediction):
+    """Return a Prediction, or None where it is no larger than what the theory may leave out."""
+    if prediction is None or not prediction.largest.max() > prediction.position_bound:
+        return None
+    return prediction
+
+
+def _positions(curves, clock, prediction):
+    """Return the panels of a position error: it and its prediction, and what this leaves."""
     predicted = [] if prediction is None else [
-        interpolated(seconds(t), prediction.t_s, prediction.position, axis)
-        for axis, (t, _) in enumerate(position[:2])]
-    panels = [_position(position, clock, predicted), *_residual(position, clock, predicted)]
-    panels += [_attitude(curves['attitude'], clock), _drift(curves['drift'], clock, prediction)]
-    return Chart('errors', f'{title}: errors of the strapdown', tuple(panels))
+        interpolated(clock[0](t), prediction.t_s, prediction.position, axis)
+        for axis, (t, _) in enumerate(curves[:2])]
+    return [_position(curves, clock, predicted), *_residual(curves, clock, predicted)]
 
 
 def _shown(curves):

@@ -8,23 +8,25 @@ import numpy as np
 from ins_sim.core.timeseries.histories import BLOCK
 from .. import coverage
 from ..charts.png import save_chart
+from ..charts.scales import distance
 from ..guided import guided_lines
 from ..page.content import Page, PageTable
 from ..page.html import REPORT, write_page
 from ..summary import DEG_PER_HOUR, gap_lines, parity_lines, withheld_lines
 from ..table import COLUMNS
 from ..titles import length_words
-from .error_charts import error_chart
+from .error_charts import delay_chart, error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
-from .words import distance
 
 # What is in the files of a run.
 FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'parameters.yaml': 'every setting; it gives the same run again',
          'manifest.yaml': 'where the numbers are the same to the last bit',
-         'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
-         'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+         'errors.png': 'the errors of the strapdown',
+         'delays.png': 'the errors less those of the zero-delay twin',
+         'aided.png': 'the aided solution', 'track.png': 'the track from above',
+         FILE: 'the track for programs of maps', 'bag': 'the topics of the nodes'}
 # And of those that are written on request.
 KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
@@ -52,6 +54,10 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     ``storage.write_run``.
     """
     charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
+    if run.twin is not None and coverage.instrument_errors(settings):
+        # Without errors of the instruments that of the run is what its delays cause.
+        charts.append(delay_chart(title, run.errors, run.twin,
+                                  coverage.comparable_with_twin(settings, prediction)))
     tables = [_table(rows)]
     answer = _answer(run.errors)
     if aided is not None:
@@ -80,6 +86,22 @@ def requested(work):
     """Return {name: what it is} of the files in a folder that are written on request."""
     return {path.name: KINDS[path.suffix] for path in sorted(work.iterdir())
             if path.suffix in KINDS}
+
+
+def write_error_report(work, settings, errors, rows, prediction, title):
+    """
+    Write errors.png and report.html of a run of which the errors alone are known.
+
+    work: folder (pathlib.Path); errors: NavErrors; the rest as in ``write_report``.
+    """
+    chart = error_chart(title, errors, coverage.comparable(settings, prediction))
+    save_chart(work, chart)
+    found = {path.name for path in work.iterdir()}
+    write_page(work, Page(
+        title, _answer(errors), (chart,), (_table(rows),),
+        tuple(coverage.coverage_lines(settings, prediction)), settings,
+        {'the errors': history_digest(errors)},
+        {name: what for name, what in FILES.items() if name in found}))
 
 
 def _table(rows):
