@@ -13,10 +13,11 @@ from ins_sim.jobs.fingerprint import array_digest
 from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
                                              worst_run)
 from ..charts.png import save_chart
+from ..files.packed_arrays import write_arrays
 from ..manifest import manifest
 from ..page.content import Page, PageTable
 from ..page.html import write_page
-from ..storage import MANIFEST, PARAMETERS, write_arrays
+from ..storage import MANIFEST, PARAMETERS
 from .ensemble_charts import AXES, ensemble_charts
 
 ARRAYS, SUMMARY = 'ensemble.npz', 'summary.json'
@@ -60,8 +61,8 @@ def ensemble_title(settings, runs):
 
 def flight_command(report, parameters=PARAMETERS):
     """Return the command that flies the worst run alone, to the bit."""
-    return (f'ins_sim simulate --params-file {parameters} -p imu_sensor:run:={report.worst[0]} '
-            f'-o run_{report.worst[0]}')
+    number = report.worst[0]
+    return f'ins_sim simulate --params-file {parameters} -p run:={number} -o run_{number}'
 
 
 def notes(report):
