@@ -9,6 +9,7 @@ from typing import Any, TYPE_CHECKING, Union
 
 import numpy as np
 
+from ins_sim.core.ensemble.many_runs import check_runs
 from ins_sim.core.ensemble.result import EnsembleResult
 from ins_sim.core.timeseries.named_columns import columns, COLUMNS, ENU, UNITS
 from ins_sim.io.motion import read_motion
@@ -16,7 +17,7 @@ from ins_sim.jobs.executors import check_jobs, open_executor
 from ins_sim.settings.simulation import SimulationSettings
 from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
                                              PERCENTS, worst_run)
-from ins_sim.studies.ensembles import check_flight, EnsemblePlan, fly_ensemble, INSTANTS
+from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
 from .dataframes import dataframe
 from .datasets import dataset
 from .inputs import checked_path
@@ -65,7 +66,7 @@ class MonteCarlo:
 
     @property
     def worst(self) -> tuple[int, float] | None:
-        """Number and horizontal error, m, of the run that ends farthest off, unless all diverged."""
+        """Number and horizontal error, m, of the run that ends farthest off."""
         found: tuple[int, float] | None = worst_run(self.result)
         return found
 
@@ -224,7 +225,7 @@ def monte_carlo(settings: SimulationSettings, runs: int = 1000, instants: int = 
                          'read_settings(..., aided=False)')
     check_jobs(jobs, scheduler)
     plan, store = EnsemblePlan(settings, runs, instants), None
-    check_flight(plan, read_motion(settings.motion_generator))
+    check_runs(settings, read_motion(settings.motion_generator))
     if blocks is not None:
         from ins_sim.jobs.store import BlockStore
         store = BlockStore(checked_path('blocks', blocks), plan.identity())

@@ -10,8 +10,6 @@ import numpy as np
 from ins_sim.core.ensemble.lanes import LANES
 from ins_sim.core.ensemble.many_runs import in_lanes, simulate_runs
 from ins_sim.core.ensemble.result import joined, of_arrays
-from ins_sim.core.motion.motion import check_length
-from ins_sim.core.simulation.inertial import check_start
 from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 
@@ -109,13 +107,3 @@ def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
     work = EnsembleWork(plan, read_motion)
     return reduce(joined, (of_arrays(arrays) for _, arrays in run_blocks(
         work, plan.blocks(), executor, store, progress)))
-
-
-def check_flight(plan, motion):
-    """Raise ValueError, before any worker does, where the settings name no run."""
-    check_length(plan.settings.motion_generator, motion)
-    check_start(plan.settings)
-    generator, after_s = plan.settings.motion_generator, plan.settings.strapdown.initial.after_s
-    if after_s > generator.duration_s:
-        raise ValueError(f'initial.after_s is {after_s:g} s; expected at most duration_s, '
-                         f'{generator.duration_s:g} s')

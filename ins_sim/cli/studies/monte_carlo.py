@@ -23,17 +23,18 @@ def add_arguments(parser):
 
 def run(chosen):
     """Fly, show and write; return the exit code."""
+    from ins_sim.core.ensemble.many_runs import check_runs
     from ins_sim.io.motion import read_motion
     from ins_sim.jobs.executors import check_jobs, open_executor
     from ins_sim.jobs.store import BlockStore
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import ensemble as report
-    from ins_sim.studies.ensembles import check_flight, EnsemblePlan, fly_ensemble
+    from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble
     from ..progress import progress_bars
     check_jobs(chosen.jobs, chosen.scheduler)
     plan = EnsemblePlan(arguments.read_settings(chosen), chosen.runs, chosen.instants)
-    check_flight(plan, read_motion(plan.settings.motion_generator))
+    check_runs(plan.settings, read_motion(plan.settings.motion_generator))
     console = PlainConsole()
     with whole_folder(chosen.output, chosen.force, report.ARRAYS) as folder:
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
