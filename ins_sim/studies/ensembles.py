@@ -14,6 +14,8 @@ from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 
 MOST_RUNS, MOST_INSTANTS, INSTANTS = 10 ** 7, 10 ** 4, 61
+# Of the parameter run.
+LAST_RUN = 2 ** 31 - 1
 # Runs of a block: those side by side share truth and ideal readings, and a study shall have
 # blocks enough to be shared out evenly, so that little is lost with a worker.
 MOST_GROUPS, ENOUGH_BLOCKS = 16, 16
@@ -41,6 +43,9 @@ class EnsemblePlan:
                     least <= value <= most):
                 raise ValueError(f'{name} is {value!r}; expected a whole number from {least} to '
                                  f'{most}')
+        if self.settings.run + self.runs - 1 > LAST_RUN:
+            raise ValueError(f'run is {self.settings.run} with {self.runs} runs; expected a last '
+                             f'one of at most {LAST_RUN}')
 
     @property
     def instants_s(self):

@@ -40,10 +40,16 @@ def run(chosen):
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
         if store.found:
             console.print(f'{store.found} of {len(plan.blocks())} blocks found in {store.folder}')
-        with progress_bars(console) as add_bar, open_executor(
-                chosen.jobs, chosen.scheduler) as executor:
-            show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
-            result = fly_ensemble(plan, read_motion, executor, store, show)
+        try:
+            with progress_bars(console) as add_bar, open_executor(
+                    chosen.jobs, chosen.scheduler) as executor:
+                show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
+                result = fly_ensemble(plan, read_motion, executor, store, show)
+        except BaseException:
+            if len(store):
+                console.print(f'{len(store)} of {len(plan.blocks())} blocks are kept in '
+                              f'{store.folder}: the same command goes on from there')
+            raise
         found = report.ensemble_report(report.ensemble_title(plan.settings, plan.runs),
                                        plan.settings, result)
         report.write_ensemble(folder, found)

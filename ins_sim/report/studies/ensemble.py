@@ -56,7 +56,7 @@ def ensemble_title(settings, runs):
     """Return a line that names motion, length and number of runs."""
     generator = settings.motion_generator
     return (f'{generator.motion.kind}, {generator.duration_s:g} s at '
-            f'{settings.imu_sensor.rate_hz:g} Hz, {runs} runs')
+            f'{settings.imu_sensor.rate_hz:g} Hz, {runs} run{"s" * (runs != 1)}')
 
 
 def flight_command(report, parameters=PARAMETERS):
