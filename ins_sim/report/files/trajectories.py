@@ -9,13 +9,13 @@ HEAD = '# stamp [s], position East, North, Up [m], attitude x y z w of base_link
 
 def write_trajectory(path, frame, history):
     """
-    Write positions and attitudes of a PlacedHistory in the map frame.
+    Write positions and attitudes of a PlacedHistory in the axes of a MapFrame.
 
-    frame: MapFrame.  Stamps are exact; each other number stands in the shortest text that gives
+    Stamps are exact; each other number stands in the shortest text that gives
     its bits back.
     """
     with open(path, 'w', encoding='ascii') as file:
-        file.write(f'{HEAD}, in map\n')
+        file.write(f'{HEAD}\n')
         for block in history.blocks():
             position, attitude, _ = frame.pose(block.lat, block.lon, block.height, block.v_n,
                                                block.q_nb)

@@ -42,8 +42,8 @@ class WantedFiles:
         if self.thin == 1:
             return []
         return [f'the files hold {len(range(0, count, self.thin))} of {count} output instants '
-                f'(every {self.thin}th, thin), and every reading of the IMU; tables and figures '
-                'are made of all']
+                f'(thin {self.thin}) and every reading of the IMU; what is printed and drawn is '
+                'made of all']
 
 
 class EveryNth:

@@ -2,8 +2,11 @@
 
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
-from ins_sim.report import storage
+from ins_sim.core.timeseries.histories import NavErrors
+from ins_sim.report import spool, storage
 from ins_sim.report.files.packed_arrays import write_arrays
+from ins_sim.report.files.tables import write_table
+from ins_sim.report.files.wanted import EveryNth
 import numpy as np
 import pytest
 
@@ -52,3 +55,24 @@ def test_a_long_run_at_rest_can_be_read_again(period_ns, tmp_path):
     write_arrays(tmp_path / storage.ARRAYS, imu)
     read = storage.read_imu(tmp_path)
     assert np.array_equal(read.f, imu['imu_f']) and np.array_equal(read.t_ns, imu['imu_t_ns'])
+
+
+@pytest.mark.parametrize('step', [1, 3, 8192, 9000, 30000])
+def test_every_nth_row_of_a_column_in_a_file(step, tmp_path):
+    """Rows of several blocks, picked out block by block, are those of the array."""
+    values = np.random.default_rng(2).normal(size=(COUNT, 3))
+    errors = NavErrors(np.arange(COUNT), values, 2.0 * values, 3.0 * values, 4.0 * values)
+    with spool.Spool(tmp_path) as spooled:
+        store = spooled.store()
+        for block in errors.blocks(777):
+            store.append(block)
+        kept = NavErrors(**{name: EveryNth(column, step)
+                            for name, column in store.history().arrays().items()})
+        assert len(kept) == len(errors[::step]) and kept.drift.shape == errors.drift[::step].shape
+        write_arrays(tmp_path / 'run.npz', kept.arrays())
+        write_table(tmp_path / 'kept.csv', kept)
+    write_table(tmp_path / 'array.csv', errors[::step])
+    with np.load(tmp_path / 'run.npz') as found:
+        for name, column in errors[::step].arrays().items():
+            assert found[name].tobytes() == column.tobytes()
+    assert (tmp_path / 'kept.csv').read_bytes() == (tmp_path / 'array.csv').read_bytes()

@@ -140,7 +140,7 @@ def test_every_nth_instant(run, thin, tmp_path):
 
 def test_what_is_left_out_is_said_once(tmp_path, capsys):
     """With its count; nothing is said where nothing is left out."""
-    for thin, sentence in ((1, None), (10, 'the files hold 21 of 201 output instants')):
+    for thin, sentence in ((1, None), (10, 'the files hold 21 of 201 output instants (thin 10)')):
         assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--thin', str(thin), '--force',
                      '-o', str(tmp_path / 'run')]) == 0
         said = capsys.readouterr().out
