@@ -25,3 +25,8 @@ def amount(units, value):
     factor, unit = scale(units, abs(value))
     value *= factor
     return f'{value:.0f} {unit}' if abs(value) >= 999.5 else f'{value:.3g} {unit}'
+
+
+def distance(metres):
+    """Return a distance as text, as ``amount`` does."""
+    return amount(LENGTHS, metres)
