@@ -94,11 +94,11 @@ def write_navigation(work, settings, title, result, csv=False, tum=False):
     for chart in charts:
         save_chart(work, chart)
     write_tracks(work, title, navigation_tracks(result))
-    write_page(work, _page(title, settings, result, charts))
+    write_page(work, _page(work, title, settings, result, charts))
 
 
-def _page(title, settings, result, charts):
-    """Return the Page of a navigation."""
+def _page(work, title, settings, result, charts):
+    """Return the Page of a navigation, whose other files are in a folder."""
     start_ns, end_ns = _span(result)
     tables = tuple(
         PageTable(f'Solution less {c.name}', tuple(head for _, head in COLUMNS),
@@ -106,13 +106,15 @@ def _page(title, settings, result, charts):
                               for value in (getattr(row, name) for name, _ in COLUMNS))
                         for row in error_rows(c, start_ns, end_ns)))
         for c in result.comparisons)
+    files = {MARK: 'the solution and its errors (numpy.load)',
+             'summary.json': 'figures, notes and errors',
+             'parameters.yaml': 'every setting, with which navigate runs again',
+             **{f'{chart.name}.png': chart.title for chart in charts},
+             FILE: 'the track for programs of maps',
+             **{path.name: 'the same as a table' for path in sorted(work.glob('*.csv'))},
+             **{path.name: 'the solution for evo' for path in work.glob('*.tum')}}
     return Page(f'Navigation on the recording {title}', _answer(result), charts, tables,
-                tuple(result.notes), settings,
-                files={MARK: 'the solution and its errors (numpy.load)',
-                       'summary.json': 'figures, notes and errors', 'parameters.yaml':
-                       'the parameters, which navigate takes again',
-                       **{f'{chart.name}.png': chart.title for chart in charts},
-                       FILE: 'the track for programs of maps'})
+                tuple(result.notes), settings, files=files)
 
 
 def _answer(result):
