@@ -110,8 +110,8 @@ def _page(title, settings, result, charts, files):
     return Page(f'Navigation on the recording {title}', _answer(result), charts, tables,
                 tuple(result.notes), settings,
                 files={MARK: 'the solution and its errors (numpy.load)',
-                       'summary.json': 'figures, notes and errors', 'parameters.yaml':
-                       'the parameters, which navigate takes again',
+                       'summary.json': 'figures, notes and errors',
+                       'parameters.yaml': 'every setting, with which navigate runs again',
                        **{f'{chart.name}.png': chart.title for chart in charts},
                        FILE: 'the track for programs of maps', **files})
 

@@ -120,7 +120,7 @@ def show_table(table, console):
 
 def flights_answer(rows):
     """Return the sentence about LoopRows: how many end quiet, and which swings most."""
-    quiet = [r for r in rows if r.frequency is None]
+    quiet = [r for r in rows if r.beta_deg < QUIET_DEG]
     text = (f'{len(quiet)} of {len(rows)} flights end quiet (the sideslip swings by less than '
             f'{QUIET_DEG} deg)')
     if len(quiet) == len(rows):

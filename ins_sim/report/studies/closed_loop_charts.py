@@ -30,7 +30,7 @@ def histories_chart(name, title, labels, flights):
                            1.0))
     x_label = f'time [{time_unit}]'
     return Chart(name, title, (
-        Panel(tuple(sideslip), x_label, 'sideslip [deg]'),
+        Panel(tuple(sideslip), x_label, 'sideslip [deg]', height=1.5),
         Panel(tuple(offset), x_label, f'offset from the leg [{unit}]'),
         Panel(tuple(error), x_label, f'estimated less true offset [{off_unit}]')))
 

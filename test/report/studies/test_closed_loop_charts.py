@@ -72,6 +72,10 @@ def test_what_the_tables_say():
         '1 of 2 flights end quiet (the sideslip swings by less than 0.05 deg); of the others '
         'sliding, N 100, K_v 1 at k_z = 0.17 swings most: 8 deg of sideslip and 31 m to either '
         'side.')
+    slow = LoopFlight(T_S[:900], *(values[:900] for values in (
+        flight(8.0).z, flight(8.0).beta, flight(8.0).z_estimated)))
+    assert slow.frequency is None
+    assert flights_answer([loop_row(restless, slow)]).startswith('0 of 1 flights end quiet')
     table = flights_table('Closed loop', rows)
     assert table.heads[0] == 'filter' and table.rows[1][4] == '8 7.9 (8)'
     varied = flights_table('Closed loop', [loop_row(quiet, flight(0.01), condition='gusts')])
