@@ -57,6 +57,14 @@ class TriadErrors:
                                 self._by_temperature, self._noise, self._most, self._quantum))
         self.state = (None, AT_REST, ZERO)
 
+    def bias(self, index):
+        """
+        Return the bias (3,) of a sample, rad/s or m/s^2, floats.
+
+        Turn-on bias and the processes; what depends on the input or on temperature is none.
+        """
+        return ZERO if self._noise is None else tuple(self._noise.bias(index).tolist())
+
     def step(self, index, value, force, t_s):
         """
         Return the reading of sample index.
@@ -225,6 +233,14 @@ class AdditiveNoise:
             total += self.white * self.stream.normal_blocks(first, count)
         for process in self.processes:
             total += process(first, count)
+        return total
+
+    def bias(self, index):
+        """Return the errors (3,) of a sample without the white noise."""
+        block, row = divmod(index, BLOCK)
+        total = self.fixed.copy()
+        for process in self.processes:
+            total += process(block, 1)[row]
         return total
 
 

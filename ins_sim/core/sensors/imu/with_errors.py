@@ -71,6 +71,11 @@ class InstrumentErrors:
         return (self.gyro.step(index, omega, f, t_s),
                 self.accelerometer.step(index, f, f, t_s))
 
+    def biases(self, t_ns):
+        """Return the biases of gyros, rad/s, and accelerometers, m/s^2, of the sample at t_ns."""
+        index = t_ns // self._dt_ns
+        return self.gyro.bias(index), self.accelerometer.bias(index)
+
     def advance(self, imu):
         """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
         t_s, omega, f = imu.t_ns * 1e-9, imu.omega.copy(), imu.f.copy()
