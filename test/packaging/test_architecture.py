@@ -82,7 +82,7 @@ MAY_IMPORT = {
     'core.standalone': EARTH | {'settings', 'core.timeseries', 'core.navigation',
                                 'core.postprocessing', 'core.simulation'},
     'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',
-                                'core.simulation'},
+                                'core.aiding', 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
