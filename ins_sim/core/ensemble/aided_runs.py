@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ins_sim.core.aiding.consistency import note_of, TrueValues
+from ins_sim.core.aiding.consistency import note_of
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.numerics.units import DEG
 from ins_sim.core.sensors.gnss import Gnss
 from ins_sim.core.sensors.velocity_meter.ins_means import WAIT_NS
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
@@ -19,6 +18,7 @@ from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
 from ins_sim.core.simulation.aided_run import AidedChain
 from ins_sim.core.simulation.inertial import (check_start, ideal_blocks, reading_count,
                                               RecentTruth, SensedRun, StrapdownRun, truth_blocks)
+from ins_sim.core.simulation.normalised_errors import ErrorNormaliser
 from ins_sim.core.timeseries.histories import NavStates
 
 
@@ -99,9 +99,9 @@ class AidedFlight:
     def __init__(self, settings, motion, run, every):
         simulation, navigator = settings.simulation, settings.aided_navigator
         self.run, self.result, self.refused = run, None, ''
-        self._motion, self._meter_settings = motion, settings.velocity_meter
+        self._motion = motion
         self._sensed = SensedRun(simulation.imu_sensor, run)
-        self._has_biases = simulation.imu_sensor.gyro.model == 'ideal'
+        self._normaliser = ErrorNormaliser(settings, self._sensed.errors)
         sources = AidedNavigator(navigator, run).sources
         self._meter = self._gnss = self._strapdown = None
         if METER in sources:
@@ -174,13 +174,6 @@ class AidedFlight:
         fixes, self._fixes = self._fixes, []
         self._chain.block(imu, truth, fixes)
 
-    def true_values(self, t_ns):
-        """Return the TrueValues at an instant of the run."""
-        gyro = accelerometer = (0.0, 0.0, 0.0)
-        if self._sensed.errors is not None:
-            gyro, accelerometer = self._sensed.errors.biases(t_ns)
-        meter = self._meter_settings
-        ratio = meter.beam.sigma_theta_z_rad / meter.beam.sigma_theta_x_rad
-        return TrueValues(gyro if self._has_biases else None, accelerometer, (
-            meter.antennas.mounting_yaw_arcmin / 60.0 * DEG, meter.surrogate.k_x,
-            (1.0 + meter.surrogate.k_z) * (ratio * ratio) - 1.0))
+    def nees(self):
+        """Return NEES and degrees of freedom at the output instants, (n, BLOCKS)."""
+        return self._normaliser.of(self.result)
