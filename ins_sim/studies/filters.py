@@ -1,15 +1,18 @@
 """All filters over the same flights and seeds: how far each is off, and whether it knows."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ins_sim.core.aiding.consistency import note_of
 from ins_sim.core.aiding.navigator import METER
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
 from ins_sim.core.simulation.aided import make_instruments
+from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
+from ins_sim.core.simulation.normalised_errors import ErrorNormaliser
 from ins_sim.settings.aided_navigator import FILTERS
 
 STEP_S = 5.0
@@ -29,8 +32,10 @@ class FilterFlight:
     One filter on one flight, at instants t_s (n,) since the start.
 
     error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN:
-    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nis: of the fixes of
-    the velocity meter that were weighed; refused: how many were not taken, and the last reason.
+    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
+    and its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
+    instants of the fixes of the velocity meter that were weighed; refused: how many were not
+    taken, and the last reason.
     """
 
     t_s: np.ndarray
@@ -39,7 +44,10 @@ class FilterFlight:
     azimuth: np.ndarray
     azimuth_sigma: np.ndarray
     estimates: np.ndarray
+    nees: np.ndarray
+    freedom: np.ndarray
     nis: np.ndarray
+    nis_t_s: np.ndarray
     refused: int
     reason: str
 
@@ -78,8 +86,35 @@ def fly_filters(settings, cases, run):
     blocks = list(with_truth(motion, inertial.imu_blocks(settings.simulation, motion)))
     chosen = {cycles: _with_cycles(settings, cycles) for cycles in {c.cycles for c in cases}}
     fixes = {cycles: _fixes(s, blocks) for cycles, s in chosen.items()}
-    return [_fly(chosen[case.cycles].aided_navigator, case, blocks, fixes[case.cycles])
-            for case in cases]
+    errors = with_errors(settings.simulation.imu_sensor)
+    return [_fly(chosen[case.cycles], case, blocks, fixes[case.cycles], errors) for case in cases]
+
+
+class FilterStudy:
+    """
+    The work on a block of flights of the study, for ``jobs.blocks.run_blocks``.
+
+    settings: AidedSimulationSettings; cases: list of FilterCase.
+    """
+
+    def __init__(self, settings, cases):
+        self._settings, self._cases = settings, cases
+
+    def __call__(self, run):
+        """Return the arrays of one flight, of ``flights_of``."""
+        found = {}
+        for k, flight in enumerate(fly_filters(self._settings, self._cases, run)):
+            found.update({f'{f.name}_{k}': np.asarray(getattr(flight, f.name))
+                          for f in fields(FilterFlight)})
+        return found
+
+
+def flights_of(arrays):
+    """Return the FilterFlight of each case from the arrays of one flight."""
+    count = len([name for name in arrays if name.startswith('t_s_')])
+    plain = {'refused': int, 'reason': str}
+    return [FilterFlight(**{f.name: plain.get(f.name, np.asarray)(arrays[f'{f.name}_{k}'])
+                            for f in fields(FilterFlight)}) for k in range(count)]
 
 
 def _with_cycles(settings, cycles):
@@ -95,17 +130,22 @@ def _fixes(settings, blocks):
             for instrument in make_instruments(settings)]
 
 
-def _fly(settings, case, blocks, fixes):
-    used = settings.gnss_model.use and FILTERS[case.filter].takes_gnss
-    settings = replace(settings, filter=case.filter,
-                       output_every=max(1, round(STEP_S * settings.rate_hz)),
-                       gnss_model=replace(settings.gnss_model, use=used))
-    flown = navigate_aided(settings, blocks, *map(Reported, fixes))
+def _fly(settings, case, blocks, fixes, imu_errors):
+    navigator = settings.aided_navigator
+    used = navigator.gnss_model.use and FILTERS[case.filter].takes_gnss
+    navigator = replace(navigator, filter=case.filter,
+                        output_every=max(1, round(STEP_S * navigator.rate_hz)),
+                        gnss_model=replace(navigator.gnss_model, use=used))
+    flown = navigate_aided(navigator, blocks, *map(Reported, fixes), note=note_of)
     errors = flown.errors
-    weighed = [t.outcome for t in flown.judged if t.source == METER]
-    refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
+    judged = [t for t in flown.judged if t.source == METER]
+    refused = [t.outcome.reason for t in judged
+               if not t.outcome.taken and case.filter != 'free']
+    weighed = [t for t in judged if t.outcome.nis is not None]
     return FilterFlight(
         (errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
         errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
-        np.array([r.nis for r in weighed if r.nis is not None]), len(refused),
-        refused[-1] if refused else '')
+        *ErrorNormaliser(settings, imu_errors).of(flown),
+        np.array([t.outcome.nis for t in weighed], dtype=float),
+        np.array([(t.t_ns - errors.t_ns[0]) * 1e-9 for t in weighed], dtype=float),
+        len(refused), refused[-1] if refused else '')
