@@ -1,8 +1,9 @@
 """
 What a figure shows: a Chart of Panels, one below the other, of marks.
 
-A label of None leaves a mark out of the legend. Values that are not finite interrupt a curve.
-Colours are those of ``palette``; a colour of None is the next one of its cycle.
+A label of None leaves a mark out of the legend. Values that are not finite interrupt a curve, as
+do those that are not positive on a logarithmic axis. Colours are those of ``palette``; a colour of
+None is the next one of its cycle, of a Level or a Stretch black or grey.
 """
 
 from dataclasses import dataclass
@@ -115,7 +116,8 @@ class Panel:
 
     x_label, y_label: with units in brackets; title; x_scale, y_scale: LINEAR or LOG; x_range,
     y_range: what is shown, or None; equal: whether a unit is as long on both axes, for tracks;
-    height: relative to the other panels of the chart.
+    height: relative to the other panels of the chart; note: a text in the middle of the panel,
+    such as why it is empty.
     """
 
     marks: tuple[Mark, ...]
@@ -128,6 +130,7 @@ class Panel:
     y_range: tuple[float, float] | None = None
     equal: bool = False
     height: float = 1.0
+    note: str = ''
 
 
 @dataclass(frozen=True)
@@ -135,8 +138,9 @@ class Chart:
     """
     One figure.
 
-    name: of its file, without extension; title: what it shows, in words; panels: from above; they
-    have one horizontal axis if shared; caption: a sentence below it, or ''.
+    name: of its file, without extension; title: what it shows, in words; panels: from above, and
+    from the left if there are several columns; they have one horizontal axis if shared; caption: a
+    sentence below it, or ''.
     """
 
     name: str
@@ -144,3 +148,4 @@ class Chart:
     panels: tuple[Panel, ...]
     shared: bool = True
     caption: str = ''
+    columns: int = 1
