@@ -8,6 +8,7 @@ summed. Sums are taken run after run and merged in the order of the groups of ru
 
 from typing import NamedTuple
 
+from ins_sim.core.aiding.filters.base import INVALID_FIX
 import numpy as np
 
 
@@ -60,7 +61,8 @@ class FixSums(NamedTuple):
     What the filters did with the fixes of one instrument, at the instants of the fixes.
 
     t_ns (k,), ascending; sums: ChiSquareSums (k,) of the NIS of the fixes that were weighed,
-    whether taken or not; taken, refused (k,): how many runs took the fix, and how many did not.
+    whether taken or not; taken, refused (k,): how many runs took the fix, and how many did not
+    though it was valid.
     """
 
     t_ns: np.ndarray
@@ -79,8 +81,9 @@ def fix_sums(runs, source):
         nis = np.array([np.nan if o.nis is None else o.nis for o in outcomes], dtype=float)
         freedom = np.array([o.freedom for o in outcomes], dtype=np.int64)
         sums = sums_of(nis[:, None, None], freedom[:, None, None])
-        taken = np.array([o.taken for o in outcomes], dtype=np.int64)
-        one = FixSums(stamps, ChiSquareSums(*(a[:, 0] for a in sums)), taken, 1 - taken)
+        taken, refused = (np.array([of(o) for o in outcomes], dtype=np.int64) for of in (
+            lambda o: o.taken, lambda o: not o.taken and not o.reason.startswith(INVALID_FIX)))
+        one = FixSums(stamps, ChiSquareSums(*(a[:, 0] for a in sums)), taken, refused)
         found = one if found is None else merged_fixes(found, one)
     return found
 

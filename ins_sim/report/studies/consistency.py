@@ -25,7 +25,7 @@ def per_state(sums):
 
 
 class Entry(NamedTuple):
-    """A filter or an instrument in a panel: ChiSquareSums (n,) at instants x (n,), and its style."""
+    """A filter or an instrument in a panel: ChiSquareSums (n,) at instants x (n,), and style."""
 
     label: str
     x: np.ndarray

@@ -64,10 +64,11 @@ def filter_row(case, flown):
         mean = float(nis.mean())
         low, high = mean_interval(len(nis), 2)
     refused = [f for f in flown if f.refused]
-    return FilterRow(case.filter, case.cycles, len(flown), _rms(ends),
-                     _rms(np.concatenate([f.horizontal for f in flown])), float(ends.max()),
-                     _rms(sigmas) if np.isfinite(sigmas).all() else None, mean, low, high,
-                     _nees(flown), sum(f.refused for f in flown), refused[-1].reason if refused else '')
+    return FilterRow(
+        case.filter, case.cycles, len(flown), _rms(ends),
+        _rms(np.concatenate([f.horizontal for f in flown])), float(ends.max()),
+        _rms(sigmas) if np.isfinite(sigmas).all() else None, mean, low, high, _nees(flown),
+        sum(f.refused for f in flown), refused[-1].reason if refused else '')
 
 
 def nees_sums(flown):
