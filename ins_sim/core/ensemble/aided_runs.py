@@ -26,7 +26,8 @@ def simulate_aided_runs(settings, motion, runs, every, progress=None):
     """
     Return the AidedFlights of runs of AidedSimulationSettings that have the same motion.
 
-    The solution of run k is, to the bit, that of ``simulate`` and ``simulate_aided`` with run=k.
+    The solution of run k is, to the bit, that of ``simulate`` and ``simulate_aided`` of the
+    settings with_run(k).
     every: samples from one output instant to the next; progress: called with the fraction done.
     Raises ValueError where the settings do not fit; a run that is refused on the way is not.
     """
@@ -97,22 +98,23 @@ class AidedFlight:
     """
 
     def __init__(self, settings, motion, run, every):
+        settings = settings.with_run(run)
         simulation, navigator = settings.simulation, settings.aided_navigator
         self.run, self.result, self.refused = run, None, ''
         self._motion = motion
-        self._sensed = SensedRun(simulation.imu_sensor, run)
+        self._sensed = SensedRun(simulation.imu_sensor)
         self._normaliser = ErrorNormaliser(settings, self._sensed.errors)
-        sources = AidedNavigator(navigator, run).sources
+        sources = AidedNavigator(navigator).sources
         self._meter = self._gnss = self._strapdown = None
         if METER in sources:
-            self._meter = MeterOnTruth(VelocityMeter(settings.velocity_meter, run))
+            self._meter = MeterOnTruth(VelocityMeter(settings.velocity_meter))
             if settings.velocity_meter.attack_angle == 'ins':
                 self._strapdown = StrapdownRun(simulation.strapdown, motion)
         if GNSS in sources:
-            self._gnss = Gnss(settings.gnss, run)
+            self._gnss = Gnss(settings.gnss)
         self._ins_ns, self._truth_ns = -1, -1
         self._span_ns = navigator.window.cycles * period_ns(navigator.rate_hz)
-        self._chain = AidedChain(replace(navigator, output_every=every), run, note_of)
+        self._chain = AidedChain(replace(navigator, output_every=every), note_of)
         # Blocks whose fixes are not all known yet, and fixes that no block has been given.
         self._held, self._fixes = deque(), []
 

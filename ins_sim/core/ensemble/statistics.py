@@ -98,6 +98,28 @@ class ErrorStatistics:
         part.histogram = self.histogram[:instants]
         return part
 
+    def joined(self, other):
+        """Return the statistics of the runs of both, those of other coming later."""
+        both = ErrorStatistics(0, self.mean.shape[1])
+        both.moments = merged(self.moments, other.moments)
+        both.histogram = self.histogram + other.histogram
+        return both
+
+    def arrays(self, name):
+        """Return {name_...: array}; of the histogram only the bins that are not empty."""
+        filled = np.flatnonzero(self.histogram)
+        return {f'{name}_count': self.moments.count, f'{name}_mean': self.moments.mean,
+                f'{name}_comoment': self.moments.comoment, f'{name}_bins': filled,
+                f'{name}_in_bins': self.histogram.ravel()[filled]}
+
+    @classmethod
+    def of_arrays(cls, arrays, name):
+        """Return the statistics of ``arrays``."""
+        made = cls(*arrays[f'{name}_mean'].shape)
+        made.moments = Moments(*(arrays[f'{name}_{part}'] for part in Moments._fields))
+        made.histogram.ravel()[arrays[f'{name}_bins']] = arrays[f'{name}_in_bins']
+        return made
+
     @property
     def count(self):
         """Return the number of runs at each instant, (m,)."""
@@ -113,6 +135,18 @@ class ErrorStatistics:
         """Return the covariances (m, n, n), by count - 1; NaN of fewer than two runs."""
         less = np.where(self.count > 1, self.count - 1.0, np.nan)
         return self.moments.comoment / less[:, None, None]
+
+    @property
+    def rms(self):
+        """Return the root mean squares (m, n); NaN of no run."""
+        diagonal = np.diagonal(self.moments.comoment, axis1=1, axis2=2)
+        with np.errstate(invalid='ignore', divide='ignore'):
+            return np.sqrt(diagonal / self.count[:, None] + self.mean * self.mean)
+
+    @property
+    def sigma(self):
+        """Return the standard deviations (m, n), by count - 1; NaN of fewer than two runs."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
 
     def percentile(self, percent):
         """

@@ -52,17 +52,16 @@ def with_truth(motion, blocks):
         yield imu, motion.at(imu.t_ns)
 
 
-def navigate_aided(settings, blocks, meter=None, gnss=None, run=0, note=None):
+def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
     meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
-    arrival, or None; run: of the ensemble; note: function of the AidedNavigator whose result is
-    kept at each output instant.  Faults are handled as on_fault says: the solution
-    starts anew from the truth, or ValueError is raised.  Raises ValueError where there is no
-    output.
+    arrival, or None; note: function of the AidedNavigator whose result is kept at each output
+    instant.  Faults are handled as on_fault says: the solution starts anew from the truth, or
+    ValueError is raised.  Raises ValueError where there is no output.
     """
-    flown = AidedChain(settings, run, note)
+    flown = AidedChain(settings, note)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
                if instrument is not None]
     for imu, truth in blocks:
@@ -75,11 +74,11 @@ class AidedChain:
     """
     The aided navigator of one run, which takes block after block.
 
-    settings, run, note: as of ``navigate_aided``.
+    settings, note: as of ``navigate_aided``.
     """
 
-    def __init__(self, settings, run=0, note=None):
-        self._loop = AidedLoop(partial(AidedNavigator, settings, run),
+    def __init__(self, settings, note=None):
+        self._loop = AidedLoop(partial(AidedNavigator, settings),
                                period_ns(settings.rate_hz), settings.output_every,
                                settings.on_fault)
         self._loop.note = note

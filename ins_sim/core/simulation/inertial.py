@@ -39,19 +39,15 @@ class SimulationResult:
     faults: tuple = ()
 
 
-def imu_blocks(settings, motion, run=0):
+def imu_blocks(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
-    return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion), run)
+    return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion))
 
 
 @paused_in_blocks
-def sensed_blocks(sensor, ideal, run=0):
-    """
-    Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one.
-
-    run: number of the run in an ensemble; each has its own random numbers.
-    """
-    sensed = SensedRun(sensor, run)
+def sensed_blocks(sensor, ideal):
+    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
+    sensed = SensedRun(sensor)
     for block in ideal:
         block = sensed.take(block)
         if len(block):
@@ -63,15 +59,12 @@ class SensedRun:
     The instrument of ImuSensorSettings in one run, without its ideal part.
 
     errors: its InstrumentErrors, or None of a perfect one.  Raises ValueError as ``with_errors``
-    does, and for a further run of tuned gyros.
+    does.
     """
 
-    def __init__(self, sensor, run=0):
-        if run and sensor.gyro.model == 'dtg':
-            raise ValueError(f'run is {run} with gyro.model dtg; expected 0: the errors of tuned '
-                             'gyros are drawn for one run only')
-        self.errors = with_errors(sensor, run)
-        self._sampler = Sampler(sensor.sampling, sensor.seed, run, 'sampling',
+    def __init__(self, sensor):
+        self.errors = with_errors(sensor)
+        self._sampler = Sampler(sensor.sampling, sensor.seed, sensor.run, 'sampling',
                                 period_ns(sensor.rate_hz))
 
     def take(self, ideal):
@@ -160,14 +153,14 @@ class RecentTruth:
         return self._last
 
 
-def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=0):
+def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
     Return the SimulationResult of SimulationSettings.
 
     motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
     called with the fraction done; collect: called once for each history, it returns what takes
-    the blocks and gives the whole, such as Collected, which keeps it in memory; run: number of the
-    run in an ensemble.  Raises ValueError where the settings name no run of finite length.
+    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
+    where the settings name no run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -188,7 +181,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=
         # The IMU and the navigation ask for the truth at the same instants.
         motion = RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
-    blocks = watch(_kept(imu_blocks(settings, motion, run), sensed), 0)
+    blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
         for store, part in zip(flown, parts):
             store.append(part)
@@ -200,7 +193,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=
     if twin:
         store = collect()
         blocks = watch(_until(int(imu.t_ns[-1]), imu_blocks(
-            settings.without_delays(), motion, run)), total / 2)
+            settings.without_delays(), motion)), total / 2)
         for _, _, part in navigate_blocks(settings.strapdown, motion, blocks):
             store.append(part)
         twin_errors = store.history()
