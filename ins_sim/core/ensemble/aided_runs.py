@@ -1,7 +1,6 @@
 """Runs of the whole aided chain side by side: the truth and the ideal readings are made once."""
 
 from collections import deque
-from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from ins_sim.core.aiding.consistency import note_of
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.motion.motion import check_length
+from ins_sim.core.navigation.loop import WantedInstants
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.gnss import Gnss
@@ -22,20 +22,21 @@ from ins_sim.core.simulation.normalised_errors import ErrorNormaliser
 from ins_sim.core.timeseries.histories import NavStates
 
 
-def simulate_aided_runs(settings, motion, runs, every, progress=None):
+def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
     """
     Return the AidedFlights of runs of AidedSimulationSettings that have the same motion.
 
     The solution of run k is, to the bit, that of ``simulate`` and ``simulate_aided`` of the
     settings with_run(k).
-    every: samples from one output instant to the next; progress: called with the fraction done.
-    Raises ValueError where the settings do not fit; a run that is refused on the way is not.
+    wanted_ns (m,): motion times of the outputs, each taken at the first sample from then on;
+    progress: called with the fraction done.  Raises ValueError where the settings do not fit; a
+    run that is refused on the way is not.
     """
     simulation = settings.simulation
     check_length(simulation.motion_generator, motion)
     check_start(simulation)
     recent = RecentTruth(motion)
-    flights = [AidedFlight(settings, recent, run, every) for run in runs]
+    flights = [AidedFlight(settings, recent, run, wanted_ns) for run in runs]
     count = reading_count(simulation.motion_generator, period_ns(simulation.imu_sensor.rate_hz))
     done = 0
     for ideal, truth in _rounds(simulation, motion, recent):
@@ -97,7 +98,7 @@ class AidedFlight:
 
     """
 
-    def __init__(self, settings, motion, run, every):
+    def __init__(self, settings, motion, run, wanted_ns):
         settings = settings.with_run(run)
         simulation, navigator = settings.simulation, settings.aided_navigator
         self.run, self.result, self.refused = run, None, ''
@@ -113,8 +114,10 @@ class AidedFlight:
         if GNSS in sources:
             self._gnss = Gnss(settings.gnss)
         self._ins_ns, self._truth_ns = -1, -1
-        self._span_ns = navigator.window.cycles * period_ns(navigator.rate_hz)
-        self._chain = AidedChain(replace(navigator, output_every=every), note_of)
+        dt_ns = period_ns(navigator.rate_hz)
+        self._span_ns = navigator.window.cycles * dt_ns
+        self._outputs = WantedInstants(wanted_ns, dt_ns)
+        self._chain = AidedChain(navigator, note_of, self._outputs)
         # Blocks whose fixes are not all known yet, and fixes that no block has been given.
         self._held, self._fixes = deque(), []
 
@@ -175,6 +178,11 @@ class AidedFlight:
         imu, truth = self._held.popleft()
         fixes, self._fixes = self._fixes, []
         self._chain.block(imu, truth, fixes)
+
+    @property
+    def numbers(self):
+        """Return the numbers (n,) of the wanted instants which the result has."""
+        return self._outputs.numbers(self.result.errors.t_ns)
 
     def nees(self):
         """Return NEES and degrees of freedom at the output instants, (n, BLOCKS)."""

@@ -74,14 +74,16 @@ class AidedChain:
     """
     The aided navigator of one run, which takes block after block.
 
-    settings, note: as of ``navigate_aided``.
+    settings, note: as of ``navigate_aided``; outputs: a Decimation, in place of output_every.
     """
 
-    def __init__(self, settings, note=None):
+    def __init__(self, settings, note=None, outputs=None):
         self._loop = AidedLoop(partial(AidedNavigator, settings),
                                period_ns(settings.rate_hz), settings.output_every,
                                settings.on_fault)
         self._loop.note = note
+        if outputs is not None:
+            self._loop.decimation = outputs
         self._parts, self._judged = [], []
 
     def block(self, imu, truth, fixes):
