@@ -13,11 +13,12 @@ from ins_sim.core.ensemble.consistency import (ChiSquareSums, fix_sums, FixSums,
                                                merged_sums, sums_of)
 from ins_sim.core.ensemble.group import ERRORS
 from ins_sim.core.ensemble.result import EnsembleResult, ErrorTally, joined, of_arrays
+from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.whole_run import SOLVED
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.simulation.guided_flight import fly
-from ins_sim.core.simulation.inertial import reading_count, withheld_readings
+from ins_sim.core.simulation.inertial import check_start, reading_count, withheld_readings
 from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 from .ensembles import ENOUGH_BLOCKS, EnsemblePlan, motion_of
@@ -38,6 +39,15 @@ class Consistency(NamedTuple):
     nees: ChiSquareSums
     fixes: dict
 
+    def arrays(self):
+        """Return {name: array}: of nees_, and of each source its fixes and their _nis_."""
+        found = {f'nees_{name}': a for name, a in self.nees._asdict().items()}
+        for source, one in self.fixes.items():
+            found.update({f'{source}_t_ns': one.t_ns, f'{source}_taken': one.taken,
+                          f'{source}_refused': one.refused})
+            found.update({f'{source}_nis_{name}': a for name, a in one.sums._asdict().items()})
+        return found
+
 
 @dataclass(frozen=True, eq=False)
 class AidedEnsembleResult:
@@ -54,15 +64,8 @@ class AidedEnsembleResult:
 
     def arrays(self):
         """Return {name: array} of the whole result."""
-        nees, fixes = self.consistency
-        found = {**self.errors.arrays(), **{f'nees_{name}': a for name, a in
-                                            nees._asdict().items()},
-                 'refused': np.array([why for _, why in self.refused], dtype=str)}
-        for source, one in fixes.items():
-            found.update({f'{source}_t_ns': one.t_ns, f'{source}_taken': one.taken,
-                          f'{source}_refused': one.refused})
-            found.update({f'{source}_nis_{name}': a for name, a in one.sums._asdict().items()})
-        return found
+        return {**self.errors.arrays(), **self.consistency.arrays(),
+                'refused': np.array([why for _, why in self.refused], dtype=str)}
 
 
 def of_aided_arrays(arrays):
@@ -115,9 +118,7 @@ class AidedPlan(EnsemblePlan):
 
     def identity(self):
         """Return what decides the numbers, for ``jobs.store.BlockStore``."""
-        nodes = {**vars(self.settings.simulation), **vars(self.settings)}
-        del nodes['simulation']
-        return fingerprint(nodes, study='monte-carlo --aided', runs=self.runs,
+        return fingerprint(self.settings.by_node(), study='monte-carlo --aided', runs=self.runs,
                            instants=self.instants)
 
 
@@ -206,7 +207,9 @@ def fly_aided_ensemble(plan, read_motion, executor, store=None, progress=None):
         work, plan.blocks(), executor, store, progress)))
 
 
-def check_aided_flight(plan):
-    """Raise ValueError, before any worker does, where the instruments do not fit."""
+def check_aided_flight(plan, motion):
+    """Raise ValueError, before any worker does, where the settings name no run."""
+    check_length(plan.settings.simulation.motion_generator, motion)
+    check_start(plan.settings.simulation)
     make_instruments(plan.settings)
     plan.wanted_ns

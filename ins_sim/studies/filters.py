@@ -13,9 +13,13 @@ from ins_sim.core.simulation.aided import make_instruments
 from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
 from ins_sim.core.simulation.normalised_errors import ErrorNormaliser
+from ins_sim.jobs.blocks import run_blocks
+from ins_sim.jobs.fingerprint import array_digest, fingerprint
 from ins_sim.settings.aided_navigator import FILTERS
+from ins_sim.settings.simulation import AidedSimulationSettings
 
 STEP_S = 5.0
+MOST_FLIGHTS = 100000
 
 
 @dataclass(frozen=True)
@@ -90,23 +94,81 @@ def fly_filters(settings, cases, run):
     return [_fly(chosen[case.cycles], case, blocks, fixes[case.cycles], errors) for case in cases]
 
 
-class FilterStudy:
+def cases_of(filters=None, cycles=(1000,)):
     """
-    The work on a block of flights of the study, for ``jobs.blocks.run_blocks``.
+    Return the FilterCases of a comparison.
 
-    settings: AidedSimulationSettings; cases: list of FilterCase.
+    filters: names, None: all; cycles: of a window, the first for all filters, the others for the
+    eskf alone.
+    """
+    for n in cycles:
+        if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 100000:
+            raise ValueError(f'cycles is {n!r}; expected 1 to 100000')
+    names = list(dict.fromkeys(FILTERS if filters is None else filters))
+    for name in names:
+        if name not in FILTERS:
+            raise ValueError(f'filter is {name!r}; expected one of {", ".join(FILTERS)}')
+    cases = [FilterCase(name, cycles[0]) for name in names]
+    if not cases:
+        raise ValueError('there is no filter; expected one or more')
+    return tuple(cases + [FilterCase('eskf', n) for n in cycles[1:] if 'eskf' in names])
+
+
+@dataclass(frozen=True)
+class FilterPlan:
+    """
+    What is flown: AidedSimulationSettings, how many flights, and the FilterCases on each.
+
+    ``plan(k)`` is the work on flight k, of ``jobs.blocks.run_blocks``.  Raises ValueError where
+    there is nothing to fly.
     """
 
-    def __init__(self, settings, cases):
-        self._settings, self._cases = settings, cases
+    settings: AidedSimulationSettings
+    flights: int
+    cases: tuple
+
+    def __post_init__(self):
+        """Check the number."""
+        if isinstance(self.flights, bool) or not isinstance(self.flights, int) or not (
+                1 <= self.flights <= MOST_FLIGHTS):
+            raise ValueError(f'runs is {self.flights!r}; expected a whole number from 1 to '
+                             f'{MOST_FLIGHTS}')
 
     def __call__(self, run):
         """Return the arrays of one flight, of ``flights_of``."""
         found = {}
-        for k, flight in enumerate(fly_filters(self._settings, self._cases, run)):
+        for k, flight in enumerate(fly_filters(self.settings, self.cases, run)):
             found.update({f'{f.name}_{k}': np.asarray(getattr(flight, f.name))
                           for f in fields(FilterFlight)})
         return found
+
+    def identity(self):
+        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        return fingerprint(self.settings.by_node(), study='compare-filters',
+                           runs=self.flights, cases=[f'{c.filter}, N {c.cycles}'
+                                                     for c in self.cases])
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedFilters:
+    """What was flown: of each case the FilterFlights, one a flight, and the digest of all."""
+
+    cases: tuple
+    flown: list
+    digest: str
+
+
+def compare(plan, executor, store=None, progress=None):
+    """
+    Return the ComparedFilters of a FilterPlan.
+
+    executor, store, progress: as of ``run_blocks``.  The same bits whatever the executor.
+    """
+    flights, arrays = [], {}
+    for k, found in run_blocks(plan, range(plan.flights), executor, store, progress):
+        flights.append(flights_of(found))
+        arrays.update({f'{k}_{name}': array for name, array in found.items()})
+    return ComparedFilters(plan.cases, [list(f) for f in zip(*flights)], array_digest(arrays))
 
 
 def flights_of(arrays):

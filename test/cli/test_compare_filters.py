@@ -71,16 +71,17 @@ def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
         '0.5 here)' in capsys.readouterr().err
     assert compare(out, *words) == whole
     said = capsys.readouterr().out
-    there = int(re.search('([0-9]) of 4 flights are there already', said)[1])
+    there = int(re.search('([0-9]) of 4 flights found in', said)[1])
     assert there >= 1 and digest(said) == expected
     assert flown == [0, 1, 2, 3, *range(there, 4)] and not (tmp_path / 'out.blocks').exists()
 
 
 @pytest.mark.parametrize('words, sentence', [
-    (['--runs', '0'], '--runs is 0 and --jobs 0; expected 1 or more runs'),
+    (['--runs', '0'], 'runs is 0; expected a whole number from 1 to 100000'),
+    (['--jobs', '-1'], 'jobs is -1; expected 0 (every core) or more'),
     (['--scheduler', 'tcp://127.0.0.1:1'], 'there is no Dask scheduler at tcp://127.0.0.1:1'),
     (['--scheduler', 'tcp://127.0.0.1:1', '--jobs', '2'], 'jobs is 2, and a scheduler is given'),
-    (['--cycles', '0'], '--cycles is 0; expected 1 to 100000'),
+    (['--cycles', '0'], 'cycles is 0; expected 1 to 100000'),
     (['-p', 'duration_s:=1e6'], 'duration_s is 1e+06 s; expected at most'),
     (['-p', 'motion.route.wind_m_s:=200.0'], 'expected less than the airspeed made good'),
     (['-p', 'filtre:=eskf'], "unknown parameter 'filtre'; the nearest known one is 'filter'"),

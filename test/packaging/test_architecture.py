@@ -83,7 +83,7 @@ MAY_IMPORT = {
                                 'core.postprocessing', 'core.simulation'},
     'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',
                                 'core.aiding', 'core.simulation'},
-    'studies': CORE | {'settings'},
+    'studies': CORE | {'settings', 'jobs'},
     'messages': {'core.attitude', 'core.timeseries'},
     'jobs': {'settings', 'core.numerics', '__version__'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',

@@ -152,7 +152,8 @@ class ErrorStatistics:
         """
         Return the values (m, n) below which so many percent of the runs lie.
 
-        Linear inside a bin, so within the width of a bin: an eighth of the value at most.
+        Linear inside a bin, so within the width of a bin: an eighth of the value at most.  The
+        bin about zero is zero.
         """
         below = np.cumsum(self.histogram, axis=2)
         wanted = 0.01 * percent * self.count[:, None]
@@ -163,5 +164,5 @@ class ErrorStatistics:
                 inside = self.histogram[i, j, k]
                 low, high = SIGNED_EDGES[[max(k - 1, 0), min(k, len(SIGNED_EDGES) - 1)]]
                 part = (wanted[i, 0] - (below[i, j, k] - inside)) / max(inside, 1)
-                found[i, j] = low + part * (high - low)
+                found[i, j] = low + part * (high - low) if low != -high else 0.0
         return found

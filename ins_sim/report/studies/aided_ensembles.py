@@ -98,12 +98,12 @@ def consistency_answer(consistency):
 
 def consistency_notes(result, filter_name):
     """Return sentences on what does not count; result: AidedEnsembleResult."""
-    notes = [f'run {run} does not count: {why}.' for run, why in result.refused]
+    notes = []
     if not result.consistency.nees.count.any():
-        notes.append(f'filter {filter_name} has no covariance: there is no NEES.')
+        notes.append(f'filter {filter_name} has no covariance: there is no NEES')
     for source, one in result.consistency.fixes.items():
         refused, taken = int(one.refused.sum()), int(one.taken.sum())
         if refused:
             notes.append(f'{INSTRUMENTS[source]}: {refused} of {refused + taken} valid fixes of '
-                         'all runs were not taken.')
+                         'all runs were not taken')
     return notes
