@@ -39,7 +39,7 @@ def consistency_rows(consistency):
         k = int(np.flatnonzero(sums.count)[-1])
         low, high = (float(bound[k]) for bound in sum_intervals(sums))
         share, count = inside_share(sums)
-        rows.append((f'{words} at the last instant', float(sums.mean[k]), float(sums.expected[k]),
+        rows.append((words, float(sums.mean[k]), float(sums.expected[k]),
                      f'{low:.2f} to {high:.2f}', f'{100.0 * share:.1f} % of {count}',
                      judged(sums.mean[k], low, high)))
     return rows
@@ -50,9 +50,9 @@ def consistency_table(consistency):
     rows = consistency_rows(consistency)
     if not rows:
         return None
-    return PageTable('Consistency of the filter', HEADS, tuple(rows), 'The intervals hold at one '
-                     'instant over the runs. Errors of a run at several instants are not '
-                     'independent, so that an excursion lasts; those of NIS are.')
+    return PageTable('consistency of the filter at the last instant', HEADS, tuple(rows),
+                     'intervals hold at one instant over the runs; the errors of a run at several '
+                     'instants are not independent, so that an excursion of NEES lasts')
 
 
 def consistency_chart(t_ns, consistency):
@@ -92,8 +92,8 @@ def consistency_answer(consistency):
         return ('The filter is consistent: NEES and NIS of the last instant lie in their 95 % '
                 'intervals.')
     return 'At the last instant the filter is ' + ', and '.join(
-        f'{row[5]} by {row[0].removesuffix(" at the last instant")} ({row[1]:.2f}, expected '
-        f'{row[2]:.2f}, {row[3]} in 95 % of consistent filters)' for row in outside) + '.'
+        f'{row[5]} by {row[0]} ({row[1]:.2f}, expected {row[2]:.2f}, {row[3]} in 95 % of '
+        'consistent filters)' for row in outside) + '.'
 
 
 def consistency_notes(result, filter_name):
