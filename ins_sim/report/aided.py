@@ -12,7 +12,7 @@ from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
 from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.settings.simulation import AidedSimulationSettings
-from . import aided_arrays, aided_figure
+from . import aided_figure
 from .consistency import mean_interval, THREE_SIGMA
 
 FIGURE = 'aided.png'
@@ -62,10 +62,6 @@ class AidedReport:
         if not told:
             return 'not aided by any fix'
         return f'aided by {self.settings.aided_navigator.filter}: {", ".join(told)}'
-
-    def arrays(self):
-        """Return {name: array} for run.npz."""
-        return aided_arrays.aided_arrays(self.flown)
 
     def parameters(self):
         """Return the text of the parameter file of all six nodes."""

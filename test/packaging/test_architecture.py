@@ -102,7 +102,7 @@ MAY_IMPORT = {
     'entry': {'cli'},
     '__main__': {'entry'},
     'report': CORE | {'settings', 'studies', 'jobs', 'parameter_files', 'regular_file',
-                      'visible_text'},
+                      'visible_text', 'io.csv_writer'},
     'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS | {'entry'},
     'testing': {'api', 'messages', 'parameter_files', 'ros', 'settings'},

@@ -10,15 +10,16 @@ from rich.table import Table
 from ins_sim import parameter_files
 from ins_sim.core.ensemble.result import EnsembleResult
 from ins_sim.jobs.fingerprint import array_digest
-from ins_sim.settings.simulation import AidedSimulationSettings, DRAWING
+from ins_sim.settings.simulation import AidedSimulationSettings
 from ins_sim.studies.aided_ensembles import AidedEnsembleResult
 from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
                                              worst_run)
 from ..charts.png import save_chart
+from ..files.packed_arrays import write_arrays
 from ..manifest import manifest
 from ..page.content import Page, PageTable
 from ..page.html import write_page
-from ..storage import MANIFEST, PARAMETERS, write_arrays
+from ..storage import MANIFEST, PARAMETERS
 from .aided_ensembles import (consistency_answer, consistency_chart, consistency_notes,
                               consistency_table)
 from .ensemble_charts import AXES, ensemble_charts
@@ -77,10 +78,8 @@ def ensemble_title(settings, runs):
 
 def flight_command(report, parameters=PARAMETERS):
     """Return the command that flies the worst run alone, to the bit."""
-    number, aided = report.worst[0], report.aided is not None
-    nodes = ('imu_sensor', *DRAWING) if aided else ('imu_sensor',)
-    words = ' '.join(f'-p {node}:run:={number}' for node in nodes)
-    return (f'ins_sim simulate{" --aided" if aided else ""} --params-file {parameters} {words} '
+    number, aided = report.worst[0], '' if report.aided is None else ' --aided'
+    return (f'ins_sim simulate{aided} --params-file {parameters} -p run:={number} '
             f'-o run_{number}')
 
 
