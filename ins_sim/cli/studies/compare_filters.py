@@ -1,8 +1,5 @@
 """Verb compare-filters: all filters over the same flights and seeds, on all cores."""
 
-from dataclasses import asdict
-import json
-
 from ins_sim.settings.aided_navigator import FILTERS
 from .. import arguments
 
@@ -11,7 +8,6 @@ DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and
                'cores or a cluster, and show tables and figures of their errors and of their '
                'consistency.')
 SHIPPED = ('route_flight', 'grade_mid')
-MARK = 'comparison.json'
 
 
 def add_arguments(parser):
@@ -36,9 +32,7 @@ def run(chosen):
     from ins_sim.jobs.executors import check_jobs, open_executor
     from ins_sim.jobs.store import BlockStore
     from ins_sim.own_folders import whole_folder
-    from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
-    from ins_sim.report.page.html import write_page
     from ins_sim.report.studies import filter_charts, filters
     from ins_sim.studies.filters import cases_of, compare, FilterPlan, run_settings
     from ..progress import progress_bars
@@ -50,9 +44,9 @@ def run(chosen):
     generator = run_settings(settings, 0).simulation.motion_generator
     check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
     console = PlainConsole()
-    title = (f'{generator.motion.kind}, {generator.duration_s:g} s, {chosen.runs} flights: '
-             + ', '.join(chosen.params_file or SHIPPED))
-    with whole_folder(chosen.output, chosen.force, MARK) as folder:
+    title = f'{filter_charts.comparison_title(settings, plan.flights)}: ' + ', '.join(
+        chosen.params_file or SHIPPED)
+    with whole_folder(chosen.output, chosen.force, filter_charts.MARK) as folder:
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
         if store.found:
             console.print(f'{store.found} of {plan.flights} flights found in {store.folder}')
@@ -62,11 +56,7 @@ def run(chosen):
             found = compare(plan, executor, store, show)
         rows = [filters.filter_row(case, list(f)) for case, f in zip(plan.cases, found.flown)]
         page = filter_charts.page_of(title, settings, rows, found.flown, found.digest)
-        for chart in page.charts:
-            save_chart(folder, chart)
-        write_page(folder, page)
-        (folder / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
-                                   encoding='utf-8')
+        filter_charts.write_comparison(folder, page, rows)
     store.remove()
     filters.show_filter_study(title, rows, console)
     console.print(page.answer)

@@ -51,7 +51,7 @@ def consistency_panel(entries, x_label, title, y_label, fixes=False):
             marks.append(Band(x, low, high, None if banded else WITHIN, GREY))
             banded.add(freedom)
         if fixes:
-        XX
+            marks.append(Markers(x, mean, label, colour, size=3.0))
         else:
             marks.append(Curve(x, mean, label, colour, dash))
         tops += [np.percentile(mean, 95.0), high.max()]

@@ -1,4 +1,7 @@
-"""The comparison of filters as figures and as a page."""
+"""The comparison of filters as figures, as a page, and on disk."""
+
+from dataclasses import asdict
+import json
 
 import numpy as np
 
@@ -6,14 +9,17 @@ from ins_sim.core.aiding.consistency import BLOCKS
 from ins_sim.core.ensemble.consistency import ChiSquareSums
 from ..charts.chart import Band, Chart, Curve, DASH_DOT, DASHED, DOTTED, Level, LOG, Panel, SOLID
 from ..charts.palette import BLACK, BLUE, EAST_NORTH_UP, GREEN, GREY, ORANGE, PURPLE, RED
+from ..charts.png import save_chart
 from ..charts.scales import LENGTHS, scale, TIMES
 from ..page.content import Page, PageTable
+from ..page.html import write_page
 from .consistency import consistency_panel, Entry
 from .filters import nees_sums
 
 COLOURS = {'free': GREY, 'conventional': PURPLE, 'paper': BLACK, 'paper_corrected': ORANGE,
            'window_kf': BLUE, 'eskf': GREEN}
 DASHES = (SOLID, DASHED, DOTTED, DASH_DOT)
+MARK = 'comparison.json'
 # Curves of several cases that differ by less are drawn as one, with all names.
 SAME = 1e-9
 # Where the rms error begins on the logarithmic axis, m: it is 0 at a start without error.
@@ -173,6 +179,21 @@ def _length(metres):
     return f'{metres * factor:.4g} {unit}'
 
 
+def comparison_title(settings, flights):
+    """Return a line that names motion, length and number of flights."""
+    generator = settings.simulation.motion_generator
+    return f'{generator.motion.kind}, {generator.duration_s:g} s, {_count(flights, "flight")}'
+
+
+def write_comparison(folder, page, rows):
+    """Write the Page of a comparison, its figures, and its rows as JSON into a folder."""
+    for chart in page.charts:
+        save_chart(folder, chart)
+    write_page(folder, page)
+    (folder / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
+                               encoding='utf-8')
+
+
 def page_of(title, settings, rows, flown, digest):
     """Return the Page of a comparison; settings: AidedSimulationSettings of the study."""
     errors = PageTable(
@@ -197,4 +218,4 @@ def page_of(title, settings, rows, flown, digest):
     charts = charts_of(rows, flown)
     return Page(title, answer(rows, flown[0][0].t_s[-1]), charts, tuple(tables), tuple(notes),
                 settings, {'the flights': digest},
-                {'comparison.json': 'the tables', **{f'{c.name}.png': c.title for c in charts}})
+                {MARK: 'the tables', **{f'{c.name}.png': c.title for c in charts}})
