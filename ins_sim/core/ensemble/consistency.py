@@ -73,7 +73,8 @@ class FixSums(NamedTuple):
 
 def fix_sums(runs, source):
     """Return the FixSums of a source; runs: of each the list of its JudgedFix."""
-    found = None
+    none = np.empty(0, dtype=np.int64)
+    found = FixSums(none, ChiSquareSums(none, np.empty(0), none), none, none)
     for judged in runs:
         own = {fix.t_ns: fix.outcome for fix in judged if fix.source == source}
         stamps = np.array(sorted(own), dtype=np.int64)
@@ -84,7 +85,7 @@ def fix_sums(runs, source):
         taken, refused = (np.array([of(o) for o in outcomes], dtype=np.int64) for of in (
             lambda o: o.taken, lambda o: not o.taken and not o.reason.startswith(INVALID_FIX)))
         one = FixSums(stamps, ChiSquareSums(*(a[:, 0] for a in sums)), taken, refused)
-        found = one if found is None else merged_fixes(found, one)
+        found = merged_fixes(found, one)
     return found
 
 

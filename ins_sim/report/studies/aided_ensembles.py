@@ -99,7 +99,7 @@ def consistency_answer(consistency):
 def consistency_notes(result, filter_name):
     """Return sentences on what does not count; result: AidedEnsembleResult."""
     notes = []
-    if not result.consistency.nees.count.any():
+    if result.errors.statistics.count.any() and not result.consistency.nees.count.any():
         notes.append(f'filter {filter_name} has no covariance: there is no NEES')
     for source, one in result.consistency.fixes.items():
         refused, taken = int(one.refused.sum()), int(one.taken.sum())

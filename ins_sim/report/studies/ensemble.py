@@ -87,9 +87,13 @@ def notes(report):
     """Return a sentence for each kind of run that was left out, or that started anew."""
     result, said = report.result, []
     if result.diverged:
-        said.append(f'{len(result.diverged)} of {len(result.runs)} runs have diverged and count '
-                    f'no further: {_named(result.diverged)}'
-                    + ('' if report.aided is None else _first_reason(report.aided)))
+        words, why = 'have diverged and count no further', ''
+        if report.aided is not None:
+            number, reason = report.aided.refused[0]
+            words = 'were refused or have diverged and do not count'
+            why = f'; run {number}: {reason}'
+        said.append(f'{len(result.diverged)} of {len(result.runs)} runs {words}: '
+                    f'{_named(result.diverged)}{why}')
     if result.restarted:
         total = sum(count for _, count in result.restarted)
         said.append(f'the solution started anew from the truth {total} times, after gaps, in '
@@ -101,10 +105,6 @@ def notes(report):
     return tuple(said)
 
 
-def _first_reason(aided):
-    return f'; run {aided.refused[0][0]}: {aided.refused[0][1]}'
-
-
 def _named(runs):
     more = f' and {len(runs) - MOST_NAMED} more' if len(runs) > MOST_NAMED else ''
     return ', '.join(map(str, runs[:MOST_NAMED])) + more
@@ -114,7 +114,8 @@ def answer(report):
     """Return what came out, in a sentence or two."""
     errors = report.errors
     if report.worst is None:
-        return f'All {len(report.result.runs)} runs have diverged.'
+        refused = '' if report.aided is None else 'were refused or '
+        return f'All {len(report.result.runs)} runs {refused}have diverged.'
     number, metres = report.worst
     rms = errors.horizontal_rms['position'][-1]
     said = f'After {errors.t_ns[-1] * 1e-9:g} s the horizontal position error is {rms:.4g} m rms'
