@@ -9,6 +9,7 @@ from typing import Any, TYPE_CHECKING, Union
 
 import numpy as np
 
+from ins_sim.core.ensemble.many_runs import check_runs
 from ins_sim.core.ensemble.result import EnsembleResult
 from ins_sim.core.timeseries.named_columns import columns, COLUMNS, ENU, UNITS
 from ins_sim.io.motion import read_motion
@@ -18,7 +19,7 @@ from ins_sim.studies.aided_ensembles import (AidedEnsembleResult, AidedPlan, che
                                              fly_aided_ensemble)
 from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
                                              PERCENTS, worst_run)
-from ins_sim.studies.ensembles import check_flight, EnsemblePlan, fly_ensemble, INSTANTS
+from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
 from .consistency import (consistency_coords, consistency_variables, fixes_dataframe,
                           nees_columns)
 from .dataframes import dataframe
@@ -73,7 +74,7 @@ class MonteCarlo:
 
     @property
     def worst(self) -> tuple[int, float] | None:
-        """Number and horizontal error, m, of the run that ends farthest off; None without one."""
+        """Number and horizontal error, m, of the run that ends farthest off."""
         found: tuple[int, float] | None = worst_run(self.result)
         return found
 
@@ -253,7 +254,7 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
     if isinstance(settings, AidedSimulationSettings):
         check_aided_flight(plan, read_motion(settings.simulation.motion_generator))
     elif isinstance(settings, SimulationSettings):
-        check_flight(plan, read_motion(settings.motion_generator))
+        check_runs(settings, read_motion(settings.motion_generator))
     else:
         raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
                          'AidedSimulationSettings of read_settings')

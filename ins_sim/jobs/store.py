@@ -22,7 +22,7 @@ class BlockStore:
     Parameters
     ----------
     folder : str or path
-        Made where it is not there. Only one process may use it.
+        Made with the first block. Only one process may use it.
     identity : dict
         What decides the numbers, of ``fingerprint``. Blocks of another are never mixed with these.
     replace : bool, optional
@@ -45,22 +45,24 @@ class BlockStore:
         self.folder = Path(folder)
         # as it comes back from the file
         identity = json.loads(json.dumps(identity))
+        self._identity = identity
         before = self._before()
+        self._there = {int(path.stem.removeprefix('block_'))
+                       for path in self.folder.glob('block_*.npz')
+                       if path.stem.removeprefix('block_').isdecimal()}
         if before is not None and before != identity:
-            if not replace:
+            if self._there and not replace:
                 raise ValueError(f'{folder} holds blocks of another study '
                                  f'({_changed(before, identity)}); expected the same settings, '
                                  'or another folder')
             self.remove()
             before = None
-        if before is None:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            _write(self.folder / IDENTITY, lambda stream: stream.write(
-                (json.dumps(identity, indent=1) + '\n').encode('utf-8')))
-        self._there = {int(path.stem.removeprefix('block_'))
-                       for path in self.folder.glob('block_*.npz')
-                       if path.stem.removeprefix('block_').isdecimal()}
+        self._begun = before is not None
         self.found = len(self._there)
+
+    def __len__(self):
+        """Return how many blocks are finished."""
+        return len(self._there)
 
     def __contains__(self, number):
         """Return whether a block is finished."""
@@ -76,7 +78,12 @@ class BlockStore:
             return None
 
     def save(self, number, arrays):
-        """Keep the arrays by name of a block."""
+        """Keep the arrays by name of a block; the first one makes the folder."""
+        if not self._begun:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            _write(self.folder / IDENTITY, lambda stream: stream.write(
+                (json.dumps(self._identity, indent=1) + '\n').encode('utf-8')))
+            self._begun = True
         _write(self._path(number), lambda stream: np.savez_compressed(stream, **arrays))
         self._there.add(number)
 
@@ -84,6 +91,8 @@ class BlockStore:
         """Delete the blocks, and the folder where it holds nothing else."""
         for path in (*self.folder.glob('block_*.npz*'), *self.folder.glob(f'{IDENTITY}*')):
             path.unlink(missing_ok=True)
+        self._there.clear()
+        self._begun = False
         with suppress(OSError):
             self.folder.rmdir()
 

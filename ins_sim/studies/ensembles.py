@@ -10,12 +10,12 @@ import numpy as np
 from ins_sim.core.ensemble.lanes import LANES
 from ins_sim.core.ensemble.many_runs import in_lanes, simulate_runs
 from ins_sim.core.ensemble.result import joined, of_arrays
-from ins_sim.core.motion.motion import check_length
-from ins_sim.core.simulation.inertial import check_start
 from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 
 MOST_RUNS, MOST_INSTANTS, INSTANTS = 10 ** 7, 10 ** 4, 61
+# Of the parameter run.
+LAST_RUN = 2 ** 31 - 1
 # Runs of a block: those side by side share truth and ideal readings, and a study shall have
 # blocks enough to be shared out evenly, so that little is lost with a worker.
 MOST_GROUPS, ENOUGH_BLOCKS = 16, 16
@@ -43,6 +43,9 @@ class EnsemblePlan:
                     least <= value <= most):
                 raise ValueError(f'{name} is {value!r}; expected a whole number from {least} to '
                                  f'{most}')
+        if self.settings.run + self.runs - 1 > LAST_RUN:
+            raise ValueError(f'run is {self.settings.run} with {self.runs} runs; expected a last '
+                             f'one of at most {LAST_RUN}')
 
     @property
     def instants_s(self):
@@ -109,13 +112,3 @@ def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
     work = EnsembleWork(plan, read_motion)
     return reduce(joined, (of_arrays(arrays) for _, arrays in run_blocks(
         work, plan.blocks(), executor, store, progress)))
-
-
-def check_flight(plan, motion):
-    """Raise ValueError, before any worker does, where the settings name no run."""
-    check_length(plan.settings.motion_generator, motion)
-    check_start(plan.settings)
-    generator, after_s = plan.settings.motion_generator, plan.settings.strapdown.initial.after_s
-    if after_s > generator.duration_s:
-        raise ValueError(f'initial.after_s is {after_s:g} s; expected at most duration_s, '
-                         f'{generator.duration_s:g} s')

@@ -50,10 +50,16 @@ def run(chosen):
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
         if store.found:
             console.print(f'{store.found} of {plan.flights} flights found in {store.folder}')
-        with progress_bars(console, 'flights') as add_bar, open_executor(
-                chosen.jobs, chosen.scheduler) as executor:
-            show = add_bar('flying', max(1, plan.flights - store.found))
-            found = compare(plan, executor, store, show)
+        try:
+            with progress_bars(console, 'flights') as add_bar, open_executor(
+                    chosen.jobs, chosen.scheduler) as executor:
+                show = add_bar('flying', max(1, plan.flights - store.found))
+                found = compare(plan, executor, store, show)
+        except BaseException:
+            if len(store):
+                console.print(f'{len(store)} of {plan.flights} flights are kept in '
+                              f'{store.folder}: the same command goes on from there')
+            raise
         rows = [filters.filter_row(case, list(f)) for case, f in zip(plan.cases, found.flown)]
         page = filter_charts.page_of(title, settings, rows, found.flown, found.digest)
         filter_charts.write_comparison(folder, page, rows)

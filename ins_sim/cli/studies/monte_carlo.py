@@ -25,6 +25,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Fly, show and write; return the exit code."""
+    from ins_sim.core.ensemble.many_runs import check_runs
     from ins_sim.io.motion import read_motion
     from ins_sim.jobs.executors import check_jobs, open_executor
     from ins_sim.jobs.store import BlockStore
@@ -33,7 +34,7 @@ def run(chosen):
     from ins_sim.report.studies import ensemble as report
     from ins_sim.studies.aided_ensembles import (AidedPlan, check_aided_flight,
                                                  fly_aided_ensemble)
-    from ins_sim.studies.ensembles import check_flight, EnsemblePlan, fly_ensemble
+    from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble
     from ..progress import progress_bars
     check_jobs(chosen.jobs, chosen.scheduler)
     if chosen.aided:
@@ -42,17 +43,23 @@ def run(chosen):
         fly = fly_aided_ensemble
     else:
         plan = EnsemblePlan(arguments.read_settings(chosen), chosen.runs, chosen.instants)
-        check_flight(plan, read_motion(plan.settings.motion_generator))
+        check_runs(plan.settings, read_motion(plan.settings.motion_generator))
         fly = fly_ensemble
     console = PlainConsole()
     with whole_folder(chosen.output, chosen.force, report.ARRAYS) as folder:
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
         if store.found:
             console.print(f'{store.found} of {len(plan.blocks())} blocks found in {store.folder}')
-        with progress_bars(console) as add_bar, open_executor(
-                chosen.jobs, chosen.scheduler) as executor:
-            show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
-            result = fly(plan, read_motion, executor, store, show)
+        try:
+            with progress_bars(console) as add_bar, open_executor(
+                    chosen.jobs, chosen.scheduler) as executor:
+                show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
+                result = fly(plan, read_motion, executor, store, show)
+        except BaseException:
+            if len(store):
+                console.print(f'{len(store)} of {len(plan.blocks())} blocks are kept in '
+                              f'{store.folder}: the same command goes on from there')
+            raise
         found = report.ensemble_report(plan.settings, result)
         report.write_ensemble(folder, found)
     store.remove()

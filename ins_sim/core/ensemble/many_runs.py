@@ -17,6 +17,9 @@ from .lanes import LANES
 from .one_by_one import simulate_each
 from .result import ErrorTally
 
+NO_OUTPUT = ('the runs have no navigation output; expected duration_s longer than '
+             'initial.after_s')
+
 
 def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     """
@@ -29,8 +32,7 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     errors, by default those of the settings.  Settings that do not go side by side are simulated
     run by run.  Raises ValueError as ``simulate`` does.
     """
-    check_length(settings.motion_generator, motion)
-    check_start(settings)
+    check_runs(settings, motion)
     wanted = np.unique(np.round(1e9 * np.asarray(instants_s, dtype=float)).astype(np.int64))
     if not in_lanes(settings):
         return simulate_each(settings, motion, runs, wanted, initial)
@@ -53,8 +55,7 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
                 tally.add(len(taken), errors)
             taken.extend(t_ns[picked].tolist())
     if not truth:
-        raise ValueError('the runs have no navigation output; expected duration_s longer than '
-                         'initial.after_s')
+        raise ValueError(NO_OUTPUT)
     found = [group.final(truth[-1:]) for group in groups]
     return tally.result(runs, taken, [solved for solved, _ in found],
                         [errors for _, errors in found],
@@ -77,6 +78,19 @@ def _navigated(settings, motion):
             start_ns = int(t_ns[0]) + round(settings.strapdown.initial.after_s * 1e9)
         first = int(np.searchsorted(t_ns, start_ns))
         yield imu, first, t_ns[first:], motion.at(t_ns[first:])
+
+
+def check_runs(settings, motion):
+    """Raise ValueError where SimulationSettings on a motion name no run of finite length."""
+    generator, after_s = settings.motion_generator, settings.strapdown.initial.after_s
+    if generator.motion.kind == 'guided':
+        # it gets its length as it is steered
+        motion.length_s(generator.start_s, generator.duration_s)
+    else:
+        check_length(generator, motion)
+    check_start(settings)
+    if after_s > generator.duration_s > 0.0:
+        raise ValueError(NO_OUTPUT)
 
 
 def in_lanes(settings):

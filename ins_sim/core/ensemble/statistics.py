@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Bins of a histogram: one below the least size, EIGHTHS to each power of two, one above.
-LEAST, GREATEST, EIGHTHS = -60, 40, 8
-EDGES = np.concatenate([np.ldexp(1.0 + np.arange(EIGHTHS) / EIGHTHS, e)
+# Bins of a histogram: one below the least size, PARTS to each power of two, one above.
+LEAST, GREATEST, PARTS = -60, 40, 32
+EDGES = np.concatenate([np.ldexp(1.0 + np.arange(PARTS) / PARTS, e)
                         for e in range(LEAST, GREATEST + 1)])
 SIGNED_EDGES = np.concatenate([-EDGES[::-1], EDGES])
 
@@ -77,7 +77,7 @@ class ErrorStatistics:
     def __init__(self, instants, width):
         self.moments = Moments(np.zeros(instants, dtype=np.int64), np.zeros((instants, width)),
                                np.zeros((instants, width, width)))
-        self.histogram = np.zeros((instants, width, len(SIGNED_EDGES) + 1), dtype=np.int64)
+        self.histogram = np.zeros((instants, width, len(SIGNED_EDGES) + 1), dtype=np.int32)
 
     def add(self, first, samples):
         """Add samples (m, runs, n) of the instants from number first on."""
@@ -152,8 +152,8 @@ class ErrorStatistics:
         """
         Return the values (m, n) below which so many percent of the runs lie.
 
-        Linear inside a bin, so within the width of a bin: an eighth of the value at most.  The
-        bin about zero is zero.
+        Linear inside a bin, so within the width of a bin: a part in 32 of the value at most.
+        The bin about zero is zero.
         """
         below = np.cumsum(self.histogram, axis=2)
         wanted = 0.01 * percent * self.count[:, None]

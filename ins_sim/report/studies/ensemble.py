@@ -73,7 +73,7 @@ def ensemble_title(settings, runs):
     generator = simulation.motion_generator
     filter_ = f', filter {settings.aided_navigator.filter}' if aided else ''
     return (f'{generator.motion.kind}, {generator.duration_s:g} s at '
-            f'{simulation.imu_sensor.rate_hz:g} Hz{filter_}, {runs} runs')
+            f'{simulation.imu_sensor.rate_hz:g} Hz{filter_}, {runs} run{"s" * (runs != 1)}')
 
 
 def flight_command(report, parameters=PARAMETERS):

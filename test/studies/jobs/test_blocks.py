@@ -115,8 +115,12 @@ def test_blocks_of_another_study_are_never_mixed(tmp_path):
         BlockStore(folder, {'seed': 1, 'more': []})
     assert BlockStore(folder, {'seed': 1, 'rate_hz': 100.0}).found == 1
     (folder / 'mine.txt').touch()
-    assert BlockStore(folder, {'seed': 2}, replace=True).found == 0
-    assert sorted(path.name for path in folder.iterdir()) == ['mine.txt', 'study.json']
+    store = BlockStore(folder, {'seed': 2}, replace=True)
+    assert store.found == 0 and len(store) == 0
+    assert [path.name for path in folder.iterdir()] == ['mine.txt']
+    # where no block was finished there is nothing to mix, and nothing is left
+    none = tmp_path / 'none'
+    assert BlockStore(none, {'seed': 1}).found == 0 and not none.exists()
     other = tmp_path / 'other'
     other.mkdir()
     (other / 'mine.txt').touch()
