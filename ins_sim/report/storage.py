@@ -7,7 +7,6 @@ from pathlib import Path
 from ins_sim import parameter_files
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.timeseries.histories import ImuSamples
-from . import coverage, figure
 from .aided_arrays import aided_arrays, aided_records
 from .files.packed_arrays import write_arrays
 from .files.stored_arrays import read_arrays
@@ -16,6 +15,7 @@ from .files.trajectories import write_trajectories
 from .files.wanted import WantedFiles
 from .guided import guided_arrays
 from .manifest import manifest
+from .runs.page import write_report
 
 MARK = 'summary.json'
 ARRAYS = 'run.npz'
@@ -28,14 +28,15 @@ _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f'
 
 
 def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False,
-              steered=None, wanted=WantedFiles()):
+              steered=None, notes=(), wanted=WantedFiles()):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
     own_motion: whether the motion is not that of the settings; steered: GuidedResult of a guided
-    motion, or None; wanted: the files, and of how many instants.
+    motion, or None; notes: sentences for the page (``runs.page.run_notes``); wanted: the files,
+    and of how many instants.
     """
     records = run_records(wanted.kept(run))
     arrays = {**_arrays_of(records), **guided_arrays(steered)}
@@ -47,8 +48,7 @@ def write_run(work, settings, run, rows, prediction, title, aided=None, own_moti
         solution = wanted.kept(aided.flown)
         arrays.update(aided_arrays(solution))
         records.update(aided_records(solution))
-        parameters, rows = aided.parameters(), [*rows, *aided.rows]
-        aided.save_figures(work)
+        parameters = aided.parameters()
     write_arrays(work / ARRAYS, arrays)
     if wanted.csv:
         write_tables(work, records)
@@ -59,10 +59,10 @@ def write_run(work, settings, run, rows, prediction, title, aided=None, own_moti
     (work / PARAMETERS).write_text(parameters, encoding='utf-8')
     (work / MANIFEST).write_text(
         manifest(settings, aided and aided.settings, own_motion, wanted.thin), encoding='utf-8')
-    figure.save_figure(work / 'errors.png', title, run.errors,
-                       coverage.comparable(settings, prediction))
-    (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
+    told = [*rows, *(aided.rows if aided else ())]
+    (work / MARK).write_text(json.dumps([asdict(r) for r in told], indent=1) + '\n',
                              encoding='utf-8')
+    write_report(work, settings, run, rows, prediction, title, aided, notes, own_motion)
 
 
 def run_arrays(run):

@@ -8,7 +8,7 @@ from urllib.parse import quote
 import numpy as np
 
 from .differences import changed_settings, settings_by_node
-from .words import cell_text, text
+from .words import breakable, cell_text, text
 
 
 def table_section(table):
@@ -18,16 +18,16 @@ def table_section(table):
             f'{_table(table.heads, table.rows)}{note}</section>')
 
 
-def _table(heads, rows):
+def _table(heads, rows, kind=''):
     # A column of numbers stands at the right.
     numeric = [any(isinstance(row[k], numbers.Real) for row in rows) for k in range(len(heads))]
     marks = [' class="number"' if right else '' for right in numeric]
     head = ''.join(f'<th scope="col"{mark}>{text(name)}</th>'
                    for mark, name in zip(marks, heads))
-    body = '\n'.join('<tr>' + ''.join(f'<td{mark}>{text(cell_text(value))}</td>'
+    body = '\n'.join('<tr>' + ''.join(f'<td{mark}>{breakable(text(cell_text(value)))}</td>'
                                       for mark, value in zip(marks, row)) + '</tr>'
                      for row in rows)
-    return (f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n'
+    return (f'<div class="wide"><table{kind}>\n<thead><tr>{head}</tr></thead>\n'
             f'<tbody>\n{body}\n</tbody></table></div>\n')
 
 
@@ -36,12 +36,13 @@ def settings_section(page, bokeh):
     parts = []
     if page.settings is not None:
         changed = changed_settings(page.settings)
-        parts.append(f'<p>{len(changed)} settings differ from the defaults.</p>' if changed else
-                     '<p>All settings are the defaults.</p>')
+        parts.append('<p>Settings that differ from the defaults: '
+                     f'{len(changed) or "none"}.</p>')
         if changed:
-            parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed))
-    facts = [*_seeds(page.settings), *((f'digest of {name}', value) for name, value in page.digest.items()),
-             *_versions(bokeh)]
+            parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed,
+                                ' class="settings"'))
+    digests = [(f'digest of {name}', value) for name, value in page.digest.items()]
+    facts = [*_seeds(page.settings), *digests, *_versions(bokeh)]
     parts.append('<dl>' + ''.join(f'<dt>{text(name)}</dt><dd><code>{text(value)}</code></dd>'
                                   for name, value in facts) + '</dl>')
     return '\n'.join(parts)
