@@ -61,17 +61,18 @@ def test_a_filter_without_a_covariance(tmp_path, capsys):
 
 def test_a_run_that_is_refused_is_named(tmp_path, capsys):
     """A gap ends the solution where on_fault is stop: the run is named with the reason."""
-    lost = ['-p', 'sampling.drop_out_probability:=0.0005', '-p', 'aided_navigator:on_fault:=stop',
+    gaps = ['-p', 'sampling.drop_out_probability:=0.0005', '-p', 'aided_navigator:on_fault:=stop',
             '-p', 'velocity_meter:attack_angle:=none']
-    summary, arrays = ensemble(tmp_path / 'a', *lost, '--jobs', '1')
+    summary, arrays = ensemble(tmp_path / 'a', *gaps, '--jobs', '1')
     told = ' '.join(capsys.readouterr().out.split())
     # in 2000 samples there is a loss in two runs of three
     assert 0 < len(summary['diverged']) < 4
     first = summary['diverged'][0]
-    assert f'{len(summary["diverged"])} of 4 runs were refused or have diverged and do not count' in told
+    lost = len(summary['diverged'])
+    assert f'{lost} of 4 runs were refused or have diverged and do not count' in told
     assert f'run {first}: imu has a gap' in told
     assert np.isnan(arrays['final_position_error'][first]).all()
-    assert arrays['count'].tolist() == [4 - len(summary['diverged'])] * 5
+    assert arrays['count'].tolist() == [4 - lost] * 5
 
 
 @pytest.mark.parametrize('words, sentence', [
