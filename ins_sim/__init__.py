@@ -50,6 +50,7 @@ from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ins_sim.api.comparisons import compare_filters, FilterComparison
     from ins_sim.api.ensembles import monte_carlo, MonteCarlo
     from ins_sim.api.inputs import presets, read_settings
     from ins_sim.api.offline import predict, simulate, simulate_aided
@@ -63,11 +64,12 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ImuRecord', 'MonteCarlo', 'Motion',
-           'Navigation', 'Prediction', 'Run', 'SimulationSettings', 'monte_carlo', 'navigate',
-           'open_bag', 'open_motion', 'predict', 'presets', 'read_settings', 'simulate',
-           'simulate_aided']
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'FilterComparison', 'ImuRecord',
+           'MonteCarlo', 'Motion', 'Navigation', 'Prediction', 'Run', 'SimulationSettings',
+           'compare_filters', 'monte_carlo', 'navigate', 'open_bag', 'open_motion', 'predict',
+           'presets', 'read_settings', 'simulate', 'simulate_aided']
 _MODULES = {
+    'api.comparisons': ('FilterComparison', 'compare_filters'),
     'api.ensembles': ('MonteCarlo', 'monte_carlo'),
     'api.inputs': ('presets', 'read_settings'),
     'api.offline': ('predict', 'simulate', 'simulate_aided'),

@@ -14,10 +14,14 @@ from ins_sim.core.ensemble.result import EnsembleResult
 from ins_sim.core.timeseries.named_columns import columns, COLUMNS, ENU, UNITS
 from ins_sim.io.motion import read_motion
 from ins_sim.jobs.executors import check_jobs, open_executor
-from ins_sim.settings.simulation import SimulationSettings
+from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
+from ins_sim.studies.aided_ensembles import (AidedEnsembleResult, AidedPlan, check_aided_flight,
+                                             fly_aided_ensemble)
 from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
                                              PERCENTS, worst_run)
 from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
+from .consistency import (consistency_coords, consistency_variables, fixes_dataframe,
+                          nees_columns)
 from .dataframes import dataframe
 from .datasets import dataset
 from .inputs import checked_path
@@ -37,17 +41,21 @@ class MonteCarlo:
 
     Attributes
     ----------
-    settings : SimulationSettings
+    settings : SimulationSettings or AidedSimulationSettings
         Those of the first run; run k has ``settings.with_run(k)``.
     result : EnsembleResult
         The running statistics, and the solution and its errors at the end of every run.
     errors : EnsembleErrors
         Mean, sigma, rms, percentiles and CEP at the instants.
+    aided : AidedEnsembleResult
+        Of the aided chain: ``aided.consistency`` has NEES at the instants and NIS of the fixes,
+        and ``aided.refused`` says why a run does not count. None without aiding.
     """
 
-    settings: SimulationSettings
+    settings: SimulationSettings | AidedSimulationSettings
     result: EnsembleResult
     errors: EnsembleErrors
+    aided: AidedEnsembleResult | None = None
 
     def __repr__(self) -> str:
         """Return one line; a notebook shows it."""
@@ -79,7 +87,7 @@ class MonteCarlo:
     def digest(self) -> str:
         """SHA-256 of statistics and ends, the same whatever computed them."""
         from ins_sim.jobs.fingerprint import array_digest
-        return str(array_digest(self.result.arrays()))
+        return str(array_digest((self.aided or self.result).arrays()))
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
         """
@@ -87,10 +95,12 @@ class MonteCarlo:
 
         Parameters
         ----------
-        record : {'errors', 'final'}
+        record : {'errors', 'final', 'velocity_meter', 'gnss'}
             The first has a row an instant, the index ``t_ns``, and columns such as
-            ``position_sigma_north_m`` and ``position_cep95_m``; the second has a row a run, the
-            index ``run``, and columns such as ``position_north_m``.
+            ``position_sigma_north_m`` and ``position_cep95_m``, and of the aided chain
+            ``nees_position`` with its 95 % interval, ``nees_position_low`` and ``_high``; the
+            second has a row a run, the index ``run``, and columns such as ``position_north_m``;
+            the others, of the aided chain, have a row a fix with the mean ``nis``.
 
         Raises
         ------
@@ -105,7 +115,9 @@ class MonteCarlo:
                 table.update(columns(name, values))
             return dataframe(np.array(self.runs), table).rename_axis('run')
         if record != 'errors':
-            raise ValueError(f'record is {record!r}; expected errors or final')
+            if self.aided is None:
+                raise ValueError(f'record is {record!r}; expected errors or final')
+            return fixes_dataframe(self.aided.consistency, record)
         table = {'runs': self.errors.count}
         for name, dims, values, unit in self._statistics():
             if dims == ('time',):
@@ -113,11 +125,16 @@ class MonteCarlo:
             elif dims == ('time', 'axis'):
                 table.update({f'{name}_{axis}_{unit}': values[:, k]
                               for k, axis in enumerate(ENU)})
+        if self.aided is not None:
+            table.update(nees_columns(self.aided.consistency))
         return dataframe(self.errors.t_ns, table)
 
     def to_xarray(self) -> xarray.Dataset:
         """
         Return statistics and ends as a Dataset with the dimensions run, time, axis, percent.
+
+        That of the aided chain also has NEES by block of states, dimensions time and block, and
+        NIS by fix, dimensions ``velocity_meter_time`` and ``gnss_time``.
 
         Raises
         ------
@@ -129,9 +146,20 @@ class MonteCarlo:
                           for name, dims, values, unit in self._statistics()})
         variables.update({f'final_{name}': (('run', 'axis'), values, UNITS[COLUMNS[name][1]])
                           for name, values in self.final_errors.items()})
-        return dataset({'run': (np.array(self.runs), ''), 'time': (self.errors.t_ns, 'ns'),
-                        'axis': (ENU, ''), 'percent': (PERCENTS, '%')}, variables,
-                       {'seed': self.settings.imu_sensor.seed, 'digest': self.digest})
+        coords: dict[str, Any] = {
+            'run': (np.array(self.runs), ''), 'time': (self.errors.t_ns, 'ns'),
+            'axis': (ENU, ''), 'percent': (PERCENTS, '%')}
+        if self.aided is not None:
+            coords.update(consistency_coords(self.aided.consistency))
+            variables.update(consistency_variables(self.aided.consistency))
+        return dataset(coords, variables, {'seed': self._simulation.imu_sensor.seed,
+                                           'digest': self.digest})
+
+    @property
+    def _simulation(self) -> SimulationSettings:
+        if isinstance(self.settings, AidedSimulationSettings):
+            return self.settings.simulation
+        return self.settings
 
     def _statistics(self) -> list[tuple[str, tuple[str, ...], np.ndarray, str]]:
         """Return name, dimensions, values and unit, as it stands in names, of each statistic."""
@@ -168,21 +196,21 @@ class MonteCarlo:
         from ins_sim.report.studies import ensemble
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, ensemble.ARRAYS, 'overwrite=True') as work:
-            title = ensemble.ensemble_title(self.settings, len(self.runs))
-            ensemble.write_ensemble(work, ensemble.ensemble_report(title, self.settings,
-                                                                   self.result))
+            ensemble.write_ensemble(work, ensemble.ensemble_report(
+                self.settings, self.aided or self.result))
 
 
-def monte_carlo(settings: SimulationSettings, runs: int = 1000, instants: int = INSTANTS,
-                jobs: int = 0, scheduler: str | None = None, blocks: Folder | None = None,
-                progress: Progress = None) -> MonteCarlo:
+def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: int = 1000,
+                instants: int = INSTANTS, jobs: int = 0, scheduler: str | None = None,
+                blocks: Folder | None = None, progress: Progress = None) -> MonteCarlo:
     """
     Simulate many runs, which differ in their random numbers, and keep statistics of their errors.
 
     Parameters
     ----------
-    settings : SimulationSettings
-        Of ``read_settings``; their ``run`` is the number of the first run.
+    settings : SimulationSettings or AidedSimulationSettings
+        Of ``read_settings``; their ``run`` is the number of the first run. With
+        AidedSimulationSettings the whole aided chain is simulated, and NEES and NIS are kept.
     runs : int, optional
         How many.
     instants : int, optional
@@ -220,12 +248,16 @@ def monte_carlo(settings: SimulationSettings, runs: int = 1000, instants: int = 
     >>> bool((alone.errors.position[-1] == study.final_errors['position'][number]).all())
     True
     """
-    if not isinstance(settings, SimulationSettings):
-        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings of '
-                         'read_settings(..., aided=False)')
     check_jobs(jobs, scheduler)
-    plan, store = EnsemblePlan(settings, runs, instants), None
-    check_runs(settings, read_motion(settings.motion_generator))
+    aided = isinstance(settings, AidedSimulationSettings)
+    store, plan = None, (AidedPlan if aided else EnsemblePlan)(settings, runs, instants)
+    if isinstance(settings, AidedSimulationSettings):
+        check_aided_flight(plan, read_motion(settings.simulation.motion_generator))
+    elif isinstance(settings, SimulationSettings):
+        check_runs(settings, read_motion(settings.motion_generator))
+    else:
+        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
+                         'AidedSimulationSettings of read_settings')
     if blocks is not None:
         from ins_sim.jobs.store import BlockStore
         store = BlockStore(checked_path('blocks', blocks), plan.identity())
@@ -236,5 +268,8 @@ def monte_carlo(settings: SimulationSettings, runs: int = 1000, instants: int = 
             progress(done / total)
 
     with open_executor(jobs, scheduler) as executor:
+        if aided:
+            found = fly_aided_ensemble(plan, read_motion, executor, store, went)
+            return MonteCarlo(settings, found.errors, ensemble_errors(found.errors), found)
         result = fly_ensemble(plan, read_motion, executor, store, went)
     return MonteCarlo(settings, result, ensemble_errors(result))

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from scipy.stats import chi2
 
 # probability that a Gaussian lies within three standard deviations
@@ -12,6 +13,17 @@ def mean_interval(count, freedom, probability=0.95):
     """Return the interval of the mean of count chi-squares of so many degrees of freedom."""
     tail = 0.5 * (1.0 - probability)
     return tuple(float(chi2.ppf(p, freedom * count) / count) for p in (tail, 1.0 - tail))
+
+
+def sum_intervals(sums, probability=0.95):
+    """
+    Return the bounds (low, high) of the means of ChiSquareSums, arrays; NaN where there is no run.
+
+    A consistent filter lies inside with that probability, at each instant by itself.
+    """
+    tail, none = 0.5 * (1.0 - probability), sums.count == 0
+    freedom, count = np.where(none, np.nan, sums.freedom), np.where(none, np.nan, sums.count)
+    return chi2.ppf(tail, freedom) / count, chi2.ppf(1.0 - tail, freedom) / count
 
 
 def chi_square_limit(freedom, probability):

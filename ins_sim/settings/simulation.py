@@ -122,6 +122,12 @@ class AidedSimulationSettings:
         return replace(self, simulation=self.simulation.with_run(run), **{
             node: replace(getattr(self, node), run=run) for node in DRAWING})
 
+    def by_node(self):
+        """Return {name of a node: its settings}."""
+        nodes = {**vars(self.simulation), **vars(self)}
+        del nodes['simulation']
+        return nodes
+
     def _check_run(self):
         """Refuse nodes of different runs."""
         for node in DRAWING:

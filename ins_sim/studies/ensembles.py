@@ -90,12 +90,12 @@ class EnsembleWork:
     def __call__(self, runs):
         """Return ``EnsembleResult.arrays`` of some runs."""
         generator = self.plan.settings.motion_generator
-        motion = _motion(self.read_motion, generator)
+        motion = motion_of(self.read_motion, generator)
         return simulate_runs(self.plan.settings, motion, runs, self.plan.instants_s).arrays()
 
 
 @lru_cache(1)
-def _motion(read, generator):
+def motion_of(read, generator):
     """Return the motion of settings; what is to be said of a recording the caller has said."""
     with warnings.catch_warnings():
         warnings.simplefilter('ignore')

@@ -1,18 +1,25 @@
 """All filters over the same flights and seeds: how far each is off, and whether it knows."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ins_sim.core.aiding.consistency import note_of
 from ins_sim.core.aiding.navigator import METER
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.simulation import inertial
 from ins_sim.core.simulation.aided import make_instruments
+from ins_sim.core.sensors.imu.with_errors import with_errors
 from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
+from ins_sim.core.simulation.normalised_errors import ErrorNormaliser
+from ins_sim.jobs.blocks import run_blocks
+from ins_sim.jobs.fingerprint import array_digest, fingerprint
 from ins_sim.settings.aided_navigator import FILTERS
+from ins_sim.settings.simulation import AidedSimulationSettings
 
 STEP_S = 5.0
+MOST_FLIGHTS = 100000
 
 
 @dataclass(frozen=True)
@@ -29,8 +36,10 @@ class FilterFlight:
     One filter on one flight, at instants t_s (n,) since the start.
 
     error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN:
-    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nis: of the fixes of
-    the velocity meter that were weighed; refused: how many were not taken, and the last reason.
+    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
+    and its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
+    instants of the fixes of the velocity meter that were weighed; refused: how many were not
+    taken, and the last reason.
     """
 
     t_s: np.ndarray
@@ -39,7 +48,10 @@ class FilterFlight:
     azimuth: np.ndarray
     azimuth_sigma: np.ndarray
     estimates: np.ndarray
+    nees: np.ndarray
+    freedom: np.ndarray
     nis: np.ndarray
+    nis_t_s: np.ndarray
     refused: int
     reason: str
 
@@ -78,8 +90,93 @@ def fly_filters(settings, cases, run):
     blocks = list(with_truth(motion, inertial.imu_blocks(settings.simulation, motion)))
     chosen = {cycles: _with_cycles(settings, cycles) for cycles in {c.cycles for c in cases}}
     fixes = {cycles: _fixes(s, blocks) for cycles, s in chosen.items()}
-    return [_fly(chosen[case.cycles].aided_navigator, case, blocks, fixes[case.cycles])
-            for case in cases]
+    errors = with_errors(settings.simulation.imu_sensor)
+    return [_fly(chosen[case.cycles], case, blocks, fixes[case.cycles], errors) for case in cases]
+
+
+def cases_of(filters=None, cycles=(1000,)):
+    """
+    Return the FilterCases of a comparison.
+
+    filters: names, None: all; cycles: of a window, the first for all filters, the others for the
+    eskf alone.
+    """
+    for n in cycles:
+        if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 100000:
+            raise ValueError(f'cycles is {n!r}; expected 1 to 100000')
+    names = list(dict.fromkeys(FILTERS if filters is None else filters))
+    for name in names:
+        if name not in FILTERS:
+            raise ValueError(f'filter is {name!r}; expected one of {", ".join(FILTERS)}')
+    cases = [FilterCase(name, cycles[0]) for name in names]
+    if not cases:
+        raise ValueError('there is no filter; expected one or more')
+    return tuple(cases + [FilterCase('eskf', n) for n in cycles[1:] if 'eskf' in names])
+
+
+@dataclass(frozen=True)
+class FilterPlan:
+    """
+    What is flown: AidedSimulationSettings, how many flights, and the FilterCases on each.
+
+    ``plan(k)`` is the work on flight k, of ``jobs.blocks.run_blocks``.  Raises ValueError where
+    there is nothing to fly.
+    """
+
+    settings: AidedSimulationSettings
+    flights: int
+    cases: tuple
+
+    def __post_init__(self):
+        """Check the number."""
+        if isinstance(self.flights, bool) or not isinstance(self.flights, int) or not (
+                1 <= self.flights <= MOST_FLIGHTS):
+            raise ValueError(f'runs is {self.flights!r}; expected a whole number from 1 to '
+                             f'{MOST_FLIGHTS}')
+
+    def __call__(self, run):
+        """Return the arrays of one flight, of ``flights_of``."""
+        found = {}
+        for k, flight in enumerate(fly_filters(self.settings, self.cases, run)):
+            found.update({f'{f.name}_{k}': np.asarray(getattr(flight, f.name))
+                          for f in fields(FilterFlight)})
+        return found
+
+    def identity(self):
+        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        return fingerprint(self.settings.by_node(), study='compare-filters',
+                           runs=self.flights, cases=[f'{c.filter}, N {c.cycles}'
+                                                     for c in self.cases])
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedFilters:
+    """What was flown: of each case the FilterFlights, one a flight, and the digest of all."""
+
+    cases: tuple
+    flown: list
+    digest: str
+
+
+def compare(plan, executor, store=None, progress=None):
+    """
+    Return the ComparedFilters of a FilterPlan.
+
+    executor, store, progress: as of ``run_blocks``.  The same bits whatever the executor.
+    """
+    flights, arrays = [], {}
+    for k, found in run_blocks(plan, range(plan.flights), executor, store, progress):
+        flights.append(flights_of(found))
+        arrays.update({f'{k}_{name}': array for name, array in found.items()})
+    return ComparedFilters(plan.cases, [list(f) for f in zip(*flights)], array_digest(arrays))
+
+
+def flights_of(arrays):
+    """Return the FilterFlight of each case from the arrays of one flight."""
+    count = len([name for name in arrays if name.startswith('t_s_')])
+    plain = {'refused': int, 'reason': str}
+    return [FilterFlight(**{f.name: plain.get(f.name, np.asarray)(arrays[f'{f.name}_{k}'])
+                            for f in fields(FilterFlight)}) for k in range(count)]
 
 
 def _with_cycles(settings, cycles):
@@ -95,17 +192,22 @@ def _fixes(settings, blocks):
             for instrument in make_instruments(settings)]
 
 
-def _fly(settings, case, blocks, fixes):
-    used = settings.gnss_model.use and FILTERS[case.filter].takes_gnss
-    settings = replace(settings, filter=case.filter,
-                       output_every=max(1, round(STEP_S * settings.rate_hz)),
-                       gnss_model=replace(settings.gnss_model, use=used))
-    flown = navigate_aided(settings, blocks, *map(Reported, fixes))
+def _fly(settings, case, blocks, fixes, imu_errors):
+    navigator = settings.aided_navigator
+    used = navigator.gnss_model.use and FILTERS[case.filter].takes_gnss
+    navigator = replace(navigator, filter=case.filter,
+                        output_every=max(1, round(STEP_S * navigator.rate_hz)),
+                        gnss_model=replace(navigator.gnss_model, use=used))
+    flown = navigate_aided(navigator, blocks, *map(Reported, fixes), note=note_of)
     errors = flown.errors
-    weighed = [t.outcome for t in flown.judged if t.source == METER]
-    refused = [r.reason for r in weighed if not r.taken and case.filter != 'free']
+    judged = [t for t in flown.judged if t.source == METER]
+    refused = [t.outcome.reason for t in judged
+               if not t.outcome.taken and case.filter != 'free']
+    weighed = [t for t in judged if t.outcome.nis is not None]
     return FilterFlight(
         (errors.t_ns - errors.t_ns[0]) * 1e-9, errors.position, errors.position_sigma,
         errors.attitude[:, 2], errors.attitude_sigma[:, 2], errors.estimates,
-        np.array([r.nis for r in weighed if r.nis is not None]), len(refused),
-        refused[-1] if refused else '')
+        *ErrorNormaliser(settings, imu_errors).of(flown),
+        np.array([t.outcome.nis for t in weighed], dtype=float),
+        np.array([(t.t_ns - errors.t_ns[0]) * 1e-9 for t in weighed], dtype=float),
+        len(refused), refused[-1] if refused else '')

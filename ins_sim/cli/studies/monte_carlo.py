@@ -14,6 +14,8 @@ def add_arguments(parser):
     arguments.add_settings(parser)
     parser.add_argument('--runs', type=int, default=1000, metavar='N', help='how many runs, from '
                         'that of the parameter run on (default: %(default)s)')
+    parser.add_argument('--aided', action='store_true', help='of the aided navigator with its '
+                        'instruments: also NEES and NIS of the filter')
     parser.add_argument('--instants', type=int, default=61, metavar='N', help='instants of the '
                         'statistics, evenly over the run (default: %(default)s)')
     arguments.add_jobs(parser)
@@ -30,11 +32,19 @@ def run(chosen):
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import ensemble as report
+    from ins_sim.studies.aided_ensembles import (AidedPlan, check_aided_flight,
+                                                 fly_aided_ensemble)
     from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble
     from ..progress import progress_bars
     check_jobs(chosen.jobs, chosen.scheduler)
-    plan = EnsemblePlan(arguments.read_settings(chosen), chosen.runs, chosen.instants)
-    check_runs(plan.settings, read_motion(plan.settings.motion_generator))
+    if chosen.aided:
+        plan = AidedPlan(arguments.read_aided_settings(chosen), chosen.runs, chosen.instants)
+        check_aided_flight(plan, read_motion(plan.settings.simulation.motion_generator))
+        fly = fly_aided_ensemble
+    else:
+        plan = EnsemblePlan(arguments.read_settings(chosen), chosen.runs, chosen.instants)
+        check_runs(plan.settings, read_motion(plan.settings.motion_generator))
+        fly = fly_ensemble
     console = PlainConsole()
     with whole_folder(chosen.output, chosen.force, report.ARRAYS) as folder:
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
@@ -44,14 +54,13 @@ def run(chosen):
             with progress_bars(console) as add_bar, open_executor(
                     chosen.jobs, chosen.scheduler) as executor:
                 show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
-                result = fly_ensemble(plan, read_motion, executor, store, show)
+                result = fly(plan, read_motion, executor, store, show)
         except BaseException:
             if len(store):
                 console.print(f'{len(store)} of {len(plan.blocks())} blocks are kept in '
                               f'{store.folder}: the same command goes on from there')
             raise
-        found = report.ensemble_report(report.ensemble_title(plan.settings, plan.runs),
-                                       plan.settings, result)
+        found = report.ensemble_report(plan.settings, result)
         report.write_ensemble(folder, found)
     store.remove()
     report.show(found, console)

@@ -27,8 +27,13 @@ from .past import FixEntry, FlownSamples, Past
 
 METER, GNSS = 'velocity_meter', 'gnss'
 
+
 # A fix that was processed: its source, its instant (ns of motion time) and the FixOutcome.
 JudgedFix = namedtuple('JudgedFix', 'source t_ns outcome')
+
+
+class DivergedSolution(StreamFault):
+    """The solution is no number any more, or its covariance is none."""
 
 
 def filter_class(name):
@@ -112,8 +117,8 @@ class AidedNavigator:
             self._flight.advance(one, 0, 1)
             self._past.add_samples(one, 0, 1)
             if not self._flight.is_finite:
-                raise StreamFault(f'the solution at {seconds(t_ns)} is no number any more; '
-                                  'expected finite readings', restart=True)
+                raise DivergedSolution(f'the solution at {seconds(t_ns)} is no number any '
+                                       'more; expected finite readings', restart=True)
         self._keep()
         return self._due()
 
@@ -268,11 +273,12 @@ class AidedNavigator:
         return self.filter.update_velocity(ins, replace(fix, velocity=(forward - known, left)))
 
     def _check(self):
-        """Raise StreamFault if the covariance is no longer positive definite."""
+        """Raise DivergedSolution if the covariance is no longer positive definite."""
         if not self.filter.healthy:
-            raise StreamFault(f'the covariance of filter {self._settings.filter} at '
-                              f'{seconds(self.ins.t_ns)} is not positive definite; '
-                              'expected errors that the model can follow', restart=True)
+            raise DivergedSolution(
+                f'the covariance of filter {self._settings.filter} at '
+                f'{seconds(self.ins.t_ns)} is not positive definite; expected errors that the '
+                'model can follow', restart=True)
 
 
 def _arrival(entry):

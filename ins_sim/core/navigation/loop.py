@@ -32,6 +32,28 @@ class Decimation:
         return slice(None) if self._every == 1 else np.flatnonzero(self.due(t_ns))
 
 
+class WantedInstants(Decimation):
+    """
+    Which outputs are published: the first one at or after each of some instants.
+
+    wanted_ns (m,): the instants, ascending; dt_ns: sampling period.  An instant whose sample is
+    lost has no output.
+    """
+
+    def __init__(self, wanted_ns, dt_ns):
+        super().__init__(1, dt_ns)
+        self._wanted_ns = wanted_ns
+
+    def due(self, t_ns):
+        """Return whether the outputs of t_ns are published."""
+        return (np.searchsorted(self._wanted_ns, t_ns, side='right')
+                > np.searchsorted(self._wanted_ns, t_ns - self._dt_ns, side='right'))
+
+    def numbers(self, t_ns):
+        """Return the numbers of the instants of which outputs at t_ns (n,) were published."""
+        return np.searchsorted(self._wanted_ns, t_ns - self._dt_ns, side='right')
+
+
 class NavigationLoop:
     """
     Steps a navigator through samples of an IMU.

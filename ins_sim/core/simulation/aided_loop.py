@@ -5,6 +5,7 @@ from bisect import bisect_left
 import numpy as np
 
 from ins_sim.core.aiding import segment
+from ins_sim.core.aiding.navigator import DivergedSolution
 from ins_sim.core.navigation.errors import level_errors
 from ins_sim.core.navigation.loop import NavigationLoop
 from ins_sim.core.streams.faults import is_regular
@@ -19,6 +20,15 @@ class AidedLoop(NavigationLoop):
 
     # Fixes on their way: (arrival_ns, source, fix), in the order of arrival.
     waiting = ()
+    # Function of the AidedNavigator whose result is kept at each output instant, or None.
+    note = None
+    # Whether a solution has diverged, and another was begun.
+    diverged = False
+
+    def recover(self, fault):
+        """Make ready for the sample at a StreamFault; return whether the loop goes on."""
+        self.diverged = self.diverged or isinstance(fault, DivergedSolution)
+        return super().recover(fault)
 
     def step(self, t_ns, *sample):
         """Give the fixes and a sample to the navigator; return its output."""
@@ -65,7 +75,7 @@ class AidedBlock:
         self.out = np.empty(segment.ROW * len(imu))
         self._uneven = (np.flatnonzero(~is_regular(np.diff(imu.t_ns), loop.dt_ns)) + 1).tolist()
         self._due, self._due_since = [], None
-        self._kept, self._said = [], []
+        self._kept, self._said, self._notes = [], [], []
 
     def sample(self, k):
         """Return the arguments of AidedNavigator.step for a sample."""
@@ -95,14 +105,17 @@ class AidedBlock:
             self._due_since = decimation.first_ns
         due = self._due[bisect_left(self._due, first):bisect_left(self._due, stop)]
         if due:
-            filter_ = self._loop.navigator.filter
+            navigator, note = self._loop.navigator, self._loop.note
+            filter_ = navigator.filter
             said = (*(filter_.sigmas() or UNKNOWN)[::-1], filter_.estimates,
                     filter_.estimate_sigmas() or NONE)
             self._kept += due
             self._said += [said] * len(due)
+            if note is not None:
+                self._notes += [note(navigator)] * len(due)
 
     def records(self):
-        """Return Truth, NavStates and AidedErrors of the samples put out, or None."""
+        """Return Truth, NavStates, AidedErrors and notes of the samples put out, or None."""
         if not self._kept:
             return None
         truth = self._truth[self._kept]
@@ -110,8 +123,9 @@ class AidedBlock:
         states = NavStates(truth.t_ns, rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3:6],
                            rows[:, 6:10])
         errors = level_errors(_columns(states), _columns(truth))
-        return truth, states, AidedErrors(truth.t_ns, *(np.stack(e, axis=-1) for e in errors),
-                                          *map(np.array, zip(*self._said)))
+        return truth, states, AidedErrors(
+            truth.t_ns, *(np.stack(e, axis=-1) for e in errors),
+            *map(np.array, zip(*self._said))), self._notes
 
 
 def _columns(record):

@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.instants import period_ns
@@ -16,7 +17,9 @@ class AidedResult:
     One aided run: truth, solution and errors at the output instants.
 
     judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
-    velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them.
+    velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them;
+    notes: what was asked for at each output instant, or None; diverged: whether a fault was that a
+    solution had diverged.
     """
 
     truth: Truth
@@ -26,6 +29,8 @@ class AidedResult:
     faults: tuple = ()
     velocity_fixes: tuple = ()
     gnss_fixes: tuple = ()
+    notes: tuple = ()
+    diverged: bool = False
 
 
 class Reported:
@@ -47,29 +52,38 @@ def with_truth(motion, blocks):
         yield imu, motion.at(imu.t_ns)
 
 
-def navigate_aided(settings, blocks, meter=None, gnss=None):
+def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
     meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
-    arrival, or None.  Faults are handled as on_fault says: the solution
-    starts anew from the truth, or ValueError is raised.  Raises ValueError where there is no
-    output.
+    arrival, or None; note: function of the AidedNavigator whose result is kept at each output
+    instant.  Faults are handled as on_fault says: the solution starts anew from the truth, or
+    ValueError is raised.  Raises ValueError where there is no output.
     """
-    chain = _Chain(settings)
+    flown = AidedChain(settings, note)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
                if instrument is not None]
     for imu, truth in blocks:
-        chain.block(imu, truth, [(fix.arrival_ns, source, fix) for source, instrument in sources
+        flown.block(imu, truth, [(fix.arrival_ns, source, fix) for source, instrument in sources
                                  for fix in instrument.advance(truth)])
-    return chain.finish()
+    return flown.finish()
 
 
-class _Chain:
-    def __init__(self, settings):
+class AidedChain:
+    """
+    The aided navigator of one run, which takes block after block.
+
+    settings, note: as of ``navigate_aided``; outputs: a Decimation, in place of output_every.
+    """
+
+    def __init__(self, settings, note=None, outputs=None):
         self._loop = AidedLoop(partial(AidedNavigator, settings),
                                period_ns(settings.rate_hz), settings.output_every,
                                settings.on_fault)
+        self._loop.note = note
+        if outputs is not None:
+            self._loop.decimation = outputs
         self._parts, self._judged = [], []
 
     def block(self, imu, truth, fixes):
@@ -87,6 +101,8 @@ class _Chain:
         if not self._parts:
             raise ValueError('the run has no navigation output; expected duration_s longer than '
                              'initial.after_s')
+        *records, notes = zip(*self._parts)
         truth, states, errors = (cls.concatenate(parts) for cls, parts in zip(
-            (Truth, NavStates, AidedErrors), zip(*self._parts)))
-        return AidedResult(truth, states, errors, tuple(self._judged), tuple(self._loop.faults))
+            (Truth, NavStates, AidedErrors), records))
+        return AidedResult(truth, states, errors, tuple(self._judged), tuple(self._loop.faults),
+                           notes=tuple(chain.from_iterable(notes)), diverged=self._loop.diverged)

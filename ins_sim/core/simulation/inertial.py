@@ -47,13 +47,29 @@ def imu_blocks(settings, motion):
 @paused_in_blocks
 def sensed_blocks(sensor, ideal):
     """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
-    errors = with_errors(sensor)
-    sampler = Sampler(sensor.sampling, sensor.seed, sensor.run, 'sampling',
-                      period_ns(sensor.rate_hz))
+    sensed = SensedRun(sensor)
     for block in ideal:
-        block = sampler.take(block if errors is None else errors.advance(block))
+        block = sensed.take(block)
         if len(block):
             yield block
+
+
+class SensedRun:
+    """
+    The instrument of ImuSensorSettings in one run, without its ideal part.
+
+    errors: its InstrumentErrors, or None of a perfect one.  Raises ValueError as ``with_errors``
+    does.
+    """
+
+    def __init__(self, sensor):
+        self.errors = with_errors(sensor)
+        self._sampler = Sampler(sensor.sampling, sensor.seed, sensor.run, 'sampling',
+                                period_ns(sensor.rate_hz))
+
+    def take(self, ideal):
+        """Return the ImuSamples that it makes of those of the ideal one, or of part of them."""
+        return self._sampler.take(ideal if self.errors is None else self.errors.advance(ideal))
 
 
 def reading_count(generator, dt_ns):
@@ -97,18 +113,29 @@ def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
     the list faults, or ValueError is raised.  covariance: a FreeCovariance kept beside it.
     """
-    dt_ns = period_ns(settings.rate_hz)
-    loop = NavigationLoop(partial(InertialNavigator, settings, covariance), dt_ns,
-                          settings.output_every, settings.on_fault, faults)
-    clock = SampleClock(settings, dt_ns)
+    strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:
-        t_ns = clock.instant(imu.t_ns)
-        truth = motion.at(t_ns)
-        for first, (states, errors), due in loop.run_block(t_ns, imu.omega, imu.f, truth):
+        yield from strapdown.take(imu)
+
+
+class StrapdownRun:
+    """The strapdown of one run; the arguments are those of ``navigate_blocks``."""
+
+    def __init__(self, settings, motion, faults=None, covariance=None):
+        dt_ns = period_ns(settings.rate_hz)
+        self._motion, self._clock = motion, SampleClock(settings, dt_ns)
+        self._loop = NavigationLoop(partial(InertialNavigator, settings, covariance), dt_ns,
+                                    settings.output_every, settings.on_fault, faults)
+
+    def take(self, imu):
+        """Yield (truth, states, errors) of the output instants of ImuSamples."""
+        t_ns = self._clock.instant(imu.t_ns)
+        truth = self._motion.at(t_ns)
+        for first, (states, errors), due in self._loop.run_block(t_ns, imu.omega, imu.f, truth):
             yield truth[first:first + len(states)][due], states[due], errors[due]
 
 
-class _RecentTruth:
+class RecentTruth:
     """The truth of a motion; what was asked for last is not computed again."""
 
     def __init__(self, motion):
@@ -152,7 +179,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
 
     if settings.imu_sensor.source == 'stream':
         # The IMU and the navigation ask for the truth at the same instants.
-        motion = _RecentTruth(motion)
+        motion = RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
     blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):

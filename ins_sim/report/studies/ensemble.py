@@ -10,6 +10,8 @@ from rich.table import Table
 from ins_sim import parameter_files
 from ins_sim.core.ensemble.result import EnsembleResult
 from ins_sim.jobs.fingerprint import array_digest
+from ins_sim.settings.simulation import AidedSimulationSettings
+from ins_sim.studies.aided_ensembles import AidedEnsembleResult
 from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
                                              worst_run)
 from ..charts.png import save_chart
@@ -18,6 +20,8 @@ from ..manifest import manifest
 from ..page.content import Page, PageTable
 from ..page.html import write_page
 from ..storage import MANIFEST, PARAMETERS
+from .aided_ensembles import (consistency_answer, consistency_chart, consistency_notes,
+                              consistency_table)
 from .ensemble_charts import AXES, ensemble_charts
 
 ARRAYS, SUMMARY = 'ensemble.npz', 'summary.json'
@@ -33,9 +37,10 @@ class EnsembleReport:
     """
     What is said of an ensemble.
 
-    title: what was simulated, in words; settings: SimulationSettings of the first run; result;
-    errors: EnsembleErrors; worst: number and horizontal error, m, of the run that ends farthest
-    off, or None; digest: of the result, the same whatever computed it.
+    title: what was simulated, in words; settings: SimulationSettings of the first run, or
+    AidedSimulationSettings; result; errors: EnsembleErrors; worst: number and horizontal error, m,
+    of the run that ends farthest off, or None; digest: of the result, the same whatever computed
+    it; aided: AidedEnsembleResult of runs of the aided chain, or None.
     """
 
     title: str
@@ -44,39 +49,59 @@ class EnsembleReport:
     errors: EnsembleErrors
     worst: tuple | None
     digest: str
+    aided: AidedEnsembleResult | None = None
+
+    @property
+    def simulation(self):
+        """Return the SimulationSettings."""
+        return self.settings if self.aided is None else self.settings.simulation
 
 
-def ensemble_report(title, settings, result):
-    """Return the EnsembleReport of an EnsembleResult."""
-    return EnsembleReport(title, settings, result, ensemble_errors(result), worst_run(result),
-                          array_digest(result.arrays()))
+def ensemble_report(settings, found):
+    """Return the EnsembleReport of an EnsembleResult or an AidedEnsembleResult."""
+    aided = found if isinstance(found, AidedEnsembleResult) else None
+    result = found if aided is None else aided.errors
+    return EnsembleReport(ensemble_title(settings, len(result.runs)), settings, result,
+                          ensemble_errors(result), worst_run(result),
+                          array_digest(found.arrays()), aided)
 
 
 def ensemble_title(settings, runs):
-    """Return a line that names motion, length and number of runs."""
-    generator = settings.motion_generator
+    """Return a line that names motion, length, filter and number of runs."""
+    aided = isinstance(settings, AidedSimulationSettings)
+    simulation = settings.simulation if aided else settings
+    generator = simulation.motion_generator
+    filter_ = f', filter {settings.aided_navigator.filter}' if aided else ''
     return (f'{generator.motion.kind}, {generator.duration_s:g} s at '
-            f'{settings.imu_sensor.rate_hz:g} Hz, {runs} run{"s" * (runs != 1)}')
+            f'{simulation.imu_sensor.rate_hz:g} Hz{filter_}, {runs} run{"s" * (runs != 1)}')
 
 
 def flight_command(report, parameters=PARAMETERS):
     """Return the command that flies the worst run alone, to the bit."""
-    number = report.worst[0]
-    return f'ins_sim simulate --params-file {parameters} -p run:={number} -o run_{number}'
+    number, aided = report.worst[0], '' if report.aided is None else ' --aided'
+    return (f'ins_sim simulate{aided} --params-file {parameters} -p run:={number} '
+            f'-o run_{number}')
 
 
 def notes(report):
     """Return a sentence for each kind of run that was left out, or that started anew."""
     result, said = report.result, []
     if result.diverged:
-        said.append(f'{len(result.diverged)} of {len(result.runs)} runs have diverged and count '
-                    f'no further: {_named(result.diverged)}')
+        words, why = 'have diverged and count no further', ''
+        if report.aided is not None:
+            number, reason = report.aided.refused[0]
+            words = 'were refused or have diverged and do not count'
+            why = f'; run {number}: {reason}'
+        said.append(f'{len(result.diverged)} of {len(result.runs)} runs {words}: '
+                    f'{_named(result.diverged)}{why}')
     if result.restarted:
         total = sum(count for _, count in result.restarted)
-        said.append(f'the strapdown started anew from the truth {total} times, after gaps, in '
+        said.append(f'the solution started anew from the truth {total} times, after gaps, in '
                     f'{len(result.restarted)} of {len(result.runs)} runs')
     if len(result.runs) - len(result.diverged) < 2:
         said.append('sigma and CEP need two runs or more')
+    if report.aided is not None:
+        said += consistency_notes(report.aided, report.settings.aided_navigator.filter)
     return tuple(said)
 
 
@@ -89,17 +114,21 @@ def answer(report):
     """Return what came out, in a sentence or two."""
     errors = report.errors
     if report.worst is None:
-        return f'All {len(report.result.runs)} runs have diverged.'
+        refused = '' if report.aided is None else 'were refused or '
+        return f'All {len(report.result.runs)} runs {refused}have diverged.'
     number, metres = report.worst
     rms = errors.horizontal_rms['position'][-1]
     said = f'After {errors.t_ns[-1] * 1e-9:g} s the horizontal position error is {rms:.4g} m rms'
     if np.isfinite(errors.cep[50][-1]):
         said += f', CEP50 {errors.cep[50][-1]:.4g} m, CEP95 {errors.cep[95][-1]:.4g} m'
-    return f'{said} over {errors.count[-1]} runs. The worst is run {number}, {metres:.4g} m off.'
+    said += f' over {errors.count[-1]} runs. The worst is run {number}, {metres:.4g} m off.'
+    if report.aided is None:
+        return said
+    return f'{said} {consistency_answer(report.aided.consistency)}'
 
 
 def tables(report):
-    """Return the PageTables: the end by quantity and axis, and position against time."""
+    """Return the PageTables: the end by axis, position against time, and the filter's."""
     errors, heads = report.errors, ('mean', 'sigma', 'rms', *(f'{p} %' for p in PERCENTS))
     rows = []
     for name in COLUMNS:
@@ -124,7 +153,8 @@ def tables(report):
                         errors.horizontal_percentiles['position'][-1, k]])) for k in chosen),
         'CEP: radius about the true place by mean and covariance; 95 %: below which so many runs '
         'lie')
-    return end, against
+    filter_ = None if report.aided is None else consistency_table(report.aided.consistency)
+    return (end, against) if filter_ is None else (end, against, filter_)
 
 
 def _cells(values):
@@ -157,6 +187,8 @@ def report_arrays(report):
             f'{name}_horizontal_percentiles': errors.horizontal_percentiles[name]})
     arrays.update({f'position_cep{percent}': radius for percent, radius in errors.cep.items()})
     final, ends = result.final, result.final_errors
+    if report.aided is not None:
+        arrays.update(report.aided.consistency.arrays())
     return {**arrays, 'covariance': result.statistics.covariance,
             'runs': np.arange(result.runs.start, result.runs.stop),
             'diverged': np.array(result.diverged, dtype=np.int64),
@@ -168,9 +200,14 @@ def report_arrays(report):
 def write_ensemble(folder, report):
     """Write an EnsembleReport into a folder: arrays, summary, parameters, manifest, figures."""
     charts = ensemble_charts(report.title, report.errors, report.result, report.worst)
+    dump, aided = parameter_files.dump, None
+    if report.aided is not None:
+        dump, aided = parameter_files.dump_aided, report.settings
+        filter_ = consistency_chart(report.errors.t_ns, report.aided.consistency)
+        charts += () if filter_ is None else (filter_,)
     write_arrays(folder / ARRAYS, report_arrays(report))
-    (folder / PARAMETERS).write_text(parameter_files.dump(report.settings), encoding='utf-8')
-    (folder / MANIFEST).write_text(manifest(report.settings), encoding='utf-8')
+    (folder / PARAMETERS).write_text(dump(report.settings), encoding='utf-8')
+    (folder / MANIFEST).write_text(manifest(report.simulation, aided), encoding='utf-8')
     for chart in charts:
         save_chart(folder, chart)
     told = notes(report)

@@ -84,6 +84,11 @@ class AidingFilter:
         accelerometer_bias_x and acceleration_x (also _y, _z; the latter is the error of the
         corrected specific force). The test sees other states, the filter's own, by their effect
         on the innovation.
+    covariance : ndarray, (n, n), or None
+        Of the errors ``states``; None for a filter without one. A filter replaces it and never
+        changes it in place.
+    given : tuple of str
+        The states of which the filter is given the value and estimates none.
     observed_at : str
         'end' or 'start' of the window: the instant of the errors which the matrix of
         ``velocity_model`` multiplies.
@@ -95,6 +100,8 @@ class AidingFilter:
     healthy = True
     estimates = (0.0, 0.0, 0.0)
     states = ()
+    covariance = None
+    given = ()
     observed_at = 'end'
     neglected = 0.0
 

@@ -56,6 +56,11 @@ class ErrorStateFilter(AidingFilter):
                  + [imu.accelerometer_bias_walk_ug_sqrt_h * UG / SQRT_H] * 3
                  + [imu.gyro_bias_walk_deg_h_sqrt_h * DEG_H / SQRT_H] * 3 + [0.0] * 5)
         self._density = np.square(walks)
+        # What is known exactly at the start and does not move; position and attitude do.
+        exact = [not s and not w for s, w in zip(sigmas[model.BA.start:], walks[model.BA.start:])]
+        self.given = (*(model.STATES[k] for k in model.DOWN if self._altimeter),
+                      *(name for name, known in zip(model.STATES[model.BA.start:], exact)
+                        if known))
         self._every = settings.covariance_every
         scale = 1e-6 * imu.gyro_scale_sigma_ppm
         self._gyro_scale = scale * scale

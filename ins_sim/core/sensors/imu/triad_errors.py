@@ -10,7 +10,7 @@ from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.noise import BLOCK, cut, indexed_noise
 from ins_sim.core.numerics.processes import Processes
 from .triad_model import temperature_off, triad_model
-from .triad_reading import AT_REST, read, read_arrays, read_rows, ZERO
+from .triad_reading import AT_REST, read, read_arrays, read_rows, respond, ZERO
 
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
 # variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
@@ -56,6 +56,20 @@ class TriadErrors:
         self.perfect = not any((self._geometry, self._response, self._by_force, self._lags,
                                 self._by_temperature, self._noise, self._most, self._quantum))
         self.state = (None, AT_REST, ZERO)
+
+    def bias(self, index, value, force):
+        """
+        Return what a reading of sample index errs by at a constant input, tuple of three floats.
+
+        value, force: as of ``step``.  Without white noise, pulses and the limits of the range.
+        """
+        warm = None
+        if self._by_temperature is not None:
+            warm = temperature_off(self._temperature, index * self._dt)
+        driven = respond(self._geometry, self._response, self._by_force, self._by_temperature,
+                         value, force, warm)
+        added = ZERO if self._noise is None else self._noise.bias(index).tolist()
+        return tuple(d - v + a for d, v, a in zip(driven, value, added))
 
     def step(self, index, value, force, t_s):
         """
@@ -225,6 +239,14 @@ class AdditiveNoise:
             total += self.white * self.stream.normal_blocks(first, count)
         for process in self.processes:
             total += process(first, count)
+        return total
+
+    def bias(self, index):
+        """Return the errors (3,) of a sample without the white noise."""
+        block, row = divmod(index, BLOCK)
+        total = self.fixed.copy()
+        for process in self.processes:
+            total += process(block, 1)[row]
         return total
 
 

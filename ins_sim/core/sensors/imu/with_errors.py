@@ -6,11 +6,15 @@ function of seed, run and instant: the index of a sample is its motion time over
 """
 
 from ins_sim.core.numerics.instants import period_ns
+from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from ins_sim.core.streams.faults import StreamFault
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from ..sensor import Sensor
 from .sampling import consecutive
+
+# Rate, rad/s, and specific force, m/s^2, of level flight.
+STILL, LEVEL = (0.0, 0.0, 0.0), (0.0, 0.0, STANDARD_GRAVITY)
 
 
 def with_errors(settings):
@@ -68,6 +72,17 @@ class InstrumentErrors:
         index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
         return (self.gyro.step(index, omega, f, t_s),
                 self.accelerometer.step(index, f, f, t_s))
+
+    def biases(self, t_ns):
+        """
+        Return the biases of gyros, rad/s, and accelerometers, m/s^2, of the sample at t_ns.
+
+        In level flight without acceleration, where errors of scale factors and axes of the
+        accelerometers are constant: a filter without states for them finds them in the biases.
+        """
+        index = t_ns // self._dt_ns
+        return (self.gyro.bias(index, STILL, LEVEL),
+                self.accelerometer.bias(index, LEVEL, LEVEL))
 
     def advance(self, imu):
         """Return the ImuSamples of the instrument; any cutting gives the bits of step."""

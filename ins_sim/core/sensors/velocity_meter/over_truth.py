@@ -18,8 +18,12 @@ class MeterOnTruth:
         self._meter, self._ins, self._next = meter, None, 0
 
     def follow_ins(self, t_ns, v_b):
-        """Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s."""
-        self._ins = t_ns, v_b
+        """
+        Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s.
+
+        Up to the end of the truth of the next ``advance``, or of the whole run.
+        """
+        self._ins, self._next = (t_ns, v_b), 0
 
     def advance(self, truth):
         """Return the VelocityFixes that a Truth record completes, in the order of arrival."""

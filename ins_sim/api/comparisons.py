@@ -1,0 +1,218 @@
+"""The comparison of aiding filters and the record of what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+import os
+from typing import Any, TYPE_CHECKING, Union
+
+import numpy as np
+
+from ins_sim.core.aiding.consistency import BLOCKS
+from ins_sim.core.motion.factory import make_motion
+from ins_sim.core.motion.motion import check_length
+from ins_sim.core.timeseries.named_columns import ENU
+from ins_sim.jobs.executors import check_jobs, open_executor
+from ins_sim.report.studies.filters import filter_row, FilterRow
+from ins_sim.settings.simulation import AidedSimulationSettings
+from ins_sim.studies.filters import (cases_of, compare, ComparedFilters, FilterFlight, FilterPlan,
+                                     run_settings)
+from .dataframes import dataframe
+from .datasets import dataset
+from .inputs import checked_path
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+Folder = Union[str, 'os.PathLike[str]']
+Progress = Union[Callable[[float], object], None]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FilterComparison:
+    """
+    Several filters over the same flights.
+
+    Attributes
+    ----------
+    settings : AidedSimulationSettings
+        Flight k has the seeds of these plus k.
+    found : ComparedFilters
+        ``flown`` has of each case the FilterFlights, one a flight; ``digest`` is the SHA-256 of
+        them all, the same whatever computed them.
+    rows : tuple of FilterRow
+        What is said of each case: errors, NIS and NEES with their intervals.
+    """
+
+    settings: AidedSimulationSettings
+    found: ComparedFilters
+    rows: tuple[FilterRow, ...]
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return (f'<FilterComparison: {len(self.rows)} filters, {self.rows[0].flights} flights, '
+                f'best {self.best}>')
+
+    @property
+    def best(self) -> str:
+        """The filter, with its window, whose rms horizontal error at the end is smallest."""
+        return str(min(self.rows, key=lambda row: row.end_m).name)
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of all flights, the same whatever computed them."""
+        return self.found.digest
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """
+        Return a row a case: the fields of FilterRow, and NEES at the end by block of states.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed.
+        """
+        table: dict[str, list[Any]] = {}
+        for row in self.rows:
+            values = asdict(row)
+            nees = values.pop('nees')
+            for block in BLOCKS:
+                mean, low, high, _ = nees.get(block, (None,) * 4)
+                values.update({f'nees_{block}': mean, f'nees_{block}_low': low,
+                               f'nees_{block}_high': high})
+            for name, value in {**values, 'consistency': row.consistency}.items():
+                table.setdefault(name, []).append(value)
+        return dataframe(np.arange(len(self.rows)),
+                         {name: np.array(values, dtype=_type(values))
+                          for name, values in table.items()}).rename_axis('case')
+
+    def to_xarray(self) -> xarray.Dataset:
+        """
+        Return the flights as a Dataset with the dimensions case, run, time, axis, block.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        """
+        def stacked(of: Callable[[FilterFlight], np.ndarray]) -> np.ndarray:
+            return np.array([[of(flight) for flight in flights] for flights in self.found.flown])
+
+        first = self.found.flown[0][0]
+        dims = ('case', 'run', 'time')
+        return dataset(
+            {'case': ([row.name for row in self.rows], ''),
+             'run': (np.arange(len(self.found.flown[0])), ''),
+             'time': (np.rint(1e9 * first.t_s).astype(np.int64), 'ns'), 'axis': (ENU, ''),
+             'block': (BLOCKS, '')},
+            {'position': ((*dims, 'axis'), stacked(lambda f: f.error), 'm'),
+             'position_sigma': ((*dims, 'axis'), stacked(lambda f: f.sigma), 'm'),
+             'azimuth': (dims, stacked(lambda f: f.azimuth), 'rad'),
+             'azimuth_sigma': (dims, stacked(lambda f: f.azimuth_sigma), 'rad'),
+             'nees': ((*dims, 'block'), stacked(lambda f: f.nees), ''),
+             'freedom': ((*dims, 'block'), stacked(lambda f: f.freedom), '')},
+            {'digest': self.digest})
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """
+        Write the comparison as ``ins_sim compare-filters -o`` does.
+
+        Parameters
+        ----------
+        folder : str or path
+        overwrite : bool, optional
+            Replace the folder if it holds such a comparison.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or holds no comparison.
+        """
+        from ins_sim.own_folders import whole_folder
+        from ins_sim.report.studies import filter_charts
+        checked_path('folder', folder)
+        with whole_folder(folder, overwrite, filter_charts.MARK, 'overwrite=True') as work:
+            title = filter_charts.comparison_title(self.settings, self.rows[0].flights)
+            page = filter_charts.page_of(title, self.settings, self.rows, self.found.flown,
+                                         self.digest)
+            filter_charts.write_comparison(work, page, self.rows)
+
+
+def _type(values: list[Any]) -> Any:
+    """Return the type of a column: floats where a number is missing."""
+    return float if any(value is None for value in values) else None
+
+
+def compare_filters(settings: AidedSimulationSettings, runs: int = 24,
+                    filters: Sequence[str] | None = None, cycles: Sequence[int] | None = None,
+                    jobs: int = 0, scheduler: str | None = None, blocks: Folder | None = None,
+                    progress: Progress = None) -> FilterComparison:
+    """
+    Fly the filters of the aided navigator over the same flights.
+
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+        Of ``read_settings(..., aided=True)``; flight k has their seeds plus k.
+    runs : int, optional
+        How many flights.
+    filters : sequence of str, optional
+        Their names; by default all.
+    cycles : sequence of int, optional
+        Cycles of a fix of the velocity meter: the first for all filters, the others for eskf as
+        well. By default ``window.cycles``.
+    jobs : int, optional
+        Processes; 0: as many as cores, 1: this one alone. The result has the same bits.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as ``'tcp://host:8786'``, in the place of processes.
+    blocks : str or path, optional
+        Folder in which finished flights are kept, so that the same call goes on where an
+        interrupted one was. It is left as it is.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1.
+
+    Returns
+    -------
+    FilterComparison
+
+    Raises
+    ------
+    ValueError
+        As ``simulate_aided`` does; on an unknown filter; where the folder holds flights of other
+        settings; where the cluster cannot be used.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings(['route_flight', 'grade_mid'],
+    ...                                  {'duration_s': 20.0, 'window.cycles': 100}, aided=True)
+    >>> study = ins_sim.compare_filters(settings, runs=2, filters=['free', 'eskf'], jobs=1)
+    >>> [row.name for row in study.rows]
+    ['free, N 100', 'eskf, N 100']
+    """
+    if not isinstance(settings, AidedSimulationSettings):
+        raise ValueError(f'settings are {type(settings).__name__}; expected '
+                         'AidedSimulationSettings of read_settings(..., aided=True)')
+    check_jobs(jobs, scheduler)
+    if isinstance(filters, str):
+        raise ValueError(f'filters is {filters!r}; expected a list of names')
+    plan = FilterPlan(settings, runs, cases_of(
+        filters, list(cycles or [settings.velocity_meter.window.cycles])))
+    generator = run_settings(settings, 0).simulation.motion_generator
+    check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
+    store = None
+    if blocks is not None:
+        from ins_sim.jobs.store import BlockStore
+        store = BlockStore(checked_path('blocks', blocks), plan.identity())
+    total = plan.flights - (store.found if store else 0)
+
+    def went(done: int) -> None:
+        if progress is not None:
+            progress(done / total)
+
+    with open_executor(jobs, scheduler) as executor:
+        found = compare(plan, executor, store, went)
+    rows = tuple(filter_row(case, f) for case, f in zip(found.cases, found.flown))
+    return FilterComparison(settings, found, rows)
