@@ -1,0 +1,220 @@
+"""Delays, biases, scale factors and misalignments of a gyro triad from records on a bench."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics.units import DEG
+from .bench_record import usable
+from .channel_fit import fit_by_residuals, fit_channel, residual_noise
+from .channel_sums import BIAS, channel_sums, DELAY, LAST, other_axes, SCALE
+from .separability import weak_directions
+
+AXES = 'xyz'
+BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
+# A delay whose sigma is longer than this part of the sampling period has not been measured.
+COARSE = 0.1
+# A scale factor, or an axis, that is off by more is of another motion.
+FOREIGN = 0.3
+# Linearisations of a delay, and the longest delay that is looked for, s.
+PASSES, LONGEST_S = 10, 1.0
+
+
+class NotObservable(ValueError):
+    """The motion of the records shows no delay of any channel."""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelEstimate:
+    """
+    What was found of one gyro channel.
+
+    Attributes
+    ----------
+    axis : 'x', 'y' or 'z', of FLU
+    values (m,) : delay and lag (s), scale factor, misalignments towards ``towards`` (rad),
+        asymmetry of the scale factor, and the mean bias in every record (rad/s)
+    covariance (m, m) : of the values
+    towards : the axes towards which the sensitive axis is turned by the misalignments
+    refused : why the delay is not observable, or ''
+    weights : BY_WALK or BY_RESIDUALS, what the standard deviations are from
+    ratio, limit : variance of the delay by the residuals over that by the angle random walk, and
+        what it exceeds once in a thousand times; ratio is 1 where the walk is not known
+    noise, left (records,) : standard deviation of a sample that was assumed, and rms of the
+        residuals, rad/s
+    weak : WeakDirections, combinations of the values that the readings do not tell
+    change : greatest derivative of the rate, rad/s^2
+    blocks : for every record, middles (n,), s, of its blocks, and their mean residuals over the
+        standard deviation that is expected of them
+    bins : derivative of the rate, rad/s^2, reading less all but the delay, residual, and its
+        standard deviation, rad/s, (n,) each
+    """
+
+    axis: str
+    values: np.ndarray
+    covariance: np.ndarray
+    towards: tuple
+    refused: str
+    weights: str
+    ratio: float
+    limit: float
+    noise: np.ndarray
+    left: np.ndarray
+    weak: tuple
+    change: float
+    blocks: tuple
+    bins: tuple
+
+    @property
+    def delay(self):
+        """Delay and lag of the channel, s."""
+        return float(self.values[DELAY])
+
+    @property
+    def sigmas(self):
+        """Standard deviations of the values, (m,)."""
+        return np.sqrt(np.diagonal(self.covariance))
+
+    @property
+    def delay_sigma(self):
+        """Standard deviation of the delay, s."""
+        return float(self.sigmas[DELAY])
+
+
+@dataclass(frozen=True, eq=False)
+class TriadEstimate:
+    """What was found of the three channels, the names of the records, and notes, sentences."""
+
+    channels: tuple
+    records: tuple
+    notes: tuple
+
+
+def estimate_triad(records):
+    """
+    Return the TriadEstimate of BenchRecords of one gyro triad.
+
+    The delay, the scale factor and the misalignments are the same in all records, each of which
+    has a bias of its own.
+
+    Raises
+    ------
+    ValueError
+        In one sentence where a record is too short or is not of the motion that is given.
+    NotObservable
+        Where the records show the delay of no channel.
+    """
+    kept, notes = [], []
+    for record in records:
+        record, said = usable(record)
+        kept.append(record)
+        notes += said
+    channels = tuple(_channel(kept, axis) for axis in range(3))
+    if all(c.refused for c in channels):
+        raise NotObservable('delays are not observable in this motion: '
+                            + '; '.join(c.refused for c in channels))
+    notes += [f'{c.axis}: the residuals scatter {math.sqrt(c.ratio):.3g} times as much as the '
+              'angle random walk says: the standard deviations are those of the residuals'
+              for c in channels if c.weights == BY_RESIDUALS and c.ratio > c.limit]
+    return TriadEstimate(channels, tuple(r.name for r in records), tuple(notes))
+
+
+def _channel(records, axis):
+    """Return the ChannelEstimate of an axis; its delay is linearised until it stands still."""
+    late_ns, most = 0, 0.0
+    coarse = COARSE * min(r.dt_ns for r in records) * 1e-9
+    walk = np.array([r.white[axis] / math.sqrt(r.dt_ns * 1e-9) for r in records])
+    for _ in range(PASSES):
+        sums = [channel_sums(r, axis, late_ns, most) for r in records]
+        fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
+        _check_motion(records, axis, fit)
+        sigma = math.sqrt(fit.covariance[DELAY, DELAY])
+        poor = sigma > coarse or fit.told_by_prior > 0.5
+        step_ns = round(float(fit.values[DELAY]) * 1e9)
+        if most and (poor or abs(step_ns) <= max(1.0, 1e7 * sigma)):
+            break
+        most = max(s.most for s in sums)
+        late_ns += 0 if poor else step_ns
+        if abs(late_ns) > LONGEST_S * 1e9:
+            raise ValueError(f'the delay of {AXES[axis]} comes out as {late_ns * 1e-9:.4g} s; '
+                             f'expected at most {LONGEST_S:g} s: are the stamps those of the '
+                             'motion?')
+        most = most or 1e-12
+    else:
+        raise ValueError(f'the delay of {AXES[axis]} does not settle within {PASSES} steps; '
+                         'expected a record of the motion that is given')
+    return _estimate(records, axis, late_ns, sums, fit, noise, walk, poor, coarse)
+
+
+def _check_motion(records, axis, fit):
+    off = np.abs(fit.values[SCALE:LAST + 1])
+    if off.max() > FOREIGN:
+        k = int(np.argmax(off))
+        what = 'scale factor' if k == 0 else f'misalignment to {AXES[other_axes(axis)[k - 1]]}'
+        raise ValueError(f'{", ".join(r.name for r in records)}: the {what} of {AXES[axis]} comes '
+                         f'out as {fit.values[SCALE + k]:.3g}; expected less than {FOREIGN:g}: '
+                         'the readings are not of the motion that is given, or their stamps not '
+                         'of its time')
+
+
+def _estimate(records, axis, late_ns, sums, fit, noise, walk, poor, coarse):
+    values = fit.values.copy()
+    values[DELAY] += late_ns * 1e-9
+    by_walk = bool(walk.all()) and fit.ratio <= fit.limit
+    covariance = fit.covariance if by_walk else fit.scattered
+    change = max(s.most for s in sums)
+    weak = weak_directions(fit, sums)
+    refused = _reason(axis, fit, coarse, change) if poor else ''
+    blocks = tuple((s.t_s, _block_residuals(s, k, fit.values) * np.sqrt(s.count) / noise[k])
+                   for k, s in enumerate(sums))
+    return ChannelEstimate(
+        AXES[axis], values, covariance, tuple(AXES[k] for k in other_axes(axis)), refused,
+        BY_WALK if by_walk else BY_RESIDUALS, fit.ratio if walk.all() else 1.0, fit.limit, noise,
+        residual_noise(sums, fit.values), weak, change, blocks,
+        _bins(sums, fit.values, late_ns * 1e-9, noise, change))
+
+
+def _reason(axis, fit, coarse, change):
+    """Return why a delay is not observable, a sentence without its end."""
+    name, sigma_us = AXES[axis], 1e6 * math.sqrt(fit.covariance[DELAY, DELAY])
+    if fit.told_by_prior > 0.5:
+        row = fit.covariance[DELAY]
+        k = SCALE + int(np.argmax(np.abs(row[SCALE:LAST + 1])))
+        what = ('ppm of its scale factor' if k == SCALE else
+                f'urad of misalignment towards {AXES[other_axes(axis)[k - SCALE - 1]]}')
+        return (f'a delay of {name} of 1 us reads like {abs(row[k] / row[DELAY]):.3g} {what} '
+                f'(sigma {sigma_us:.4g} us)')
+    return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves a '
+            f'sigma of {sigma_us:.4g} us, more than the {1e6 * coarse:.4g} us of a tenth of the '
+            'sampling period')
+
+
+def _block_residuals(sums, record, values):
+    """Return the mean residuals of the blocks of a record, rad/s."""
+    x = np.append(values[:BIAS], values[BIAS + record])
+    row = sums.normal[:, BIAS, :]
+    expected = row[:, 0] * x[0]
+    for k in range(1, len(x)):
+        expected = expected + row[:, k] * x[k]
+    return (sums.right[:, BIAS] - expected) / sums.count
+
+
+def _bins(sums, values, late_s, noise, change):
+    """Return what ``ChannelEstimate.bins`` holds; the delay is left in the second."""
+    count = with_delay = left = weight = change_sum = 0.0
+    for k, (one, sigma) in enumerate(zip(sums, noise)):
+        x = np.append(values[:BIAS], values[BIAS + k])
+        model = one.bins[:, 2] * x[0]
+        for column in range(1, len(x)):
+            model = model + one.bins[:, 2 + column] * x[column]
+        residual = one.bins[:, 1] - model
+        count = count + one.bins[:, 0]
+        left = left + residual
+        with_delay = with_delay + residual + one.bins[:, 2] * (x[0] + late_s)
+        weight = weight + one.bins[:, 0] * (sigma * sigma)
+        change_sum = change_sum - one.bins[:, 2]
+    there = count > 0.0
+    count = count[there]
+    return (change_sum[there] / count, with_delay[there] / count, left[there] / count,
+            np.sqrt(weight[there]) / count)

@@ -1,0 +1,87 @@
+"""What the motion of a record cannot tell apart: directions that only the priors hold."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from .channel_fit import PRIOR
+from .channel_sums import BIAS, DELAY, SCALE
+
+# Turns of the Jacobi method; some matrices of 6 need 8.
+SWEEPS = 50
+# A part of a direction that is smaller than this is not named.
+NAMED = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class WeakDirection:
+    """
+    A combination of the values of a channel that the readings tell less of than the priors.
+
+    values (m,): the combination, in the units of ``ChannelFit.values``; the parts that count alone;
+    sigma: its standard deviation by the readings alone, of the direction of length one in units
+    of the priors.
+    """
+
+    values: np.ndarray
+    sigma: float
+
+
+def weak_directions(fit, sums):
+    """
+    Return the WeakDirections of a ChannelFit, the least known first.
+
+    Values are measured by what is known of them beforehand. A delay has no such measure and takes
+    the one with which it errs as much as a misalignment of 1e-3, and so does a bias.
+    """
+    count = float(np.add.reduce(np.concatenate([one.count for one in sums])))
+    rate = math.sqrt(max(_total(one.turning for one in sums), 0.0) / count)
+    change = math.sqrt(_total(float(np.add.reduce(one.normal, axis=0)[DELAY, DELAY])
+                              for one in sums) / count)
+    unit = np.full(len(fit.values), PRIOR)
+    unit[DELAY] = PRIOR * rate / change if change else 1.0
+    unit[BIAS:] = PRIOR * rate if rate else 1.0
+    sizes, directions = eigenvectors(fit.information * unit * unit[:, None])
+    found = []
+    for k in np.argsort(sizes, kind='stable'):
+        if sizes[k] < 1.0:
+            v = directions[:, k]
+            v = np.where(np.abs(v) >= NAMED * np.abs(v).max(), v, 0.0)
+            lead = DELAY if v[DELAY] else SCALE if v[SCALE] else int(np.argmax(np.abs(v)))
+            found.append(WeakDirection(v * unit * math.copysign(1.0, v[lead]),
+                                       1.0 / math.sqrt(max(sizes[k], 1e-12))))
+    return tuple(found)
+
+
+def _total(values):
+    total = 0.0
+    for value in values:
+        total += value
+    return total
+
+
+def eigenvectors(a):
+    """
+    Return eigenvalues (m,) and eigenvectors, columns (m, m), of a symmetric matrix.
+
+    By the cyclic method of Jacobi (Golub and Van Loan, section 8.5), whose bits are those of
+    + - * / sqrt alone.
+    """
+    a, v = a.copy(), np.eye(len(a))
+    for _ in range(SWEEPS):
+        off = False
+        for p in range(len(a) - 1):
+            for q in range(p + 1, len(a)):
+                if abs(a[p, q]) <= 1e-15 * math.sqrt(abs(a[p, p] * a[q, q])):
+                    continue
+                off = True
+                theta = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
+                t = math.copysign(1.0, theta) / (abs(theta) + math.sqrt(theta * theta + 1.0))
+                c = 1.0 / math.sqrt(t * t + 1.0)
+                s = t * c
+                for m in (a, a.T, v):
+                    m[:, p], m[:, q] = c * m[:, p] - s * m[:, q], s * m[:, p] + c * m[:, q]
+        if not off:
+            break
+    return np.diagonal(a).copy(), v
