@@ -43,6 +43,11 @@ class ChannelFit:
     blocks: int
 
     @property
+    def delay_sigma(self):
+        """Standard deviation of the delay by the noise given, s."""
+        return math.sqrt(self.covariance[DELAY, DELAY])
+
+    @property
     def told_by_prior(self):
         """Which part of the variance of the delay is that of what is known beforehand, 0 to 1."""
         row = self.covariance[DELAY]

@@ -23,6 +23,7 @@ from .bench_record import TrueRates
 # of the scale factor, bias.
 DELAY, SCALE, NEXT, LAST, ASYMMETRY, BIAS = range(6)
 COLUMNS = 6
+AXES = 'xyz'
 # Sums are kept of so many blocks of a record: their scatter tells how white the residuals are.
 BLOCKS = 64
 # Readings whose true rates are in memory at once.

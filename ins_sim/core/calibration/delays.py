@@ -5,16 +5,12 @@ import math
 
 import numpy as np
 
-from ins_sim.core.numerics.units import DEG
 from .bench_record import usable
 from .channel_fit import fit_by_residuals, fit_channel, residual_noise
-from .channel_sums import BIAS, channel_sums, DELAY, LAST, other_axes, SCALE
-from .separability import weak_directions
+from .channel_sums import AXES, BIAS, channel_sums, DELAY, LAST, other_axes, SCALE
+from .separability import unobservable, weak_directions
 
-AXES = 'xyz'
 BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
-# A delay whose sigma is longer than this part of the sampling period has not been measured.
-COARSE = 0.1
 # A scale factor, or an axis, that is off by more is of another motion.
 FOREIGN = 0.3
 # Linearisations of a delay, and the longest delay that is looked for, s.
@@ -120,31 +116,34 @@ def estimate_triad(records):
     return TriadEstimate(channels, tuple(r.name for r in records), tuple(notes))
 
 
+def noise_of(records, axis):
+    """Return the standard deviations of samples by the angle random walk, (records,) rad/s."""
+    return np.array([r.white[axis] / math.sqrt(r.dt_ns * 1e-9) for r in records])
+
+
 def _channel(records, axis):
     """Return the ChannelEstimate of an axis; its delay is linearised until it stands still."""
-    late_ns, most = 0, 0.0
-    coarse = COARSE * min(r.dt_ns for r in records) * 1e-9
-    walk = np.array([r.white[axis] / math.sqrt(r.dt_ns * 1e-9) for r in records])
+    late_ns, most, walk = 0, 0.0, noise_of(records, axis)
+    dt_s = min(r.dt_ns for r in records) * 1e-9
     for _ in range(PASSES):
         sums = [channel_sums(r, axis, late_ns, most) for r in records]
         fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
         _check_motion(records, axis, fit)
-        sigma = math.sqrt(fit.covariance[DELAY, DELAY])
-        poor = sigma > coarse or fit.told_by_prior > 0.5
+        change = max(s.most for s in sums)
+        refused = unobservable(axis, fit, change, dt_s)
         step_ns = round(float(fit.values[DELAY]) * 1e9)
-        if most and (poor or abs(step_ns) <= max(1.0, 1e7 * sigma)):
+        if most and (refused or abs(step_ns) <= max(1.0, 1e7 * fit.delay_sigma)):
             break
-        most = max(s.most for s in sums)
-        late_ns += 0 if poor else step_ns
+        most = max(change, 1e-12)
+        late_ns += 0 if refused else step_ns
         if abs(late_ns) > LONGEST_S * 1e9:
             raise ValueError(f'the delay of {AXES[axis]} comes out as {late_ns * 1e-9:.4g} s; '
                              f'expected at most {LONGEST_S:g} s: are the stamps those of the '
                              'motion?')
-        most = most or 1e-12
     else:
         raise ValueError(f'the delay of {AXES[axis]} does not settle within {PASSES} steps; '
                          'expected a record of the motion that is given')
-    return _estimate(records, axis, late_ns, sums, fit, noise, walk, poor, coarse)
+    return _estimate(axis, late_ns, sums, fit, noise, bool(walk.all()), refused, most)
 
 
 def _check_motion(records, axis, fit):
@@ -158,36 +157,18 @@ def _check_motion(records, axis, fit):
                          'of its time')
 
 
-def _estimate(records, axis, late_ns, sums, fit, noise, walk, poor, coarse):
+def _estimate(axis, late_ns, sums, fit, noise, walk_known, refused, most):
     values = fit.values.copy()
     values[DELAY] += late_ns * 1e-9
-    by_walk = bool(walk.all()) and fit.ratio <= fit.limit
+    by_walk = walk_known and fit.ratio <= fit.limit
     covariance = fit.covariance if by_walk else fit.scattered
-    change = max(s.most for s in sums)
-    weak = weak_directions(fit, sums)
-    refused = _reason(axis, fit, coarse, change) if poor else ''
     blocks = tuple((s.t_s, _block_residuals(s, k, fit.values) * np.sqrt(s.count) / noise[k])
                    for k, s in enumerate(sums))
     return ChannelEstimate(
         AXES[axis], values, covariance, tuple(AXES[k] for k in other_axes(axis)), refused,
-        BY_WALK if by_walk else BY_RESIDUALS, fit.ratio if walk.all() else 1.0, fit.limit, noise,
-        residual_noise(sums, fit.values), weak, change, blocks,
-        _bins(sums, fit.values, late_ns * 1e-9, noise, change))
-
-
-def _reason(axis, fit, coarse, change):
-    """Return why a delay is not observable, a sentence without its end."""
-    name, sigma_us = AXES[axis], 1e6 * math.sqrt(fit.covariance[DELAY, DELAY])
-    if fit.told_by_prior > 0.5:
-        row = fit.covariance[DELAY]
-        k = SCALE + int(np.argmax(np.abs(row[SCALE:LAST + 1])))
-        what = ('ppm of its scale factor' if k == SCALE else
-                f'urad of misalignment towards {AXES[other_axes(axis)[k - SCALE - 1]]}')
-        return (f'a delay of {name} of 1 us reads like {abs(row[k] / row[DELAY]):.3g} {what} '
-                f'(sigma {sigma_us:.4g} us)')
-    return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves a '
-            f'sigma of {sigma_us:.4g} us, more than the {1e6 * coarse:.4g} us of a tenth of the '
-            'sampling period')
+        BY_WALK if by_walk else BY_RESIDUALS, fit.ratio if walk_known else 1.0, fit.limit, noise,
+        residual_noise(sums, fit.values), weak_directions(fit, sums), most, blocks,
+        _bins(sums, fit.values, late_ns * 1e-9, noise))
 
 
 def _block_residuals(sums, record, values):
@@ -200,7 +181,7 @@ def _block_residuals(sums, record, values):
     return (sums.right[:, BIAS] - expected) / sums.count
 
 
-def _bins(sums, values, late_s, noise, change):
+def _bins(sums, values, late_s, noise):
     """Return what ``ChannelEstimate.bins`` holds; the delay is left in the second."""
     count = with_delay = left = weight = change_sum = 0.0
     for k, (one, sigma) in enumerate(zip(sums, noise)):

@@ -1,12 +1,16 @@
-"""What the motion of a record cannot tell apart: directions that only the priors hold."""
+"""What the motion of a record cannot tell: delays that do not show, and what looks alike."""
 
 from dataclasses import dataclass
 import math
 
 import numpy as np
 
+from ins_sim.core.numerics.units import DEG
 from .channel_fit import PRIOR
-from .channel_sums import BIAS, DELAY, SCALE
+from .channel_sums import AXES, BIAS, DELAY, LAST, other_axes, SCALE
+
+# A delay whose sigma is longer than this part of the sampling period has not been measured.
+COARSE = 0.1
 
 # Turns of the Jacobi method; some matrices of 6 need 8.
 SWEEPS = 50
@@ -26,6 +30,28 @@ class WeakDirection:
 
     values: np.ndarray
     sigma: float
+
+
+def unobservable(axis, fit, change, dt_s):
+    """
+    Return why the readings do not tell the delay of a channel, a sentence without its end, or ''.
+
+    axis: 0, 1, 2; fit: ChannelFit; change: greatest derivative of its rate, rad/s^2; dt_s:
+    sampling period, s. It is told by the priors where they make more than half of its variance.
+    """
+    name, sigma = AXES[axis], fit.delay_sigma
+    if fit.told_by_prior > 0.5 and change:
+        row = fit.covariance[DELAY]
+        k = SCALE + int(np.argmax(np.abs(row[SCALE:LAST + 1])))
+        what = ('ppm of its scale factor' if k == SCALE else
+                f'urad of misalignment towards {AXES[other_axes(axis)[k - SCALE - 1]]}')
+        return (f'a delay of {name} of 1 us reads like {abs(row[k] / row[DELAY]):.3g} {what} '
+                f'(sigma {1e6 * sigma:.4g} us)')
+    if sigma > COARSE * dt_s:
+        return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves a '
+                f'sigma of {1e6 * sigma:.4g} us; expected less than {1e6 * COARSE * dt_s:.4g} us, '
+                'a tenth of the sampling period')
+    return ''
 
 
 def weak_directions(fit, sums):
