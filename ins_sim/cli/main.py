@@ -10,7 +10,7 @@ from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
 from .studies import (allan, compare_filters, compare_orientation, dtg_report, dtg_study,
-                      loop_study)
+                      estimate_delays, loop_study)
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
@@ -20,7 +20,7 @@ VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'export': expor
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
          'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
-         'loop-study': loop_study, 'allan': allan}
+         'loop-study': loop_study, 'allan': allan, 'estimate-delays': estimate_delays}
 NODE_VERBS = ('record', 'play')
 
 

@@ -49,9 +49,10 @@ class ChannelFit:
 
     @property
     def told_by_prior(self):
-        """Which part of the variance of the delay is that of what is known beforehand, 0 to 1."""
-        row = self.covariance[DELAY]
-        return float(fixed_order.dot(row * row, self.prior) / row[DELAY])
+        """Part of the variance of the delay that scale factor and misalignments have, 0 to 1."""
+        row, others = self.covariance[DELAY], slice(SCALE, BIAS)
+        known = fixed_order.dot(row[others] * row[others], self.prior[others])
+        return float(known / row[DELAY])
 
     @property
     def limit(self):

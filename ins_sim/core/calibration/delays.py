@@ -39,7 +39,7 @@ class ChannelEstimate:
         what it exceeds once in a thousand times; ratio is 1 where the walk is not known
     noise, left (records,) : standard deviation of a sample that was assumed, and rms of the
         residuals, rad/s
-    weak : WeakDirections, combinations of the values that the readings do not tell
+    weak : arrays (m,), combinations of the values that the readings do not tell
     change : greatest derivative of the rate, rad/s^2
     blocks : for every record, middles (n,), s, of its blocks, and their mean residuals over the
         standard deviation that is expected of them
@@ -80,11 +80,18 @@ class ChannelEstimate:
 
 @dataclass(frozen=True, eq=False)
 class TriadEstimate:
-    """What was found of the three channels, the names of the records, and notes, sentences."""
+    """
+    What was found of a gyro triad.
+
+    channels: ChannelEstimates; records: names of the records; notes: sentences; lags (3,): what
+    the bandwidth of the instrument makes of a delay, s, NaN where the motion shows none, or None
+    where no bandwidth is known.
+    """
 
     channels: tuple
     records: tuple
     notes: tuple
+    lags: np.ndarray | None = None
 
 
 def estimate_triad(records):

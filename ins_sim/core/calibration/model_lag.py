@@ -13,6 +13,12 @@ from .delays import estimate_triad
 BANDWIDTH = ('bandwidth_hz', 'bandwidth_order')
 
 
+def estimate_with_lag(records, errors):
+    """Return the TriadEstimate of BenchRecords with the lags of GyroErrors, if there are any."""
+    found = estimate_triad(records)
+    return replace(found, lags=model_lags(records, errors)) if any(errors.bandwidth_hz) else found
+
+
 def model_lags(records, errors):
     """
     Return by how much the bandwidth of GyroErrors makes the channels late under a motion, s.

@@ -1,6 +1,5 @@
 """What the motion of a record cannot tell: delays that do not show, and what looks alike."""
 
-from dataclasses import dataclass
 import math
 
 import numpy as np
@@ -18,20 +17,6 @@ SWEEPS = 50
 NAMED = 0.2
 
 
-@dataclass(frozen=True, eq=False)
-class WeakDirection:
-    """
-    A combination of the values of a channel that the readings tell less of than the priors.
-
-    values (m,): the combination, in the units of ``ChannelFit.values``; the parts that count alone;
-    sigma: its standard deviation by the readings alone, of the direction of length one in units
-    of the priors.
-    """
-
-    values: np.ndarray
-    sigma: float
-
-
 def unobservable(axis, fit, change, dt_s):
     """
     Return why the readings do not tell the delay of a channel, a sentence without its end, or ''.
@@ -40,7 +25,7 @@ def unobservable(axis, fit, change, dt_s):
     sampling period, s. It is told by the priors where they make more than half of its variance.
     """
     name, sigma = AXES[axis], fit.delay_sigma
-    if fit.told_by_prior > 0.5 and change:
+    if fit.told_by_prior > 0.5:
         row = fit.covariance[DELAY]
         k = SCALE + int(np.argmax(np.abs(row[SCALE:LAST + 1])))
         what = ('ppm of its scale factor' if k == SCALE else
@@ -56,10 +41,12 @@ def unobservable(axis, fit, change, dt_s):
 
 def weak_directions(fit, sums):
     """
-    Return the WeakDirections of a ChannelFit, the least known first.
+    Return combinations of the values of a channel that the readings tell less of than the priors.
 
-    Values are measured by what is known of them beforehand. A delay has no such measure and takes
-    the one with which it errs as much as a misalignment of 1e-3, and so does a bias.
+    fit: ChannelFit; sums: its ChannelSums. The result is a tuple of arrays (m,) in the units of
+    ``ChannelFit.values``, with zeros for what hardly takes part. Values are measured by what is
+    known of them beforehand. A delay has no such measure and takes the one with which it errs as
+    much as a misalignment of 1e-3, and so does a bias.
     """
     count = float(np.add.reduce(np.concatenate([one.count for one in sums])))
     rate = math.sqrt(max(_total(one.turning for one in sums), 0.0) / count)
@@ -70,14 +57,24 @@ def weak_directions(fit, sums):
     unit[BIAS:] = PRIOR * rate if rate else 1.0
     sizes, directions = eigenvectors(fit.information * unit * unit[:, None])
     found = []
-    for k in np.argsort(sizes, kind='stable'):
-        if sizes[k] < 1.0:
-            v = directions[:, k]
-            v = np.where(np.abs(v) >= NAMED * np.abs(v).max(), v, 0.0)
-            lead = DELAY if v[DELAY] else SCALE if v[SCALE] else int(np.argmax(np.abs(v)))
-            found.append(WeakDirection(v * unit * math.copysign(1.0, v[lead]),
-                                       1.0 / math.sqrt(max(sizes[k], 1e-12))))
+    for v in _echelon(directions.T[sizes < 1.0]):
+        v = np.where(np.abs(v) >= NAMED * np.abs(v).max(), v, 0.0)
+        found.append(v * unit * math.copysign(1.0, v[np.flatnonzero(v)[0]]))
     return tuple(found)
+
+
+def _echelon(rows):
+    """Return rows that span what the given ones do, each with zeros where another has its one."""
+    rows = rows.copy()
+    for k in range(len(rows)):
+        place = int(np.argmax(np.abs(rows[k:])))
+        at, column = k + place // rows.shape[1], place % rows.shape[1]
+        rows[[k, at]] = rows[[at, k]]
+        rows[k] = rows[k] / rows[k, column]
+        for i in range(len(rows)):
+            if i != k:
+                rows[i] = rows[i] - rows[i, column] * rows[k]
+    return rows
 
 
 def _total(values):
