@@ -84,8 +84,7 @@ def read_record(path, settings, imu_settings, names=(), topic=None):
         recorded, notes = csv_imu.read_imu(path, imu_settings.columns, imu_settings.units)
     elif is_bag(path):
         with open_bag(path) as bag:
-            found = choose_topic(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',
-                                 needed=True)
+            found = _imu_topic(bag, topic)
             recorded, _, notes = bag_imu.read_imu_messages(bag, found, imu_settings)
     else:
         raise ValueError(f'{path} is neither a run of "ins_sim simulate" nor a rosbag2 bag nor '
@@ -105,6 +104,15 @@ def read_record(path, settings, imu_settings, names=(), topic=None):
     motion, zero_ns, note = _motion(path, settings, named, int(recorded.t_ns[0]))
     imu = ImuSamples(recorded.t_ns - zero_ns, recorded.omega, recorded.f)
     return _record(path.name, imu, round(recorded.step_ns), motion, settings), (*notes, note)
+
+
+def _imu_topic(bag, topic):
+    """Return the name of the topic of the readings; of several the raw one is the default."""
+    if topic is None:
+        raw = [c.name for c in bag.topics.values() if c.type_name == topics.IMU
+               and f'/{c.name}'.endswith(f'/{topics.IMU_RAW.name}')]
+        topic = raw[0] if len(raw) == 1 else 'auto'
+    return choose_topic(bag, [topics.IMU], topic, '--topic', needed=True)
 
 
 def _record(name, imu, dt_ns, motion, settings):

@@ -13,6 +13,9 @@ from .separability import unobservable, weak_directions
 BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
 # A scale factor, or an axis, that is off by more is of another motion.
 FOREIGN = 0.3
+# A delay that is found again within this needs no other linearisation, s; with a derivative of the
+# rate below this nothing turns, rad/s^2.
+SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
 # Linearisations of a delay, and the longest delay that is looked for, s.
 PASSES, LONGEST_S = 10, 1.0
 
@@ -130,35 +133,48 @@ def noise_of(records, axis):
 
 def _channel(records, axis):
     """Return the ChannelEstimate of an axis; its delay is linearised until it stands still."""
-    late_ns, most, walk = 0, 0.0, noise_of(records, axis)
-    dt_s = min(r.dt_ns for r in records) * 1e-9
+    walk, dt_s = noise_of(records, axis), min(r.dt_ns for r in records) * 1e-9
+    late_ns, change, settled = 0, 0.0, False
     for _ in range(PASSES):
-        sums = [channel_sums(r, axis, late_ns, most) for r in records]
-        fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
-        _check_motion(records, axis, fit)
-        change = max(s.most for s in sums)
-        refused = unobservable(axis, fit, change, dt_s)
-        step_ns = round(float(fit.values[DELAY]) * 1e9)
-        if most and (refused or abs(step_ns) <= max(1.0, 1e7 * fit.delay_sigma)):
-            break
-        most = max(change, 1e-12)
-        late_ns += 0 if refused else step_ns
+        sums = [channel_sums(r, axis, late_ns, change) for r in records]
+        seen, change = change, max(LEAST_CHANGE, *(s.most for s in sums))
+        if not settled:
+            # Far from the delay the residuals are of the linearisation, not of noise: weights as
+            # weak as these keep them from being fitted by what the priors hold.
+            weak = residual_noise(sums, np.zeros(BIAS + len(sums)))
+            fit = fit_channel(sums, np.maximum(walk, weak))
+            noise = walk if walk.all() else residual_noise(sums, fit.values)
+            settled = bool(abs(fit.values[DELAY]) <= SETTLED_S or unobservable(
+                axis, fit_channel(sums, noise), change, dt_s))
+        if settled:
+            fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
+            _check_motion(records, axis, fit)
+            refused = unobservable(axis, fit, change, dt_s)
+            if seen and (refused or abs(fit.values[DELAY]) <= max(SETTLED_S,
+                                                                  0.01 * fit.delay_sigma)):
+                return _estimate(axis, late_ns, sums, fit, noise, bool(walk.all()), refused, seen)
+            late_ns += 0 if refused else round(float(fit.values[DELAY]) * 1e9)
+        else:
+            late_ns += round(float(fit.values[DELAY]) * 1e9)
         if abs(late_ns) > LONGEST_S * 1e9:
-            raise ValueError(f'the delay of {AXES[axis]} comes out as {late_ns * 1e-9:.4g} s; '
-                             f'expected at most {LONGEST_S:g} s: are the stamps those of the '
-                             'motion?')
-    else:
-        raise ValueError(f'the delay of {AXES[axis]} does not settle within {PASSES} steps; '
-                         'expected a record of the motion that is given')
-    return _estimate(axis, late_ns, sums, fit, noise, bool(walk.all()), refused, most)
+            raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} comes out as '
+                             f'{late_ns * 1e-9:.4g} s; expected at most {LONGEST_S:g} s: are the '
+                             'stamps those of the motion?')
+    raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} does not settle in {PASSES} '
+                     'steps; expected readings of the motion that is given, and stamps of its time')
+
+
+def _names(records):
+    return ', '.join(r.name for r in records)
 
 
 def _check_motion(records, axis, fit):
     off = np.abs(fit.values[SCALE:LAST + 1])
     if off.max() > FOREIGN:
         k = int(np.argmax(off))
-        what = 'scale factor' if k == 0 else f'misalignment to {AXES[other_axes(axis)[k - 1]]}'
-        raise ValueError(f'{", ".join(r.name for r in records)}: the {what} of {AXES[axis]} comes '
+        what = ('scale factor' if k == 0 else
+                f'misalignment towards {AXES[other_axes(axis)[k - 1]]}')
+        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes '
                          f'out as {fit.values[SCALE + k]:.3g}; expected less than {FOREIGN:g}: '
                          'the readings are not of the motion that is given, or their stamps not '
                          'of its time')
