@@ -41,20 +41,17 @@ def is_named(group, names, value, default):
         name.startswith(group) if group.endswith('.') else name == group for name in own)
 
 
-def record_of_run(name, settings, imu):
+def record_of_run(name, settings, imu, motion=None):
     """
     Return the BenchRecord of a run of ``simulate``.
 
-    settings: SimulationSettings of the run; imu: its ImuSamples. Raises ValueError where the
-    motion is not known from the settings, or the readings have another rate.
+    settings: SimulationSettings of the run; imu: its ImuSamples; motion: the Motion, by default
+    that of the settings. Raises ValueError where the motion is not known from the settings, or
+    the readings have another rate.
     """
-    generator = settings.motion_generator
-    if generator.motion.kind == 'guided':
-        raise ValueError(f'{name}: motion.kind is guided, which is steered as it flies; expected a '
-                         'motion that is known beforehand, or a bag with its truth')
     _check_rate(name, imu.t_ns, settings.imu_sensor.rate_hz)
-    return _record(name, imu, period_ns(settings.imu_sensor.rate_hz), read_motion(generator),
-                   settings)
+    return _record(name, imu, period_ns(settings.imu_sensor.rate_hz),
+                   motion or _known_motion(settings.motion_generator), settings)
 
 
 def read_record(path, settings, imu_settings, names=(), topic=None):
@@ -133,6 +130,13 @@ def _check_rate(name, t_ns, rate_hz):
                              f'is {rate_hz:.6g} Hz; expected the rate of the record')
 
 
+def _known_motion(generator):
+    if generator.motion.kind == 'guided':
+        raise ValueError('motion.kind is guided, which is steered as it flies; expected a motion '
+                         'that is known beforehand, or a bag with the truth')
+    return read_motion(generator)
+
+
 def _motion(path, settings, named, first_ns):
     """Return the Motion, the stamp of motion time zero, ns, and a note on it."""
     generator = settings.motion_generator
@@ -148,10 +152,7 @@ def _motion(path, settings, named, first_ns):
             raise ValueError(f'{error}; the motion of the bench is to be the truth in the bag, or '
                              f'{HOW}') from None
         return motion, motion.zero_ns, f'{path}: the motion is the truth in the bag'
-    if generator.motion.kind == 'guided':
-        raise ValueError('motion.kind is guided, which is steered as it flies; expected a motion '
-                         'that is known beforehand')
-    motion = read_motion(generator)
+    motion = _known_motion(generator)
     if generator.motion.kind == 'recording':
         return motion, motion.zero_ns, (f'{path}: the stamps are those of the clock of '
                                         f'{generator.motion.recording.path}')

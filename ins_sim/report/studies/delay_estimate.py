@@ -144,7 +144,7 @@ def answer(triad, known_us=None):
 def number(value, sigma):
     """Return a value with its standard deviation, of which two digits count."""
     places = min(12, max(0, 1 - math.floor(math.log10(sigma)))) if sigma > 0.0 else 6
-    return f'{value:.{places}f} +- {sigma:.{places}f}'
+    return f'{round(value, places) + 0.0:.{places}f} +- {sigma:.{places}f}'
 
 
 def delay_rows(triad, known_us=None):
