@@ -126,8 +126,8 @@ def _check_rate(name, t_ns, rate_hz):
     if len(t_ns) > 1:
         found = 1e9 / max(float(np.median(np.diff(t_ns))), 1.0)
         if abs(found / rate_hz - 1.0) > RATES_ALIKE:
-            raise ValueError(f'{name} has {found:.6g} readings a second by its stamps, but rate_hz '
-                             f'is {rate_hz:.6g} Hz; expected the rate of the record')
+            raise ValueError(f'{name} has {found:.6g} readings a second by its stamps, but '
+                             f'rate_hz is {rate_hz:.6g} Hz; expected the rate of the record')
 
 
 def _known_motion(generator):
@@ -159,8 +159,8 @@ def _motion(path, settings, named, first_ns):
     epoch_ns = 1_000_000_000 * generator.time.epoch_s
     zero_ns = epoch_ns if generator.time.given or first_ns >= epoch_ns else 0
     if not 0 <= first_ns - zero_ns <= LONGEST_S * 1e9:
-        raise ValueError(f'{path} begins at {seconds(first_ns)}, {(first_ns - zero_ns) * 1e-9:.9g} '
-                         f's from motion time zero; expected 0 to {LONGEST_S:g} s: set time.epoch '
-                         'to fixed and time.epoch_s to the stamp of motion time zero')
+        raise ValueError(f'{path} begins at {seconds(first_ns)}, '
+                         f'{(first_ns - zero_ns) * 1e-9:.9g} s from motion time zero; expected 0 '
+                         f'to {LONGEST_S:g} s: set time.epoch to fixed and time.epoch_s to the stamp of motion time zero')
     return motion, zero_ns, (f'{path}: motion time zero is the stamp {seconds(zero_ns)}: an error '
                              'of it is a delay of all channels alike')

@@ -7,10 +7,10 @@ A channel i that is late by tau, and whose bias, scale factor and sensitive axis
 
 w: the mean true rates over the sampling interval, w_i' their derivative (Titterton and Weston,
 section 11.2, and the term of delay of Bogdanov and Fomichev 2018). The asymmetry a of the scale
-factor is there because it would pass for a bias under a motion to and fro. The model is linear in all that is
-unknown; where the delay is not small beside the period of the motion, w is taken at t - tau for
-the delay found so far (Gauss and Newton). The noise of a rate is white where the angle is a
-random walk, so that the readings need no other whitening.
+factor is there because it would pass for a bias under a motion to and fro. The model is linear in
+all that is unknown; where the delay is not small beside the period of the motion, w is taken at
+t - tau for the delay found so far (Gauss and Newton). The noise of a rate is white where the angle
+is a random walk, so that the readings need no other whitening.
 """
 
 from dataclasses import dataclass

@@ -161,7 +161,8 @@ def _channel(records, axis):
                              f'{late_ns * 1e-9:.4g} s; expected at most {LONGEST_S:g} s: are the '
                              'stamps those of the motion?')
     raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} does not settle in {PASSES} '
-                     'steps; expected readings of the motion that is given, and stamps of its time')
+                     'steps; expected readings of the motion that is given, with stamps of its '
+                     'time')
 
 
 def _names(records):

@@ -33,9 +33,9 @@ def unobservable(axis, fit, change, dt_s):
         return (f'a delay of {name} of 1 us reads like {abs(row[k] / row[DELAY]):.3g} {what} '
                 f'(sigma {1e6 * sigma:.4g} us)')
     if sigma > COARSE * dt_s:
-        return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves a '
-                f'sigma of {1e6 * sigma:.4g} us; expected less than {1e6 * COARSE * dt_s:.4g} us, '
-                'a tenth of the sampling period')
+        return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves '
+                f'a sigma of {1e6 * sigma:.4g} us; expected less than '
+                f'{1e6 * COARSE * dt_s:.4g} us, a tenth of the sampling period')
     return ''
 
 

@@ -1,4 +1,4 @@
-"""Which motion of a bench shows delays best: bars, a map of directions, amplitude and frequency."""
+"""Which motion of a bench shows delays best: bars, a map of axes, amplitude and frequency."""
 
 from dataclasses import asdict, dataclass
 import math

@@ -20,22 +20,25 @@ def _shown(triad):
 
 def _fit(title, triad):
     """Reading less all but the delay against the derivative of the rate, and the residual."""
-    top, bottom = [], [Level(y=0.0, colour=GREY)]
-    for channel in _shown(triad):
-        change, late, left, sigma = channel.bins
+    shown = _shown(triad)
+    # Lags are alike and large beside what the delays differ by.
+    common = sum(c.delay for c in shown) / len(shown) if len(shown) > 1 else 0.0
+    top, bottom, widest = [], [], max(shown, key=lambda c: float(c.bins[3].max()))
+    x, sigma = widest.bins[0] / DEG, 2.0 * widest.bins[3] * DEG_PER_HOUR
+    bottom = [Band(x, -sigma, sigma, '2 sigma', GREY), Level(y=0.0, colour=GREY)]
+    for channel in shown:
+        change, late, left, _ = channel.bins
         x, colour = change / DEG, BODY_AXES[channel.axis]
-        top.append(Curve(x, -channel.delay * change / DEG,
+        top.append(Curve(x, (common - channel.delay) * change * DEG_PER_HOUR,
                          f'{channel.axis}: {1e6 * channel.delay:.2f} us', colour))
-        top.append(Markers(x, late / DEG, None, colour, CIRCLE))
-        bottom.append(Band(x, -2.0 * sigma * DEG_PER_HOUR, 2.0 * sigma * DEG_PER_HOUR, None,
-                           colour))
+        top.append(Markers(x, (late + common * change) * DEG_PER_HOUR, None, colour, CIRCLE))
         bottom.append(Markers(x, left * DEG_PER_HOUR, channel.axis, colour, CIRCLE))
     label = 'angular acceleration of the axis [deg/s^2]'
+    less = f', {1e6 * common:.2f} us of all taken off' if common else ''
     return Chart('delay_fit', f'What the delay does: {title}', (
-        Panel(tuple(top), label, 'reading less all else [deg/s]',
-              'A delay is the slope of the reading against the angular acceleration'),
-        Panel(tuple(bottom), label, 'residual [deg/h]', 'What the fit leaves, in bands of two '
-              'sigma', height=0.7)),
+        Panel(tuple(top), label, 'reading less all else [deg/h]',
+              f'A delay is the slope against the angular acceleration{less}'),
+        Panel(tuple(bottom), label, 'residual [deg/h]', 'What the fit leaves', height=0.7)),
         caption='Lines: the delay of the legend. Points: means of the readings over intervals of '
         'the angular acceleration.')
 
@@ -73,10 +76,9 @@ def _sigmas(title, triad):
 
 def estimate_page(title, triad, known_us, charts, settings):
     """Return the Page of a TriadEstimate; settings: SimulationSettings of the first record."""
-    delays, errors = (PageTable(name, *table) for name, table in (
-        ('Delays', delay_estimate.delay_rows(triad, known_us)), ('Other errors', delay_estimate.error_rows(
-            triad))))
-    return Page(f'Delays of gyro channels: {title}', delay_estimate.answer(triad, known_us), charts,
-                (delays, errors), tuple(delay_estimate.sentences(triad)), settings,
+    delays = PageTable('Delays', *delay_estimate.delay_rows(triad, known_us))
+    errors = PageTable('Other errors', *delay_estimate.error_rows(triad))
+    return Page(f'Delays of gyro channels: {title}', delay_estimate.answer(triad, known_us),
+                charts, (delays, errors), tuple(delay_estimate.sentences(triad)), settings,
                 files={delay_estimate.MARK: 'all values with their standard deviations',
                        **{f'{chart.name}.png': chart.title for chart in charts}})

@@ -118,10 +118,9 @@ def _alike(channel):
             if not (first == DELAY and channel.refused):
                 yield f'{channel.axis}: the {names[first][0]} does not show in this motion'
             continue
-        amounts = ', '.join(f'{names[k][0]} {v * names[k][1] * factor:.3g} {names[k][2]}'
-                            for k, v in parts)
-        yield (f'{channel.axis}: not to be told apart, because together they leave the readings as '
-               f'they are: {amounts}')
+        amounts = ' with '.join(f'{names[k][0]} {v * names[k][1] * factor:.3g} {names[k][2]}'
+                                for k, v in parts)
+        yield f'{channel.axis}: cannot be told apart: {amounts} changes no reading'
 
 
 def answer(triad, known_us=None):
@@ -131,10 +130,10 @@ def answer(triad, known_us=None):
         f'{c.axis} {number(1e6 * c.delay, 1e6 * c.delay_sigma)}' for c in shown) + ' us.'
     if triad.lags is not None:
         lags = {c.axis: 1e6 * lag for c, lag in zip(triad.channels, triad.lags)}
-        text += ' The bandwidth makes ' + ', '.join(
-            f'{c.axis} {lags[c.axis]:.1f}' for c in shown) + ' us of it, which leaves ' + ', '.join(
-            f'{c.axis} {number(1e6 * c.delay - lags[c.axis], 1e6 * c.delay_sigma)}'
-            for c in shown) + ' us of delay.'
+        made = ', '.join(f'{c.axis} {lags[c.axis]:.1f}' for c in shown)
+        left = ', '.join(f'{c.axis} {number(1e6 * c.delay - lags[c.axis], 1e6 * c.delay_sigma)}'
+                         for c in shown)
+        text += (f' The bandwidth makes {made} us of it, which leaves {left} us of delay.')
     if known_us is not None:
         text += ' Set in the run: ' + ', '.join(
             f'{c.axis} {d:g}' for c, d in zip(triad.channels, known_us)) + ' us.'
@@ -162,7 +161,8 @@ def delay_rows(triad, known_us=None):
         if triad.lags is not None:
             lag = 1e6 * float(triad.lags[k])
             blank = channel.refused or math.isnan(lag)
-            row += ['-', '-'] if blank else [_hundredths(lag), number(1e6 * channel.delay - lag, sigma)]
+            row += ['-', '-'] if blank else [_hundredths(lag),
+                                             number(1e6 * channel.delay - lag, sigma)]
         if known_us is not None:
             row.append(f'{known_us[k]:g}')
         rows.append(row)
@@ -198,7 +198,8 @@ def show_estimate(title, triad, known_us, console):
                                 ('other errors of the channels', error_rows(triad))):
         table = Table(title=name)
         for head in heads:
-            table.add_column(head, justify='right' if '[' in head or head == 'estimate' else 'left')
+            right = '[' in head or head == 'estimate'
+            table.add_column(head, justify='right' if right else 'left')
         for row in rows:
             table.add_row(*row)
         console.print(table)
