@@ -161,7 +161,7 @@ def _motion(path, settings, named, first_ns):
     if not 0 <= first_ns - zero_ns <= LONGEST_S * 1e9:
         raise ValueError(f'{path} begins at {seconds(first_ns)}, '
                          f'{(first_ns - zero_ns) * 1e-9:.9g} s from motion time zero; expected 0 '
-                         f'to {LONGEST_S:g} s: set time.epoch to fixed and time.epoch_s to the stamp '
-                         'of motion time zero')
+                         f'to {LONGEST_S:g} s: set time.epoch to fixed and time.epoch_s to the '
+                         'stamp of motion time zero')
     return motion, zero_ns, (f'{path}: motion time zero is the stamp {seconds(zero_ns)}: an error '
                              'of it is a delay of all channels alike')

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ins_sim.core.numerics import fixed_order
 from .bench_record import usable
 from .channel_fit import fit_by_residuals, fit_channel, residual_noise
 from .channel_sums import AXES, BIAS, channel_sums, DELAY, LAST, other_axes, SCALE
@@ -13,6 +14,8 @@ from .separability import unobservable, weak_directions
 BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
 # A scale factor, or an axis, that is off by more is of another motion.
 FOREIGN = 0.3
+# Of rates that vary by less a scale factor is not told, rad/s.
+SLOW = 1e-3
 # A delay that is found again within this needs no other linearisation, s; with a derivative of the
 # rate below this nothing turns, rad/s^2.
 SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
@@ -148,7 +151,7 @@ def _channel(records, axis):
                 axis, fit_channel(sums, noise), change, dt_s))
         if settled:
             fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
-            _check_motion(records, axis, fit)
+            _check_motion(records, axis, fit, sums)
             refused = unobservable(axis, fit, change, dt_s)
             if seen and (refused or abs(fit.values[DELAY]) <= max(SETTLED_S,
                                                                   0.01 * fit.delay_sigma)):
@@ -169,16 +172,41 @@ def _names(records):
     return ', '.join(r.name for r in records)
 
 
-def _check_motion(records, axis, fit):
-    off = np.abs(fit.values[SCALE:LAST + 1])
-    if off.max() > FOREIGN:
-        k = int(np.argmax(off))
-        what = ('scale factor' if k == 0 else
-                f'misalignment towards {AXES[other_axes(axis)[k - 1]]}')
-        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes '
-                         f'out as {fit.values[SCALE + k]:.3g}; expected less than {FOREIGN:g}: '
-                         'the readings are not of the motion that is given, or their stamps not '
-                         'of its time')
+def _check_motion(records, axis, fit, sums):
+    """
+    Raise ValueError where the readings are of another motion.
+
+    Where the residuals are large the priors hold scale factor and axes; the regression of the
+    readings on the rate alone shows then that these have nothing in common.
+    """
+    off = fit.values[SCALE:LAST + 1].tolist()
+    k = max(range(len(off)), key=lambda place: abs(off[place]))
+    what = ('scale factor' if k == 0 else
+            f'misalignment towards {AXES[other_axes(axis)[k - 1]]}')
+    found = off[k]
+    if abs(found) <= FOREIGN:
+        found, what = _alone(sums), 'scale factor'
+    if abs(found) > FOREIGN:
+        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes out as '
+                         f'{found:.3g}; expected less than {FOREIGN:g}: the readings are not of '
+                         'the motion that is given, or their stamps not of its time')
+
+
+def _alone(sums):
+    """Return the regression of reading less rate on the rate, 0 where it is not told."""
+    both = rate = left = count = 0.0
+    for one in sums:
+        n = float(np.add.reduce(one.count))
+        normal, right = np.add.reduce(one.normal, axis=0), np.add.reduce(one.right, axis=0)
+        both += float(right[SCALE] - right[BIAS] * normal[SCALE, BIAS] / n)
+        rate += float(normal[SCALE, SCALE] - normal[SCALE, BIAS] * normal[SCALE, BIAS] / n)
+        square = fixed_order.total(one.square.tolist())
+        left += square - float(right[BIAS] * right[BIAS]) / n
+        count += n
+    if rate <= count * SLOW * SLOW:
+        return 0.0
+    found, sigma = both / rate, math.sqrt(max(left, 0.0) / count / rate)
+    return found if abs(found) > 5.0 * sigma else 0.0
 
 
 def _estimate(axis, late_ns, sums, fit, noise, walk_known, refused, most):

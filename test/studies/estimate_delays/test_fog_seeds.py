@@ -95,7 +95,7 @@ def test_motion_2_there_and_back():
 
 
 def test_residuals_that_are_larger_than_the_noise_said_give_the_sigmas():
-    """A walk said to be a third of what it is: the scatter is seen, and sigma is as it should be."""
+    """A walk said to be a third of what it is: the scatter is seen, and sigma is as due."""
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     one = read(record, chosen, 1)
     told = estimate_triad([replaced_walk(one, 1.0 / 3.0)])
