@@ -86,8 +86,8 @@ class DelayEstimate:
         try:
             import pandas
         except ImportError:
-            raise ImportError("to_dataframe needs pandas; expected pip install "
-                              "'ins_sim[dataframe]'") from None
+            raise ImportError("to_dataframe needs pandas; expected pip install 'ins_sim"
+                              "[dataframe]'") from None
         table: pandas.DataFrame = pandas.DataFrame(
             [(r.axis, r.name, r.unit, r.value, r.sigma, r.told)
              for r in delay_estimate.found_values(self.triad)],

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from ins_sim.core.numerics import fixed_order
+from ins_sim.core.numerics.fixed_order import applied, dot, product, solve, total
 from .channel_sums import BIAS, BLOCKS, COLUMNS, DELAY, SCALE
 
 # What is known beforehand, standard deviations: of scale factor, asymmetry and
@@ -51,7 +51,7 @@ class ChannelFit:
     def told_by_prior(self):
         """Part of the variance of the delay that scale factor and misalignments have, 0 to 1."""
         row, others = self.covariance[DELAY], slice(SCALE, BIAS)
-        known = fixed_order.dot(row[others] * row[others], self.prior[others])
+        known = dot(row[others] * row[others], self.prior[others])
         return float(known / row[DELAY])
 
     @property
@@ -83,7 +83,7 @@ def information_of(sums, noise):
 def covariance_of(information):
     """Return the inverse of a symmetric information matrix, scaled to a diagonal of ones."""
     scale = 1.0 / np.sqrt(np.diagonal(information))
-    inverse = fixed_order.solve(information * scale * scale[:, None], np.eye(len(information)))
+    inverse = solve(information * scale * scale[:, None], np.eye(len(information)))
     return 0.5 * (inverse + inverse.T) * scale * scale[:, None]
 
 
@@ -98,14 +98,14 @@ def fit_channel(sums, noise):
     for k, (one, sigma) in enumerate(zip(sums, noise)):
         right[_places(k)] += np.add.reduce(one.right, axis=0) / (sigma * sigma)
     covariance = covariance_of(information + np.diag(prior))
-    values = fixed_order.applied(covariance, right)
+    values = applied(covariance, right)
     scores = np.zeros((len(sums) * BLOCKS, len(prior)))
     for k, (one, sigma) in enumerate(zip(sums, noise)):
         for block in range(BLOCKS):
             scores[k * BLOCKS + block, _places(k)] = (
-                one.right[block] - fixed_order.applied(one.normal[block], values[_places(k)])
+                one.right[block] - applied(one.normal[block], values[_places(k)])
             ) / (sigma * sigma)
-    spread = fixed_order.product(scores.T, scores)
+    spread = product(scores.T, scores)
     scattered = _between(covariance, spread + np.diag(prior))
     by_noise = _between(covariance, information)[DELAY, DELAY]
     ratio = _between(covariance, spread)[DELAY, DELAY] / by_noise if by_noise else 0.0
@@ -117,9 +117,9 @@ def residual_noise(sums, values):
     found = []
     for k, one in enumerate(sums):
         x = values[_places(k)]
-        left = (fixed_order.total(one.square.tolist())
-                - 2.0 * fixed_order.dot(x, np.add.reduce(one.right, axis=0))
-                + fixed_order.dot(x, fixed_order.applied(np.add.reduce(one.normal, axis=0), x)))
+        left = (total(one.square.tolist())
+                - 2.0 * dot(x, np.add.reduce(one.right, axis=0))
+                + dot(x, applied(np.add.reduce(one.normal, axis=0), x)))
         count = int(one.count.sum(axis=0))
         found.append(max(LEAST_NOISE, math.sqrt(max(left, 0.0) / count)))
     return np.array(found)
@@ -136,7 +136,7 @@ def fit_by_residuals(sums):
 
 
 def _between(covariance, middle):
-    return fixed_order.product(covariance, fixed_order.product(middle, covariance))
+    return product(covariance, product(middle, covariance))
 
 
 def _places(record):

@@ -8,7 +8,8 @@ from scipy.stats import chi2
 
 from ins_sim.core.calibration.delays import BY_RESIDUALS, BY_WALK, estimate_triad
 from ins_sim.core.calibration.model_lag import model_lags
-from support.bench import DELAYS, DIAGONAL, FOG, ideal, MOTION_2, read, REVERSED_2, thinned
+from support.readings.bench import (DELAYS, DIAGONAL, FOG, ideal, MOTION_2, read, REVERSED_2,
+                                    thinned)
 
 SET_US = np.array([2.0, 1.0, 3.0])
 

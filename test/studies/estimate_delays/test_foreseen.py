@@ -14,7 +14,7 @@ from ins_sim.core.calibration.separability import eigenvectors, weak_directions
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.sensors.imu.triad_model import triad_model
 from ins_sim.studies import bench_motions
-from support.bench import DIAGONAL, FOG, ideal, MOTION_2, read, THREE_ANGLES
+from support.readings.bench import DIAGONAL, FOG, ideal, MOTION_2, read, THREE_ANGLES
 from support.studies import settings
 
 CHOSEN = settings(FOG)

@@ -11,7 +11,7 @@ from ins_sim.core.calibration.delays import estimate_triad
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.sensors.imu.ideal import MotionImu
-from support.bench import ideal, read, THREE_ANGLES
+from support.readings.bench import ideal, read, THREE_ANGLES
 from support.studies import settings
 
 ERRORS = {'gyro.errors.scale_factor_ppm': (300.0, -200.0, 100.0),

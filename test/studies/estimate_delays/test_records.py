@@ -10,7 +10,7 @@ import ins_sim
 from ins_sim.cli.main import main
 from ins_sim.io import csv_writer
 from ins_sim.io.published import read_imu
-from support.bench import DELAYS, DIAGONAL
+from support.readings.bench import DELAYS, DIAGONAL
 
 WORDS = [w for name, value in {**DIAGONAL, **DELAYS}.items() for w in ('-p', f'{name}:={value}')]
 MOTION = [w for name, value in DIAGONAL.items() for w in ('-p', f'{name}:={value}')]
