@@ -22,6 +22,7 @@ from ins_sim.settings.by_node import ALL_NODES, NODES
 from ins_sim.settings.instrument_errors import GyroErrors
 from ins_sim.settings.recorded_imu import CONVERT
 from ins_sim.settings.simulation import SimulationSettings
+from .datasets import dataset
 from .inputs import checked_path, files, Name, Names, plain, Values
 from .results import Run
 
@@ -110,10 +111,6 @@ class DelayEstimate:
         ImportError
             Where xarray is not installed.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise ImportError('to_xarray needs xarray; expected pip install xarray') from None
         turned, turned_sigma = np.zeros((3, 3)), np.zeros((3, 3))
         for k, channel in enumerate(self.triad.channels):
             for place, axis in zip((NEXT, LAST), channel.towards):
@@ -121,16 +118,17 @@ class DelayEstimate:
                 turned_sigma[k, AXES.index(axis)] = channel.sigmas[place]
         values = np.array([c.values for c in self.triad.channels])
         sigmas = np.array([c.sigmas for c in self.triad.channels])
-        table: dict[str, tuple[Any, np.ndarray]] = {
-            'delay': ('axis', self.delays), 'delay_sigma': ('axis', self.delay_sigmas),
-            'lag': ('axis', self.lags), 'misalignment': (('axis', 'towards'), turned),
-            'misalignment_sigma': (('axis', 'towards'), turned_sigma)}
+        variables: dict[str, tuple[Sequence[str], np.ndarray, str]] = {
+            'delay': (['axis'], self.delays, 's'),
+            'delay_sigma': (['axis'], self.delay_sigmas, 's'),
+            'lag': (['axis'], self.lags, 's'),
+            'misalignment': (['axis', 'towards'], turned, 'rad'),
+            'misalignment_sigma': (['axis', 'towards'], turned_sigma, 'rad')}
         for name, array in (('', values), ('_sigma', sigmas)):
-            table[f'scale_factor{name}'] = 'axis', array[:, SCALE]
-            table[f'bias{name}'] = ('axis', 'record'), array[:, BIAS:]
-        dataset: xarray.Dataset = xarray.Dataset(table, {
-            'axis': AXES, 'towards': AXES, 'record': list(self.triad.records)})
-        return dataset
+            variables[f'scale_factor{name}'] = ['axis'], array[:, SCALE], ''
+            variables[f'bias{name}'] = ['axis', 'record'], array[:, BIAS:], 'rad/s'
+        return dataset({'axis': (AXES, ''), 'towards': (AXES, ''),
+                        'record': (list(self.triad.records), '')}, variables)
 
 
 def estimate_delays(sources: Source | Sequence[Source], values: Values | None = None,

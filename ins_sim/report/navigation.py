@@ -1,16 +1,25 @@
 """A recorded navigation: notes and tables for a terminal, figure, numbers and arrays on disk."""
 
-from dataclasses import asdict, fields
+from dataclasses import asdict
 import json
+import math
 
 import numpy as np
 from rich.table import Table
 
 from ins_sim import parameter_files
+from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.postprocessing.comparison import error_rows
 from ins_sim.core.postprocessing.reference import SampledTrack
+from ins_sim.core.timeseries.histories import NavStates
+from ins_sim.core.timeseries.named_columns import columns
+from ins_sim.io.csv_writer import write_rows
+from ins_sim.settings.place import Datum
 from .console import PlainConsole
+from .files.packed_arrays import write_arrays
+from .files.tables import write_tables
+from .files.trajectories import write_trajectories
 from .plotting import new_figure, save_png, thinned
 from .table import number_text
 
@@ -44,24 +53,34 @@ def show_navigation(title, result, console=None):
         console.print(table)
 
 
-def write_navigation(work, settings, title, result):
+def write_navigation(work, settings, title, result, csv=False, tum=False):
     """
     Write a Navigation into a folder.
 
     nav.npz holds states_<field> and, for reference k, error_<k>_<kind>_t_ns and
-    error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables.
+    error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables. csv:
+    also states.csv and error_<k>_<kind>.csv; tum: also ins.tum, in the plane tangent at the first
+    position.
     """
     start_ns, end_ns = _span(result)
-    arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
-              for f in fields(result.states[0])}
+    states = NavStates.concatenate(result.states)
+    arrays = {f'states_{name}': values for name, values in states.arrays().items()}
     arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])
+    if csv:
+        write_tables(work, {'states': states})
     for k, comparison in enumerate(result.comparisons):
         for kind in ('position', 'velocity', 'attitude'):
             track = getattr(comparison, kind)
             if track is not None:
                 arrays[f'error_{k}_{kind}_t_ns'] = track.t_ns
                 arrays[f'error_{k}_{kind}'] = track.values
-    np.savez(work / MARK, **arrays)
+                if csv:
+                    write_rows(work / f'error_{k}_{kind}.csv', ('t_ns', *columns(
+                        kind, track.values)), [(track.t_ns, *track.values.T)])
+    write_arrays(work / MARK, arrays)
+    if tum:
+        datum = Datum(math.degrees(states.lat[0]), math.degrees(states.lon[0]), states.height[0])
+        write_trajectories(work, MapFrame(datum, True), {'ins': states})
     summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
                'figures': result.figures, 'notes': result.notes,
                'errors': {c.name: [asdict(r) for r in error_rows(c, start_ns, end_ns)]

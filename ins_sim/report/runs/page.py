@@ -14,7 +14,6 @@ from ..page.html import REPORT, write_page
 from ..summary import DEG_PER_HOUR, gap_lines, parity_lines, withheld_lines
 from ..table import COLUMNS
 from ..titles import length_words
-from .aided_page import report_answer, report_chart, report_notes, report_table
 from .error_charts import error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
@@ -25,7 +24,12 @@ FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'parameters.yaml': 'every setting; it gives the same run again',
          'manifest.yaml': 'where the numbers are the same to the last bit',
          'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
-         'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+         'track.png': 'the track from above', FILE: 'the track for programs of maps',
+         **{f'{name}.csv': f'a table of {name.replace("_", " ")}' for name in (
+             'truth', 'imu', 'states', 'errors', 'twin', 'aided_truth', 'aided_states',
+             'aided_errors')},
+         **{f'{name}.tum': f'the trajectory for evo, {name}' for name in (
+             'truth', 'ins', 'aided')}}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
 
 
@@ -52,8 +56,12 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     """
     charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
     tables = [_table(rows)]
+    answer = _answer(run.errors)
     if aided is not None:
-        charts.insert(0, report_chart(aided))
+        # Imports the statistics of SciPy, which takes as long as a short run.
+        from .aided_page import report_answer, report_chart, report_notes, report_table
+        answer = report_answer(aided)
+        charts.insert(0, report_chart(title, aided))
         tables.insert(0, report_table(aided))
         notes = [*notes, *report_notes(aided)]
     tracks = run_tracks(run, aided and aided.flown)
@@ -62,7 +70,6 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
         write_tracks(work, title, tracks)
     for chart in charts:
         save_chart(work, chart)
-    answer = _answer(run.errors) if aided is None else report_answer(aided)
     found = {path.name for path in work.iterdir()} - {REPORT}
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
