@@ -102,8 +102,8 @@ class DelayEstimate:
         Returns
         -------
         xarray.Dataset
-            Of dimension axis: delay, lag, scale_factor; of axis and towards: misalignment; of
-            axis and record: bias; each but lag with its standard deviation, such as
+            Of dimension body_axis: delay, lag, scale_factor; with towards: misalignment; with
+            record: bias; each but lag with its standard deviation, such as
             delay_sigma.
 
         Raises
@@ -119,15 +119,15 @@ class DelayEstimate:
         values = np.array([c.values for c in self.triad.channels])
         sigmas = np.array([c.sigmas for c in self.triad.channels])
         variables: dict[str, tuple[Sequence[str], np.ndarray, str]] = {
-            'delay': (['axis'], self.delays, 's'),
-            'delay_sigma': (['axis'], self.delay_sigmas, 's'),
-            'lag': (['axis'], self.lags, 's'),
-            'misalignment': (['axis', 'towards'], turned, 'rad'),
-            'misalignment_sigma': (['axis', 'towards'], turned_sigma, 'rad')}
+            'delay': (['body_axis'], self.delays, 's'),
+            'delay_sigma': (['body_axis'], self.delay_sigmas, 's'),
+            'lag': (['body_axis'], self.lags, 's'),
+            'misalignment': (['body_axis', 'towards'], turned, 'rad'),
+            'misalignment_sigma': (['body_axis', 'towards'], turned_sigma, 'rad')}
         for name, array in (('', values), ('_sigma', sigmas)):
-            variables[f'scale_factor{name}'] = ['axis'], array[:, SCALE], ''
-            variables[f'bias{name}'] = ['axis', 'record'], array[:, BIAS:], 'rad/s'
-        return dataset({'axis': (AXES, ''), 'towards': (AXES, ''),
+            variables[f'scale_factor{name}'] = ['body_axis'], array[:, SCALE], ''
+            variables[f'bias{name}'] = ['body_axis', 'record'], array[:, BIAS:], 'rad/s'
+        return dataset({'body_axis': (AXES, ''), 'towards': (AXES, ''),
                         'record': (list(self.triad.records), '')}, variables)
 
 
