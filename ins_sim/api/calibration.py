@@ -188,21 +188,22 @@ def estimate_delays(sources: Source | Sequence[Source], values: Values | None = 
         notes += said
         errors.append(settings.imu_sensor.gyro.errors)
     triad = estimate_with_lag(records, errors[0])
-    return DelayEstimate(triad, (*notes, *delay_estimate.sentences(triad)))
+    return DelayEstimate(triad, (*dict.fromkeys(notes), *delay_estimate.sentences(triad)))
 
 
 def _record(source: Any, place: int, values: Values | None, names: Names,
             topic: str | None) -> tuple[BenchRecord, Sequence[str], SimulationSettings]:
     if isinstance(source, Run):
-        record = bench.record_of_run(f'run {place + 1}', source.settings, source.imu,
-                                     source.motion)
-        return record, (), source.settings
+        record, notes = bench.record_of_run(f'run {place + 1}', source.settings, source.imu,
+                                            source.motion)
+        return record, notes, source.settings
     folder = Path(checked_path('sources', source))
     given = files(names)
     if (folder / storage.ARRAYS).is_file():
         settings = parameter_files.read([folder / storage.PARAMETERS, *given], plain(values))
         imu = delay_estimate.read_bench_run(folder)
-        return bench.record_of_run(folder.name, settings, imu), (), settings
+        record, notes = bench.record_of_run(folder.name, settings, imu)
+        return record, notes, settings
     built = parameter_files.read_nodes(given, plain(values), {**NODES, **CONVERT},
                                        {**ALL_NODES, **CONVERT})
     settings = SimulationSettings(**{node: built[node] for node in NODES})

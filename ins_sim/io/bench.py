@@ -25,6 +25,8 @@ from .topic_choice import choose_topic
 RATES_ALIKE = 0.01
 # Motion times end here, s.
 LONGEST_S = 1e7
+TUNED = ('channels of tuned gyros see how the rates of other axes change as well, which passes '
+         'for a delay where these change together; rock about each axis of the body in turn')
 HOW = ('give it by motion.*, such as "-p motion.kind:=rocking", or motion.kind recording with '
        'the reference in motion.recording.path')
 
@@ -43,15 +45,16 @@ def is_named(group, names, value, default):
 
 def record_of_run(name, settings, imu, motion=None):
     """
-    Return the BenchRecord of a run of ``simulate``.
+    Return the BenchRecord of a run of ``simulate``, and notes, sentences.
 
     settings: SimulationSettings of the run; imu: its ImuSamples; motion: the Motion, by default
     that of the settings. Raises ValueError where the motion is not known from the settings, or
     the readings have another rate.
     """
     _check_rate(name, imu.t_ns, settings.imu_sensor.rate_hz)
-    return _record(name, imu, period_ns(settings.imu_sensor.rate_hz),
-                   motion or _known_motion(settings.motion_generator), settings)
+    record = _record(name, imu, period_ns(settings.imu_sensor.rate_hz),
+                     motion or _known_motion(settings.motion_generator), settings)
+    return record, (TUNED,) if settings.imu_sensor.gyro.model == 'dtg' else ()
 
 
 def read_record(path, settings, imu_settings, names=(), topic=None):

@@ -58,16 +58,18 @@ def _estimate(chosen, console):
         gyro = settings[0].imu_sensor.gyro
         triad = estimate_with_lag(records, gyro.errors)
         delays = gyro.delay_us
-        known = (delays.x, delays.y, delays.z) if all(is_run) else None
+        one = all(s.imu_sensor.gyro.delay_us == delays for s in settings)
+        known = (delays.x, delays.y, delays.z) if all(is_run) and one else None
         title = ', '.join(triad.records)
         charts = delay_charts.estimate_charts(title, triad)
-        page = delay_charts.estimate_page(title, triad, known, charts, settings[0])
+        page = delay_charts.estimate_page(title, triad, known, charts, settings[0],
+                                          tuple(dict.fromkeys(notes)))
         for chart in charts:
             save_chart(work, chart)
         (work / report.MARK).write_text(json.dumps(report.as_json(triad, known), indent=1) + '\n',
                                         encoding='utf-8')
         write_page(work, page)
-    for note in notes:
+    for note in dict.fromkeys(notes):
         console.print(note)
     report.show_estimate(f'delays of gyro channels: {title}', triad, known, console)
     console.print(report.answer(triad, known))
@@ -89,8 +91,8 @@ def _read(source, chosen):
         if chosen.topic is not None:
             raise ValueError(f'--topic is {chosen.topic}, but {source} is a run; expected a bag')
         settings = parameter_files.read([source / storage.PARAMETERS, *given], chosen.param)
-        return bench.record_of_run(source.name, settings, read_bench_run(source)), (), settings, \
-            True
+        record, notes = bench.record_of_run(source.name, settings, read_bench_run(source))
+        return record, notes, settings, True
     built = parameter_files.read_nodes(given, chosen.param, {**NODES, **CONVERT},
                                        {**ALL_NODES, **CONVERT})
     settings = SimulationSettings(**{node: built[node] for node in NODES})

@@ -16,6 +16,8 @@ BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
 FOREIGN = 0.3
 # Of rates that vary by less a scale factor is not told, rad/s.
 SLOW = 1e-3
+# Records of one instrument do not differ by so many standard deviations.
+APART = 6.0
 # A delay that is found again within this needs no other linearisation, s; with a derivative of the
 # rate below this nothing turns, rad/s^2.
 SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
@@ -155,6 +157,7 @@ def _channel(records, axis):
             refused = unobservable(axis, fit, change, dt_s)
             if seen and (refused or abs(fit.values[DELAY]) <= max(SETTLED_S,
                                                                   0.01 * fit.delay_sigma)):
+                _check_one_instrument(records, axis, sums, noise, fit, dt_s)
                 return _estimate(axis, late_ns, sums, fit, noise, bool(walk.all()), refused, seen)
             late_ns += 0 if refused else round(float(fit.values[DELAY]) * 1e9)
         else:
@@ -190,6 +193,19 @@ def _check_motion(records, axis, fit, sums):
         raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes out as '
                          f'{found:.3g}; expected less than {FOREIGN:g}: the readings are not of '
                          'the motion that is given, or their stamps not of its time')
+
+
+def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
+    """Raise ValueError where a record alone gives another delay than all together."""
+    for record, one, sigma in zip(records, sums, noise):
+        alone = fit_channel([one], [sigma])
+        off = float(alone.values[DELAY] - fit.values[DELAY])
+        if len(records) > 1 and not unobservable(axis, alone, one.most, dt_s) and (
+                abs(off) > APART * alone.delay_sigma + SETTLED_S):
+            raise ValueError(f'{record.name}: the delay of {AXES[axis]} differs by '
+                             f'{1e6 * off:.4g} us from that of all records together, with a sigma '
+                             f'of {1e6 * alone.delay_sigma:.3g} us; expected records of one '
+                             'instrument')
 
 
 def _alone(sums):

@@ -74,11 +74,15 @@ def _sigmas(title, triad):
             'standard deviation [us]', ''),))
 
 
-def estimate_page(title, triad, known_us, charts, settings):
-    """Return the Page of a TriadEstimate; settings: SimulationSettings of the first record."""
+def estimate_page(title, triad, known_us, charts, settings, notes):
+    """
+    Return the Page of a TriadEstimate.
+
+    settings: SimulationSettings of the first record; notes: sentences on how records were read.
+    """
     delays = PageTable('Delays', *delay_estimate.delay_rows(triad, known_us))
     errors = PageTable('Other errors', *delay_estimate.error_rows(triad))
     return Page(f'Delays of gyro channels: {title}', delay_estimate.answer(triad, known_us),
-                charts, (delays, errors), tuple(delay_estimate.sentences(triad)), settings,
+                charts, (delays, errors), (*notes, *delay_estimate.sentences(triad)), settings,
                 files={delay_estimate.MARK: 'all values with their standard deviations',
                        **{f'{chart.name}.png': chart.title for chart in charts}})

@@ -11,7 +11,7 @@ from ins_sim.core.calibration.delays import estimate_triad
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.numerics.units import DEG_H
 from ins_sim.core.sensors.imu.ideal import MotionImu
-from support.readings.bench import ideal, read, THREE_ANGLES
+from support.readings.bench import DIAGONAL, FOG, ideal, read, THREE_ANGLES
 from support.studies import settings
 
 ERRORS = {'gyro.errors.scale_factor_ppm': (300.0, -200.0, 100.0),
@@ -64,3 +64,12 @@ def test_a_stamp_in_the_middle_of_the_interval_is_a_delay_of_half_of_it():
     record = BenchRecord('early', early, 10_000_000, motion, generator.datum, generator.earth)
     found = estimate_triad([record]).channels
     assert [1e6 * c.delay for c in found] == pytest.approx([-5000.0] * 3, abs=1e-3)
+
+
+def test_records_of_two_instruments_are_not_taken_together():
+    """A delay of y that is 20 us longer in the second record is many standard deviations."""
+    first, chosen = ideal({**DIAGONAL, **FOG}, 60.0)
+    second, _ = ideal({**DIAGONAL, **FOG, 'gyro.delay_us.y': 20.0}, 60.0, start_s=60.0)
+    records = [read(first, chosen, 0), read(second, chosen, 0)]
+    with pytest.raises(ValueError, match='delay of y differs .* expected records of one'):
+        estimate_triad(records)

@@ -66,6 +66,17 @@ def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
                                                                 rel=0.35)
 
 
+def test_an_ins_log_with_its_reference(made, tmp_path):
+    """The readings in one CSV file, the attitude in another, on one clock."""
+    reference = tmp_path / 'reference.csv'
+    assert main(['convert', str(made / 'bag'), str(reference)]) == 0
+    found = ins_sim.estimate_delays(made / 'imu.csv', {
+        'motion.kind': 'recording', 'motion.recording.path': str(reference)}, 'imu_tactical_fog')
+    assert any('of the clock of' in note for note in found.notes)
+    assert np.abs(1e6 * (found.delays - found.lags) - [2.0, 1.0, 3.0]).max() < (
+        4e6 * found.delay_sigmas.max())
+
+
 def test_from_python(made):
     """Paths, several of them, and records for data frames and xarray."""
     found = ins_sim.estimate_delays(made / 'run')
