@@ -50,7 +50,10 @@ from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ins_sim.api.budgets import budget, ErrorBudget
+    from ins_sim.api.calibration import DelayEstimate, estimate_delays
     from ins_sim.api.comparisons import compare_filters, FilterComparison
+    from ins_sim.api.delays import delay_study, DelayStudy
     from ins_sim.api.ensembles import monte_carlo, MonteCarlo
     from ins_sim.api.inputs import presets, read_settings
     from ins_sim.api.offline import predict, simulate, simulate_aided
@@ -64,12 +67,16 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'FilterComparison', 'ImuRecord',
-           'MonteCarlo', 'Motion', 'Navigation', 'Prediction', 'Run', 'SimulationSettings',
-           'compare_filters', 'monte_carlo', 'navigate', 'open_bag', 'open_motion', 'predict',
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'DelayEstimate', 'DelayStudy',
+           'ErrorBudget', 'FilterComparison', 'ImuRecord', 'MonteCarlo', 'Motion', 'Navigation',
+           'Prediction', 'Run', 'SimulationSettings', 'budget', 'compare_filters', 'delay_study',
+           'estimate_delays', 'monte_carlo', 'navigate', 'open_bag', 'open_motion', 'predict',
            'presets', 'read_settings', 'simulate', 'simulate_aided']
 _MODULES = {
+    'api.budgets': ('ErrorBudget', 'budget'),
+    'api.calibration': ('DelayEstimate', 'estimate_delays'),
     'api.comparisons': ('FilterComparison', 'compare_filters'),
+    'api.delays': ('DelayStudy', 'delay_study'),
     'api.ensembles': ('MonteCarlo', 'monte_carlo'),
     'api.inputs': ('presets', 'read_settings'),
     'api.offline': ('predict', 'simulate', 'simulate_aided'),

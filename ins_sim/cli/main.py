@@ -10,16 +10,17 @@ from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
-from .studies import (allan, compare_filters, compare_orientation, dtg_report, dtg_study,
-                      loop_study, monte_carlo)
+from .studies import (allan, budget, compare_filters, compare_orientation, delay_study, dtg_report,
+                      dtg_study, estimate_delays, loop_study, monte_carlo)
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
 LONGEST = 2000
 # In the order of the printed list.
-VERBS = {'simulate': simulate, 'monte-carlo': monte_carlo, 'list': listing, 'describe': describe,
-         'info': info, 'convert': convert, 'export': export, 'record': record, 'play': play,
-         'predict': predict, 'navigate': navigate, 'demo': demo, 'dtg-study': dtg_study,
+VERBS = {'simulate': simulate, 'monte-carlo': monte_carlo, 'budget': budget, 'list': listing,
+         'describe': describe, 'info': info, 'convert': convert, 'export': export,
+         'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
+         'delay-study': delay_study, 'estimate-delays': estimate_delays, 'dtg-study': dtg_study,
          'dtg-report': dtg_report, 'compare-orientation': compare_orientation,
          'compare-filters': compare_filters, 'loop-study': loop_study, 'allan': allan}
 NODE_VERBS = ('record', 'play')

@@ -18,9 +18,9 @@ from ins_sim.messages.run_announcement import RunAnnouncement
 from ins_sim.settings.suggest import nearest_name
 from .environment import environment_topics, EnvironmentSensors
 from .motion import read_motion
-from .simulated_aiding import AidingSource, message_columns
-from .simulated_covariance import CovarianceSource
-from .simulated_transforms import SimulatedTransforms
+from .simulated_topics.aiding import AidingSource, message_columns
+from .simulated_topics.covariance import CovarianceSource
+from .simulated_topics.transforms import SimulatedTransforms
 
 # samples of the generator that are in memory as messages at once
 WINDOW = 4096

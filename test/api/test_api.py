@@ -11,7 +11,7 @@ from ins_sim.core.timeseries import histories
 from ins_sim.core.timeseries.named_columns import COLUMNS, columns
 import numpy as np
 import pytest
-from support.imu_records import record_at_rest
+from support.readings.imu_records import record_at_rest
 from support.places import ROOT
 from support.studies import LATE_MOTION_2, LATE_MOTION_2_WORDS
 

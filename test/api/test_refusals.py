@@ -5,7 +5,7 @@ from ins_sim.cli.main import main
 from ins_sim.core.timeseries import histories
 import numpy as np
 import pytest
-from support.imu_records import record_at_rest
+from support.readings.imu_records import record_at_rest
 
 SHORT = {'duration_s': 2.0}
 AIDED = {'duration_s': 3.0, 'window.cycles': 100}

@@ -5,7 +5,7 @@ import re
 from ins_sim import parameter_files, resources
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.io.published import read_errors
-from ins_sim.io.simulated_covariance import CovarianceSource
+from ins_sim.io.simulated_topics.covariance import CovarianceSource
 from ins_sim.cli.main import main
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.earth.frames import MapFrame

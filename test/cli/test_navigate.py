@@ -22,7 +22,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
 from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.messages import convert, topics
-from support.imu_records import resting
+from support.readings.imu_records import resting
 
 SECOND = 1_000_000_000
 EPOCH = 1432235498 * SECOND

@@ -6,7 +6,7 @@ from support.recordings import FIX, fix_messages, IMU, imu_messages, STORE, TF, 
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from ins_sim.cli.main import main
-from support.imu_records import resting
+from support.readings.imu_records import resting
 
 
 @pytest.mark.parametrize('data', [b'', b'\0\1\0\0', b'\0\1\0\0\xff\xff\xff\x7f',

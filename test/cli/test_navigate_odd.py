@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from support.imu_records import resting
+from support.readings.imu_records import resting
 from support.recordings import FIX, fix_messages, IMU, imu_messages, message, TF, tf_messages, \
     write_bag
 

@@ -58,7 +58,7 @@ STREAMS = EARTH | {'core.timeseries', 'core.streams'}
 CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.guidance',
         'core.postprocessing', 'core.prediction', 'core.simulation', 'core.ensemble',
-        'core.standalone'}
+        'core.standalone', 'core.calibration'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
                          'graph', 'studies', 'report', 'jobs', 'regular_file', 'own_folders',
                          'ros_parameters', 'visible_text', 'yaml_text'}
@@ -75,10 +75,12 @@ MAY_IMPORT = {
     'core.aiding': STREAMS | {'settings', 'core.navigation'},
     'core.guidance': EARTH | {'settings', 'core.motion'},
     'core.postprocessing': EARTH | {'settings', 'core.timeseries', 'core.navigation'},
+    'core.calibration': EARTH | {'settings', 'core.timeseries', 'core.motion', 'core.sensors'},
     'core.prediction': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
                                 'core.sensors'},
     'core.simulation': (CORE | {'settings'}) - {'core.postprocessing', 'core.prediction',
-                                                'core.ensemble', 'core.standalone'},
+                                                'core.ensemble', 'core.standalone',
+                                                'core.calibration'},
     'core.standalone': EARTH | {'settings', 'core.timeseries', 'core.navigation',
                                 'core.postprocessing', 'core.simulation'},
     'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',

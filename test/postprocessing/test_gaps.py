@@ -12,7 +12,7 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.postprocessing.imu_record import find_gaps, ordered_samples, RecordedImu
 from ins_sim.core.postprocessing.reference import Reference, SampledTrack
 from ins_sim import parameter_files
-from support.recorded_imu import end_errors, recorded, run, stamps
+from support.readings.recorded_imu import end_errors, recorded, run, stamps
 
 SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
 MOTION = make_motion(SETTINGS.motion_generator.motion, SETTINGS.motion_generator.datum,

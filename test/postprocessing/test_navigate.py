@@ -22,7 +22,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim import parameter_files
 from support.studies import run_offline
-from support.recorded_imu import end_errors, recorded, run, stamps
+from support.readings.recorded_imu import end_errors, recorded, run, stamps
 
 SETTINGS = parameter_files.read([], ['motion.kind:=sinusoids', 'source:=motion'])
 MOTION = make_motion(SETTINGS.motion_generator.motion, SETTINGS.motion_generator.datum,

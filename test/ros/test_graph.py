@@ -5,7 +5,7 @@ import sys
 
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.io.motion import read_motion
-from ins_sim.io.simulated_covariance import CovarianceSource
+from ins_sim.io.simulated_topics.covariance import CovarianceSource
 from ins_sim.settings.presets import preset
 from ins_sim.messages import topics
 from ins_sim.messages.convert import error_blocks, state_blocks

@@ -63,10 +63,11 @@ def _(mark: Stack, drawn, panel):
 @draw.register
 def _(mark: Bars, drawn, panel):
     places = np.arange(len(mark.values))
-    drawn.hbar(y=places + 0.18, left=0.0, right=np.asarray(mark.values, dtype=float), height=0.42,
+    # On a logarithmic axis a bar that begins at zero is not drawn.
+    edge = max(0.0, horizontal_range((panel,))[0])
+    drawn.hbar(y=places + 0.18, left=edge, right=np.asarray(mark.values, dtype=float), height=0.42,
                fill_color=mark.colour, line_color=None)
     # The labels stand above the bars, where they have room at any width.
-    edge = max(0.0, horizontal_range((panel,))[0])
     drawn.text([edge] * len(places), places - 0.24, [visible(label) for label in mark.labels],
                text_baseline='middle', text_font_size='12px', x_offset=4)
     drawn.yaxis.visible = drawn.ygrid.visible = False

@@ -5,7 +5,7 @@ from operator import itemgetter
 
 from ins_sim.messages import placements, topics
 from ins_sim.messages.transforms import pose_between, TransformWriter
-from .simulated_aiding import message_columns
+from .aiding import message_columns
 
 
 class SimulatedTransforms:

@@ -1,0 +1,269 @@
+"""Delays, biases, scale factors and misalignments of a gyro triad from records on a bench."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from ins_sim.core.numerics import fixed_order
+from .bench_record import usable
+from .channel_fit import fit_by_residuals, fit_channel, residual_noise
+from .channel_sums import AXES, BIAS, channel_sums, DELAY, LAST, other_axes, SCALE
+from .separability import unobservable, weak_directions
+
+BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
+# A scale factor, or an axis, that is off by more is of another motion.
+FOREIGN = 0.3
+# Of rates that vary by less a scale factor is not told, rad/s.
+SLOW = 1e-3
+# Records of one instrument do not differ by so many standard deviations.
+APART = 6.0
+# A delay that is found again within this needs no other linearisation, s; with a derivative of the
+# rate below this nothing turns, rad/s^2.
+SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
+# Linearisations of a delay, and the longest delay that is looked for, s.
+PASSES, LONGEST_S = 10, 1.0
+
+
+class NotObservable(ValueError):
+    """The motion of the records shows no delay of any channel."""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelEstimate:
+    """
+    What was found of one gyro channel.
+
+    Attributes
+    ----------
+    axis : 'x', 'y' or 'z', of FLU
+    values (m,) : delay and lag (s), scale factor, misalignments towards ``towards`` (rad),
+        asymmetry of the scale factor, and the mean bias in every record (rad/s)
+    covariance (m, m) : of the values
+    towards : the axes towards which the sensitive axis is turned by the misalignments
+    refused : why the delay is not observable, or ''
+    weights : BY_WALK or BY_RESIDUALS, what the standard deviations are from
+    ratio, limit : variance of the delay by the residuals over that by the angle random walk, and
+        what it exceeds once in a thousand times; ratio is 1 where the walk is not known
+    noise, left (records,) : standard deviation of a sample that was assumed, and rms of the
+        residuals, rad/s
+    weak : arrays (m,), combinations of the values that the readings do not tell
+    change : greatest derivative of the rate, rad/s^2
+    blocks : for every record, middles (n,), s, of its blocks, and their mean residuals over the
+        standard deviation that is expected of them
+    bins : derivative of the rate, rad/s^2, reading less all but the delay, residual, and its
+        standard deviation, rad/s, (n,) each
+    """
+
+    axis: str
+    values: np.ndarray
+    covariance: np.ndarray
+    towards: tuple
+    refused: str
+    weights: str
+    ratio: float
+    limit: float
+    noise: np.ndarray
+    left: np.ndarray
+    weak: tuple
+    change: float
+    blocks: tuple
+    bins: tuple
+
+    @property
+    def delay(self):
+        """Delay and lag of the channel, s."""
+        return float(self.values[DELAY])
+
+    @property
+    def sigmas(self):
+        """Standard deviations of the values, (m,)."""
+        return np.sqrt(np.diagonal(self.covariance))
+
+    @property
+    def delay_sigma(self):
+        """Standard deviation of the delay, s."""
+        return float(self.sigmas[DELAY])
+
+
+@dataclass(frozen=True, eq=False)
+class TriadEstimate:
+    """
+    What was found of a gyro triad.
+
+    channels: ChannelEstimates; records: names of the records; notes: sentences; lags (3,): what
+    the bandwidth of the instrument makes of a delay, s, NaN where the motion shows none, or None
+    where no bandwidth is known.
+    """
+
+    channels: tuple
+    records: tuple
+    notes: tuple
+    lags: np.ndarray | None = None
+
+
+def estimate_triad(records):
+    """
+    Return the TriadEstimate of BenchRecords of one gyro triad.
+
+    The delay, the scale factor and the misalignments are the same in all records, each of which
+    has a bias of its own.
+
+    Raises
+    ------
+    ValueError
+        In one sentence where a record is too short or is not of the motion that is given.
+    NotObservable
+        Where the records show the delay of no channel.
+    """
+    kept, notes = [], []
+    for record in records:
+        record, said = usable(record)
+        kept.append(record)
+        notes += said
+    channels = tuple(_channel(kept, axis) for axis in range(3))
+    if all(c.refused for c in channels):
+        raise NotObservable('delays are not observable in this motion: '
+                            + '; '.join(c.refused for c in channels))
+    notes += [f'{c.axis}: the residuals scatter {math.sqrt(c.ratio):.3g} times as much as the '
+              'angle random walk says: the standard deviations are those of the residuals'
+              for c in channels if c.weights == BY_RESIDUALS and c.ratio > c.limit]
+    return TriadEstimate(channels, tuple(r.name for r in records), tuple(notes))
+
+
+def noise_of(records, axis):
+    """Return the standard deviations of samples by the angle random walk, (records,) rad/s."""
+    return np.array([r.white[axis] / math.sqrt(r.dt_ns * 1e-9) for r in records])
+
+
+def _channel(records, axis):
+    """Return the ChannelEstimate of an axis; its delay is linearised until it stands still."""
+    walk, dt_s = noise_of(records, axis), min(r.dt_ns for r in records) * 1e-9
+    late_ns, change, settled = 0, 0.0, False
+    for _ in range(PASSES):
+        sums = [channel_sums(r, axis, late_ns, change) for r in records]
+        seen, change = change, max(LEAST_CHANGE, *(s.most for s in sums))
+        if not settled:
+            # Far from the delay the residuals are of the linearisation, not of noise: weights as
+            # weak as these keep them from being fitted by what the priors hold.
+            weak = residual_noise(sums, np.zeros(BIAS + len(sums)))
+            fit = fit_channel(sums, np.maximum(walk, weak))
+            noise = walk if walk.all() else residual_noise(sums, fit.values)
+            settled = bool(abs(fit.values[DELAY]) <= SETTLED_S or unobservable(
+                axis, fit_channel(sums, noise), change, dt_s))
+        if settled:
+            fit, noise = (fit_channel(sums, walk), walk) if walk.all() else fit_by_residuals(sums)
+            _check_motion(records, axis, fit, sums)
+            refused = unobservable(axis, fit, change, dt_s)
+            if seen and (refused or abs(fit.values[DELAY]) <= max(SETTLED_S,
+                                                                  0.01 * fit.delay_sigma)):
+                _check_one_instrument(records, axis, sums, noise, fit, dt_s)
+                return _estimate(axis, late_ns, sums, fit, noise, bool(walk.all()), refused, seen)
+            late_ns += 0 if refused else round(float(fit.values[DELAY]) * 1e9)
+        else:
+            late_ns += round(float(fit.values[DELAY]) * 1e9)
+        if abs(late_ns) > LONGEST_S * 1e9:
+            raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} comes out as '
+                             f'{late_ns * 1e-9:.4g} s; expected at most {LONGEST_S:g} s: are the '
+                             'stamps those of the motion?')
+    raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} does not settle in {PASSES} '
+                     'steps; expected readings of the motion that is given, with stamps of its '
+                     'time')
+
+
+def _names(records):
+    return ', '.join(r.name for r in records)
+
+
+def _check_motion(records, axis, fit, sums):
+    """
+    Raise ValueError where the readings are of another motion.
+
+    Where the residuals are large the priors hold scale factor and axes; the regression of the
+    readings on the rate alone shows then that these have nothing in common.
+    """
+    off = fit.values[SCALE:LAST + 1].tolist()
+    k = max(range(len(off)), key=lambda place: abs(off[place]))
+    what = ('scale factor' if k == 0 else
+            f'misalignment towards {AXES[other_axes(axis)[k - 1]]}')
+    found = off[k]
+    if abs(found) <= FOREIGN:
+        found, what = _alone(sums), 'scale factor'
+    if abs(found) > FOREIGN:
+        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes out as '
+                         f'{found:.3g}; expected less than {FOREIGN:g}: the readings are not of '
+                         'the motion that is given, or their stamps not of its time')
+
+
+def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
+    """Raise ValueError where a record alone gives another delay than all together."""
+    for record, one, sigma in zip(records, sums, noise):
+        alone = fit_channel([one], [sigma])
+        off = float(alone.values[DELAY] - fit.values[DELAY])
+        if len(records) > 1 and not unobservable(axis, alone, one.most, dt_s) and (
+                abs(off) > APART * alone.delay_sigma + SETTLED_S):
+            raise ValueError(f'{record.name}: the delay of {AXES[axis]} differs by '
+                             f'{1e6 * off:.4g} us from that of all records together, with a sigma '
+                             f'of {1e6 * alone.delay_sigma:.3g} us; expected records of one '
+                             'instrument')
+
+
+def _alone(sums):
+    """Return the regression of reading less rate on the rate, 0 where it is not told."""
+    both = rate = left = count = 0.0
+    for one in sums:
+        n = float(np.add.reduce(one.count))
+        normal, right = np.add.reduce(one.normal, axis=0), np.add.reduce(one.right, axis=0)
+        both += float(right[SCALE] - right[BIAS] * normal[SCALE, BIAS] / n)
+        rate += float(normal[SCALE, SCALE] - normal[SCALE, BIAS] * normal[SCALE, BIAS] / n)
+        square = fixed_order.total(one.square.tolist())
+        left += square - float(right[BIAS] * right[BIAS]) / n
+        count += n
+    if rate <= count * SLOW * SLOW:
+        return 0.0
+    found, sigma = both / rate, math.sqrt(max(left, 0.0) / count / rate)
+    return found if abs(found) > 5.0 * sigma else 0.0
+
+
+def _estimate(axis, late_ns, sums, fit, noise, walk_known, refused, most):
+    values = fit.values.copy()
+    values[DELAY] += late_ns * 1e-9
+    by_walk = walk_known and fit.ratio <= fit.limit
+    covariance = fit.covariance if by_walk else fit.scattered
+    blocks = tuple((s.t_s, _block_residuals(s, k, fit.values) * np.sqrt(s.count) / noise[k])
+                   for k, s in enumerate(sums))
+    return ChannelEstimate(
+        AXES[axis], values, covariance, tuple(AXES[k] for k in other_axes(axis)), refused,
+        BY_WALK if by_walk else BY_RESIDUALS, fit.ratio if walk_known else 1.0, fit.limit, noise,
+        residual_noise(sums, fit.values), weak_directions(fit, sums), most, blocks,
+        _bins(sums, fit.values, late_ns * 1e-9, noise))
+
+
+def _block_residuals(sums, record, values):
+    """Return the mean residuals of the blocks of a record, rad/s."""
+    x = np.append(values[:BIAS], values[BIAS + record])
+    row = sums.normal[:, BIAS, :]
+    expected = row[:, 0] * x[0]
+    for k in range(1, len(x)):
+        expected = expected + row[:, k] * x[k]
+    return (sums.right[:, BIAS] - expected) / sums.count
+
+
+def _bins(sums, values, late_s, noise):
+    """Return what ``ChannelEstimate.bins`` holds; the delay is left in the second."""
+    count = with_delay = left = weight = change_sum = 0.0
+    for k, (one, sigma) in enumerate(zip(sums, noise)):
+        x = np.append(values[:BIAS], values[BIAS + k])
+        model = one.bins[:, 2] * x[0]
+        for column in range(1, len(x)):
+            model = model + one.bins[:, 2 + column] * x[column]
+        residual = one.bins[:, 1] - model
+        count = count + one.bins[:, 0]
+        left = left + residual
+        with_delay = with_delay + residual + one.bins[:, 2] * (x[0] + late_s)
+        weight = weight + one.bins[:, 0] * (sigma * sigma)
+        change_sum = change_sum - one.bins[:, 2]
+    there = count > 0.0
+    count = count[there]
+    return (change_sum[there] / count, with_delay[there] / count, left[there] / count,
+            np.sqrt(weight[there]) / count)
