@@ -8,7 +8,7 @@ and gyros, as what is to be taken off the readings (m/s^2, rad/s, by body axis).
 
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary
-from ins_sim.core.numerics.fixed_order import product
+from ins_sim.core.numerics.fixed_order import lane_product, product
 
 # How many errors have rows, the first ones; the others of a model are constant.
 GROWING = 9
@@ -19,7 +19,7 @@ def inertial_rows(lat, height, v, c, f_n, spin):
     Return nine rows of 15 numbers of F of x' = F x.
 
     lat rad, height m, v (3,) m/s ENU; c: C_nb, nine floats; f_n (3,) specific force in n, m/s^2;
-    spin: rate of the Earth, rad/s.  The change of the radii with latitude and that of gravity
+    all floats or arrays; spin: rate of the Earth, rad/s.  The change of the radii with latitude and that of gravity
     with latitude are left out, parts in 100 of the smallest terms.  Groves section 14.2.4.
     """
     v_e, v_n, v_u = v
@@ -70,10 +70,10 @@ def change(f, dt):
 
     f: rows of F, the first GROWING of which are those of the first columns; only these columns
     have rows that a change to second order needs.  F being that of mid-interval, what is left out
-    is of the order dt^3.
+    is of the order dt^3.  A last axis of f, and dt (n,), are those of many matrices.
     """
     a = f * dt
-    return a + 0.5 * product(a[:, :GROWING], a[:GROWING])
+    return a + 0.5 * (product if f.ndim == 2 else lane_product)(a[:, :GROWING], a[:GROWING])
 
 
 def turn_by_position(lat, height):

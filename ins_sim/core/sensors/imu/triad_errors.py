@@ -10,7 +10,7 @@ from ins_sim.core.numerics.compilation import run
 from ins_sim.core.numerics.noise import BLOCK, cut, indexed_noise
 from ins_sim.core.numerics.processes import Processes
 from .triad_model import temperature_off, triad_model
-from .triad_reading import AT_REST, read, read_arrays, read_rows, ZERO
+from .triad_reading import AT_REST, read, read_arrays, read_rows, respond, ZERO
 
 # Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
 # variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
@@ -93,6 +93,20 @@ class TriadErrors:
                                        self._most, self._quantum)):
             return None
         return self._geometry, self._response, self._noise
+
+    def immediate(self, values, forces, t_s):
+        """
+        Return the errors (n, 3) that follow the input at once, and the fixed bias.
+
+        values, forces (n, 3), t_s (n,): as of ``step``.  Lags, range, pulses and noise are left
+        out.
+        """
+        warm = None
+        if self._by_temperature is not None:
+            warm = temperature_off(self._temperature, t_s)
+        found = np.stack(respond(self._geometry, self._response, self._by_force,
+                                 self._by_temperature, values.T, forces.T, warm), axis=-1) - values
+        return found if self._noise is None else found + self._noise.fixed
 
     def advance(self, first, values, forces, t_s):
         """
