@@ -11,8 +11,7 @@ from ins_sim.core.sensors.imu.triad_errors import TriadErrors
 from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model
 from .sources import ACCELEROMETER, ErrorSource, FIXED_WORDS, GYRO, triad_source
 
-# The error of the axes is that of a rotation; of the lag, it falls with the bandwidth.
-NOT_LINEAR = 'misalignment', 'non_orthogonality', 'bandwidth_hz'
+LAG = 'bandwidth_hz'
 
 
 class FixedSource:
@@ -32,8 +31,8 @@ def fixed_sources(settings, motion):
             if coefficient not in FIXED_WORDS or not any(getattr(errors, key)):
                 continue
             source = triad_source(errors, triad, key, FIXED_WORDS[coefficient], True,
-                                  coefficient not in NOT_LINEAR)
-            means = (_Lag(errors, triad, sensor) if coefficient == 'bandwidth_hz' else
+                                  coefficient == LAG)
+            means = (_Lag(errors, triad, sensor) if coefficient == LAG else
                      _Immediate(errors, key, triad, sensor.temperature))
             found.append(FixedSource(source, means))
         values = delays.x, delays.y, delays.z

@@ -36,7 +36,8 @@ class ErrorSource:
     key: name of the parameter; label: in words; unit: of the parameter; values: of the three axes
     in this unit, or (value,) of all; si: the same in SI; fixed: whether it is the same in every
     run; triad: ACCELEROMETER, GYRO or None of the start; kind: the coefficient of TriadModel, or
-    that of the start; linear: whether the error it makes is proportional to the parameter.
+    that of the start; inverse: whether the error falls with the parameter, as that of a lag does
+    with its bandwidth, and else is proportional to it.
     """
 
     key: str
@@ -47,7 +48,7 @@ class ErrorSource:
     fixed: bool
     triad: int | None
     kind: str
-    linear: bool = True
+    inverse: bool = False
 
 
 @dataclass(frozen=True)
@@ -76,13 +77,13 @@ def random_sources(gyro, accelerometer):
     return found
 
 
-def triad_source(settings, triad, key, words, fixed, linear=True):
+def triad_source(settings, triad, key, words, fixed, inverse=False):
     """Return the ErrorSource of a parameter of GyroErrors or AccelerometerErrors."""
     kind, unit = KEYS[type(settings)][key]
     values = getattr(settings, key)
     described = type(settings).__dataclass_fields__[key].metadata['unit']
     return ErrorSource(f'{settings.NAME}.{key}', f'{TRIAD_WORDS[triad]} {words}', described, values,
-                       tuple(unit * v for v in values), fixed, triad, kind, linear)
+                       tuple(unit * v for v in values), fixed, triad, kind, inverse)
 
 
 def start_sources(initial):

@@ -1,0 +1,100 @@
+"""An ensemble beside the budget: ratios of standard deviations and the intervals they lie in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from .quantities import QUANTITIES, second_order, shares
+
+# The part of ensembles that lie within the interval where the budget is right.
+WITHIN = 0.999
+COMPARED = ('horizontal', 'east', 'north', 'velocity', 'tilt', 'azimuth')
+# The order of the errors of an ensemble (attitude, velocity, position) in that of a budget.
+OF_ENSEMBLE = [6, 7, 8, 3, 4, 5, 0, 1, 2]
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedQuantity:
+    """
+    One quantity of an ensemble over that of the budget, at n instants.
+
+    name: one of COMPARED; t_s (n,); numbers (n,): of instants of the budget; budget, ensemble
+    (n,): rms, or of a single axis standard deviations; low, high (n,): the interval in which their
+    ratio lies in 99.9 % of ensembles; linear (n,): whether the budget claims to hold.
+    """
+
+    name: str
+    t_s: np.ndarray
+    numbers: np.ndarray
+    budget: np.ndarray
+    ensemble: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    linear: np.ndarray
+
+    @property
+    def ratio(self):
+        """Return ensemble over budget, (n,)."""
+        return self.ensemble / self.budget
+
+    @property
+    def differs(self):
+        """Return whether the ensemble leaves its interval, (n,)."""
+        return (self.ratio < self.low) | (self.ratio > self.high)
+
+
+def sigma_interval(count, within=WITHIN):
+    """Return the interval of the ratio of a sample's standard deviation to the true one."""
+    free = np.maximum(np.asarray(count) - 1, 1)
+    tail = 0.5 * (1.0 - within)
+    return np.sqrt(chi2.ppf(tail, free) / free), np.sqrt(chi2.isf(tail, free) / free)
+
+
+def rms_scatter(covariance, mean, count):
+    """
+    Return the standard deviation, relative, of the rms of a vector over so many runs, (n,).
+
+    covariance (n, a, a) and mean (n, a) of the vector: the square of its length has the variance
+    2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random Variables", 1992).
+    """
+    square = np.trace(covariance, axis1=1, axis2=2) + np.square(mean).sum(axis=1)
+    variance = (2.0 * np.square(covariance).sum(axis=(1, 2))
+                + 4.0 * np.einsum('ni,nij,nj->n', mean, covariance, mean))
+    return 0.5 * np.sqrt(variance / count) / square
+
+
+def compared(budget, t_s, count, mean, covariance):
+    """
+    Return the ComparedQuantities of an ensemble.
+
+    t_s (n,): instants of the budget, s; count (n,) of runs; mean (n, 9) and covariance (n, 9, 9)
+    of their errors in the order of an ensemble.  Quantities that have no error, as the height of a
+    vertical channel that follows the truth, are left out.
+    """
+    numbers = np.array([budget.at(t) for t in t_s], dtype=int)
+    linear = second_order(budget)[numbers] <= 0.1
+    order = [OF_ENSEMBLE.index(k) for k in range(9)]
+    p, m = budget.total_covariance()[numbers], budget.total_mean()[numbers]
+    found = []
+    for name in COMPARED:
+        axes = list(QUANTITIES[name].axes)
+        theirs = [order[k] for k in axes]
+        rms = shares(budget, QUANTITIES[name]).rms[numbers]
+        if not (rms > 0.0).all():
+            continue
+        if len(axes) == 1:
+            sigma = np.sqrt(p[:, axes[0], axes[0]])
+            sample = np.sqrt(covariance[:, theirs[0], theirs[0]])
+            low, high = sigma_interval(count)
+        else:
+            sigma = rms
+            squares = np.square(mean[:, theirs]).sum(axis=1) + np.trace(
+                covariance[:, theirs][:, :, theirs], axis1=1, axis2=2) * (count - 1.0) / count
+            sample = np.sqrt(squares)
+            wide = norm.isf(0.5 * (1.0 - WITHIN)) * rms_scatter(
+                p[:, axes][:, :, axes], m[:, axes], count)
+            low, high = 1.0 - wide, 1.0 + wide
+        found.append(ComparedQuantity(name, np.asarray(t_s, dtype=float), numbers, sigma, sample,
+                                      low, high, linear))
+    return found
