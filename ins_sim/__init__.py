@@ -50,6 +50,7 @@ from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ins_sim.api.budgets import budget, ErrorBudget
     from ins_sim.api.inputs import presets, read_settings
     from ins_sim.api.offline import predict, simulate, simulate_aided
     from ins_sim.api.readers import open_bag, open_motion
@@ -62,10 +63,12 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ImuRecord', 'Motion', 'Navigation',
-           'Prediction', 'Run', 'SimulationSettings', 'navigate', 'open_bag', 'open_motion',
-           'predict', 'presets', 'read_settings', 'simulate', 'simulate_aided']
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ErrorBudget', 'ImuRecord',
+           'Motion', 'Navigation', 'Prediction', 'Run', 'SimulationSettings', 'budget', 'navigate',
+           'open_bag', 'open_motion', 'predict', 'presets', 'read_settings', 'simulate',
+           'simulate_aided']
 _MODULES = {
+    'api.budgets': ('ErrorBudget', 'budget'),
     'api.inputs': ('presets', 'read_settings'),
     'api.offline': ('predict', 'simulate', 'simulate_aided'),
     'api.readers': ('open_bag', 'open_motion'),

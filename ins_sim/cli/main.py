@@ -9,7 +9,7 @@ from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
-from .studies import (allan, compare_filters, compare_orientation, dtg_report, dtg_study,
+from .studies import (allan, budget, compare_filters, compare_orientation, dtg_report, dtg_study,
                       loop_study)
 
 ROS_ARGS = '--ros-args'
@@ -20,7 +20,7 @@ VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'export': expor
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
          'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
-         'loop-study': loop_study, 'allan': allan}
+         'loop-study': loop_study, 'allan': allan, 'budget': budget}
 NODE_VERBS = ('record', 'play')
 
 

@@ -25,8 +25,8 @@ GRAMMAR = ("QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME, such as 'horizontal r
            f"{', '.join(UNITS)}, and TIME one of {', '.join(TIMES)}")
 _TEXT = re.compile(r'\s*(\S+)\s+(\S+)\s+([-+.\deE]+)\s*(\S+)\s+at\s+([-+.\deE]+)\s*(\S+)\s*',
                    re.IGNORECASE)
-# Factors that are tried, and halvings of the interval between the two where one suffices.
-TRIED, HALVINGS = 100, 50
+# Factors that are tried, and how often the interval between two of them is divided like that.
+TRIED, ROUNDS = np.arange(33) / 32.0, 8
 
 
 @dataclass(frozen=True)
@@ -147,9 +147,11 @@ def answer(budget, requirement):
     for k, source in enumerate((*budget.random, *budget.fixed)):
         one = np.arange(count_random + count_fixed) == k
         by = scaled.by_factor(one[:count_random], one[count_random:])
-        factor = _largest_factor(by, requirement.limit)
-        alone.append(Improvement(source, factor, _values(source, factor),
-                                 float(by(np.zeros(1))[0])))
+        without = float(by(np.zeros(1))[0])
+        # of two fixed errors that cancel each other, less of one need not be better
+        factor = (_largest_factor(by, requirement.limit)
+                  if source.fixed or without <= requirement.limit else None)
+        alone.append(Improvement(source, factor, _values(source, factor), without))
     alone.sort(key=lambda i: (i.factor is None, i.without))
     return RequirementAnswer(
         requirement, found, False, tuple(alone),
@@ -159,14 +161,14 @@ def answer(budget, requirement):
 
 def _largest_factor(by, limit):
     """Return the largest factor below 1 with a value of at most the limit, or None."""
-    tried = np.arange(TRIED + 1) / TRIED
-    enough = np.flatnonzero(by(tried) <= limit)
+    enough = np.flatnonzero(by(TRIED) <= limit)
     if not len(enough):
         return None
-    low, high = float(tried[enough[-1]]), float(tried[min(enough[-1] + 1, TRIED)])
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = ((middle, high) if by(np.array([middle]))[0] <= limit else (low, middle))
+    low, high = float(TRIED[enough[-1]]), float(TRIED[min(enough[-1] + 1, len(TRIED) - 1)])
+    for _ in range(ROUNDS):
+        between = low + (high - low) * TRIED
+        k = int(np.flatnonzero(by(between) <= limit)[-1])
+        low, high = float(between[k]), float(between[min(k + 1, len(between) - 1)])
     return low
 
 

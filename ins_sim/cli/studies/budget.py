@@ -1,0 +1,40 @@
+"""Verb budget: which error of the instruments makes how much of the error of the position."""
+
+from .. import arguments
+
+HELP = 'the error budget of a strapdown: linear covariance by source'
+DESCRIPTION = ('Propagate the errors of the instruments and of the start along the motion, each '
+               'by itself and without noise: who makes the error, how it changes with each '
+               'parameter, and what must improve to meet a requirement.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb to its parser."""
+    arguments.add_settings(parser)
+    parser.add_argument('--require', action='append', default=[], metavar='TEXT',
+                        help="what is required, such as 'horizontal rms 1852 m at 3600 s': says "
+                        'what must improve; may be repeated')
+    parser.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs beside '
+                        'the budget and compare (default: none)')
+    arguments.add_output(parser, 'ins_sim_budget', 'folder of figures, tables and report.html')
+    arguments.add_force(parser, 'the budget in DIR')
+
+
+def run(chosen):
+    """Propagate, show and save; return the exit code."""
+    from ins_sim.api.budgets import budget
+    from ins_sim.own_folders import check_free, whole_folder
+    from ins_sim.report.console import PlainConsole
+    from ins_sim.report.studies import budget as report
+    from ins_sim.studies.budget.requirement import parse_requirement
+    check_free(chosen.output, chosen.force, report.MARK)
+    wanted = [parse_requirement(text) for text in chosen.require]
+    settings = arguments.read_settings(chosen)
+    found = budget(settings, [requirement.t_s for requirement in wanted], chosen.runs)
+    answers = [found.requirement(requirement.text) for requirement in wanted]
+    compared, console = found.compared(), PlainConsole()
+    with whole_folder(chosen.output, chosen.force, report.MARK) as folder:
+        report.write_budget(folder, settings, found.linear, answers, compared, found.ensemble)
+    report.show_budget(settings, found.linear, answers, compared, found.ensemble, console)
+    console.print(f'report: {chosen.output}/report.html')
+    return 0
