@@ -1,8 +1,9 @@
 """
 What a figure shows: a Chart of Panels, one below the other, of marks.
 
-A label of None leaves a mark out of the legend. Values that are not finite interrupt a curve.
-Colours are those of ``palette``; a colour of None is the next one of its cycle.
+A label of None leaves a mark out of the legend. Values that are not finite interrupt a curve, as
+do those that are not positive on a logarithmic axis. Colours are those of ``palette``; a colour of
+None is the next one of its cycle, of a Level or a Stretch black or grey.
 """
 
 from dataclasses import dataclass
@@ -80,12 +81,16 @@ class Level:
     dash: str = SOLID
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stretch:
-    """The stretch of the horizontal axis from first to last, shaded over the whole height."""
+    """
+    The stretch of the horizontal axis from first to last, shaded over the whole height.
 
-    first: float
-    last: float
+    first, last: numbers, or arrays (n,) of several stretches.
+    """
+
+    first: Union[float, np.ndarray]
+    last: Union[float, np.ndarray]
     label: str | None = None
     colour: str | None = None
 
@@ -115,7 +120,8 @@ class Panel:
 
     x_label, y_label: with units in brackets; title; x_scale, y_scale: LINEAR or LOG; x_range,
     y_range: what is shown, or None; equal: whether a unit is as long on both axes, for tracks;
-    height: relative to the other panels of the chart.
+    height: relative to the other panels of the chart; note: a text in the middle of the panel,
+    such as why it is empty.
     """
 
     marks: tuple[Mark, ...]
@@ -128,6 +134,7 @@ class Panel:
     y_range: tuple[float, float] | None = None
     equal: bool = False
     height: float = 1.0
+    note: str = ''
 
 
 @dataclass(frozen=True)
@@ -135,8 +142,9 @@ class Chart:
     """
     One figure.
 
-    name: of its file, without extension; title: what it shows, in words; panels: from above; they
-    have one horizontal axis if shared; caption: a sentence below it, or ''.
+    name: of its file, without extension; title: what it shows, in words; panels: from above, and
+    from the left if there are several columns; they have one horizontal axis if shared; caption: a
+    sentence below it, or ''.
     """
 
     name: str
@@ -144,3 +152,4 @@ class Chart:
     panels: tuple[Panel, ...]
     shared: bool = True
     caption: str = ''
+    columns: int = 1

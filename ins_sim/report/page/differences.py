@@ -1,0 +1,47 @@
+"""The settings of a run that differ from the defaults."""
+
+from dataclasses import fields, is_dataclass
+
+from ins_sim.settings.catalogue import flatten, values_of
+from ins_sim.settings.field import SettingsGroup
+
+
+def changed_settings(settings):
+    """
+    Return rows (name, value, default, unit, nodes) of the settings that are not the default.
+
+    settings: of one node, or of several nodes as their fields. A setting that has the same value
+    in several nodes is one row.
+    """
+    rows = {}
+    for node, given in settings_by_node(settings).items():
+        described, defaults = flatten(type(given)), values_of(type(given)())
+        for name, value in values_of(given).items():
+            if value != defaults[name]:
+                row = (name, _shown(value), _shown(defaults[name]),
+                       described[name].metadata['unit'])
+                rows.setdefault(row, []).append(node)
+    return [(*row, ', '.join(nodes)) for row, nodes in rows.items()]
+
+
+def settings_by_node(settings, name=''):
+    """Return {node: its settings} of settings of any depth of nodes."""
+    if isinstance(settings, SettingsGroup):
+        return {name: settings}
+    found = {}
+    for f in fields(settings):
+        value = getattr(settings, f.name)
+        if is_dataclass(value):
+            found.update(settings_by_node(value, f.name))
+    return found
+
+
+def _shown(value):
+    """Return a value as a parameter file has it; equal numbers of all axes once."""
+    if isinstance(value, tuple):
+        if len(value) > 1 and len(set(value)) == 1:
+            return f'{_shown(value[0])} (each of {len(value)})'
+        return '[' + ', '.join(map(_shown, value)) + ']'
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, float) else str(value) or "''"

@@ -1,0 +1,25 @@
+"""Texts and numbers as they stand in HTML."""
+
+from html import escape
+import math
+import numbers
+
+from ins_sim.visible_text import visible
+
+
+def text(words):
+    """Return a text as it stands in HTML: escaped, and what cannot be seen as escapes."""
+    return escape(visible(str(words)))
+
+
+def cell_text(value):
+    """Return a cell of a table as text: a number with four digits, a dash for what is missing."""
+    if value is None or isinstance(value, numbers.Real) and math.isnan(value):
+        return '–'
+    if isinstance(value, bool):
+        return 'yes' if value else 'no'
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return f'{value + 0.0:.4g}'
+    return str(value)
