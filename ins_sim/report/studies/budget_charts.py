@@ -12,6 +12,11 @@ from ..charts.palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, RED
 SCALES = {LENGTH: scales.LENGTHS, SPEED: scales.SPEEDS, ANGLE: scales.ANGLES}
 # Sources that have a surface or a curve of their own; the smaller ones have one together.
 SHOWN = 7
+SURFACES = tuple(colour for colour in CYCLE if colour not in (BLACK, GREY))
+# Of surfaces without a colour of their own.
+PALE = '#d8d8d8', '#b0b0b0'
+# Bars shorter than this part of the longest one are left out.
+SHORTEST = 1e-3
 FIXED_NAME = 'the same in every run'
 DASHED_NOTE = ('Dashed: the axes have turned so far ({:g} rad) that errors of second order show '
                'and the budget is a guide only.')
@@ -75,21 +80,27 @@ def _surfaces(linear, made):
     whole = np.where(made.rms > 0.0, made.rms, 1.0)[:, None]
     random = (made.random.T / whole)
     order = np.argsort(-made.random[:, -1], kind='stable')
-    labels = [linear.random[k].label for k in order[:SHOWN]]
-    parts = [random[:, k] for k in order[:SHOWN]]
-    colours = [c for c in CYCLE if c not in (BLACK, GREY)]
-    colours = [colours[k % len(colours)] if k < len(colours) else '#b0b0b0'
-               for k in range(len(parts))]
+    shown = order[:SHOWN].tolist()
+    labels, parts = [linear.random[k].label for k in shown], [random[:, k] for k in shown]
+    colours = _colours(linear, shown)
     if len(order) > SHOWN:
         labels.append(f'{len(order) - SHOWN} smaller ones')
         parts.append(random[:, order[SHOWN:]].sum(axis=1))
-        colours.append('#d8d8d8')
+        colours.append(PALE[0])
     if len(linear.fixed):
         labels.append(FIXED_NAME)
         parts.append(made.fixed.sum(axis=0) / whole[:, 0])
         colours.append(GREY)
     return (np.stack(parts, axis=-1) if parts else np.zeros((len(linear.t_s), 0)),
             tuple(labels), tuple(colours))
+
+
+def _colours(linear, shown):
+    """Return colours of sources, which have the same one in every figure where that can be."""
+    ranked = np.argsort(-shares(linear, QUANTITIES['horizontal']).random[:, -1], kind='stable')
+    own = dict(zip(ranked.tolist(), SURFACES))
+    free = [c for c in SURFACES if c not in [own.get(k) for k in shown]]
+    return [own.get(k) or (free.pop(0) if free else PALE[1]) for k in shown]
 
 
 def _total(linear, title):
@@ -137,13 +148,14 @@ def _ranking(linear, title):
     for sources, values, words in ((linear.random, contributions[:count],
                                     'differs from run to run'),
                                    (linear.fixed, contributions[count:], FIXED_NAME)):
-        order = [k for k in np.argsort(-values, kind='stable') if values[k] > 0.0]
+        order = [k for k in np.argsort(-values, kind='stable')
+                 if values[k] > SHORTEST * values.max()]
         if order:
             factor, unit = scales.scale(scales.LENGTHS, values[order[0]])
             panels.append(Panel(
                 (Bars(factor * values[order], tuple(sources[k].label for k in order), BLUE),),
                 f'horizontal error of the source alone [{unit}]', '', words,
-                height=max(2.0, len(order))))
+                height=0.25 + 0.1 * len(order)))
     return Chart('budget_ranking', title, tuple(panels), shared=False)
 
 
