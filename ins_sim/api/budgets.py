@@ -9,14 +9,15 @@ from typing import Any, TYPE_CHECKING, Union
 
 import numpy as np
 
-from ins_sim.core.budget.linear_budget import error_budget, LinearBudget
-from ins_sim.core.ensemble.many_runs import EnsembleResult, simulate_runs
+from ins_sim.core.budget.linear_budget import error_budget, LinearBudget, SAME_S
+from ins_sim.core.ensemble.many_runs import EnsembleResult
 from ins_sim.core.motion.motion import Motion
 from ins_sim.settings.simulation import SimulationSettings
-from ins_sim.studies.budget.beside import compared, ComparedQuantity
+from ins_sim.studies.budget.beside import compared_with, ComparedQuantity, fly_beside
 from ins_sim.studies.budget.circular_error import circular_error
 from ins_sim.studies.budget.quantities import linear_until, Quantity, QUANTITIES, shares
-from ins_sim.studies.budget.requirement import answer, parse_requirement, RequirementAnswer
+from ins_sim.studies.budget.requirement import (answer, parse_requirement,
+                                                 RequirementAnswer, times_of)
 from ins_sim.studies.budget.sensitivities import sensitivities, Sensitivity
 from .dataframes import dataframe
 from .inputs import checked_path
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     import xarray
 
 Folder = Union[str, 'os.PathLike[str]']
-# Instants at which an ensemble is compared with the budget.
-COMPARED = 60
 
 
 def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: int = 0,
@@ -75,17 +74,10 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     '0.6827 deg/h'
     """
     check_settings(settings, SimulationSettings)
-    if not isinstance(runs, int) or isinstance(runs, bool) or runs < 0 or runs == 1:
-        raise ValueError(f'runs is {runs!r}; expected 0, or 2 or more runs beside the budget')
     flown = given_motion(settings, motion)
     linear = error_budget(settings, flown, tuple(times_s))
-    beside = None
-    if runs:
-        every = max(1, -(-(len(linear.t_s) - 1) // COMPARED))
-        start_s = settings.motion_generator.start_s + settings.strapdown.initial.after_s
-        beside = simulate_runs(settings, flown, range(runs), start_s + linear.t_s[every::every],
-                               os.cpu_count() or 1)
-    return ErrorBudget(settings, flown, linear, beside)
+    return ErrorBudget(settings, flown, linear,
+                       fly_beside(settings, flown, linear, runs) if runs else None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,7 +123,8 @@ class ErrorBudget:
         ----------
         quantity : {'horizontal', 'east', 'north', 'up', 'velocity', 'tilt', 'azimuth'}
         """
-        return shares(self.linear, _quantity(quantity)).rms
+        found: np.ndarray = shares(self.linear, _quantity(quantity)).rms
+        return found
 
     def circular_error(self, part: float = 0.5) -> np.ndarray:
         """
@@ -144,8 +137,9 @@ class ErrorBudget:
         """
         if not 0.0 < part < 1.0:
             raise ValueError(f'part is {part!r}; expected a number between 0 and 1, such as 0.5')
-        return circular_error(part, self.linear.total_mean()[:, :2],
-                              self.linear.total_covariance()[:, :2, :2])
+        radius: np.ndarray = circular_error(part, self.linear.total_mean()[:, :2],
+                                            self.linear.total_covariance()[:, :2, :2])
+        return radius
 
     def contributions(self, quantity: str = 'horizontal') -> dict[str, np.ndarray]:
         """
@@ -167,7 +161,8 @@ class ErrorBudget:
                       t_s: float | None = None) -> list[Sensitivity]:
         """Return how a quantity changes with each parameter at a time, by default the last."""
         k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
-        return sensitivities(self.linear, _quantity(quantity), k)
+        found: list[Sensitivity] = sensitivities(self.linear, _quantity(quantity), k)
+        return found
 
     def requirement(self, text: str) -> RequirementAnswer:
         """
@@ -180,27 +175,23 @@ class ErrorBudget:
             errors are propagated anew.
         """
         wanted, linear = parse_requirement(text), self.linear
-        if wanted.t_s > linear.t_s[-1]:
-            raise ValueError(f'the requirement is {text!r}; expected a time of the navigation, '
-                             f'which ends at {linear.t_s[-1]:g} s')
-        if abs(linear.t_s - wanted.t_s).min() > 1e-6:
-            linear = error_budget(self.settings, self.motion, (wanted.t_s,))
-        return answer(linear, wanted)
+        times = times_of([wanted], linear.t_s[-1])
+        if abs(linear.t_s - wanted.t_s).min() > SAME_S:
+            linear = error_budget(self.settings, self.motion, times)
+        found: RequirementAnswer = answer(linear, wanted)
+        return found
 
     def linear_until(self) -> float | None:
         """Return the time, s, from which on errors of second order show, or None."""
-        return linear_until(self.linear)
+        until: float | None = linear_until(self.linear)
+        return until
 
     def compared(self) -> list[ComparedQuantity]:
         """Return the ensemble over the budget, quantity by quantity; empty without runs."""
         if self.ensemble is None:
             return []
-        start_s = (self.settings.motion_generator.start_s
-                   + self.settings.strapdown.initial.after_s)
-        near = np.abs(self.linear.t_s[:, np.newaxis] + start_s - 1e-9 * self.ensemble.t_ns)
-        found = self.ensemble.statistics
-        return compared(self.linear, self.linear.t_s[near.argmin(axis=0)], found.count,
-                        found.mean, found.covariance)
+        found: list[ComparedQuantity] = compared_with(self.settings, self.linear, self.ensemble)
+        return found
 
     def to_dataframe(self, quantity: str = 'horizontal') -> pandas.DataFrame:
         """

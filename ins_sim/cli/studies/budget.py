@@ -22,19 +22,27 @@ def add_arguments(parser):
 
 def run(chosen):
     """Propagate, show and save; return the exit code."""
-    from ins_sim.api.budgets import budget
+    from ins_sim.core.budget.linear_budget import error_budget
+    from ins_sim.core.budget.propagation import navigation_span_s
+    from ins_sim.io.motion import read_motion
     from ins_sim.own_folders import check_free, whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import budget as report
-    from ins_sim.studies.budget.requirement import parse_requirement
+    from ins_sim.studies.budget.beside import compared_with, fly_beside
+    from ins_sim.studies.budget.requirement import answer, parse_requirement, times_of
     check_free(chosen.output, chosen.force, report.MARK)
     wanted = [parse_requirement(text) for text in chosen.require]
     settings = arguments.read_settings(chosen)
-    found = budget(settings, [requirement.t_s for requirement in wanted], chosen.runs)
-    answers = [found.requirement(requirement.text) for requirement in wanted]
-    compared, console = found.compared(), PlainConsole()
+    motion = read_motion(settings.motion_generator)
+    linear = error_budget(settings, motion, times_of(wanted, navigation_span_s(settings)))
+    answers = [answer(linear, requirement) for requirement in wanted]
+    ensemble, compared = None, []
+    if chosen.runs:
+        ensemble = fly_beside(settings, motion, linear, chosen.runs)
+        compared = compared_with(settings, linear, ensemble)
+    console = PlainConsole()
     with whole_folder(chosen.output, chosen.force, report.MARK) as folder:
-        report.write_budget(folder, settings, found.linear, answers, compared, found.ensemble)
-    report.show_budget(settings, found.linear, answers, compared, found.ensemble, console)
+        report.write_budget(folder, settings, linear, answers, compared, ensemble)
+    report.show_budget(settings, linear, answers, compared, ensemble, console)
     console.print(f'report: {chosen.output}/report.html')
     return 0

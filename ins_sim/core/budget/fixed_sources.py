@@ -1,4 +1,4 @@
-"""What errs in the same way in every run: its means over the steps of TimeLanes, source by source."""
+"""What errs in the same way in every run, source by source: its means over the steps."""
 
 from dataclasses import replace
 import math

@@ -6,10 +6,12 @@ import numpy as np
 
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
-from .propagation import Propagation
+from .propagation import navigation_span_s, Propagation
 
 # The instants of a budget divide the run by this; others are added to them.
 INTERVALS = 360
+# Times that are nearer to each other are the same, s.
+SAME_S = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class LinearBudget:
     def at(self, t_s):
         """Return the number of the instant t_s, s; ValueError where the budget has none then."""
         k = int(np.argmin(np.abs(self.t_s - t_s)))
-        if abs(self.t_s[k] - t_s) > 1e-6:
+        if abs(self.t_s[k] - t_s) > SAME_S:
             raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget, '
                              f'of which the nearest is {self.t_s[k]:g} s')
         return k
@@ -90,11 +92,7 @@ def error_budget(settings, motion, instants_s=()):
 
 def instants_of(settings, wanted_s):
     """Return the times of a budget since the start of the navigation, s, from 0 on."""
-    after_s = settings.strapdown.initial.after_s
-    span_s = settings.motion_generator.duration_s - after_s
-    if not span_s > 0.0:
-        raise ValueError(f'initial.after_s is {after_s:g} s; expected less than duration_s, '
-                         f'{settings.motion_generator.duration_s:g} s')
+    span_s = navigation_span_s(settings)
     wanted = np.asarray(wanted_s, dtype=float)
     for t_s in wanted.tolist():
         if not 0.0 <= t_s <= span_s:
@@ -102,6 +100,5 @@ def instants_of(settings, wanted_s):
                              f'{span_s:g} s')
     even = span_s * np.arange(INTERVALS + 1) / INTERVALS
     # an instant that is even but for rounding is not taken twice
-    kept = wanted[[bool(np.abs(even - t_s).min() > 1e-6) for t_s in wanted.tolist()]] \
-        if len(wanted) else wanted
-    return np.unique(np.concatenate([even, kept]))
+    others = [t_s for t_s in wanted.tolist() if np.abs(even - t_s).min() > SAME_S]
+    return np.unique(np.concatenate([even, others]))

@@ -29,6 +29,21 @@ LOOKS = 1000
 START, OF_TRIAD, FIXED = slice(0, 9), (slice(9, 18), slice(18, 27)), slice(27, None)
 
 
+def navigation_start_s(settings):
+    """Return the motion time at which the strapdown of SimulationSettings starts, s."""
+    return settings.motion_generator.start_s + settings.strapdown.initial.after_s
+
+
+def navigation_span_s(settings):
+    """Return how long the strapdown of SimulationSettings navigates, s; ValueError if not."""
+    after_s, duration_s = (settings.strapdown.initial.after_s,
+                           settings.motion_generator.duration_s)
+    if not duration_s - after_s > 0.0:
+        raise ValueError(f'initial.after_s is {after_s:g} s; expected less than duration_s, '
+                         f'{duration_s:g} s')
+    return duration_s - after_s
+
+
 class Propagation:
     """
     The propagation of the errors of SimulationSettings along a motion.
@@ -46,7 +61,7 @@ class Propagation:
     def __init__(self, settings, motion, t_s):
         self._settings, self._motion, self.t_s = settings, motion, t_s
         sensor, strapdown = settings.imu_sensor, settings.strapdown
-        self._start_s = settings.motion_generator.start_s + strapdown.initial.after_s
+        self._start_s = navigation_start_s(settings)
         self._rotation, vertical = strapdown.earth.rotation, strapdown.vertical
         self._held = vertical.channel == 'truth'
         self._damping = (damping(vertical.time_constant_s)[:2] if vertical.channel == 'damped'
@@ -164,7 +179,7 @@ class Propagation:
             x = columns[:, list(START_AXES[source.kind])] * source.si[0]
             yield product(x, x.T)
             return
-        noise, (markov, walks) = self._noise[source.triad], self._processes[source.triad]
+        noise, (_, walks) = self._noise[source.triad], self._processes[source.triad]
         if source.kind in CONSTANTS:
             first = OF_TRIAD[source.triad].start + 3 * CONSTANTS.index(source.kind)
             for axis, value in enumerate(source.si):

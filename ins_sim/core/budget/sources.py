@@ -66,7 +66,7 @@ def sources_of(markov):
 
 
 def random_sources(gyro, accelerometer):
-    """Return the ErrorSources of GyroErrors and AccelerometerErrors that differ from run to run."""
+    """Return the ErrorSources of both triads that differ from run to run."""
     found = []
     for triad, settings in ((ACCELEROMETER, accelerometer), (GYRO, gyro)):
         for kind, words in RANDOM_WORDS.items():
@@ -82,8 +82,8 @@ def triad_source(settings, triad, key, words, fixed, inverse=False):
     kind, unit = KEYS[type(settings)][key]
     values = getattr(settings, key)
     described = type(settings).__dataclass_fields__[key].metadata['unit']
-    return ErrorSource(f'{settings.NAME}.{key}', f'{TRIAD_WORDS[triad]} {words}', described, values,
-                       tuple(unit * v for v in values), fixed, triad, kind, inverse)
+    return ErrorSource(f'{settings.NAME}.{key}', f'{TRIAD_WORDS[triad]} {words}', described,
+                       values, tuple(unit * v for v in values), fixed, triad, kind, inverse)
 
 
 def start_sources(initial):

@@ -71,7 +71,8 @@ class TimeLanes:
     def slopes(self, vectors):
         """Return the derivatives of vectors by time, one an instant."""
         values = np.reshape(vectors, (*self.t_s.shape, 3))
-        return np.reshape(np.gradient(values, axis=0, edge_order=2) / (0.5 * self.h)[:, np.newaxis], (-1, 3))
+        per_step = np.gradient(values, axis=0, edge_order=2)
+        return np.reshape(per_step / (0.5 * self.h)[:, np.newaxis], (-1, 3))
 
     def by_error(self, reading):
         """
@@ -100,5 +101,3 @@ class TimeLanes:
         part = slice((2 * step + 1) * width, (2 * step + 2) * width)
         return (truth.lat[part], truth.height[part], tuple(truth.v_n[part].T),
                 [x[2 * step + 1] for x in self.c])
-
-

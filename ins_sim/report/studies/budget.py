@@ -24,8 +24,8 @@ ARCSEC = 3600.0 * np.degrees(1.0)
 PARTS = (1.0 / 6.0, 0.5, 1.0)
 # Of what must improve, a source is told if without it the error is less than this part of it.
 LITTLE = 0.999
-LEFT_OUT = ('Left out: range and pulses of the instruments, jitter, latency and losses of samples, '
-            'errors of the algorithms, and errors of second order.')
+LEFT_OUT = ('Left out: range and pulses of the instruments, jitter, latency and losses of '
+            'samples, errors of the algorithms, and errors of second order.')
 
 
 def budget_title(settings):

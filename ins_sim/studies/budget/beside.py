@@ -1,12 +1,17 @@
 """An ensemble beside the budget: ratios of standard deviations and the intervals they lie in."""
 
 from dataclasses import dataclass
+import os
 
 import numpy as np
 from scipy.stats import chi2, norm
 
-from .quantities import QUANTITIES, second_order, shares
+from ins_sim.core.budget.propagation import navigation_start_s
+from ins_sim.core.ensemble.many_runs import simulate_runs
+from .quantities import LINEAR_UP_TO, QUANTITIES, second_order, shares
 
+# Instants at which an ensemble is compared with a budget.
+INSTANTS = 60
 # The part of ensembles that lie within the interval where the budget is right.
 WITHIN = 0.999
 COMPARED = ('horizontal', 'east', 'north', 'velocity', 'tilt', 'azimuth')
@@ -44,6 +49,29 @@ class ComparedQuantity:
         return (self.ratio < self.low) | (self.ratio > self.high)
 
 
+def fly_beside(settings, motion, budget, runs):
+    """
+    Return the EnsembleResult of so many runs of SimulationSettings, beside a LinearBudget.
+
+    Raises ValueError for a single run, and where the settings do not go side by side.
+    """
+    if not isinstance(runs, int) or isinstance(runs, bool) or runs < 2:
+        raise ValueError(f'the number of runs is {runs!r}; expected at least 2, whose scatter is '
+                         'compared with the budget, or 0 for none')
+    every = max(1, -(-(len(budget.t_s) - 1) // INSTANTS))
+    return simulate_runs(settings, motion, range(runs),
+                         navigation_start_s(settings) + budget.t_s[every::every],
+                         os.cpu_count() or 1)
+
+
+def compared_with(settings, budget, ensemble):
+    """Return the ComparedQuantities of an EnsembleResult of SimulationSettings."""
+    t_s = 1e-9 * ensemble.t_ns - navigation_start_s(settings)
+    nearest = np.abs(budget.t_s[:, np.newaxis] - t_s).argmin(axis=0)
+    found = ensemble.statistics
+    return compared(budget, budget.t_s[nearest], found.count, found.mean, found.covariance)
+
+
 def sigma_interval(count, within=WITHIN):
     """Return the interval of the ratio of a sample's standard deviation to the true one."""
     free = np.maximum(np.asarray(count) - 1, 1)
@@ -73,7 +101,7 @@ def compared(budget, t_s, count, mean, covariance):
     vertical channel that follows the truth, are left out.
     """
     numbers = np.array([budget.at(t) for t in t_s], dtype=int)
-    linear = second_order(budget)[numbers] <= 0.1
+    linear = second_order(budget)[numbers] <= LINEAR_UP_TO
     order = [OF_ENSEMBLE.index(k) for k in range(9)]
     p, m = budget.total_covariance()[numbers], budget.total_mean()[numbers]
     found = []

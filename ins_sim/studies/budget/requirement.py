@@ -100,6 +100,15 @@ def parse_requirement(text):
     return Requirement(text, name, statistic, limit * UNITS[unit][1], time * TIMES[time_unit])
 
 
+def times_of(requirements, end_s):
+    """Return the times of Requirements, s; ValueError where a navigation until end_s has none."""
+    for requirement in requirements:
+        if requirement.t_s > end_s:
+            raise ValueError(f'the requirement is {requirement.text!r}; expected a time of the '
+                             f'navigation, which ends after {end_s:g} s')
+    return [requirement.t_s for requirement in requirements]
+
+
 class _Scaled:
     """The value of a requirement at its time with errors scaled by factors."""
 
