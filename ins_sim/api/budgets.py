@@ -16,8 +16,8 @@ from ins_sim.settings.simulation import SimulationSettings
 from ins_sim.studies.budget.beside import compared_with, ComparedQuantity, fly_beside
 from ins_sim.studies.budget.circular_error import circular_error
 from ins_sim.studies.budget.quantities import linear_until, Quantity, QUANTITIES, shares
-from ins_sim.studies.budget.requirement import (answer, parse_requirement,
-                                                 RequirementAnswer, times_of)
+from ins_sim.studies.budget.requirement import (answer, parse_requirement, RequirementAnswer,
+                                                times_of)
 from ins_sim.studies.budget.sensitivities import sensitivities, Sensitivity
 from .dataframes import dataframe
 from .inputs import checked_path

@@ -7,7 +7,7 @@ import numpy as np
 
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.prediction.late_turns import is_long, late_force, late_turns
-from ins_sim.core.sensors.imu.triad_errors import TriadErrors
+from ins_sim.core.sensors.imu.triad_errors import discrete_lag, TriadErrors
 from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model
 from .sources import ACCELEROMETER, ErrorSource, FIXED_WORDS, GYRO, triad_source
 
@@ -32,7 +32,7 @@ def fixed_sources(settings, motion):
                 continue
             source = triad_source(errors, triad, key, FIXED_WORDS[coefficient], True,
                                   coefficient == LAG)
-            means = (_Lag(errors, triad, sensor) if coefficient == LAG else
+            means = (_Lag(errors, triad, settings) if coefficient == LAG else
                      _Immediate(errors, key, triad, sensor.temperature))
             found.append(FixedSource(source, means))
         values = delays.x, delays.y, delays.z
@@ -63,20 +63,34 @@ class _Lag:
     """
     Errors of lags, to second order in their time constants.
 
-    What a lag has not put out yet of the integral of its input u is tau u - u'/w^2, w = 2 pi f,
-    with tau = 1/w of first order and sqrt(2)/w of a Butterworth lag of second order.
+    What the output lacks of the integral of the input u is x/w of first order, and sqrt(2) x/w +
+    x'/w^2 of a Butterworth lag (``discrete_lag``), w = 2 pi f.  The lag is driven by the mean of
+    the input over each sampling period, so that after a steady rise of u its state x is
+    u - L u', where L is longer than 1/w by about half a period, and x' = v u'.  At the first
+    sample it is settled, x = u half a period before and x' = 0.
     """
 
-    def __init__(self, errors, triad, sensor):
-        model = triad_model(errors, period_ns(sensor.rate_hz) * 1e-9)
-        per_w = np.array([1.0 / (2.0 * math.pi * f) if f else 0.0 for f in model.bandwidth_hz])
-        self._tau = per_w if model.order == 1 else math.sqrt(2.0) * per_w
-        self._square, self._triad = per_w * per_w, triad
+    def __init__(self, errors, triad, settings):
+        dt_s = period_ns(settings.imu_sensor.rate_hz) * 1e-9
+        self._first_ns, self._half_s = round(1e9 * settings.motion_generator.start_s), 0.5 * dt_s
+        model = triad_model(errors, dt_s, errors.NAME)
+        first, second = np.zeros(3), np.zeros(3)
+        for axis, frequency in enumerate(model.bandwidth_hz):
+            if frequency:
+                a, b, c, d, _, _ = discrete_lag(frequency, model.order, dt_s)
+                behind = dt_s / (1.0 - a - b * c / (1.0 - d))
+                per_w = 1.0 / (2.0 * math.pi * frequency)
+                first[axis] = per_w if model.order == 1 else math.sqrt(2.0) * per_w
+                second[axis] = (first[axis] * (behind - 0.5 * dt_s)
+                                + per_w * per_w * c * behind / (1.0 - d))
+        self._first, self._second, self._triad = first, second, triad
 
     def __call__(self, lanes):
         value = (lanes.truth.f_ib_b if self._triad == ACCELEROMETER else
                  lanes.truth.omega_ib_b)
-        return lanes.late_means_in_n(self._tau * value - self._square * lanes.slopes(value))
+        settled = (lanes.truth.t_ns == self._first_ns)[:, np.newaxis]
+        second = np.where(settled, self._half_s * self._first, self._second)
+        return lanes.late_means_in_n(self._first * value - second * lanes.slopes(value))
 
 
 class _Delay:
