@@ -7,6 +7,7 @@ import numpy as np
 
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.prediction.late_turns import is_long, late_force, late_turns
+from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.triad_errors import discrete_lag, TriadErrors
 from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model
 from .sources import ACCELEROMETER, ErrorSource, FIXED_WORDS, GYRO, triad_source
@@ -32,7 +33,7 @@ def fixed_sources(settings, motion):
                 continue
             source = triad_source(errors, triad, key, FIXED_WORDS[coefficient], True,
                                   coefficient == LAG)
-            means = (_Lag(errors, triad, settings) if coefficient == LAG else
+            means = (_Lag(errors, triad, settings, motion) if coefficient == LAG else
                      _Immediate(errors, key, triad, sensor.temperature))
             found.append(FixedSource(source, means))
         values = delays.x, delays.y, delays.z
@@ -67,12 +68,13 @@ class _Lag:
     x'/w^2 of a Butterworth lag (``discrete_lag``), w = 2 pi f.  The lag is driven by the mean of
     the input over each sampling period, so that after a steady rise of u its state x is
     u - L u', where L is longer than 1/w by about half a period, and x' = v u'.  At the first
-    sample it is settled, x = u half a period before and x' = 0.
+    sample it is settled: x is the first reading, and x' = 0.
     """
 
-    def __init__(self, errors, triad, settings):
+    def __init__(self, errors, triad, settings, motion):
         dt_s = period_ns(settings.imu_sensor.rate_hz) * 1e-9
-        self._first_ns, self._half_s = round(1e9 * settings.motion_generator.start_s), 0.5 * dt_s
+        self._first_ns = round(1e9 * settings.motion_generator.start_s)
+        self._settled = _first_reading(settings.imu_sensor, motion, self._first_ns)[triad]
         model = triad_model(errors, dt_s, errors.NAME)
         first, second = np.zeros(3), np.zeros(3)
         for axis, frequency in enumerate(model.bandwidth_hz):
@@ -88,9 +90,18 @@ class _Lag:
     def __call__(self, lanes):
         value = (lanes.truth.f_ib_b if self._triad == ACCELEROMETER else
                  lanes.truth.omega_ib_b)
-        settled = (lanes.truth.t_ns == self._first_ns)[:, np.newaxis]
-        second = np.where(settled, self._half_s * self._first, self._second)
-        return lanes.late_means_in_n(self._first * value - second * lanes.slopes(value))
+        behind = self._first * value - self._second * lanes.slopes(value)
+        behind[lanes.truth.t_ns == self._first_ns] = self._first * self._settled
+        return lanes.late_means_in_n(behind)
+
+
+def _first_reading(sensor, motion, first_ns):
+    """Return the first mean specific force and rate, (3,) each: of a stream, those of then."""
+    if sensor.source == 'motion':
+        imu = MotionImu(sensor, motion, first_ns).advance(1)
+        return imu.f[0], imu.omega[0]
+    truth = motion.at(np.array([first_ns], dtype=np.int64))
+    return truth.f_ib_b[0], truth.omega_ib_b[0]
 
 
 class _Delay:
