@@ -49,7 +49,7 @@ class NoiseErrors:
     def __init__(self, markov, walk_s):
         self.sources = sources = sources_of(markov)
         self._of = [sources.index(process.source) for process in markov]
-        self._variances = np.array([process.variance for process in markov])
+        self._variances = [np.array(process.variance) for process in markov]
         self.white = np.zeros((GROWING, GROWING, 3))
         self.walk = np.zeros_like(self.white)
         self.markov = np.zeros((len(sources), *self.white.shape))
@@ -66,7 +66,7 @@ class NoiseErrors:
         ahead = moved(transition, self._with)
         cross = ahead[:, :, np.newaxis] * noise.start[:, np.newaxis, :, :, lane]
         self.markov = _carried(transition, self.markov) + noise.markov[..., lane]
-        for k, (source, variance) in enumerate(zip(self._of, self._variances.tolist())):
+        for k, (source, variance) in enumerate(zip(self._of, self._variances)):
             self.markov[source] += variance * (cross[k] + np.swapaxes(cross[k], 0, 1))
         self._with = (noise.kept[:, np.newaxis, :, lane] * ahead + noise.end[..., lane])
         self.white = _carried(transition, self.white[np.newaxis])[0] + noise.white[..., lane]

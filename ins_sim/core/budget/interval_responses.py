@@ -65,7 +65,7 @@ class TriadNoise:
     def __init__(self, markov, h, with_walk):
         sources = sources_of(markov)
         self._of = [sources.index(process.source) for process in markov]
-        self._variances = [process.variance for process in markov]
+        self._variances = np.reshape([process.variance for process in markov], (-1, 3, 1))
         times = np.array([process.time_s for process in markov]).reshape(-1, 3)
         x = h / times[:, :, np.newaxis]
         less = -elementary.expm1(-np.minimum(x, GONE))

@@ -53,11 +53,11 @@ class ErrorSource:
 
 @dataclass(frozen=True)
 class MarkovProcess:
-    """A stationary process: its source, time constants by axis, s, and variance for a unit."""
+    """A stationary process: its source, time constants, s, and variances for a unit, by axis."""
 
     source: ErrorSource
     time_s: tuple
-    variance: float
+    variance: tuple
 
 
 def sources_of(markov):
@@ -121,7 +121,8 @@ def processes(sources, triad, settings):
         if source.triad != triad:
             continue
         if source.kind == 'flicker':
-            markov += [MarkovProcess(source, (time,) * 3, FLICKER_SIGMA * FLICKER_SIGMA)
+            markov += [MarkovProcess(source, (time,) * 3,
+                                     (FLICKER_SIGMA * FLICKER_SIGMA,) * 3)
                        for time in FLICKER_TIMES]
         elif source.kind == 'walk':
             walks.append((source, np.ones(3)))
@@ -131,5 +132,6 @@ def processes(sources, triad, settings):
                 walks.append((source, np.where(walking, 1.0 / 3600.0, 0.0)))
             if not walking.all():
                 markov.append(MarkovProcess(source, tuple(
-                    1.0 if math.isinf(t) else t for t in settings.gauss_markov_time_s), 1.0))
+                    1.0 if math.isinf(t) else t for t in settings.gauss_markov_time_s),
+                    tuple(0.0 if w else 1.0 for w in walking.tolist())))
     return markov, walks
