@@ -14,14 +14,16 @@ from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.core.simulation.guided_flight import GuidedResult
 from ins_sim.core.simulation.inertial import SimulationResult
 from ins_sim.core.timeseries.fixes import GnssFix, VelocityFix
-from ins_sim.core.timeseries.histories import (AidedErrors, ImuSamples, NavErrors, NavStates,
-                                               Truth)
+from ins_sim.core.timeseries.histories import (AidedErrors, History, ImuSamples, NavErrors,
+                                               NavStates, Truth)
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from .dataframes import chosen, history_dataframe
+from .datasets import history_dataset
 from .inputs import checked_path
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
 Folder = Union[str, 'os.PathLike[str]']
 
@@ -106,10 +108,38 @@ class Run:
         ValueError
             Where the run has no such record.
         """
-        names = ('errors', 'states', 'truth', 'imu', 'twin')
-        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+        return history_dataframe(self._record(record))
 
-    def save(self, folder: Folder, overwrite: bool = False) -> None:
+    def to_xarray(self, record: str = 'errors') -> xarray.Dataset:
+        """
+        Return one record as a Dataset.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth', 'imu', 'twin'}
+
+        Returns
+        -------
+        xarray.Dataset
+            The dimensions are ``time``, motion time in whole nanoseconds, and of arrays ``axis``
+            (east, north, up), ``body_axis`` (x, y, z) or ``quaternion`` (x, y, z, w), so that
+            records can be merged. A variable has its unit in the attribute ``units``.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        ValueError
+            Where the run has no such record.
+        """
+        return history_dataset(self._record(record), {'record': record})
+
+    def _record(self, record: str) -> History:
+        names = ('errors', 'states', 'truth', 'imu', 'twin')
+        return chosen({name: getattr(self, name) for name in names}, record)
+
+    def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
+             tum: bool = False) -> None:
         """
         Write the run as ``ins_sim simulate -o`` does.
 
@@ -123,19 +153,29 @@ class Run:
         folder : str or path
         overwrite : bool, optional
             Replace the folder if it holds a run.
+        thin : int, optional
+            Write every thin-th output instant of truth, solution and errors; the record of the
+            IMU stays whole.
+        csv : bool, optional
+            Write a CSV table of each record too, with the columns of ``to_dataframe``.
+        tum : bool, optional
+            Write the trajectories in the map frame too, as TUM files, which evo reads.
 
         Raises
         ------
         ValueError
             Where the folder exists and is not to be replaced, or holds no run.
         """
-        self._write(folder, overwrite, None)
+        self._write(folder, overwrite, None, (thin, csv, tum))
 
-    def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
+    def _write(self, folder: Folder, overwrite: bool, report: Any,
+               files: tuple[int, bool, bool]) -> None:
         from ins_sim.own_folders import existing_parent, whole_folder
         from ins_sim.report import guided, storage, summary, titles
+        from ins_sim.report.files.wanted import WantedFiles
         from ins_sim.report.runs.page import run_notes
         from ins_sim.report.spool import Spool
+        wanted = WantedFiles(*files)
         checked_path('folder', folder)
         with Spool(existing_parent(folder)) as spool, whole_folder(
                 folder, overwrite, storage.MARK, 'overwrite=True') as work:
@@ -152,7 +192,8 @@ class Run:
             storage.write_run(work, self.settings, self.result,
                               [*rows, *guided.guided_rows(self.steered)], prediction, title,
                               report, self.own_motion, self.steered,
-                              run_notes(self.settings, self.result, prediction, self.steered))
+                              run_notes(self.settings, self.result, prediction, self.steered),
+                              wanted)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -223,15 +264,31 @@ class AidedRun:
         record : {'errors', 'states', 'truth'}
             Records of the unaided part: ``run.to_dataframe``.
         """
-        names = ('errors', 'states', 'truth')
-        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+        return history_dataframe(self._record(record))
 
-    def save(self, folder: Folder, overwrite: bool = False) -> None:
+    def to_xarray(self, record: str = 'errors') -> xarray.Dataset:
+        """
+        Return one record as a Dataset, as ``Run.to_xarray`` does.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth'}
+            ``estimates`` of errors have the dimension ``estimate``. Records of the unaided part:
+            ``run.to_xarray``.
+        """
+        return history_dataset(self._record(record), {'record': record})
+
+    def _record(self, record: str) -> History:
+        names = ('errors', 'states', 'truth')
+        return chosen({name: getattr(self, name) for name in names}, record)
+
+    def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
+             tum: bool = False) -> None:
         """Write the run as ``ins_sim simulate --aided -o`` does; see ``Run.save``."""
         from ins_sim.report import aided
         rows = aided.aided_rows(self.settings, self.result, self.run.states, self.run.errors)
-        self.run._write(folder, overwrite,
-                        aided.AidedReport(self.settings, self.result, rows))
+        self.run._write(folder, overwrite, aided.AidedReport(self.settings, self.result, rows),
+                        (thin, csv, tum))
 
 
 def _length(states: NavStates) -> str:

@@ -2,6 +2,7 @@
 
 import hashlib
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from ..page.html import REPORT, write_page
 from ..summary import DEG_PER_HOUR, gap_lines, parity_lines, withheld_lines
 from ..table import COLUMNS
 from ..titles import length_words
-from .aided_page import report_answer, report_chart, report_notes, report_table
 from .error_charts import error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
@@ -26,6 +26,8 @@ FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'manifest.yaml': 'where the numbers are the same to the last bit',
          'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
          'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+# And of those that are written on request.
+KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
 
 
@@ -52,8 +54,12 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     """
     charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
     tables = [_table(rows)]
+    answer = _answer(run.errors)
     if aided is not None:
-        charts.insert(0, report_chart(aided))
+        # Imports the statistics of SciPy, which takes as long as a short run.
+        from .aided_page import report_answer, report_chart, report_notes, report_table
+        answer = report_answer(aided)
+        charts.insert(0, report_chart(title, aided))
         tables.insert(0, report_table(aided))
         notes = [*notes, *report_notes(aided)]
     tracks = run_tracks(run, aided and aided.flown)
@@ -62,13 +68,15 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
         write_tracks(work, title, tracks)
     for chart in charts:
         save_chart(work, chart)
-    answer = _answer(run.errors) if aided is None else report_answer(aided)
     found = {path.name for path in work.iterdir()} - {REPORT}
+    files = {name: what for name, what in FILES.items() if name in found}
+    files.update({name: KINDS[Path(name).suffix] for name in sorted(found)
+                  if Path(name).suffix in KINDS})
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
         tuple([*notes, OBJECT] if own_motion else notes),
         aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
-        {name: what for name, what in FILES.items() if name in found}))
+        files))
 
 
 def _table(rows):
