@@ -51,6 +51,7 @@ from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ins_sim.api.budgets import budget, ErrorBudget
+    from ins_sim.api.ensembles import monte_carlo, MonteCarlo
     from ins_sim.api.inputs import presets, read_settings
     from ins_sim.api.offline import predict, simulate, simulate_aided
     from ins_sim.api.readers import open_bag, open_motion
@@ -64,11 +65,12 @@ if TYPE_CHECKING:
 __version__ = '0.1.0'
 
 __all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ErrorBudget', 'ImuRecord',
-           'Motion', 'Navigation', 'Prediction', 'Run', 'SimulationSettings', 'budget', 'navigate',
-           'open_bag', 'open_motion', 'predict', 'presets', 'read_settings', 'simulate',
-           'simulate_aided']
+           'MonteCarlo', 'Motion', 'Navigation', 'Prediction', 'Run', 'SimulationSettings',
+           'budget', 'monte_carlo', 'navigate', 'open_bag', 'open_motion', 'predict', 'presets',
+           'read_settings', 'simulate', 'simulate_aided']
 _MODULES = {
     'api.budgets': ('ErrorBudget', 'budget'),
+    'api.ensembles': ('MonteCarlo', 'monte_carlo'),
     'api.inputs': ('presets', 'read_settings'),
     'api.offline': ('predict', 'simulate', 'simulate_aided'),
     'api.readers': ('open_bag', 'open_motion'),

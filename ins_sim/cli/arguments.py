@@ -24,6 +24,14 @@ def add_force(parser, replaced):
     parser.add_argument('--force', action='store_true', help=f'replace {replaced}')
 
 
+def add_jobs(parser):
+    """Add --jobs and --scheduler: what computes the runs."""
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
+                        'as many as cores)')
+    parser.add_argument('--scheduler', metavar='ADDRESS', default=None, help='the scheduler of a '
+                        'Dask cluster to compute on, such as tcp://host:8786 (extra cluster)')
+
+
 def add_tables(parser):
     """Add --csv and --tum, what is written beside the arrays."""
     parser.add_argument('--csv', action='store_true', help='also write every record as a CSV '

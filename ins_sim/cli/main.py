@@ -11,7 +11,7 @@ from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
 from .studies import (allan, budget, compare_filters, compare_orientation, dtg_report, dtg_study,
-                      loop_study)
+                      loop_study, monte_carlo)
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
@@ -21,7 +21,7 @@ VERBS = {'simulate': simulate, 'list': listing, 'describe': describe, 'info': in
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
          'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
-         'loop-study': loop_study, 'allan': allan, 'budget': budget}
+         'loop-study': loop_study, 'allan': allan, 'monte-carlo': monte_carlo, 'budget': budget}
 NODE_VERBS = ('record', 'play')
 
 

@@ -60,7 +60,7 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.postprocessing', 'core.prediction', 'core.simulation', 'core.ensemble',
         'core.budget', 'core.standalone'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report', 'regular_file', 'own_folders',
+                         'graph', 'studies', 'report', 'jobs', 'regular_file', 'own_folders',
                          'ros_parameters', 'visible_text', 'yaml_text'}
 MAY_IMPORT = {
     'settings': set(),
@@ -85,8 +85,9 @@ MAY_IMPORT = {
                             'core.sensors', 'core.prediction'},
     'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',
                                 'core.simulation'},
-    'studies': CORE | {'settings'},
+    'studies': CORE | {'settings', 'jobs'},
     'messages': {'core.attitude', 'core.timeseries'},
+    'jobs': {'settings', 'core.numerics', '__version__'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
              'visible_text', 'yaml_text'},
     'own_folders': set(),

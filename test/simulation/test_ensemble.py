@@ -37,7 +37,7 @@ def single(settings, motion, run, initial=None):
     """Return the SimulationResult of a run."""
     if initial is not None:
         settings = replace(settings, strapdown=replace(settings.strapdown, initial=initial(run)))
-    return simulate(settings, motion, twin=False, run=run)
+    return simulate(settings.with_run(run), motion, twin=False)
 
 
 def errors_of(result):
@@ -65,6 +65,7 @@ def test_a_lane_is_the_single_run(names, assignments):
         assert found.final[k, 0] == states.lat[-1] and found.final[k, 1] == states.lon[-1]
         assert found.final[k, 2] == states.height[-1]
         np.testing.assert_array_equal(found.final[k, 3:6], states.v_n[-1])
+        np.testing.assert_array_equal(found.final[k, 6:], states.q_nb[-1])
         np.testing.assert_array_equal(found.final_errors[k], errors_of(one)[-1])
 
 
@@ -139,13 +140,3 @@ def test_cutting_and_a_lost_lane_change_no_other():
     others = np.arange(11) != 4
     np.testing.assert_array_equal(cut[:, others], errors[:, others])
     assert np.isnan(cut[:, 4]).all() and np.isnan(parts.final(truth[-1:])[0][4]).all()
-
-
-@pytest.mark.parametrize('assignment, message', [
-    ('orientation:=poisson', 'orientation is poisson'),
-    ('sampling.drop_out_probability:=0.1', 'sampling is not perfect')])
-def test_what_does_not_go_side_by_side_is_refused(assignment, message):
-    """The sentence names key, value and expectation."""
-    settings = settings_of(assignment)
-    with pytest.raises(ValueError, match=message):
-        many_runs.simulate_runs(settings, read_motion(settings.motion_generator), range(2), [1.0])

@@ -34,7 +34,7 @@ class Group:
         strapdown = settings.strapdown
         self.runs = tuple(runs)
         self._dt_ns = period_ns(strapdown.rate_hz)
-        instruments = [with_errors(settings.imu_sensor, run) for run in self.runs]
+        instruments = [with_errors(settings.with_run(run).imu_sensor) for run in self.runs]
         self._gyro = _sensed([i and i.gyro for i in instruments], 0)
         self._accelerometer = _sensed([i and i.accelerometer for i in instruments], 3)
         self._spin = ellipsoid.rotation_rate(strapdown.earth.rotation)
@@ -71,7 +71,7 @@ class Group:
         solved = [self._advance(imu[part], t_ns[part], truth[part],
                                 picked[(picked >= part.start) & (picked < part.stop)] - part.start)
                   for part in _pieces(imu.t_ns // self._dt_ns)]
-        return self._judged(t_ns[picked], np.concatenate(solved), truth[picked])
+        return self._judged(t_ns[picked], np.concatenate(solved), truth[picked])[..., 4:]
 
     def _advance(self, imu, t_ns, truth, picked):
         readings = self._sense(imu)
@@ -144,18 +144,19 @@ class Group:
                      for a in (t_s, truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)]
             with np.errstate(invalid='ignore'):
                 whole_run.judge_arrays(self._spin, every[0], rows, *every[1:], judged)
-        return judged[:, 4:].reshape(len(t_ns), count, ERRORS)
+        return judged.reshape(len(t_ns), count, whole_run.JUDGED)
 
     def final(self, truth):
         """
         Return the solutions at the last sample and their errors, NaN of the lost.
 
-        truth: Truth then.  Solutions (runs, SOLVED): lat, lon, height, v_n, q_ib.
+        truth: Truth then.  Solutions (runs, SOLVED): lat, lon, height, v_n, q_nb.
         """
         solved = self._solved()
         solved[:, self._lost] = np.nan
-        errors = self._judged(np.array([self._last_ns]), solved[None], truth)
-        return solved.T[:len(self.runs)], errors[0]
+        judged = self._judged(np.array([self._last_ns]), solved[None], truth)[0]
+        place = solved[:6].T[:len(self.runs)]
+        return np.concatenate([place, judged[:, :4]], axis=1), judged[:, 4:]
 
 
 def _sensed(triads, column):

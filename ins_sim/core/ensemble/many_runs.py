@@ -2,59 +2,43 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.sample_clock import SampleClock
-from ins_sim.core.navigation.whole_run import SOLVED
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.sampling import Sampler
 from ins_sim.core.simulation.inertial import check_start, ideal_blocks
-from .group import ERRORS, Group
+from .group import Group
 from .lanes import LANES
-from .statistics import ErrorStatistics
+from .one_by_one import simulate_each
+from .result import ErrorTally
 
-
-@dataclass(frozen=True, eq=False)
-class EnsembleResult:
-    """
-    What is kept of many runs.
-
-    runs: their numbers; t_ns (m,): the instants of the statistics; statistics: of the errors of
-    attitude (rad), velocity (m/s) and position (m), nine columns; final (runs, 10): the solutions
-    at the end, latitude, longitude, height, v_n, q_ib; final_errors (runs, 9); diverged: the
-    numbers of the runs that did not stay finite, which count no further.
-    """
-
-    runs: range
-    t_ns: np.ndarray
-    statistics: ErrorStatistics
-    final: np.ndarray
-    final_errors: np.ndarray
-    diverged: tuple
+NO_OUTPUT = ('the runs have no navigation output; expected duration_s longer than '
+             'initial.after_s')
 
 
 def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     """
-    Return the EnsembleResult of runs of SimulationSettings; run k is ``simulate`` with run=k.
+    Return the EnsembleResult of runs of SimulationSettings.
 
-    motion: that of settings.motion_generator; runs: range of numbers; instants_s: motion times of
-    the statistics, each taken at the first sample from then on that has a solution; threads: how
-    many work at once, which changes no bit; initial: function of the number of a run that returns
-    its Initial errors, by default those of the settings.  Raises ValueError where the settings do
-    not go side by side.
+    Run k is ``simulate`` of ``settings.with_run(k)``, to the bit.  motion: that of
+    settings.motion_generator; runs: range of numbers; instants_s: motion times of the statistics,
+    each taken at the first sample from then on that has a solution; threads: how many work at
+    once, which changes no bit; initial: function of the number of a run that returns its Initial
+    errors, by default those of the settings.  Settings that do not go side by side are simulated
+    run by run.  Raises ValueError as ``simulate`` does.
     """
-    check_length(settings.motion_generator, motion)
-    check_start(settings)
-    _check(settings)
+    check_runs(settings, motion)
+    wanted = np.unique(np.round(1e9 * np.asarray(instants_s, dtype=float)).astype(np.int64))
+    if not in_lanes(settings):
+        return simulate_each(settings, motion, runs, wanted, initial)
     groups = [Group(settings, runs[first:first + LANES], initial)
               for first in range(0, len(runs), LANES)]
-    wanted = np.unique(np.round(1e9 * np.asarray(instants_s, dtype=float)).astype(np.int64))
-    statistics, taken, truth = ErrorStatistics(len(wanted), ERRORS), [], None
+    tally, taken, truth = ErrorTally(len(wanted)), [], None
     work = ThreadPoolExecutor(threads) if threads > 1 else nullcontext()
     with work as pool:
         each = map if pool is None else pool.map
@@ -68,17 +52,14 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
             picked = np.unique(ends)
             for errors in each(partial(Group.advance, imu=imu[first:], t_ns=t_ns, truth=truth,
                                        picked=picked), groups):
-                statistics.add(len(taken), errors)
+                tally.add(len(taken), errors)
             taken.extend(t_ns[picked].tolist())
     if not truth:
-        raise ValueError('the runs have no navigation output; expected duration_s longer than '
-                         'initial.after_s')
+        raise ValueError(NO_OUTPUT)
     found = [group.final(truth[-1:]) for group in groups]
-    return EnsembleResult(
-        runs, np.array(taken, dtype=np.int64), statistics.first(len(taken)),
-        np.concatenate([np.empty((0, SOLVED)), *(solved for solved, _ in found)]),
-        np.concatenate([np.empty((0, ERRORS)), *(errors for _, errors in found)]),
-        tuple(run for group in groups for run in group.diverged))
+    return tally.result(runs, taken, [solved for solved, _ in found],
+                        [errors for _, errors in found],
+                        [run for group in groups for run in group.diverged])
 
 
 @paused_in_blocks
@@ -99,13 +80,27 @@ def _navigated(settings, motion):
         yield imu, first, t_ns[first:], motion.at(t_ns[first:])
 
 
-def _check(settings):
+def check_runs(settings, motion):
+    """Raise ValueError where SimulationSettings on a motion name no run of finite length."""
+    generator, after_s = settings.motion_generator, settings.strapdown.initial.after_s
+    if generator.motion.kind == 'guided':
+        # it gets its length as it is steered
+        motion.length_s(generator.start_s, generator.duration_s)
+    else:
+        check_length(generator, motion)
+    check_start(settings)
+    if after_s > generator.duration_s > 0.0:
+        raise ValueError(NO_OUTPUT)
+
+
+def in_lanes(settings):
+    """
+    Return whether runs of SimulationSettings go side by side.
+
+    Not tuned gyros, of which each run steps its rotors, nor what has samples at other instants in
+    each run, nor the other kinds of orientation, nor a motion that each run steers.
+    """
     sensor, strapdown = settings.imu_sensor, settings.strapdown
     sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))
-    for name, value, expected in (
-            ('gyro.model', sensor.gyro.model, 'ideal'),
-            ('orientation', strapdown.orientation, 'quaternion'),
-            ('sampling', 'perfect' if sampler.perfect else 'not perfect', 'perfect')):
-        if value != expected:
-            raise ValueError(f'{name} is {value} in an ensemble; expected {expected}: the other '
-                             'kinds are simulated run by run (simulate with run)')
+    return (sensor.gyro.model == 'ideal' and strapdown.orientation == 'quaternion'
+            and sampler.perfect and settings.motion_generator.motion.kind != 'guided')

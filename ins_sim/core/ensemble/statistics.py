@@ -98,6 +98,28 @@ class ErrorStatistics:
         part.histogram = self.histogram[:instants]
         return part
 
+    def joined(self, other):
+        """Return the statistics of the runs of both, those of other coming later."""
+        both = ErrorStatistics(0, self.mean.shape[1])
+        both.moments = merged(self.moments, other.moments)
+        both.histogram = self.histogram + other.histogram
+        return both
+
+    def arrays(self, name):
+        """Return {name_...: array}; of the histogram only the bins that are not empty."""
+        filled = np.flatnonzero(self.histogram)
+        return {f'{name}_count': self.moments.count, f'{name}_mean': self.moments.mean,
+                f'{name}_comoment': self.moments.comoment, f'{name}_bins': filled,
+                f'{name}_in_bins': self.histogram.ravel()[filled]}
+
+    @classmethod
+    def of_arrays(cls, arrays, name):
+        """Return the statistics of ``arrays``."""
+        made = cls(*arrays[f'{name}_mean'].shape)
+        made.moments = Moments(*(arrays[f'{name}_{part}'] for part in Moments._fields))
+        made.histogram.ravel()[arrays[f'{name}_bins']] = arrays[f'{name}_in_bins']
+        return made
+
     @property
     def count(self):
         """Return the number of runs at each instant, (m,)."""
@@ -114,11 +136,24 @@ class ErrorStatistics:
         less = np.where(self.count > 1, self.count - 1.0, np.nan)
         return self.moments.comoment / less[:, None, None]
 
+    @property
+    def rms(self):
+        """Return the root mean squares (m, n); NaN of no run."""
+        diagonal = np.diagonal(self.moments.comoment, axis1=1, axis2=2)
+        with np.errstate(invalid='ignore', divide='ignore'):
+            return np.sqrt(diagonal / self.count[:, None] + self.mean * self.mean)
+
+    @property
+    def sigma(self):
+        """Return the standard deviations (m, n), by count - 1; NaN of fewer than two runs."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+
     def percentile(self, percent):
         """
         Return the values (m, n) below which so many percent of the runs lie.
 
-        Linear inside a bin, so within the width of a bin: an eighth of the value at most.
+        Linear inside a bin, so within the width of a bin: an eighth of the value at most.  The
+        bin about zero is zero.
         """
         below = np.cumsum(self.histogram, axis=2)
         wanted = 0.01 * percent * self.count[:, None]
@@ -129,5 +164,5 @@ class ErrorStatistics:
                 inside = self.histogram[i, j, k]
                 low, high = SIGNED_EDGES[[max(k - 1, 0), min(k, len(SIGNED_EDGES) - 1)]]
                 part = (wanted[i, 0] - (below[i, j, k] - inside)) / max(inside, 1)
-                found[i, j] = low + part * (high - low)
+                found[i, j] = low + part * (high - low) if low != -high else 0.0
         return found

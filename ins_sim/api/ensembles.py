@@ -1,0 +1,240 @@
+"""The ensemble of a simulation and the record of what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import os
+from typing import Any, TYPE_CHECKING, Union
+
+import numpy as np
+
+from ins_sim.core.ensemble.many_runs import check_runs
+from ins_sim.core.ensemble.result import EnsembleResult
+from ins_sim.core.timeseries.named_columns import columns, COLUMNS, ENU, UNITS
+from ins_sim.io.motion import read_motion
+from ins_sim.jobs.executors import check_jobs, open_executor
+from ins_sim.settings.simulation import SimulationSettings
+from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
+                                             PERCENTS, worst_run)
+from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
+from .dataframes import dataframe
+from .datasets import dataset
+from .inputs import checked_path
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+Folder = Union[str, 'os.PathLike[str]']
+Progress = Union[Callable[[float], object], None]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MonteCarlo:
+    """
+    Many runs of one simulation.
+
+    Attributes
+    ----------
+    settings : SimulationSettings
+        Those of the first run; run k has ``settings.with_run(k)``.
+    result : EnsembleResult
+        The running statistics, and the solution and its errors at the end of every run.
+    errors : EnsembleErrors
+        Mean, sigma, rms, percentiles and CEP at the instants.
+    """
+
+    settings: SimulationSettings
+    result: EnsembleResult
+    errors: EnsembleErrors
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return (f'<MonteCarlo: {len(self.runs)} runs, {len(self.diverged)} of them diverged, '
+                f'{len(self.errors.t_ns)} instants>')
+
+    @property
+    def runs(self) -> range:
+        """The numbers of the runs (n,)."""
+        return self.result.runs
+
+    @property
+    def final_errors(self) -> dict[str, np.ndarray]:
+        """Attitude (rad), velocity (m/s), position (m) error of every run at its end, (n, 3)."""
+        return {name: self.result.final_errors[:, part] for name, part in PARTS.items()}
+
+    @property
+    def worst(self) -> tuple[int, float] | None:
+        """Number and horizontal error, m, of the run that ends farthest off."""
+        found: tuple[int, float] | None = worst_run(self.result)
+        return found
+
+    @property
+    def diverged(self) -> tuple[int, ...]:
+        """The numbers of the runs that did not stay finite; they count no further."""
+        return self.result.diverged
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of statistics and ends, the same whatever computed them."""
+        from ins_sim.jobs.fingerprint import array_digest
+        return str(array_digest(self.result.arrays()))
+
+    def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
+        """
+        Return the statistics, or the ends of the runs, as a DataFrame.
+
+        Parameters
+        ----------
+        record : {'errors', 'final'}
+            The first has a row an instant, the index ``t_ns``, and columns such as
+            ``position_sigma_north_m`` and ``position_cep95_m``; the second has a row a run, the
+            index ``run``, and columns such as ``position_north_m``.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed.
+        ValueError
+            Where record is another.
+        """
+        if record == 'final':
+            table: dict[str, np.ndarray] = {}
+            for name, values in self.final_errors.items():
+                table.update(columns(name, values))
+            return dataframe(np.array(self.runs), table).rename_axis('run')
+        if record != 'errors':
+            raise ValueError(f'record is {record!r}; expected errors or final')
+        table = {'runs': self.errors.count}
+        for name, dims, values, unit in self._statistics():
+            if dims == ('time',):
+                table[f'{name}_{unit}'] = values
+            elif dims == ('time', 'axis'):
+                table.update({f'{name}_{axis}_{unit}': values[:, k]
+                              for k, axis in enumerate(ENU)})
+        return dataframe(self.errors.t_ns, table)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """
+        Return statistics and ends as a Dataset with the dimensions run, time, axis, percent.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        """
+        variables: dict[str, Any] = {'runs': (('time',), self.errors.count, '')}
+        variables.update({name: (dims, values, UNITS[unit])
+                          for name, dims, values, unit in self._statistics()})
+        variables.update({f'final_{name}': (('run', 'axis'), values, UNITS[COLUMNS[name][1]])
+                          for name, values in self.final_errors.items()})
+        return dataset({'run': (np.array(self.runs), ''), 'time': (self.errors.t_ns, 'ns'),
+                        'axis': (ENU, ''), 'percent': (PERCENTS, '%')}, variables,
+                       {'seed': self.settings.imu_sensor.seed, 'digest': self.digest})
+
+    def _statistics(self) -> list[tuple[str, tuple[str, ...], np.ndarray, str]]:
+        """Return name, dimensions, values and unit, as it stands in names, of each statistic."""
+        e = self.errors
+        found: list[tuple[str, tuple[str, ...], np.ndarray, str]] = []
+        for name in PARTS:
+            unit = COLUMNS[name][1]
+            for what, values in (('mean', e.mean), ('sigma', e.sigma), ('rms', e.rms)):
+                found.append((f'{name}_{what}', ('time', 'axis'), values[name], unit))
+            found.append((f'{name}_percentiles', ('percent', 'time', 'axis'),
+                          e.percentiles[name], unit))
+            found.append((f'{name}_horizontal_rms', ('time',), e.horizontal_rms[name], unit))
+            found.append((f'{name}_horizontal_percentiles', ('percent', 'time'),
+                          e.horizontal_percentiles[name], unit))
+        return found + [(f'position_cep{percent}', ('time',), radius, 'm')
+                        for percent, radius in e.cep.items()]
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """
+        Write the study as ``ins_sim monte-carlo -o`` does.
+
+        Parameters
+        ----------
+        folder : str or path
+        overwrite : bool, optional
+            Replace the folder if it holds such a study.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or holds no study.
+        """
+        from ins_sim.own_folders import whole_folder
+        from ins_sim.report.studies import ensemble
+        checked_path('folder', folder)
+        with whole_folder(folder, overwrite, ensemble.ARRAYS, 'overwrite=True') as work:
+            title = ensemble.ensemble_title(self.settings, len(self.runs))
+            ensemble.write_ensemble(work, ensemble.ensemble_report(title, self.settings,
+                                                                   self.result))
+
+
+def monte_carlo(settings: SimulationSettings, runs: int = 1000, instants: int = INSTANTS,
+                jobs: int = 0, scheduler: str | None = None, blocks: Folder | None = None,
+                progress: Progress = None) -> MonteCarlo:
+    """
+    Simulate many runs, which differ in their random numbers, and keep statistics of their errors.
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+        Of ``read_settings``; their ``run`` is the number of the first run.
+    runs : int, optional
+        How many.
+    instants : int, optional
+        At how many instants, evenly from the start of the strapdown to the end, statistics are
+        kept.
+    jobs : int, optional
+        Processes; 0: as many as cores, 1: this one alone. The result has the same bits.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as ``'tcp://host:8786'``, in the place of processes.
+    blocks : str or path, optional
+        Folder in which finished blocks are kept, so that the same call goes on where an
+        interrupted one was. It is left as it is.
+    progress : callable, optional
+        Called with the fraction done, 0 to 1.
+
+    Returns
+    -------
+    MonteCarlo
+
+    Raises
+    ------
+    ValueError
+        As ``simulate`` does; where the folder holds blocks of other settings; where the cluster
+        cannot be used.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings(['racetrack', 'imu_tactical_fog'], {'duration_s': 2.0})
+    >>> study = ins_sim.monte_carlo(settings, runs=20, jobs=1)
+    >>> study
+    <MonteCarlo: 20 runs, 0 of them diverged, 61 instants>
+    >>> number, metres = study.worst
+    >>> alone = ins_sim.simulate(settings.with_run(number))
+    >>> bool((alone.errors.position[-1] == study.final_errors['position'][number]).all())
+    True
+    """
+    if not isinstance(settings, SimulationSettings):
+        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings of '
+                         'read_settings(..., aided=False)')
+    check_jobs(jobs, scheduler)
+    plan, store = EnsemblePlan(settings, runs, instants), None
+    check_runs(settings, read_motion(settings.motion_generator))
+    if blocks is not None:
+        from ins_sim.jobs.store import BlockStore
+        store = BlockStore(checked_path('blocks', blocks), plan.identity())
+    total = len(plan.blocks()) - (store.found if store else 0)
+
+    def went(done: int) -> None:
+        if progress is not None:
+            progress(done / total)
+
+    with open_executor(jobs, scheduler) as executor:
+        result = fly_ensemble(plan, read_motion, executor, store, went)
+    return MonteCarlo(settings, result, ensemble_errors(result))

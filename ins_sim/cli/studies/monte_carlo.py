@@ -1,0 +1,56 @@
+"""Verb monte-carlo: many runs of one simulation, and the statistics of their errors."""
+
+from .. import arguments
+
+HELP = 'many runs of one simulation: how far off, how sure'
+DESCRIPTION = ('Simulate many runs, which differ in their random numbers, on all cores or on a '
+               'Dask cluster, and write statistics of their errors at instants, the end of every '
+               'run, figures and a report. A study that was interrupted goes on where it was when '
+               'the same command is given again.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb to its parser."""
+    arguments.add_settings(parser)
+    parser.add_argument('--runs', type=int, default=1000, metavar='N', help='how many runs, from '
+                        'that of the parameter run on (default: %(default)s)')
+    parser.add_argument('--instants', type=int, default=61, metavar='N', help='instants of the '
+                        'statistics, evenly over the run (default: %(default)s)')
+    arguments.add_jobs(parser)
+    arguments.add_output(parser, 'ins_sim_ensemble', 'folder of the study')
+    arguments.add_force(parser, 'the study in DIR, and blocks of another one')
+
+
+def run(chosen):
+    """Fly, show and write; return the exit code."""
+    from ins_sim.core.ensemble.many_runs import check_runs
+    from ins_sim.io.motion import read_motion
+    from ins_sim.jobs.executors import check_jobs, open_executor
+    from ins_sim.jobs.store import BlockStore
+    from ins_sim.own_folders import whole_folder
+    from ins_sim.report.console import PlainConsole
+    from ins_sim.report.studies import ensemble as report
+    from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble
+    from ..progress import progress_bars
+    check_jobs(chosen.jobs, chosen.scheduler)
+    plan = EnsemblePlan(arguments.read_settings(chosen), chosen.runs, chosen.instants)
+    check_runs(plan.settings, read_motion(plan.settings.motion_generator))
+    console = PlainConsole()
+    with whole_folder(chosen.output, chosen.force, report.ARRAYS) as folder:
+        store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
+        if store.found:
+            console.print(f'{store.found} of {len(plan.blocks())} blocks found in {store.folder}')
+        with progress_bars(console) as add_bar, open_executor(
+                chosen.jobs, chosen.scheduler) as executor:
+            show = add_bar('flying', max(1, len(plan.blocks()) - store.found))
+            result = fly_ensemble(plan, read_motion, executor, store, show)
+        found = report.ensemble_report(report.ensemble_title(plan.settings, plan.runs),
+                                       plan.settings, result)
+        report.write_ensemble(folder, found)
+    store.remove()
+    report.show(found, console)
+    if found.worst is not None:
+        console.print(report.flight_command(found, f'{chosen.output}/{report.PARAMETERS}'))
+    console.print(f'SHA-256 of the result: {found.digest}')
+    console.print(f'written: {chosen.output}')
+    return 0

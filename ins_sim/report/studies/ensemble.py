@@ -1,0 +1,197 @@
+"""An ensemble in words and files: rows, tables, page, arrays, parameters and manifest."""
+
+from dataclasses import dataclass
+import json
+import math
+
+import numpy as np
+from rich.table import Table
+
+from ins_sim import parameter_files
+from ins_sim.core.ensemble.result import EnsembleResult
+from ins_sim.jobs.fingerprint import array_digest
+from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
+                                             worst_run)
+from ..charts.png import save_chart
+from ..files.packed_arrays import write_arrays
+from ..manifest import manifest
+from ..page.content import Page, PageTable
+from ..page.html import write_page
+from ..storage import MANIFEST, PARAMETERS
+from .ensemble_charts import AXES, ensemble_charts
+
+ARRAYS, SUMMARY = 'ensemble.npz', 'summary.json'
+ARCSEC = math.degrees(1.0) * 3600.0
+# How a quantity is told: its unit and the factor from SI.
+TOLD = {'attitude': ('arcsec', ARCSEC), 'velocity': ('m/s', 1.0), 'position': ('m', 1.0)}
+# So many instants stand in the tables, and so many runs in a sentence.
+MOST_ROWS, MOST_NAMED = 7, 10
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleReport:
+    """
+    What is said of an ensemble.
+
+    title: what was simulated, in words; settings: SimulationSettings of the first run; result;
+    errors: EnsembleErrors; worst: number and horizontal error, m, of the run that ends farthest
+    off, or None; digest: of the result, the same whatever computed it.
+    """
+
+    title: str
+    settings: object
+    result: EnsembleResult
+    errors: EnsembleErrors
+    worst: tuple | None
+    digest: str
+
+
+def ensemble_report(title, settings, result):
+    """Return the EnsembleReport of an EnsembleResult."""
+    return EnsembleReport(title, settings, result, ensemble_errors(result), worst_run(result),
+                          array_digest(result.arrays()))
+
+
+def ensemble_title(settings, runs):
+    """Return a line that names motion, length and number of runs."""
+    generator = settings.motion_generator
+    return (f'{generator.motion.kind}, {generator.duration_s:g} s at '
+            f'{settings.imu_sensor.rate_hz:g} Hz, {runs} runs')
+
+
+def flight_command(report, parameters=PARAMETERS):
+    """Return the command that flies the worst run alone, to the bit."""
+    number = report.worst[0]
+    return f'ins_sim simulate --params-file {parameters} -p run:={number} -o run_{number}'
+
+
+def notes(report):
+    """Return a sentence for each kind of run that was left out, or that started anew."""
+    result, said = report.result, []
+    if result.diverged:
+        said.append(f'{len(result.diverged)} of {len(result.runs)} runs have diverged and count '
+                    f'no further: {_named(result.diverged)}')
+    if result.restarted:
+        total = sum(count for _, count in result.restarted)
+        said.append(f'the strapdown started anew from the truth {total} times, after gaps, in '
+                    f'{len(result.restarted)} of {len(result.runs)} runs')
+    if len(result.runs) - len(result.diverged) < 2:
+        said.append('sigma and CEP need two runs or more')
+    return tuple(said)
+
+
+def _named(runs):
+    more = f' and {len(runs) - MOST_NAMED} more' if len(runs) > MOST_NAMED else ''
+    return ', '.join(map(str, runs[:MOST_NAMED])) + more
+
+
+def answer(report):
+    """Return what came out, in a sentence or two."""
+    errors = report.errors
+    if report.worst is None:
+        return f'All {len(report.result.runs)} runs have diverged.'
+    number, metres = report.worst
+    rms = errors.horizontal_rms['position'][-1]
+    said = f'After {errors.t_ns[-1] * 1e-9:g} s the horizontal position error is {rms:.4g} m rms'
+    if np.isfinite(errors.cep[50][-1]):
+        said += f', CEP50 {errors.cep[50][-1]:.4g} m, CEP95 {errors.cep[95][-1]:.4g} m'
+    return f'{said} over {errors.count[-1]} runs. The worst is run {number}, {metres:.4g} m off.'
+
+
+def tables(report):
+    """Return the PageTables: the end by quantity and axis, and position against time."""
+    errors, heads = report.errors, ('mean', 'sigma', 'rms', *(f'{p} %' for p in PERCENTS))
+    rows = []
+    for name in COLUMNS:
+        unit, factor = TOLD[name]
+        for k, axis in enumerate(AXES):
+            values = (errors.mean[name][-1, k], errors.sigma[name][-1, k],
+                      errors.rms[name][-1, k], *errors.percentiles[name][:, -1, k])
+            rows.append((f'{name} {axis}', unit, *_cells(factor * np.array(values))))
+        values = (errors.horizontal_rms[name][-1],
+                  *errors.horizontal_percentiles[name][:, -1])
+        rows.append((f'{name} horizontal', unit, '-', '-', *_cells(factor * np.array(values))))
+    end = PageTable(f'errors at {errors.t_ns[-1] * 1e-9:g} s', ('error', 'unit', *heads),
+                    tuple(rows), 'percentiles: so many runs lie below')
+    chosen = np.unique(np.linspace(0, len(errors.t_ns) - 1, MOST_ROWS).round().astype(int))
+    against = PageTable(
+        'horizontal position error against time',
+        ('time [s]', 'runs', 'sigma east [m]', 'sigma north [m]', 'rms [m]', 'CEP50 [m]',
+         'CEP95 [m]', '95 % [m]'),
+        tuple((f'{errors.t_ns[k] * 1e-9:g}', str(errors.count[k]),
+               *_cells([*errors.sigma['position'][k, :2], errors.horizontal_rms['position'][k],
+                        errors.cep[50][k], errors.cep[95][k],
+                        errors.horizontal_percentiles['position'][-1, k]])) for k in chosen),
+        'CEP: radius about the true place by mean and covariance; 95 %: below which so many runs '
+        'lie')
+    return end, against
+
+
+def _cells(values):
+    return ['-' if not np.isfinite(value) else float(value) for value in values]
+
+
+def show(report, console):
+    """Print tables, answer and notes."""
+    for one in tables(report):
+        table = Table(title=f'{report.title}: {one.title}', caption=one.note)
+        for k, head in enumerate(one.heads):
+            table.add_column(head, justify='left' if k == 0 else 'right')
+        for row in one.rows:
+            table.add_row(*(cell if isinstance(cell, str) else f'{cell + 0.0:.4g}'
+                            for cell in row))
+        console.print(table)
+    for line in (answer(report), *notes(report)):
+        console.print(line)
+
+
+def report_arrays(report):
+    """Return {name: array} of ensemble.npz: what was found, and the end of every run."""
+    errors, result = report.errors, report.result
+    arrays = {'t_ns': errors.t_ns, 'count': errors.count, 'percents': np.array(PERCENTS)}
+    for name in COLUMNS:
+        arrays.update({
+            f'{name}_mean': errors.mean[name], f'{name}_sigma': errors.sigma[name],
+            f'{name}_rms': errors.rms[name], f'{name}_percentiles': errors.percentiles[name],
+            f'{name}_horizontal_rms': errors.horizontal_rms[name],
+            f'{name}_horizontal_percentiles': errors.horizontal_percentiles[name]})
+    arrays.update({f'position_cep{percent}': radius for percent, radius in errors.cep.items()})
+    final, ends = result.final, result.final_errors
+    return {**arrays, 'covariance': result.statistics.covariance,
+            'runs': np.arange(result.runs.start, result.runs.stop),
+            'diverged': np.array(result.diverged, dtype=np.int64),
+            'final_lat': final[:, 0], 'final_lon': final[:, 1], 'final_height': final[:, 2],
+            'final_v_n': final[:, 3:6], 'final_q_nb': final[:, 6:10],
+            **{f'final_{name}_error': ends[:, part] for name, part in COLUMNS.items()}}
+
+
+def write_ensemble(folder, report):
+    """Write an EnsembleReport into a folder: arrays, summary, parameters, manifest, figures."""
+    charts = ensemble_charts(report.title, report.errors, report.result, report.worst)
+    write_arrays(folder / ARRAYS, report_arrays(report))
+    (folder / PARAMETERS).write_text(parameter_files.dump(report.settings), encoding='utf-8')
+    (folder / MANIFEST).write_text(manifest(report.settings), encoding='utf-8')
+    for chart in charts:
+        save_chart(folder, chart)
+    told = notes(report)
+    if report.worst is not None:
+        told += (f'the worst run alone: {flight_command(report)}',)
+    write_page(folder, Page(
+        report.title, answer(report), charts, tables(report), told, report.settings,
+        {'statistics and ends of all runs': report.digest},
+        {ARRAYS: 'statistics by instant, and the end of every run',
+         SUMMARY: 'the tables as JSON', PARAMETERS: 'every parameter',
+         MANIFEST: 'noise and bits'}))
+    (folder / SUMMARY).write_text(json.dumps(_summary(report), indent=1) + '\n',
+                                  encoding='utf-8')
+
+
+def _summary(report):
+    result = report.result
+    return {'title': report.title, 'runs': len(result.runs), 'first_run': result.runs.start,
+            'diverged': list(result.diverged), 'restarted': [list(p) for p in result.restarted],
+            'worst_run': report.worst and report.worst[0],
+            'worst_horizontal_m': report.worst and report.worst[1], 'digest': report.digest,
+            'tables': [{'title': table.title, 'heads': table.heads,
+                        'rows': [[None if cell == '-' else cell for cell in row]
+                                 for row in table.rows]} for table in tables(report)]}

@@ -1,0 +1,109 @@
+"""Ensembles over many processes: their blocks, the work of one, and the result of all."""
+
+from dataclasses import dataclass
+from functools import lru_cache, reduce
+from typing import Any, Callable
+import warnings
+
+import numpy as np
+
+from ins_sim.core.ensemble.lanes import LANES
+from ins_sim.core.ensemble.many_runs import in_lanes, simulate_runs
+from ins_sim.core.ensemble.result import joined, of_arrays
+from ins_sim.jobs.blocks import run_blocks
+from ins_sim.jobs.fingerprint import fingerprint
+
+MOST_RUNS, MOST_INSTANTS, INSTANTS = 10 ** 7, 10 ** 4, 61
+# Runs of a block: those side by side share truth and ideal readings, and a study shall have
+# blocks enough to be shared out evenly, so that little is lost with a worker.
+MOST_GROUPS, ENOUGH_BLOCKS = 16, 16
+
+
+@dataclass(frozen=True)
+class EnsemblePlan:
+    """
+    What is flown: runs of SimulationSettings, and the instants of the statistics.
+
+    settings: their run is the first one; runs: how many; instants: how many, evenly from the
+    start of the strapdown to the end, both among them.  Raises ValueError where there is nothing
+    to fly.
+    """
+
+    settings: Any
+    runs: int
+    instants: int = INSTANTS
+
+    def __post_init__(self):
+        """Check the numbers."""
+        for name, value, least, most in (('runs', self.runs, 1, MOST_RUNS),
+                                         ('instants', self.instants, 2, MOST_INSTANTS)):
+            if isinstance(value, bool) or not isinstance(value, int) or not (
+                    least <= value <= most):
+                raise ValueError(f'{name} is {value!r}; expected a whole number from {least} to '
+                                 f'{most}')
+
+    @property
+    def instants_s(self):
+        """Return the motion times of the statistics (instants,), s."""
+        generator = self.settings.motion_generator
+        first = generator.start_s + self.settings.strapdown.initial.after_s
+        last = generator.start_s + generator.duration_s
+        return first + (last - first) * (np.arange(self.instants) / (self.instants - 1.0))
+
+    def blocks(self):
+        """
+        Return the blocks, ranges of runs.
+
+        They are the same whatever computes them, as the last bits of the statistics depend on
+        them.
+        """
+        unit = LANES if in_lanes(self.settings) else 1
+        size = unit * min(MOST_GROUPS, -(-self.runs // (unit * ENOUGH_BLOCKS)))
+        first = self.settings.run
+        return [range(first + k, first + min(k + size, self.runs))
+                for k in range(0, self.runs, size)]
+
+    def identity(self):
+        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        settings = self.settings
+        return fingerprint({'motion_generator': settings.motion_generator,
+                            'imu_sensor': settings.imu_sensor, 'strapdown': settings.strapdown},
+                           study='monte-carlo', runs=self.runs, instants=self.instants)
+
+
+@dataclass(frozen=True)
+class EnsembleWork:
+    """
+    The work of a block of an EnsemblePlan: ``work(range of runs)`` returns arrays.
+
+    read_motion: function MotionGeneratorSettings -> Motion that can be pickled.
+    """
+
+    plan: EnsemblePlan
+    read_motion: Callable
+
+    def __call__(self, runs):
+        """Return ``EnsembleResult.arrays`` of some runs."""
+        generator = self.plan.settings.motion_generator
+        motion = _motion(self.read_motion, generator)
+        return simulate_runs(self.plan.settings, motion, runs, self.plan.instants_s).arrays()
+
+
+@lru_cache(1)
+def _motion(read, generator):
+    """Return the motion of settings; what is to be said of a recording the caller has said."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore')
+        return read(generator)
+
+
+def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
+    """
+    Return the EnsembleResult of an EnsemblePlan.
+
+    read_motion: as of EnsembleWork; executor, store, progress: as of ``run_blocks``.  The result
+    has the same bits whatever the executor.  Raises ValueError as the stages do.
+    """
+    work = EnsembleWork(plan, read_motion)
+    return reduce(joined, (of_arrays(arrays) for _, arrays in run_blocks(
+        work, plan.blocks(), executor, store, progress)))

@@ -1,0 +1,43 @@
+"""The circle in which a part of the runs ends, against published factors and counted runs."""
+
+from ins_sim.studies.error_circle import error_circle
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize('ratio, half, most', [
+    (1.0, 1.17741, 2.44775), (0.5, 0.87042, 2.03586), (0.2, 0.70585, 1.97041)])
+@pytest.mark.parametrize('turn', [0.0, 0.7])
+def test_factors_of_the_longer_sigma(ratio, half, most, turn):
+    """By the ratio of the axes, to the last digit of the table, however they lie."""
+    axes = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    covariance = axes @ np.diag([49.0, 49.0 * ratio ** 2]) @ axes.T
+    for part, factor in ((0.5, half), (0.95, most)):
+        assert error_circle((0.0, 0.0), covariance, part) == pytest.approx(7.0 * factor,
+                                                                           abs=7.0 * 6e-6)
+
+
+def test_a_mean_counts():
+    """The circle is about the true place: of 4e5 normals as many are inside, within 5 sigma."""
+    mean, covariance = np.array([3.0, -2.0]), np.array([[4.0, 1.0], [1.0, 0.5]])
+    drawn = np.random.default_rng(1).multivariate_normal(mean, covariance, 400000)
+    for part in (0.5, 0.95):
+        inside = np.mean(np.hypot(*drawn.T) < error_circle(mean, covariance, part))
+        assert abs(inside - part) < 5.0 * np.sqrt(part * (1.0 - part) / len(drawn))
+
+
+@pytest.mark.parametrize('mean, sigmas, part, radius', [
+    ((0.0, 0.0), (0.0, 0.0), 0.5, 0.0), ((3.0, 4.0), (0.0, 0.0), 0.95, 5.0),
+    # one axis alone: the quantiles of the absolute normal
+    ((0.0, 0.0), (0.0, 2.0), 0.95, 2.0 * 1.9599640), ((0.0, 0.0), (1e-12, 1.0), 0.5, 0.6744898),
+    # far off: the shift along the mean alone counts
+    ((1e4, 0.0), (1.0, 1.0), 0.5, 1e4 + 0.5e-4)])
+def test_narrow_and_far(mean, sigmas, part, radius):
+    """Also where an axis has no width, or the mean is far from the true place."""
+    found = error_circle(mean, np.diag(np.square(sigmas)), part)
+    assert found == pytest.approx(radius, rel=1e-6)
+
+
+def test_what_is_not_known_has_no_circle():
+    """The covariance of one run."""
+    assert np.isnan(error_circle((0.0, 0.0), np.full((2, 2), np.nan), 0.5))
