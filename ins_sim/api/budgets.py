@@ -10,16 +10,19 @@ from typing import Any, TYPE_CHECKING, Union
 import numpy as np
 
 from ins_sim.core.budget.linear_budget import error_budget, LinearBudget, SAME_S
-from ins_sim.core.ensemble.many_runs import EnsembleResult
 from ins_sim.core.motion.motion import Motion
+from ins_sim.core.timeseries.named_columns import ENU
+from ins_sim.report.studies.budget_beside import read_study
 from ins_sim.settings.simulation import SimulationSettings
-from ins_sim.studies.budget.beside import compared_with, ComparedQuantity, fly_beside
-from ins_sim.studies.budget.circular_error import circular_error
+from ins_sim.studies.budget.beside import (BesideRuns, compared, ComparedQuantity,
+                                           fly_beside)
 from ins_sim.studies.budget.quantities import linear_until, Quantity, QUANTITIES, shares
 from ins_sim.studies.budget.requirement import (answer, parse_requirement, RequirementAnswer,
                                                 times_of)
 from ins_sim.studies.budget.sensitivities import sensitivities, Sensitivity
+from ins_sim.studies.error_circle import error_circle
 from .dataframes import dataframe
+from .datasets import dataset
 from .inputs import checked_path
 from .offline import check_settings, given_motion
 
@@ -31,7 +34,7 @@ Folder = Union[str, 'os.PathLike[str]']
 
 
 def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: int = 0,
-           motion: Motion | None = None) -> ErrorBudget:
+           motion: Motion | None = None, beside: Folder | None = None) -> ErrorBudget:
     """
     Propagate the errors of a simulation by source, without a simulation.
 
@@ -49,6 +52,8 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
         How many runs to simulate beside it, for a comparison; 0 or at least 2.
     motion : Motion, optional
         A motion of your own, in place of the one that the settings name.
+    beside : str or path, optional
+        Folder of a study of ``monte_carlo`` of the same settings, to be compared with.
 
     Returns
     -------
@@ -76,8 +81,15 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     check_settings(settings, SimulationSettings)
     flown = given_motion(settings, motion)
     linear = error_budget(settings, flown, tuple(times_s))
-    return ErrorBudget(settings, flown, linear,
-                       fly_beside(settings, flown, linear, runs) if runs else None)
+    others: BesideRuns | None = None
+    if beside is not None:
+        if runs:
+            raise ValueError(f'runs is {runs!r} and beside {os.fspath(beside)!r}; expected one '
+                             'of them')
+        others = read_study(checked_path('beside', beside), settings)
+    elif runs:
+        others = fly_beside(settings, flown, linear, runs)
+    return ErrorBudget(settings, flown, linear, others)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,14 +103,14 @@ class ErrorBudget:
     motion : Motion
     linear : LinearBudget
         Covariances and mean errors by source: position, velocity and attitude, East, North, Up.
-    ensemble : EnsembleResult
+    beside : BesideRuns
         The runs beside it, or None.
     """
 
     settings: SimulationSettings
     motion: Motion
     linear: LinearBudget
-    ensemble: EnsembleResult | None
+    beside: BesideRuns | None
 
     def __repr__(self) -> str:
         """Return one line; a notebook shows it."""
@@ -126,7 +138,7 @@ class ErrorBudget:
         found: np.ndarray = shares(self.linear, _quantity(quantity)).rms
         return found
 
-    def circular_error(self, part: float = 0.5) -> np.ndarray:
+    def error_circle(self, part: float = 0.5) -> np.ndarray:
         """
         Return the radius that holds a part of the horizontal errors, (n,), m: CEP for 0.5.
 
@@ -137,8 +149,8 @@ class ErrorBudget:
         """
         if not 0.0 < part < 1.0:
             raise ValueError(f'part is {part!r}; expected a number between 0 and 1, such as 0.5')
-        radius: np.ndarray = circular_error(part, self.linear.total_mean()[:, :2],
-                                            self.linear.total_covariance()[:, :2, :2])
+        radius: np.ndarray = error_circle(self.linear.total_mean()[:, :2],
+                                          self.linear.total_covariance()[:, :2, :2], part)
         return radius
 
     def contributions(self, quantity: str = 'horizontal') -> dict[str, np.ndarray]:
@@ -188,9 +200,9 @@ class ErrorBudget:
 
     def compared(self) -> list[ComparedQuantity]:
         """Return the ensemble over the budget, quantity by quantity; empty without runs."""
-        if self.ensemble is None:
-            return []
-        found: list[ComparedQuantity] = compared_with(self.settings, self.linear, self.ensemble)
+        found: list[ComparedQuantity] = []
+        if self.beside is not None:
+            found = compared(self.linear, self.beside)
         return found
 
     def to_dataframe(self, quantity: str = 'horizontal') -> pandas.DataFrame:
@@ -210,19 +222,13 @@ class ErrorBudget:
         Dimensions source, time (s), error and error_2: covariance (source, time, error, error_2)
         of the random sources and mean (fixed_source, time, error).
         """
-        try:
-            import xarray
-        except ImportError:
-            raise ImportError("to_xarray needs xarray; expected pip install 'ins_sim[dataframe]'"
-                              ) from None
-        names = [f'{what}_{axis}' for what in ('position', 'velocity', 'attitude')
-                 for axis in ('east', 'north', 'up')]
-        return xarray.Dataset(
-            {'covariance': (('source', 'time', 'error', 'error_2'), self.linear.covariance),
-             'mean': (('fixed_source', 'time', 'error'), self.linear.mean)},
-            coords={'source': [s.key for s in self.linear.random],
-                    'fixed_source': [s.key for s in self.linear.fixed],
-                    'time': self.t_s, 'error': names, 'error_2': names})
+        names = [f'{what}_{axis}' for what in ('position', 'velocity', 'attitude') for axis in ENU]
+        return dataset(
+            {'source': ([source.key for source in self.linear.random], ''),
+             'fixed_source': ([source.key for source in self.linear.fixed], ''),
+             'time': (self.t_s, 's'), 'error': (names, ''), 'error_2': (names, '')},
+            {'covariance': (('source', 'time', 'error', 'error_2'), self.linear.covariance, ''),
+             'mean': (('fixed_source', 'time', 'error'), self.linear.mean, '')})
 
     def save(self, folder: Folder, overwrite: bool = False,
              requirements: Iterable[str] = ()) -> None:
@@ -248,7 +254,7 @@ class ErrorBudget:
         answers = [self.requirement(text) for text in requirements]
         with whole_folder(folder, overwrite, report.MARK, 'overwrite=True') as work:
             report.write_budget(work, self.settings, self.linear, answers, self.compared(),
-                                self.ensemble)
+                                self.beside)
 
 
 def _quantity(name: str) -> Quantity:

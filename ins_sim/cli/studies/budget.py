@@ -14,8 +14,11 @@ def add_arguments(parser):
     parser.add_argument('--require', action='append', default=[], metavar='TEXT',
                         help="what is required, such as 'horizontal rms 1852 m at 3600 s': says "
                         'what must improve; may be repeated')
-    parser.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs beside '
+    beside = parser.add_mutually_exclusive_group()
+    beside.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs beside '
                         'the budget and compare (default: none)')
+    beside.add_argument('--beside', metavar='STUDY', help='compare with the ensemble in the '
+                        'folder of a study of monte-carlo of the same settings')
     arguments.add_output(parser, 'ins_sim_budget', 'folder of figures, tables and report.html')
     arguments.add_force(parser, 'the budget in DIR')
 
@@ -28,7 +31,8 @@ def run(chosen):
     from ins_sim.own_folders import check_free, whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import budget as report
-    from ins_sim.studies.budget.beside import compared_with, fly_beside
+    from ins_sim.report.studies.budget_beside import read_study
+    from ins_sim.studies.budget.beside import compared as compared_with, fly_beside
     from ins_sim.studies.budget.requirement import answer, parse_requirement, times_of
     check_free(chosen.output, chosen.force, report.MARK)
     wanted = [parse_requirement(text) for text in chosen.require]
@@ -36,13 +40,14 @@ def run(chosen):
     motion = read_motion(settings.motion_generator)
     linear = error_budget(settings, motion, times_of(wanted, navigation_span_s(settings)))
     answers = [answer(linear, requirement) for requirement in wanted]
-    ensemble, compared = None, []
-    if chosen.runs:
-        ensemble = fly_beside(settings, motion, linear, chosen.runs)
-        compared = compared_with(settings, linear, ensemble)
-    console = PlainConsole()
+    beside = None
+    if chosen.beside:
+        beside = read_study(chosen.beside, settings)
+    elif chosen.runs:
+        beside = fly_beside(settings, motion, linear, chosen.runs)
+    compared, console = compared_with(linear, beside) if beside else [], PlainConsole()
     with whole_folder(chosen.output, chosen.force, report.MARK) as folder:
-        report.write_budget(folder, settings, linear, answers, compared, ensemble)
-    report.show_budget(settings, linear, answers, compared, ensemble, console)
+        report.write_budget(folder, settings, linear, answers, compared, beside)
+    report.show_budget(settings, linear, answers, compared, beside, console)
     console.print(f'report: {chosen.output}/report.html')
     return 0

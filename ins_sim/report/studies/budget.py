@@ -6,11 +6,11 @@ import numpy as np
 from rich.table import Table
 
 from ins_sim import parameter_files
-from ins_sim.studies.budget.circular_error import circular_error
 from ins_sim.studies.budget.quantities import (ANGLE, LENGTH, linear_until, LINEAR_UP_TO,
                                                QUANTITIES, shares)
 from ins_sim.studies.budget.requirement import UNITS
 from ins_sim.studies.budget.sensitivities import sensitivities
+from ins_sim.studies.error_circle import error_circle
 from ..charts import scales
 from ..charts.png import save_chart
 from ..page.content import Page, PageTable
@@ -24,6 +24,8 @@ ARCSEC = 3600.0 * np.degrees(1.0)
 PARTS = (1.0 / 6.0, 0.5, 1.0)
 # Of what must improve, a source is told if without it the error is less than this part of it.
 LITTLE = 0.999
+# So many runs are named.
+MOST_NAMED = 20
 LEFT_OUT = ('Left out: range and pulses of the instruments, jitter, latency and losses of '
             'samples, errors of the algorithms, and errors of second order.')
 
@@ -35,18 +37,18 @@ def budget_title(settings):
             f'{settings.imu_sensor.rate_hz:g} Hz, {generator.duration_s:g} s')
 
 
-def write_budget(folder, settings, linear, answers, compared, ensemble):
+def write_budget(folder, settings, linear, answers, compared, beside):
     """
     Write all that is told of a LinearBudget into a folder (pathlib.Path).
 
-    answers: RequirementAnswers; compared: ComparedQuantities; ensemble: EnsembleResult or None.
+    answers: RequirementAnswers; compared: ComparedQuantities of beside: BesideRuns, or None.
     """
     title = budget_title(settings)
     drawn = charts(linear, title, compared)
     for chart in drawn:
         save_chart(folder, chart)
     tables = budget_tables(linear, answers, compared)
-    notes = budget_notes(linear, compared, ensemble)
+    notes = budget_notes(linear, compared, beside)
     (folder / MARK).write_text(json.dumps(_numbers(linear, answers, tables, notes), indent=1)
                                + '\n', encoding='utf-8')
     np.savez_compressed(folder / ARRAYS, t_s=linear.t_s, covariance=linear.covariance,
@@ -61,7 +63,7 @@ def write_budget(folder, settings, linear, answers, compared, ensemble):
          SETTINGS: 'what was simulated', **{f'{c.name}.png': c.title for c in drawn}}))
 
 
-def show_budget(settings, linear, answers, compared, ensemble, console):
+def show_budget(settings, linear, answers, compared, beside, console):
     """Print the answer, the tables and the notes."""
     for table in budget_tables(linear, answers, compared):
         shown = Table(title=table.title, caption=table.note or None)
@@ -71,7 +73,7 @@ def show_budget(settings, linear, answers, compared, ensemble, console):
         for row in table.rows:
             shown.add_row(*(f'{x:.4g}' if isinstance(x, float) else str(x) for x in row))
         console.print(shown)
-    for note in budget_notes(linear, compared, ensemble):
+    for note in budget_notes(linear, compared, beside):
         console.print(note)
     console.print(f'{budget_title(settings)}: {answer_sentence(linear)}')
     for answer in answers:
@@ -231,7 +233,7 @@ def _beside_table(compared):
                      'Horizontal quantities: rms; of one axis: sigma.')
 
 
-def budget_notes(linear, compared, ensemble):
+def budget_notes(linear, compared, beside):
     """Return sentences on what was left out, and on how far the budget holds."""
     notes = [LEFT_OUT]
     until = linear_until(linear)
@@ -243,24 +245,28 @@ def budget_notes(linear, compared, ensemble):
         if part > 0.0:
             notes.append(f'In {100.0 * part:.2g} % of the time the input of the {name} is beyond '
                          'their range, which the budget leaves out.')
-    if ensemble is not None:
-        notes.append(_ensemble_note(compared, ensemble))
+    if beside is not None:
+        notes.append(_ensemble_note(compared, beside))
+        if any(source.triad is None for source in linear.random):
+            notes.append('No run draws errors of the start: for the comparison the budget is '
+                         'taken without the standard deviations of initial.*.')
     return tuple(notes)
 
 
-def _ensemble_note(compared, ensemble):
+def _ensemble_note(compared, beside):
     lost = ''
-    if ensemble.diverged:
-        lost = (f' {len(ensemble.diverged)} of them diverged and are left out: '
-                f'{", ".join(map(str, ensemble.diverged[:20]))}.')
+    if beside.diverged:
+        lost = (f' {len(beside.diverged)} of them diverged and count no further: '
+                f'{", ".join(map(str, beside.diverged[:MOST_NAMED]))}'
+                + (' and others.' if len(beside.diverged) > MOST_NAMED else '.'))
     off = [found.name for found in compared if found.differs.any()]
     told = ('is inside its 99.9 % interval everywhere' if not off else
             f'leaves its 99.9 % interval in {", ".join(off)}')
-    return f'The ensemble of {len(ensemble.runs)} runs {told}.{lost}'
+    return f'The ensemble of {beside.runs} runs {told}.{lost}'
 
 
 def _cep(linear, part):
-    return circular_error(part, linear.total_mean()[:, :2], linear.total_covariance()[:, :2, :2])
+    return error_circle(linear.total_mean()[:, :2], linear.total_covariance()[:, :2, :2], part)
 
 
 def _text(unit, value):

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ins_sim.studies.budget.circular_error import circular_error
 from ins_sim.studies.budget.quantities import (ANGLE, LENGTH, LINEAR_UP_TO, QUANTITIES,
                                                second_order, shares, SPEED)
+from ins_sim.studies.error_circle import error_circle
 from ..charts import scales
 from ..charts.chart import Band, Bars, Chart, Curve, DASHED, Level, LOG, Markers, Panel, Stack
 from ..charts.palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, RED
@@ -108,8 +108,8 @@ def _total(linear, title):
     rms = shares(linear, QUANTITIES['horizontal']).rms
     mean, covariance = linear.total_mean()[:, :2], linear.total_covariance()[:, :2, :2]
     curves = {'horizontal rms': (rms, BLACK),
-              'CEP95': (circular_error(0.95, mean, covariance), RED),
-              'CEP50': (circular_error(0.5, mean, covariance), ORANGE),
+              'CEP95': (error_circle(mean, covariance, 0.95), RED),
+              'CEP50': (error_circle(mean, covariance, 0.5), ORANGE),
               'north rms': (shares(linear, QUANTITIES['north']).rms, BLUE),
               'east rms': (shares(linear, QUANTITIES['east']).rms, GREEN)}
     factor, unit = scales.scale(scales.LENGTHS, curves['CEP95'][0].max())

@@ -8,7 +8,7 @@ import numpy as np
 
 from ins_sim.core.budget.sources import ErrorSource
 from ins_sim.settings import shown
-from .circular_error import circular_error
+from ..error_circle import error_circle
 from .quantities import ANGLE, LENGTH, QUANTITIES, SPEED
 
 # Unit: (its quantity, SI value).
@@ -122,7 +122,7 @@ class _Scaled:
     def value(self, covariance, mean):
         """Return the values (n,) for covariances (n, a, a) and means (n, a)."""
         if self._part is not None:
-            return circular_error(self._part, mean, covariance)
+            return error_circle(mean, covariance, self._part)
         return np.sqrt(np.trace(covariance, axis1=1, axis2=2) + np.square(mean).sum(axis=1))
 
     def by_factor(self, of_random, of_fixed):

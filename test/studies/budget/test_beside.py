@@ -5,8 +5,10 @@ import pytest
 
 import ins_sim
 from ins_sim.core.budget.linear_budget import LinearBudget
-from ins_sim.studies.budget.beside import compared, rms_scatter, sigma_interval
+from ins_sim.core.budget.sources import ErrorSource
+from ins_sim.studies.budget.beside import BesideRuns, compared, rms_scatter, sigma_interval
 
+SOURCE = ErrorSource('one', 'one', 'm', (1.0,), (1.0,), False, 0, 'white')
 INSTRUMENTS = 'imu_tactical_fog', 'imu_tactical_mems'
 
 
@@ -43,13 +45,14 @@ def test_an_ensemble_of_another_instrument_differs():
     t_s = np.array([0.0, 10.0])
     p = np.zeros((1, 2, 9, 9))
     p[0, 1] = np.diag([4.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1e-8, 1e-8, 1e-6])
-    linear = LinearBudget(t_s, np.full(2, 0.9), ('one',), p, np.zeros((1, 2, 3, 9)), (),
+    linear = LinearBudget(t_s, np.full(2, 0.9), (SOURCE,), p, np.zeros((1, 2, 3, 9)), (),
                           np.zeros((0, 2, 9)), np.zeros(2))
     mean, order = np.zeros((1, 9)), [6, 7, 8, 3, 4, 5, 0, 1, 2]
     sample = p[0, 1][order][:, order]
     count = np.array([1000])
     for factor, differs in ((1.0, False), (1.15, True)):
-        for found in compared(linear, [10.0], count, mean, factor ** 2 * sample[None]):
+        for found in compared(linear, BesideRuns(
+                1000, (), np.array([10.0]), count, mean, factor ** 2 * sample[None])):
             assert bool(found.differs[0]) == differs, found.name
             assert found.ratio[0] == pytest.approx(factor, rel=1e-3)
 
@@ -66,7 +69,7 @@ def test_ensemble_is_inside_its_interval(instrument, runs, seconds, figures):
     """
     settings = ins_sim.read_settings(['racetrack', instrument], {'duration_s': seconds})
     budget = ins_sim.budget(settings, runs=runs)
-    assert budget.ensemble.statistics.count.min() == runs
+    assert budget.beside.count.min() == runs
     for found in budget.compared():
         print(instrument, found.name, found.ratio.min().round(4), found.ratio.max().round(4),
               found.low.min().round(4), found.high.max().round(4))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ins_sim.studies.budget.circular_error import circular_error
+from ins_sim.studies.error_circle import error_circle
 
 
 @pytest.mark.parametrize('ratio, half, most', [
@@ -16,7 +16,7 @@ def test_factors_by_the_ratio_of_the_axes(ratio, half, most):
         turn = np.array([[c, -s], [s, c]])
         p = (turn @ np.diag([9.0, 9.0 * ratio * ratio]) @ turn.T)[None]
         for part, expected in ((0.5, half), (0.95, most)):
-            assert circular_error(part, np.zeros((1, 2)), p)[0] == pytest.approx(
+            assert error_circle(np.zeros((1, 2)), p, part)[0] == pytest.approx(
                 3.0 * expected, abs=3e-5)
 
 
@@ -26,7 +26,7 @@ def test_with_a_mean_it_is_the_quantile_of_draws():
     draws = np.random.default_rng(1).multivariate_normal(mean, p, 200_000)
     size = np.hypot(draws[:, 0], draws[:, 1])
     for part in (0.5, 0.95):
-        assert circular_error(part, mean[None], p[None])[0] == pytest.approx(
+        assert error_circle(mean[None], p[None], part)[0] == pytest.approx(
             np.quantile(size, part), rel=1e-2)
 
 
@@ -34,4 +34,4 @@ def test_without_scatter_it_is_the_mean():
     """Also with almost none, and with none at all."""
     mean = np.array([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]])
     p = np.stack([np.zeros((2, 2)), 1e-16 * np.eye(2), np.zeros((2, 2))])
-    assert circular_error(0.5, mean, p) == pytest.approx([5.0, 5.0, 0.0], abs=1e-6)
+    assert error_circle(mean, p, 0.5) == pytest.approx([5.0, 5.0, 0.0], abs=1e-6)
