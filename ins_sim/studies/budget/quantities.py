@@ -64,7 +64,8 @@ def shares(budget, quantity):
     """Return the Shares of a Quantity in a LinearBudget."""
     axes = list(quantity.axes)
     variances = np.diagonal(budget.covariance, axis1=2, axis2=3)[..., axes]
-    random = variances.sum(axis=2)
+    # rounding may leave a little less than nothing
+    random = np.maximum(variances.sum(axis=2), 0.0)
     mean = budget.mean[..., axes]
     fixed = (mean * mean.sum(axis=0)).sum(axis=2)
     return Shares(random, mean, fixed,
