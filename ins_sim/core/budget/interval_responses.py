@@ -16,13 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ins_sim.core.navigation.error_dynamics import change, GROWING, inertial_rows
+from ins_sim.core.navigation.error_dynamics import GROWING, inertial_rows
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import lane_product
-from .sources import ACCELEROMETER, GYRO, sources_of
+from .sources import sources_of
 
-V, PHI, UP = slice(3, 6), slice(6, 9), (2, 5)
-ROWS = {ACCELEROMETER: V, GYRO: PHI}
+# Height and vertical velocity.
+UP = 2, 5
 # Up to this ratio of a step to a time constant the variance of a mean is a series, and from the
 # other one on nothing is left of a process.
 SHORT, GONE = 0.1, 700.0
@@ -50,6 +50,7 @@ class TriadNoise:
     markov : MarkovProcesses of the triad
     h : (n,) length of a step, s
     with_walk : whether there is a random walk
+    count : how many errors are alive
 
     Attributes
     ----------
@@ -62,7 +63,7 @@ class TriadNoise:
 
     """
 
-    def __init__(self, markov, h, with_walk):
+    def __init__(self, markov, h, with_walk, count):
         sources = sources_of(markov)
         self._of = [sources.index(process.source) for process in markov]
         self._variances = np.reshape([process.variance for process in markov], (-1, 3, 1))
@@ -71,9 +72,9 @@ class TriadNoise:
         less = -elementary.expm1(-np.minimum(x, GONE))
         self._a, self._k, self._x = 1.0 - less, less / x, x
         self._h, self._walks = h, with_walk
-        shape = (len(times), GROWING, 3, len(h))
+        shape = (len(times), count, 3, len(h))
         self.start, self.end, self.kept = np.zeros(shape), np.zeros(shape), np.ones_like(x)
-        self.white = np.zeros((GROWING, GROWING, 3, len(h)))
+        self.white = np.zeros((count, count, 3, len(h)))
         self.markov = np.zeros((len(sources), *self.white.shape))
         self._sum, self.walk_end = np.zeros(shape[1:]), np.zeros(shape[1:])
         self.walk = np.zeros_like(self.white)
@@ -104,13 +105,17 @@ class TriadNoise:
             self.walk_end += driven
             self._sum += half
 
-    def finish(self):
-        """Complete the covariances once all steps are added."""
+    def finish(self, alive):
+        """Complete the covariances once all steps are added; alive: numbers of the errors."""
         self.markov += np.swapaxes(self.markov, 1, 2)
         for k, (source, variance) in enumerate(zip(self._of, self._variances)):
             self.markov[source] += (variance * mean_variance(self._x[k])) * self.white
         self.walk += (self._h / 12.0) * self.white
         self.white /= self._h
+        for name, axes in (('white', (0, 1)), ('walk', (0, 1)), ('markov', (1, 2)),
+                           ('start', (1,)), ('end', (1,)), ('walk_end', (0,))):
+            for axis in axes:
+                setattr(self, name, spread(getattr(self, name), alive, axis))
 
 
 def mean_variance(x):
@@ -121,41 +126,57 @@ def mean_variance(x):
         1.0 + elementary.expm1(-np.minimum(high, GONE)) / high))
 
 
-def interval_responses(lanes, spin, held, damping, noises, fixed):
+def interval_responses(lanes, spin, held, damping, processes, fixed):
     """
     Return the Responses of TimeLanes.
 
     spin, damping: as of ``free_covariance.coefficients``; held: whether height and vertical
-    velocity come from the truth; noises: a TriadNoise of each triad; fixed (steps, 6, f, n): means
-    in n of the f errors of accelerometers and gyros that are the same in every run.
+    velocity come from the truth, and have no errors; processes: of accelerometers and gyros,
+    MarkovProcesses and walks; fixed (steps, 6, f, n): means in n of the f errors of accelerometers
+    and gyros that are the same in every run.
     """
+    alive = [k for k in range(GROWING) if not (held and k in UP)]
+    places = alive.index(3)
     force, rate = lanes.columns(lanes.truth.f_ib_b), lanes.columns(lanes.truth.omega_ib_b)
     f_n = lanes.means_in_n(force)
-    errors = lanes.by_error(force), lanes.by_error(rate)
+    errors = lanes.by_error(force)[:, :len(alive) - places - 3], lanes.by_error(rate)
+    columns = slice(places, -3), slice(-3, None)
+    fixed = fixed[:, [k - 3 for k in alive[places:]]]
     width = len(lanes.h)
-    a = np.repeat(np.eye(GROWING)[:, :, np.newaxis], width, axis=2)
-    if held:
-        a[list(UP)] = 0.0
-    constants = np.zeros((GROWING, 9, width)), np.zeros((GROWING, 9, width))
-    added = np.zeros((GROWING, fixed.shape[2], width))
+    a = np.repeat(np.eye(len(alive))[:, :, np.newaxis], width, axis=2)
+    constants = [np.zeros((len(alive), 9, width)) for _ in errors]
+    added = np.zeros((len(alive), fixed.shape[2], width))
     half = 0.5 * lanes.h * lanes.h
+    noises = [TriadNoise(markov, lanes.h, bool(walks), len(alive)) for markov, walks in processes]
     for step in range(lanes.steps - 1, -1, -1):
-        f = _coefficients(lanes.middle(step), f_n[step], spin, held, damping)
-        driven = lanes.h * a[:, 3:] + half * lane_product(a, f[:, 3:])
-        for triad in (ACCELEROMETER, GYRO):
-            rows = slice(ROWS[triad].start - 3, ROWS[triad].stop - 3)
-            response = lane_product(driven[:, rows], errors[triad][step])
-            constants[triad][...] += response
+        f = _coefficients(lanes.middle(step), f_n[step], spin, damping)[alive][:, alive]
+        # A_j exp(F h) to second order, as ``error_dynamics.change`` has it
+        moved = lane_product(a, f)
+        driven = lanes.h * a + half * moved
+        for triad, part in enumerate(columns):
+            response = lane_product(driven[:, part], errors[triad][step])
+            constants[triad] += response
             noises[triad].add(response[:, :3])
-        if len(added[0]):
-            added += lane_product(driven, fixed[step])
-        a = a + lane_product(a, change(f, lanes.h))
+        if added.size:
+            added += lane_product(driven[:, places:], fixed[step])
+        a = a + (lanes.h * moved + half * lane_product(moved, f))
     for noise in noises:
-        noise.finish()
-    return Responses(a, constants, added, noises)
+        noise.finish(alive)
+    return Responses(spread(spread(a, alive, 0), alive, 1),
+                     [spread(constant, alive, 0) for constant in constants],
+                     spread(added, alive, 0), noises)
 
 
-def _coefficients(middle, f_n, spin, held, damping):
+def spread(values, alive, axis):
+    """Return an array with all nine errors along an axis, zeros for those that are not alive."""
+    shape = list(values.shape)
+    shape[axis] = GROWING
+    found = np.zeros(shape)
+    np.moveaxis(found, axis, 0)[alive] = np.moveaxis(values, axis, 0)
+    return found
+
+
+def _coefficients(middle, f_n, spin, damping):
     """Return F (9, 9, n) of the middle of a step."""
     lat, height, v, c = middle
     rows = inertial_rows(lat, height, v, c, f_n, spin)
@@ -163,8 +184,6 @@ def _coefficients(middle, f_n, spin, held, damping):
     for i, row in enumerate(rows):
         for k, value in enumerate(row[:GROWING]):
             f[i, k] = value
-    if held:
-        f[list(UP)] = f[:, list(UP)] = 0.0
     f[2, 2] -= damping[0]
     f[5, 2] -= damping[1]
     return f

@@ -12,7 +12,7 @@ from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.triad_model import triad_model
 from .accumulation import level_turn, NoiseErrors, START_AXES, start_columns
 from .fixed_sources import fixed_sources
-from .interval_responses import interval_responses, TriadNoise
+from .interval_responses import interval_responses
 from .sources import (ACCELEROMETER, CONSTANTS, GYRO, processes, random_sources, start_errors,
                       start_sources)
 from .time_lanes import TimeLanes
@@ -95,8 +95,7 @@ class Propagation:
             self._judge_range(lanes, self.t_s[-1])
             responses = interval_responses(
                 lanes, ellipsoid.rotation_rate(self._rotation), self._held, self._damping,
-                [TriadNoise(markov, lanes.h, bool(walks)) for markov, walks in self._processes],
-                self._fixed_means(lanes))
+                self._processes, self._fixed_means(lanes))
             for lane, length_s in enumerate(np.diff(part).tolist()):
                 self._advance(responses, lane, length_s)
                 k = first + lane + 1

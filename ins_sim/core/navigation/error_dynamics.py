@@ -8,7 +8,7 @@ and gyros, as what is to be taken off the readings (m/s^2, rad/s, by body axis).
 
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary
-from ins_sim.core.numerics.fixed_order import lane_product, product
+from ins_sim.core.numerics.fixed_order import product
 
 # How many errors have rows, the first ones; the others of a model are constant.
 GROWING = 9
@@ -71,10 +71,10 @@ def change(f, dt):
 
     f: rows of F, the first GROWING of which are those of the first columns; only these columns
     have rows that a change to second order needs.  F being that of mid-interval, what is left out
-    is of the order dt^3.  A last axis of f, and dt (n,), are those of many matrices.
+    is of the order dt^3.
     """
     a = f * dt
-    return a + 0.5 * (product if f.ndim == 2 else lane_product)(a[:, :GROWING], a[:GROWING])
+    return a + 0.5 * product(a[:, :GROWING], a[:GROWING])
 
 
 def turn_by_position(lat, height):
