@@ -53,14 +53,14 @@ def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress
     >>> bool(abs(run.twin.position).max() < abs(run.errors.position).max())
     True
     """
-    _check_settings(settings, SimulationSettings)
+    check_settings(settings, SimulationSettings)
     return _simulate(settings, None, twin, progress, motion)
 
 
 def _simulate(settings: SimulationSettings, aided: AidedSimulationSettings | None, twin: bool,
               progress: Progress, motion: Motion | None) -> Run:
     """Steer a guided motion by the aided solution, or that of the strapdown, and simulate it."""
-    flown = _motion(settings, motion)
+    flown = given_motion(settings, motion)
     steered = guided_flight.fly(settings, flown, aided, progress)
     result = inertial.simulate(settings, flown, twin, progress)
     return Run(settings, flown, result, motion is not None, steered)
@@ -96,8 +96,8 @@ def predict(settings: SimulationSettings, motion: Motion | None = None) -> Predi
     >>> f'{east * 180 / 3.141592653589793 * 3600:.4f} deg/h'
     '0.0335 deg/h'
     """
-    _check_settings(settings, SimulationSettings)
-    return predict_errors(settings, _motion(settings, motion))
+    check_settings(settings, SimulationSettings)
+    return predict_errors(settings, given_motion(settings, motion))
 
 
 def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
@@ -135,7 +135,7 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     >>> len(run.velocity_fixes), run.errors.position_sigma.shape[1]
     (3, 3)
     """
-    _check_settings(settings, AidedSimulationSettings)
+    check_settings(settings, AidedSimulationSettings)
     instruments = aided_simulation.make_instruments(settings)
     run = _simulate(settings.simulation, settings, twin, progress, motion)
     result = aided_simulation.simulate_aided(settings, instruments, run.motion, run.result,
@@ -143,14 +143,15 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     return AidedRun(settings, run, result)
 
 
-def _check_settings(settings: object, expected: type) -> None:
+def check_settings(settings: object, expected: type) -> None:
+    """Raise ValueError where settings are not of a class."""
     if not isinstance(settings, expected):
         aided = expected is AidedSimulationSettings
         raise ValueError(f'settings are {type(settings).__name__}; expected {expected.__name__} '
                          f'of read_settings(..., aided={aided})')
 
 
-def _motion(settings: SimulationSettings, motion: Motion | None) -> Motion:
+def given_motion(settings: SimulationSettings, motion: Motion | None) -> Motion:
     """Return the motion of the settings, or the one given once it is checked."""
     generator = settings.motion_generator
     if motion is None:

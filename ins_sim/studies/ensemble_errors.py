@@ -50,7 +50,7 @@ def ensemble_errors(result: EnsembleResult) -> EnsembleErrors:
           for values in (statistics.mean, statistics.sigma, statistics.rms, percentiles)),
         *({name: values[..., k] for k, name in enumerate(QUANTITIES)}
           for values in (horizontal.rms, sizes)),
-        {percent: np.array([error_circle(m, c, part) for m, c in zip(mean, covariance)])
+        {percent: error_circle(mean, covariance, part)
          for percent, part in CEP_PARTS.items()})
 
 

@@ -19,8 +19,9 @@ def inertial_rows(lat, height, v, c, f_n, spin):
     Return nine rows of 15 numbers of F of x' = F x.
 
     lat rad, height m, v (3,) m/s ENU; c: C_nb, nine floats; f_n (3,) specific force in n, m/s^2;
-    spin: rate of the Earth, rad/s.  The change of the radii with latitude and that of gravity
-    with latitude are left out, parts in 100 of the smallest terms.  Groves section 14.2.4.
+    all floats or arrays; spin: rate of the Earth, rad/s.  The change of the radii with latitude
+    and that of gravity with latitude are left out, parts in 100 of the smallest terms.  Groves
+    section 14.2.4.
     """
     v_e, v_n, v_u = v
     f_e, f_n, f_u = f_n

@@ -34,6 +34,16 @@ def _real_product(a, b):
     return np.add.reduce(np.multiply(a.T[:, :, np.newaxis], b[:, np.newaxis, :], order='C'))
 
 
+def lane_product(a, b):
+    """Return the products (i, k, n) of the matrices a (i, j, n) and b (j, k, n), lane by lane."""
+    found = a[:, 0, np.newaxis] * b[0]
+    term = np.empty_like(found)
+    for j in range(1, len(b)):
+        np.multiply(a[:, j, np.newaxis], b[j], out=term)
+        found += term
+    return found
+
+
 def applied(a, x):
     """Return a x of a real matrix (n, m) and a vector (m,)."""
     return _real_product(a, np.asarray(x)[:, np.newaxis])[:, 0]

@@ -62,6 +62,19 @@ class LateTurns:
         return total
 
 
+def late_turns(settings, motion):
+    """Return the LateTurns of the gyros of SimulationSettings."""
+    sensor, past = settings.imu_sensor, None
+    first_ns = round(1e9 * settings.motion_generator.start_s)
+    # An attitude that stood still turns with the Earth; of the integrated output it is the rate
+    # that stood still.
+    if sensor.history == 'frozen':
+        past = (motion.at(np.array([first_ns], dtype=np.int64)).omega_ib_b[0]
+                if sensor.output == 'integrated' else
+                frozen_rate(motion, first_ns, settings.motion_generator.earth.rotation))
+    return LateTurns(motion, sensor.gyro.delay_us.in_ns(), first_ns, past)
+
+
 def is_long(tau_ns):
     """Return whether delays, ns, are too long for the first order."""
     return max(map(abs, tau_ns)) > LONG_NS

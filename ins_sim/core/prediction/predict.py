@@ -16,7 +16,7 @@ from .drift import (_nanoseconds, _to_n, BLOCK, channel_drift, delay_response, d
                     exact_pair, LateAttitudeError, mean_drift, PairAttitudeError, STEP_S,
                     SUBSAMPLES, two_axis_resonances)
 from .error_model import ErrorModel
-from .late_turns import frozen_rate, is_long, late_force, LateTurns
+from .late_turns import is_long, late_force, late_turns, LateTurns
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,16 +117,9 @@ class _FineRun:
                              f'{STEP_S:g} s')
         self._last_beta, self._swept, self._steepest = None, np.zeros(3), 0.0
         self._fine_s = STEP_S / SUBSAMPLES
-        first_ns, sensor = round(1e9 * generator.start_s), settings.imu_sensor
-        self._held_ns = first_ns if sensor.history == 'frozen' else None
-        # An attitude that stood still turns with the Earth; of the integrated output it is the
-        # rate that stood still.
-        past = None
-        if self._held_ns is not None:
-            past = (motion.at(np.array([first_ns], dtype=np.int64)).omega_ib_b[0]
-                    if sensor.output == 'integrated' else
-                    frozen_rate(motion, first_ns, self._rotation))
-        self._turns = LateTurns(motion, self._tau_ns, first_ns, past)
+        sensor = settings.imu_sensor
+        self._held_ns = (round(1e9 * generator.start_s) if sensor.history == 'frozen' else None)
+        self._turns = late_turns(settings, motion)
         if self._gyro.model == 'ideal':
             late = LateAttitudeError(self._turns.at, self._fine_s)
             self._beta = lambda truth, omega_in, first: late.advance(truth, omega_in)

@@ -108,6 +108,20 @@ class TriadErrors:
             return None
         return self._geometry, self._response, self._noise
 
+    def immediate(self, values, forces, t_s):
+        """
+        Return the errors (n, 3) that follow the input at once, and the fixed bias.
+
+        values, forces (n, 3), t_s (n,): as of ``step``.  Lags, range, pulses and noise are left
+        out.
+        """
+        warm = None
+        if self._by_temperature is not None:
+            warm = temperature_off(self._temperature, t_s)
+        found = np.stack(respond(self._geometry, self._response, self._by_force,
+                                 self._by_temperature, values.T, forces.T, warm), axis=-1) - values
+        return found if self._noise is None else found + self._noise.fixed
+
     def advance(self, first, values, forces, t_s):
         """
         Return the readings (n, 3) of the samples first to first + n - 1, as step gives them.

@@ -1,0 +1,263 @@
+"""The error budget of a simulation from settings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+import os
+from typing import Any, TYPE_CHECKING, Union
+
+import numpy as np
+
+from ins_sim.core.budget.linear_budget import error_budget, LinearBudget, SAME_S
+from ins_sim.core.motion.motion import Motion
+from ins_sim.core.timeseries.named_columns import ENU
+from ins_sim.report.studies.budget_beside import read_study
+from ins_sim.settings.simulation import SimulationSettings
+from ins_sim.studies.budget.beside import (BesideRuns, compared, ComparedQuantity,
+                                           fly_beside)
+from ins_sim.studies.budget.quantities import linear_until, Quantity, QUANTITIES, shares
+from ins_sim.studies.budget.requirement import (answer, parse_requirement, RequirementAnswer,
+                                                times_of)
+from ins_sim.studies.budget.sensitivities import sensitivities, Sensitivity
+from ins_sim.studies.error_circle import error_circle
+from .dataframes import dataframe
+from .datasets import dataset
+from .inputs import checked_path
+from .offline import check_settings, given_motion
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+Folder = Union[str, 'os.PathLike[str]']
+
+
+def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: int = 0,
+           motion: Motion | None = None, beside: Folder | None = None) -> ErrorBudget:
+    """
+    Propagate the errors of a simulation by source, without a simulation.
+
+    Linear covariance of the free strapdown along the motion: every error of the settings makes a
+    share of the error of position, velocity and attitude (docs/budget.md).
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+        Of ``read_settings``.
+    times_s : iterable of float, optional
+        Times since the start of the navigation, s, at which the budget is wanted beside its 361
+        even ones.
+    runs : int, optional
+        How many runs to simulate beside it, for a comparison; 0 or at least 2.
+    motion : Motion, optional
+        A motion of your own, in place of the one that the settings name.
+    beside : str or path, optional
+        Folder of a study of ``monte_carlo`` of the same settings, to be compared with.
+
+    Returns
+    -------
+    ErrorBudget
+
+    Raises
+    ------
+    ValueError
+        In one sentence, where the settings describe no run of finite length or no motion, where a
+        time lies outside of the run, and where no linear budget covers the instrument.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> settings = ins_sim.read_settings(['racetrack', 'imu_tactical_fog'])
+    >>> found = ins_sim.budget(settings)
+    >>> f'{found.rms()[-1] / 1000.0:.2f} km after an hour'
+    '9.66 km after an hour'
+    >>> found.ranked()[0].label
+    'gyro turn-on bias'
+    >>> answer = found.requirement('horizontal rms 7408 m at 3600 s')
+    >>> f'{answer.alone[0].values[0]:.4f} {answer.alone[0].source.unit}'
+    '0.6827 deg/h'
+    """
+    check_settings(settings, SimulationSettings)
+    flown = given_motion(settings, motion)
+    linear = error_budget(settings, flown, tuple(times_s))
+    others: BesideRuns | None = None
+    if beside is not None:
+        if runs:
+            raise ValueError(f'runs is {runs!r} and beside {os.fspath(beside)!r}; expected one '
+                             'of them')
+        others = read_study(checked_path('beside', beside), settings)
+    elif runs:
+        others = fly_beside(settings, flown, linear, runs)
+    return ErrorBudget(settings, flown, linear, others)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ErrorBudget:
+    """
+    The error budget of a free strapdown along a motion.
+
+    Attributes
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+    linear : LinearBudget
+        Covariances and mean errors by source: position, velocity and attitude, East, North, Up.
+    beside : BesideRuns
+        The runs beside it, or None.
+    """
+
+    settings: SimulationSettings
+    motion: Motion
+    linear: LinearBudget
+    beside: BesideRuns | None
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return (f'<ErrorBudget: {len(self.sources)} sources, {self.rms()[-1]:.4g} m horizontally '
+                f'after {self.t_s[-1]:g} s>')
+
+    @property
+    def t_s(self) -> np.ndarray:
+        """Times since the start of the navigation, s, (n,)."""
+        return self.linear.t_s
+
+    @property
+    def sources(self) -> tuple[Any, ...]:
+        """The ErrorSources: those that differ from run to run, then those that do not."""
+        return (*self.linear.random, *self.linear.fixed)
+
+    def rms(self, quantity: str = 'horizontal') -> np.ndarray:
+        """
+        Return the root mean square of a quantity, (n,), m, m/s or rad.
+
+        Parameters
+        ----------
+        quantity : {'horizontal', 'east', 'north', 'up', 'velocity', 'tilt', 'azimuth'}
+        """
+        found: np.ndarray = shares(self.linear, _quantity(quantity)).rms
+        return found
+
+    def error_circle(self, part: float = 0.5) -> np.ndarray:
+        """
+        Return the radius that holds a part of the horizontal errors, (n,), m: CEP for 0.5.
+
+        Parameters
+        ----------
+        part : float
+            Between 0 and 1: 0.5 for CEP50, 0.95 for CEP95.
+        """
+        if not 0.0 < part < 1.0:
+            raise ValueError(f'part is {part!r}; expected a number between 0 and 1, such as 0.5')
+        radius: np.ndarray = error_circle(self.linear.total_mean()[:, :2],
+                                          self.linear.total_covariance()[:, :2, :2], part)
+        return radius
+
+    def contributions(self, quantity: str = 'horizontal') -> dict[str, np.ndarray]:
+        """
+        Return what each source makes alone, {name of the parameter: (n,)}, m, m/s or rad.
+
+        Of a source that differs from run to run it is a standard deviation, of another one the
+        size of the error.
+        """
+        found = shares(self.linear, _quantity(quantity)).contributions()
+        return {source.key: row for source, row in zip(self.sources, found)}
+
+    def ranked(self, quantity: str = 'horizontal', t_s: float | None = None) -> list[Any]:
+        """Return the ErrorSources by what they make at a time, by default the last one."""
+        k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
+        made = shares(self.linear, _quantity(quantity)).contributions()[:, k]
+        return [self.sources[i] for i in np.argsort(-made, kind='stable')]
+
+    def sensitivities(self, quantity: str = 'horizontal',
+                      t_s: float | None = None) -> list[Sensitivity]:
+        """Return how a quantity changes with each parameter at a time, by default the last."""
+        k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
+        found: list[Sensitivity] = sensitivities(self.linear, _quantity(quantity), k)
+        return found
+
+    def requirement(self, text: str) -> RequirementAnswer:
+        """
+        Return what would have to improve to meet a requirement.
+
+        Parameters
+        ----------
+        text : str
+            Such as ``'horizontal rms 1852 m at 3600 s'``. At a time that is none of ``t_s`` the
+            errors are propagated anew.
+        """
+        wanted, linear = parse_requirement(text), self.linear
+        times = times_of([wanted], linear.t_s[-1])
+        if abs(linear.t_s - wanted.t_s).min() > SAME_S:
+            linear = error_budget(self.settings, self.motion, times)
+        found: RequirementAnswer = answer(linear, wanted)
+        return found
+
+    def linear_until(self) -> float | None:
+        """Return the time, s, from which on errors of second order show, or None."""
+        until: float | None = linear_until(self.linear)
+        return until
+
+    def compared(self) -> list[ComparedQuantity]:
+        """Return the ensemble over the budget, quantity by quantity; empty without runs."""
+        found: list[ComparedQuantity] = []
+        if self.beside is not None:
+            found = compared(self.linear, self.beside)
+        return found
+
+    def to_dataframe(self, quantity: str = 'horizontal') -> pandas.DataFrame:
+        """
+        Return the total and what each source makes alone of a quantity, as a DataFrame.
+
+        The index ``t_ns`` is the time since the start of the navigation in ns; the columns are
+        ``rms`` and the parameters.
+        """
+        table = {'rms': self.rms(quantity), **self.contributions(quantity)}
+        return dataframe(np.round(1e9 * self.t_s).astype(np.int64), table)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """
+        Return covariances and mean errors as a Dataset.
+
+        Dimensions source, time (s), error and error_2: covariance (source, time, error, error_2)
+        of the random sources and mean (fixed_source, time, error).
+        """
+        names = [f'{what}_{axis}' for what in ('position', 'velocity', 'attitude') for axis in ENU]
+        return dataset(
+            {'source': ([source.key for source in self.linear.random], ''),
+             'fixed_source': ([source.key for source in self.linear.fixed], ''),
+             'time': (self.t_s, 's'), 'error': (names, ''), 'error_2': (names, '')},
+            {'covariance': (('source', 'time', 'error', 'error_2'), self.linear.covariance, ''),
+             'mean': (('fixed_source', 'time', 'error'), self.linear.mean, '')})
+
+    def save(self, folder: Folder, overwrite: bool = False,
+             requirements: Iterable[str] = ()) -> None:
+        """
+        Write the budget as ``ins_sim budget -o`` does: figures, tables, numbers and report.html.
+
+        Parameters
+        ----------
+        folder : str or path
+        overwrite : bool, optional
+            Replace the folder if it holds a budget.
+        requirements : iterable of str, optional
+            Requirements that the report answers.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or a requirement is none.
+        """
+        from ins_sim.own_folders import whole_folder
+        from ins_sim.report.studies import budget as report
+        checked_path('folder', folder)
+        answers = [self.requirement(text) for text in requirements]
+        with whole_folder(folder, overwrite, report.MARK, 'overwrite=True') as work:
+            report.write_budget(work, self.settings, self.linear, answers, self.compared(),
+                                self.beside)
+
+
+def _quantity(name: str) -> Quantity:
+    if name not in QUANTITIES:
+        raise ValueError(f'quantity is {name!r}; expected one of {", ".join(QUANTITIES)}')
+    return QUANTITIES[name]

@@ -1,0 +1,53 @@
+"""Verb budget: which error of the instruments makes how much of the error of the position."""
+
+from .. import arguments
+
+HELP = 'the error budget of a strapdown: linear covariance by source'
+DESCRIPTION = ('Propagate the errors of the instruments and of the start along the motion, each '
+               'by itself and without noise: who makes the error, how it changes with each '
+               'parameter, and what must improve to meet a requirement.')
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb to its parser."""
+    arguments.add_settings(parser)
+    parser.add_argument('--require', action='append', default=[], metavar='TEXT',
+                        help="what is required, such as 'horizontal rms 1852 m at 3600 s': says "
+                        'what must improve; may be repeated')
+    beside = parser.add_mutually_exclusive_group()
+    beside.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs beside '
+                        'the budget and compare (default: none)')
+    beside.add_argument('--beside', metavar='STUDY', help='compare with the ensemble in the '
+                        'folder of a study of monte-carlo of the same settings')
+    arguments.add_output(parser, 'ins_sim_budget', 'folder of figures, tables and report.html')
+    arguments.add_force(parser, 'the budget in DIR')
+
+
+def run(chosen):
+    """Propagate, show and save; return the exit code."""
+    from ins_sim.core.budget.linear_budget import error_budget
+    from ins_sim.core.budget.propagation import navigation_span_s
+    from ins_sim.io.motion import read_motion
+    from ins_sim.own_folders import check_free, whole_folder
+    from ins_sim.report.console import PlainConsole
+    from ins_sim.report.studies import budget as report
+    from ins_sim.report.studies.budget_beside import read_study
+    from ins_sim.studies.budget.beside import compared as compared_with, fly_beside
+    from ins_sim.studies.budget.requirement import answer, parse_requirement, times_of
+    check_free(chosen.output, chosen.force, report.MARK)
+    wanted = [parse_requirement(text) for text in chosen.require]
+    settings = arguments.read_settings(chosen)
+    motion = read_motion(settings.motion_generator)
+    linear = error_budget(settings, motion, times_of(wanted, navigation_span_s(settings)))
+    answers = [answer(linear, requirement) for requirement in wanted]
+    beside = None
+    if chosen.beside:
+        beside = read_study(chosen.beside, settings)
+    elif chosen.runs:
+        beside = fly_beside(settings, motion, linear, chosen.runs)
+    compared, console = compared_with(linear, beside) if beside else [], PlainConsole()
+    with whole_folder(chosen.output, chosen.force, report.MARK) as folder:
+        report.write_budget(folder, settings, linear, answers, compared, beside)
+    report.show_budget(settings, linear, answers, compared, beside, console)
+    console.print(f'report: {chosen.output}/report.html')
+    return 0

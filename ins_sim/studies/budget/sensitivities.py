@@ -1,0 +1,55 @@
+"""How an error changes with the parameters of the settings."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ins_sim.core.budget.sources import ErrorSource
+from .quantities import shares
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """
+    The change of an error with one parameter, of all axes or of one.
+
+    source; axis: 'x', 'y', 'z', or '' of all; value: of the parameter, in its unit; alone: what
+    the source makes by itself for a unit of the parameter (of a lag, at its bandwidth); slope:
+    d rms / d parameter; both in SI of the quantity over the unit of the parameter.
+    """
+
+    source: ErrorSource
+    axis: str
+    value: float
+    alone: float
+    slope: float
+
+
+def sensitivities(budget, quantity, k):
+    """
+    Return the Sensitivities of a Quantity in a LinearBudget at instant number k.
+
+    A parameter whose axes are equal changes on all of them; else, of a random source, axis by
+    axis, and of a fixed one in proportion, which is per unit of its largest axis.
+    """
+    found, axes = [], list(quantity.axes)
+    made = shares(budget, quantity)
+    rms = float(made.rms[k])
+    squares, contributions = made.by_source()[:, k], made.contributions()[:, k]
+    for i, source in enumerate((*budget.random, *budget.fixed)):
+        if len(set(source.values)) > 1 and not source.fixed:
+            found += [_one(source, axis, value, float(np.sqrt(square)), float(square), rms)
+                      for axis, value, square in zip(
+                          'xyz', source.values,
+                          budget.by_axis[i, k][:, axes].sum(axis=1)) if value]
+        else:
+            value = max(source.values, key=abs)
+            found.append(_one(source, '', value, float(contributions[i]), float(squares[i]), rms))
+    return found
+
+
+def _one(source, axis, value, contribution, square, rms):
+    size = abs(value)
+    slope = square / (rms * value) if rms else 0.0
+    return Sensitivity(source, axis, value, contribution / size,
+                       -slope if source.inverse else slope)
