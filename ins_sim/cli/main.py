@@ -9,8 +9,8 @@ from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
-from .studies import (allan, compare_filters, compare_orientation, dtg_report, dtg_study,
-                      loop_study)
+from .studies import (allan, compare_filters, compare_orientation, delay_study, dtg_report,
+                      dtg_study, loop_study)
 
 ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
@@ -18,7 +18,7 @@ LONGEST = 2000
 # In the order of the printed list.
 VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'export': export,
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
-         'dtg-study': dtg_study, 'dtg-report': dtg_report,
+         'delay-study': delay_study, 'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
          'loop-study': loop_study, 'allan': allan}
 NODE_VERBS = ('record', 'play')
