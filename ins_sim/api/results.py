@@ -114,8 +114,9 @@ class Run:
         Write the run as ``ins_sim simulate -o`` does.
 
         The folder appears when it is complete. It holds run.npz, parameters.yaml,
-        manifest.yaml, summary.json and errors.png. A motion given as an object is in the arrays
-        but not in parameters.yaml.
+        manifest.yaml, summary.json, the figures as PNG, report.html and, where the vehicle
+        moves, track.kml. A motion given as an object is in the arrays but not in
+        parameters.yaml.
 
         Parameters
         ----------
@@ -132,7 +133,8 @@ class Run:
 
     def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
         from ins_sim.own_folders import existing_parent, whole_folder
-        from ins_sim.report import guided, storage, summary
+        from ins_sim.report import guided, storage, summary, titles
+        from ins_sim.report.runs.page import run_notes
         from ins_sim.report.spool import Spool
         checked_path('folder', folder)
         with Spool(existing_parent(folder)) as spool, whole_folder(
@@ -141,7 +143,7 @@ class Run:
                 prediction = predict(self.settings, self.motion, spool.store)
             except NoPrediction:
                 prediction = None
-            title = summary.title(self.settings)
+            title = titles.title(self.settings)
             rows = summary.summary_rows(self.settings, self.errors, self.twin, prediction)
             if self.own_motion:
                 # Published figures belong to the motion of the settings.
@@ -149,7 +151,8 @@ class Run:
                 title = f'{type(self.motion).__name__} given as an object'
             storage.write_run(work, self.settings, self.result,
                               [*rows, *guided.guided_rows(self.steered)], prediction, title,
-                              report, self.own_motion, self.steered)
+                              report, self.own_motion, self.steered,
+                              run_notes(self.settings, self.result, prediction, self.steered))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

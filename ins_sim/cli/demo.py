@@ -84,10 +84,12 @@ def _run(name, settings, work, folder, console):
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
     from ins_sim.io.published import read_errors
-    from ins_sim.report import coverage, figure, summary, table
+    from ins_sim.report import coverage, summary, table, titles
+    from ins_sim.report.charts.png import save_chart
+    from ins_sim.report.runs.error_charts import error_chart
     from ins_sim.ros.session import Session
     from .progress import progress_bars
-    title = summary.title(settings)
+    title = titles.title(settings)
     namespace = f'ins_sim_demo_{os.getpid()}'
     length_s = settings.motion_generator.duration_s
     with progress_bars(console, 's') as add_bar:
@@ -96,8 +98,7 @@ def _run(name, settings, work, folder, console):
             counts = session.run(show)
     errors = read_errors(work / 'bag', namespace)
     prediction = predict(settings, read_motion(settings.motion_generator))
-    figure.save_figure(work / 'errors.png', title, errors,
-                       coverage.comparable(settings, prediction))
+    save_chart(work, error_chart(title, errors, coverage.comparable(settings, prediction)))
     table.show_table(title, summary.summary_rows(settings, errors, None, prediction), console)
     for line in coverage.coverage_lines(settings, prediction):
         console.print(line)

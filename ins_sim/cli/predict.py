@@ -17,13 +17,13 @@ def run(chosen):
     from rich.table import Table
     from ins_sim.core.prediction.predict import predict
     from ins_sim.io.motion import read_motion
-    from ins_sim.report import coverage, summary, table
+    from ins_sim.report import coverage, summary, table, titles
     from ins_sim.report.console import PlainConsole
     settings = arguments.read_settings(chosen)
     prediction = predict(settings, read_motion(settings.motion_generator), collect=None)
     key = summary.study_key(settings)
     drift, place = summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
-    shown = Table(title=summary.title(settings))
+    shown = Table(title=titles.title(settings))
     for head in ('figure', 'unit', 'predicted', 'paper / re-derived'):
         shown.add_column(head, justify='left' if head in ('figure', 'unit') else 'right')
     for axis, name in enumerate(('east', 'north', 'up')):

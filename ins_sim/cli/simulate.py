@@ -33,15 +33,16 @@ def run(chosen):
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
     from ins_sim.own_folders import existing_parent, whole_folder
-    from ins_sim.report import coverage, guided, spool, storage, summary, table
+    from ins_sim.report import guided, spool, storage, summary, table, titles
     from ins_sim.report.console import PlainConsole
+    from ins_sim.report.runs.page import run_notes
     from .progress import progress_bars
     if chosen.aided:
         from ins_sim.core.simulation.aided import make_instruments, simulate_aided
     aided = arguments.read_aided_settings(chosen) if chosen.aided else None
     settings = aided.simulation if aided else arguments.read_settings(chosen)
     write_bag = _bag_writer(chosen, settings)
-    title = summary.title(settings)
+    title = titles.title(settings)
     console = PlainConsole()
     motion = read_motion(settings.motion_generator)
     # Made before the run, so that settings that do not fit are refused before it.
@@ -66,13 +67,11 @@ def run(chosen):
             rows = [*summary.summary_rows(settings, result.errors, result.twin, prediction),
                     *guided.guided_rows(steered)]
             report = None if aided is None else _report(aided, flown, result)
+            notes = run_notes(settings, result, prediction, steered)
             storage.write_run(work, settings, result, rows, prediction, title, report,
-                              steered=steered)
+                              steered=steered, notes=notes)
         table.show_table(title, rows, console)
-        for line in (*coverage.coverage_lines(settings, prediction),
-                     *guided.guided_lines(steered), *summary.gap_lines(result.faults),
-                     *summary.withheld_lines(settings),
-                     *summary.parity_lines(settings.imu_sensor, result.imu)):
+        for line in notes:
             console.print(line)
         if report is not None:
             report.show(console)

@@ -12,10 +12,9 @@ from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
 from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.settings.simulation import AidedSimulationSettings
-from . import aided_arrays, aided_figure
+from . import aided_arrays
 from .consistency import mean_interval, THREE_SIGMA
 
-FIGURE = 'aided.png'
 # of the table: head, text of a Row or '', and what it means where that is not plain
 _Column = namedtuple('_Column', 'head value meaning')
 AIDED = 'aided '
@@ -76,12 +75,6 @@ class AidedReport:
         show_aided(self.title, self.rows, console)
         for line in fault_lines(self.flown):
             console.print(line)
-
-    def save_figures(self, folder):
-        """Save the figure into a folder."""
-        aided_figure.save_figure(folder / FIGURE, self.title, self.flown,
-                                 aiding_sources(self.settings),
-                                 self.settings.aided_navigator.gate_probability)
 
 
 def aiding_sources(settings):
@@ -220,8 +213,8 @@ def _by_hand_rows(meter, flown, states):
 
 def show_aided(title, rows, console):
     """Print a table of the rows, and below it a line about the fixes of each instrument."""
-    columns = [column for column in COLUMNS if any(column.value(row) for row in rows)]
-    table = Table(title=title, caption='; '.join(c.meaning for c in columns if c.meaning))
+    columns = filled_columns(rows)
+    table = Table(title=title, caption=column_meanings(columns))
     table.add_column('figure', no_wrap=True)
     table.add_column('unit', no_wrap=True)
     for column in columns:
@@ -231,11 +224,29 @@ def show_aided(title, rows, console):
             table.add_row(row.name.removeprefix(AIDED), row.unit,
                           *(column.value(row) or '-' for column in columns))
     console.print(table)
+    for line in fix_lines(rows):
+        console.print(line)
+
+
+def fix_lines(rows):
+    """Return a line about the fixes of each instrument."""
+    lines = []
     for source in dict.fromkeys(row.source for row in rows if row.source):
         counts = [row for row in rows if row.source == source]
         told = ', '.join(f'{row.measured} {row.name.split()[-1]}' for row in counts)
         notes = ''.join(f': {row.note}' for row in counts if row.note)
-        console.print(f'{source} fixes: {told}{notes}')
+        lines.append(f'{source} fixes: {told}{notes}')
+    return lines
+
+
+def filled_columns(rows):
+    """Return the columns that are not empty."""
+    return [column for column in COLUMNS if any(column.value(row) for row in rows)]
+
+
+def column_meanings(columns):
+    """Return what the heads of columns mean where that is not plain."""
+    return '; '.join(c.meaning for c in columns if c.meaning)
 
 
 def _short(value):

@@ -10,9 +10,9 @@ from numpy.lib import format as npy_format
 
 from ins_sim import parameter_files
 from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
-from . import coverage, figure
 from .guided import guided_arrays
 from .manifest import manifest
+from .runs.page import write_report
 from .stored_arrays import read_arrays
 
 MARK = 'summary.json'
@@ -24,14 +24,14 @@ _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f'
 
 
 def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False,
-              steered=None):
+              steered=None, notes=()):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
     own_motion: whether the motion is not that of the settings; steered: GuidedResult of a guided
-    motion, or None.
+    motion, or None; notes: sentences for the page (``runs.page.run_notes``).
     """
     arrays = {**run_arrays(run), **guided_arrays(steered)}
     if prediction is not None:
@@ -40,16 +40,15 @@ def write_run(work, settings, run, rows, prediction, title, aided=None, own_moti
     parameters = parameter_files.dump(settings)
     if aided is not None:
         arrays.update(aided.arrays())
-        parameters, rows = aided.parameters(), [*rows, *aided.rows]
-        aided.save_figures(work)
+        parameters = aided.parameters()
     write_arrays(work / ARRAYS, arrays)
     (work / PARAMETERS).write_text(parameters, encoding='utf-8')
     (work / MANIFEST).write_text(
         manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
-    figure.save_figure(work / 'errors.png', title, run.errors,
-                       coverage.comparable(settings, prediction))
-    (work / MARK).write_text(json.dumps([asdict(r) for r in rows], indent=1) + '\n',
+    told = [*rows, *(aided.rows if aided else ())]
+    (work / MARK).write_text(json.dumps([asdict(r) for r in told], indent=1) + '\n',
                              encoding='utf-8')
+    write_report(work, settings, run, rows, prediction, title, aided, notes, own_motion)
 
 
 def run_arrays(run):

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 import math
-from pathlib import Path
 
 import numpy as np
 
@@ -42,17 +41,6 @@ class SummaryRow:
     measured: float
     twin: float | None
     published: float | None
-
-
-def title(settings):
-    """Return a line that names motion and delays of SimulationSettings."""
-    motion, sensor = settings.motion_generator.motion, settings.imu_sensor
-    d = sensor.gyro.delay_us
-    name = motion.kind
-    if name == 'recording':
-        name = f'recording {Path(motion.recording.path).name}'
-    return (f'{name}, gyro delays x {d.x:g}, y {d.y:g}, z {d.z:g} us, {sensor.rate_hz:g} Hz, '
-            f'{settings.motion_generator.duration_s:g} s')
 
 
 def study_key(settings):

@@ -5,6 +5,9 @@ from rich.table import Table
 from .console import PlainConsole
 from .summary import DEG_PER_HOUR
 
+COLUMNS = (('predicted', 'predicted'), ('measured', 'measured'), ('twin', 'zero-delay twin'),
+           ('published', 'paper / re-derived'))
+
 
 def number_text(value):
     """Return a figure with six significant digits, or a dash."""
@@ -13,9 +16,7 @@ def number_text(value):
 
 def show_table(title, rows, console=None):
     """Print the rows of ``summary.rows``; columns that are empty throughout are left out."""
-    columns = [('predicted', 'predicted'), ('measured', 'measured'), ('twin', 'zero-delay twin'),
-               ('published', 'paper / re-derived')]
-    columns = [c for c in columns if any(getattr(r, c[0]) is not None for r in rows)]
+    columns = [c for c in COLUMNS if any(getattr(r, c[0]) is not None for r in rows)]
     table = Table(title=title)
     table.add_column('figure')
     table.add_column('unit')

@@ -19,7 +19,7 @@ def run(chosen):
     from rich.table import Table
     from ins_sim.core.attitude.integration import KINDS
     from ins_sim.io.motion import read_motion
-    from ins_sim.report import summary
+    from ins_sim.report import summary, titles
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.table import number_text
     from ins_sim.studies.orientation import compare_orientations
@@ -29,7 +29,7 @@ def run(chosen):
     with progress_bars(console, 'algorithms') as add_bar:
         results = compare_orientations(settings, read_motion(settings.motion_generator),
                                        add_bar('navigating', len(KINDS)))
-    table = Table(title=summary.title(settings))
+    table = Table(title=titles.title(settings))
     table.add_column('figure')
     table.add_column('unit')
     for r in results:

@@ -81,12 +81,16 @@ class Level:
     dash: str = SOLID
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stretch:
-    """The stretch of the horizontal axis from first to last, shaded over the whole height."""
+    """
+    The stretch of the horizontal axis from first to last, shaded over the whole height.
 
-    first: float
-    last: float
+    first, last: numbers, or arrays (n,) of several stretches.
+    """
+
+    first: Union[float, np.ndarray]
+    last: Union[float, np.ndarray]
     label: str | None = None
     colour: str | None = None
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .chart import Band, Bars, Curve, Level, LOG, Map, Markers, Stack, Stretch
+from .chart import Band, Bars, Curve, Level, LOG, Map, Stack, Stretch
 
 # Of what is shown: left free on either side.
 MARGIN = 0.04

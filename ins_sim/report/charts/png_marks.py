@@ -71,7 +71,10 @@ def _(mark: Level, axes, panel):
 
 @draw.register
 def _(mark: Stretch, axes, panel):
-    axes.axvspan(mark.first, mark.last, color=mark.colour, alpha=PALE, lw=0.0, label=mark.label)
+    label = mark.label
+    for first, last in zip(np.atleast_1d(mark.first), np.atleast_1d(mark.last)):
+        axes.axvspan(first, last, color=mark.colour, alpha=PALE, lw=0.0, label=label)
+        label = None
 
 
 @draw.register

@@ -2,7 +2,7 @@
 
 from functools import singledispatch
 
-from bokeh.models import BoxAnnotation, ColorBar, LinearColorMapper, Span
+from bokeh.models import ColorBar, LinearColorMapper, Span
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 import numpy as np
@@ -82,8 +82,10 @@ def _(mark: Level, drawn, panel):
 
 @draw.register
 def _(mark: Stretch, drawn, panel):
-    drawn.add_layout(BoxAnnotation(left=float(mark.first), right=float(mark.last), line_color=None,
-                                   fill_color=mark.colour, fill_alpha=PALE, level='underlay'))
+    first, last = (np.atleast_1d(np.asarray(values, dtype=float))
+                   for values in (mark.first, mark.last))
+    drawn.vstrip(first, last, line_color=None, fill_color=mark.colour, fill_alpha=PALE,
+                 level='underlay')
 
 
 @draw.register
@@ -95,7 +97,7 @@ def _(mark: Map, drawn, panel):
     (left, right), (bottom, top) = map_edges(mark.x), map_edges(mark.y)
     drawn.image([values.astype(np.float32)], x=left, y=bottom, dw=right - left, dh=top - bottom,
                 color_mapper=colours)
-    drawn.add_layout(ColorBar(color_mapper=colours, title=mark.unit, width=12), 'right')
+    drawn.add_layout(ColorBar(color_mapper=colours, width=12), 'right')
 
 
 def _thinned(mark, panel):

@@ -8,7 +8,7 @@ page. The panels of a chart with one horizontal axis are zoomed together.
 import json
 import re
 
-from bokeh import __version__ as VERSION
+from bokeh import __version__
 from bokeh.document import Document
 from bokeh.models import PlainText, Range1d
 from bokeh.plotting import figure
@@ -22,12 +22,17 @@ from .bokeh_marks import draw
 
 TOOLS = 'box_zoom,pan,wheel_zoom,reset,save'
 PANEL, EQUAL = 250, 480
+VERSION = __version__
 # Room for the numbers at the axes, so that panels stand below each other.
 LEFT, RIGHT = 68, 14
 _ID = re.compile(r'"id":"(p\d+)"')
 _EMBED = """
 (function () {
   const figures = JSON.parse(document.getElementById('figures').textContent);
+  // A finger that moves over a figure scrolls the page.
+  if (window.matchMedia('(pointer: coarse)').matches)
+    for (const root of figures.document.roots)
+      root.attributes.toolbar.attributes.active_drag = null;
   Bokeh.embed.embed_items({figures: figures.document},
                           [{docid: 'figures', roots: figures.roots,
                             root_ids: Object.keys(figures.roots)}]);
@@ -89,7 +94,7 @@ def _panel(panel, x_range, x_label):
     ranges = {} if panel.equal else {'x_range': x_range, 'y_range': _range(bottom, top)}
     drawn = figure(
         height=EQUAL if panel.equal else round(PANEL * panel.height), sizing_mode='stretch_width',
-        match_aspect=panel.equal, tools=TOOLS, toolbar_location='above',
+        match_aspect=panel.equal, tools=TOOLS, active_drag='box_zoom', toolbar_location='above',
         x_axis_type='log' if panel.x_scale == LOG else 'linear',
         y_axis_type='log' if panel.y_scale == LOG else 'linear',
         x_axis_label=PlainText(visible(x_label)), y_axis_label=PlainText(visible(panel.y_label)),

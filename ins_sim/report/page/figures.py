@@ -20,8 +20,9 @@ class DrawnFigures:
     version: str = ''
 
 
-def zoomable(charts):
-    """Return the DrawnFigures of Charts by Bokeh, or None where it is not installed."""
+def zoomable(page):
+    """Return the DrawnFigures of a Page by Bokeh, or None where it is not installed."""
+    charts = page.charts
     if not charts:
         return DrawnFigures([])
     try:
@@ -37,23 +38,26 @@ def zoomable(charts):
             '<div class="panel">' + (f'<h3>{text(panel.title)}</h3>' if panel.title else '')
             + legend(coloured(panel.marks)) + f'<div id="{name}" class="plot"></div></div>\n'
             for panel, name in zip(chart.panels, ids))
-        parts.append(_figure(chart, f'<div class="panels{COLUMNS[chart.columns]}">\n'
-                                    f'{panels}</div>'))
+        parts.append(_figure(
+            page, chart, f'<div class="panels{COLUMNS[chart.columns]}">\n{panels}</div>'))
     return DrawnFigures(parts, bokeh_panels.scripts(charts), bokeh_panels.VERSION)
 
 
-def images(folder, charts):
-    """Return the DrawnFigures of Charts as images; those in the folder are not drawn again."""
+def images(folder, page):
+    """Return the DrawnFigures of a Page as images; those in the folder are not drawn again."""
     parts = []
-    for chart in charts:
+    for chart in page.charts:
         path = folder / f'{chart.name}.png'
         data = b64encode(path.read_bytes() if path.exists() else chart_png(chart)).decode('ascii')
-        parts.append(_figure(chart, f'<img alt="{text(chart.title)}" '
-                                    f'src="data:image/png;base64,{data}">'))
+        parts.append(_figure(page, chart, f'<img alt="{text(chart.title)}" '
+                             f'src="data:image/png;base64,{data}">'))
     return DrawnFigures(parts)
 
 
-def _figure(chart, content):
+def _figure(page, chart, content):
+    # A title that begins with that of the page is not repeated as a whole.
+    title = chart.title.removeprefix(f'{page.title}: ')
+    title = title[:1].upper() + title[1:]
     caption = f'<figcaption>{text(chart.caption)}</figcaption>' if chart.caption else ''
-    return (f'<section><h2>{text(chart.title)}</h2>\n<figure>{content}{caption}</figure>'
+    return (f'<section><h2>{text(title)}</h2>\n<figure>{content}{caption}</figure>'
             '</section>')

@@ -24,7 +24,7 @@ def write_page(folder, page):
     folder, or drawn anew.
     """
     with collector_paused:
-        drawn = figures.zoomable(page.charts) or figures.images(folder, page.charts)
+        drawn = figures.zoomable(page) or figures.images(folder, page)
     body = [f'<header><h1>{text(page.title)}</h1>', f'<p class="answer">{text(page.answer)}</p>',
             '</header>', '<main>', *drawn.parts]
     body += [table_section(table) for table in page.tables]
@@ -47,4 +47,3 @@ def write_page(folder, page):
 
 def _section(title, content):
     return f'<section><h2>{text(title)}</h2>\n{content}</section>'
-

@@ -1,7 +1,11 @@
 """The legend of a panel as HTML, which takes as many lines as the width needs."""
 
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+
 from ..charts.chart import (Band, CIRCLE, CROSS, Curve, DASH_DOT, DASHED, DOT, DOTTED,
-                            Level, Markers, SOLID, Stack, Stretch, TRIANGLE)
+                            Level, Map, Markers, SOLID, Stack, Stretch, TRIANGLE)
+from ..charts.palette import map_colours
 from .words import text
 
 DASHES = {SOLID: '', DASHED: '7 3', DOTTED: '2 3', DASH_DOT: '7 3 2 3'}
@@ -32,6 +36,10 @@ def _entries(mark):
         yield POINTS[mark.marker].format(text(mark.colour)), mark.label
     elif isinstance(mark, (Band, Stretch)):
         yield _surface(mark.colour, 0.25), mark.label
+    elif isinstance(mark, Map):
+        name, _, _ = map_colours(mark.values)
+        yield ''.join(f'<rect x="{4 * k}" width="4" height="12" fill="{to_hex(colour)}"/>'
+                      for k, colour in enumerate(colormaps[name](range(18, 256, 36)))), mark.unit
 
 
 def _surface(colour, opacity):

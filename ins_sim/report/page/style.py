@@ -27,6 +27,8 @@ th, td { padding: 3px 12px 3px 0; text-align: left; vertical-align: top;
   border-bottom: 1px solid #ddd; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 code { font-size: 0.9em; }
+dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 2px 16px; }
+dd { margin: 0; }
 @media print {
   body { max-width: none; font-size: 11pt; padding: 0; }
   h2 { break-after: avoid; }

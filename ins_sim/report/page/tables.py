@@ -36,12 +36,12 @@ def settings_section(page, bokeh):
     parts = []
     if page.settings is not None:
         changed = changed_settings(page.settings)
-        parts.append(f'<p>{len(changed)} settings differ from the defaults.</p>' if changed else
-                     '<p>All settings are the defaults.</p>')
+        parts.append('<p>Settings that differ from the defaults: '
+                     f'{len(changed) or "none"}.</p>')
         if changed:
             parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed))
-    facts = [*_seeds(page.settings), *((f'digest of {name}', value) for name, value in page.digest.items()),
-             *_versions(bokeh)]
+    digests = [(f'digest of {name}', value) for name, value in page.digest.items()]
+    facts = [*_seeds(page.settings), *digests, *_versions(bokeh)]
     parts.append('<dl>' + ''.join(f'<dt>{text(name)}</dt><dd><code>{text(value)}</code></dd>'
                                   for name, value in facts) + '</dl>')
     return '\n'.join(parts)

@@ -1,0 +1,103 @@
+"""The report of a run: its figures, its track and its page, written beside its data."""
+
+import hashlib
+import math
+
+import numpy as np
+
+from ins_sim.core.timeseries.histories import BLOCK
+from .. import coverage
+from ..charts.png import save_chart
+from ..guided import guided_lines
+from ..page.content import Page, PageTable
+from ..page.html import REPORT, write_page
+from ..summary import DEG_PER_HOUR, gap_lines, parity_lines, withheld_lines
+from ..table import COLUMNS
+from ..titles import length_words
+from .aided_page import report_answer, report_chart, report_notes, report_table
+from .error_charts import error_chart
+from .kml import FILE, write_tracks
+from .track import run_tracks, track_chart
+from .words import distance
+
+# What is in the files of a run.
+FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
+         'parameters.yaml': 'every setting; it gives the same run again',
+         'manifest.yaml': 'where the numbers are the same to the last bit',
+         'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
+         'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+OBJECT = 'the motion was given as an object, which the settings do not describe'
+
+
+def run_notes(settings, run, prediction, steered=None):
+    """
+    Return the sentences on what was left out, met or assumed in a run.
+
+    run: SimulationResult of SimulationSettings; prediction: Prediction or None; steered:
+    GuidedResult of a guided motion, or None.
+    """
+    return [*coverage.coverage_lines(settings, prediction), *guided_lines(steered),
+            *gap_lines(run.faults), *withheld_lines(settings),
+            *parity_lines(settings.imu_sensor, run.imu)]
+
+
+def write_report(work, settings, run, rows, prediction, title, aided=None, notes=(),
+                 own_motion=False):
+    """
+    Write the figures as PNG, the track as KML where the vehicle moves, and report.html.
+
+    work: folder (pathlib.Path) with the other files of the run; rows: SummaryRows of the
+    strapdown; aided: ``aided.AidedReport`` or None; notes: of ``run_notes``; the rest as in
+    ``storage.write_run``.
+    """
+    charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
+    tables = [_table(rows)]
+    if aided is not None:
+        charts.insert(0, report_chart(aided))
+        tables.insert(0, report_table(aided))
+        notes = [*notes, *report_notes(aided)]
+    tracks = run_tracks(run, aided and aided.flown)
+    if tracks:
+        charts.append(track_chart(title, tracks))
+        write_tracks(work, title, tracks)
+    for chart in charts:
+        save_chart(work, chart)
+    answer = _answer(run.errors) if aided is None else report_answer(aided)
+    found = {path.name for path in work.iterdir()} - {REPORT}
+    write_page(work, Page(
+        title, answer, tuple(charts), tuple(tables),
+        tuple([*notes, OBJECT] if own_motion else notes),
+        aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
+        {name: what for name, what in FILES.items() if name in found}))
+
+
+def _table(rows):
+    """Return the PageTable of SummaryRows, without the columns that are empty."""
+    columns = [c for c in COLUMNS if any(getattr(row, c[0]) is not None for row in rows)]
+    return PageTable('Errors of the strapdown', ('figure', 'unit', *(head for _, head in columns)),
+                     tuple((row.name, row.unit, *(getattr(row, name) for name, _ in columns))
+                           for row in rows))
+
+
+def _answer(errors):
+    """Return where the solution is at the end, in a sentence."""
+    last = len(errors) - 1
+    east, north, up = errors.position[last].tolist()
+    length = length_words((int(errors.t_ns[last]) - int(errors.t_ns[0])) * 1e-9)
+    drift = errors.drift[last] * DEG_PER_HOUR
+    axis = int(np.abs(drift).argmax())
+    vertical = f' and {distance(abs(up))} {"above" if up > 0.0 else "below"} it' if up else ''
+    return (f'After {length} the solution is {distance(math.hypot(east, north))} from the truth '
+            f'horizontally ({distance(abs(north))} {"north" if north >= 0.0 else "south"}, '
+            f'{distance(abs(east))} {"east" if east >= 0.0 else "west"}){vertical}; the mean '
+            f'drift is largest about {("east", "north", "up")[axis]}, {drift[axis]:.3g} deg/h.')
+
+
+def history_digest(history):
+    """Return the SHA-256 of the columns of a History, which may be longer than memory."""
+    digest = hashlib.sha256()
+    for name, values in sorted(history.arrays().items()):
+        digest.update(f'{name} {values.dtype} {values.shape}'.encode())
+        for first in range(0, len(history), BLOCK):
+            digest.update(np.ascontiguousarray(values[first:first + BLOCK]).data)
+    return digest.hexdigest()
