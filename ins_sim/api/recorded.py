@@ -13,15 +13,18 @@ from ins_sim.core.postprocessing import navigate as replay
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.timeseries.histories import NavStates
+from ins_sim.core.timeseries.named_columns import columns
 from ins_sim.io import imu
 from ins_sim.settings.navigate import NAVIGATE, NavigateSettings
-from .dataframes import columns, dataframe, history_dataframe
+from .dataframes import dataframe
+from .datasets import track_dataset
 from .inputs import checked_path, files, Name, Names, plain, Values
 from .offline import Progress
 from .results import Folder
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
 # The period of the highest rate that a node can be set to, 20 kHz.
 SHORTEST_NS = 50_000
@@ -157,8 +160,42 @@ class Navigation:
         ValueError
             Where there is no such record or reference.
         """
+        t_ns, fields = self._record(record, reference)
+        table: dict[str, np.ndarray] = {}
+        for field, values in fields.items():
+            table.update(columns(field, values))
+        return dataframe(t_ns, table)
+
+    def to_xarray(self, record: str = 'states', reference: int = 0) -> xarray.Dataset:
+        """
+        Return the solution, or one of its errors, as a Dataset.
+
+        Parameters
+        ----------
+        record, reference
+            As of ``to_dataframe``.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dimensions are ``time``, the stamps of the recording in whole nanoseconds, and
+            ``axis`` (east, north, up) or ``quaternion`` (x, y, z, w). A variable has its unit in
+            the attribute ``units``.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        ValueError
+            Where there is no such record or reference.
+        """
+        return track_dataset(*self._record(record, reference), {'record': record})
+
+    def _record(self, record: str, reference: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Return the stamps and the fields of a record."""
         if record == 'states':
-            return history_dataframe(NavStates.concatenate(self.segments))
+            fields = NavStates.concatenate(self.segments).arrays()
+            return fields.pop('t_ns'), fields
         if record not in ('position', 'velocity', 'attitude'):
             raise ValueError(f'record is {record!r}; expected one of states, position, velocity, '
                              'attitude')
@@ -169,7 +206,7 @@ class Navigation:
         track = getattr(comparison, record)
         if track is None:
             raise ValueError(f'{comparison.name} has no {record}; expected another record')
-        return dataframe(track.t_ns, columns(record, track.values))
+        return track.t_ns, {record: track.values}
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """

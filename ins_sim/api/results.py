@@ -14,14 +14,16 @@ from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.core.simulation.guided_flight import GuidedResult
 from ins_sim.core.simulation.inertial import SimulationResult
 from ins_sim.core.timeseries.fixes import GnssFix, VelocityFix
-from ins_sim.core.timeseries.histories import (AidedErrors, ImuSamples, NavErrors, NavStates,
-                                               Truth)
+from ins_sim.core.timeseries.histories import (AidedErrors, History, ImuSamples, NavErrors,
+                                               NavStates, Truth)
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from .dataframes import chosen, history_dataframe
+from .datasets import history_dataset
 from .inputs import checked_path
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
 Folder = Union[str, 'os.PathLike[str]']
 
@@ -106,8 +108,35 @@ class Run:
         ValueError
             Where the run has no such record.
         """
+        return history_dataframe(self._record(record))
+
+    def to_xarray(self, record: str = 'errors') -> xarray.Dataset:
+        """
+        Return one record as a Dataset.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth', 'imu', 'twin'}
+
+        Returns
+        -------
+        xarray.Dataset
+            The dimensions are ``time``, motion time in whole nanoseconds, and of arrays ``axis``
+            (east, north, up), ``body_axis`` (x, y, z) or ``quaternion`` (x, y, z, w), so that
+            records can be merged. A variable has its unit in the attribute ``units``.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        ValueError
+            Where the run has no such record.
+        """
+        return history_dataset(self._record(record), {'record': record})
+
+    def _record(self, record: str) -> History:
         names = ('errors', 'states', 'truth', 'imu', 'twin')
-        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+        return chosen({name: getattr(self, name) for name in names}, record)
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
@@ -223,8 +252,23 @@ class AidedRun:
         record : {'errors', 'states', 'truth'}
             Records of the unaided part: ``run.to_dataframe``.
         """
+        return history_dataframe(self._record(record))
+
+    def to_xarray(self, record: str = 'errors') -> xarray.Dataset:
+        """
+        Return one record as a Dataset, as ``Run.to_xarray`` does.
+
+        Parameters
+        ----------
+        record : {'errors', 'states', 'truth'}
+            ``estimates`` of errors have the dimension ``estimate``. Records of the unaided part:
+            ``run.to_xarray``.
+        """
+        return history_dataset(self._record(record), {'record': record})
+
+    def _record(self, record: str) -> History:
         names = ('errors', 'states', 'truth')
-        return history_dataframe(chosen({name: getattr(self, name) for name in names}, record))
+        return chosen({name: getattr(self, name) for name in names}, record)
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """Write the run as ``ins_sim simulate --aided -o`` does; see ``Run.save``."""

@@ -6,9 +6,9 @@ import subprocess
 import sys
 
 import ins_sim
-from ins_sim.api.dataframes import COLUMNS, columns
 from ins_sim.cli.main import main
 from ins_sim.core.timeseries import histories
+from ins_sim.core.timeseries.named_columns import COLUMNS, columns
 import numpy as np
 import pytest
 from support.imu_records import record_at_rest
