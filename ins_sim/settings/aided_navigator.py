@@ -118,6 +118,8 @@ class AidedNavigatorSettings(SettingsGroup):
     gnss_model: GnssModel = group(GnssModel)
     seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
                         2147483647)
+    run: int = setting(0, 'number of the run in an ensemble: each draws other random errors', '',
+                       0, 2147483647)
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
     input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output)',
                          choices=('rotation_vector', 'integrated'))

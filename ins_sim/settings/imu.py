@@ -86,6 +86,8 @@ class ImuSensorSettings(SettingsGroup):
     topics: Topics = group(Topics)
     seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
                         2147483647)
+    run: int = setting(0, 'number of the run in an ensemble: each draws other random errors', '',
+                       0, 2147483647)
     rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
     source: str = setting('stream', 'where the motion comes from: the streamed truth, or the '
                           'closed form or recording of motion.* (the stream then only paces)',

@@ -48,6 +48,15 @@ class SimulationSettings:
             accelerometer=replace(imu.accelerometer, delay_us=DelaysUs())))
 
     @property
+    def run(self):
+        """Return the number of the run in an ensemble."""
+        return self.imu_sensor.run
+
+    def with_run(self, run):
+        """Return the settings of another run of the ensemble."""
+        return replace(self, imu_sensor=replace(self.imu_sensor, run=run))
+
+    @property
     def delayed(self):
         """Return whether any channel is late."""
         imu = self.imu_sensor
@@ -66,6 +75,8 @@ def check_frames(generator, **nodes):
                                      'of frames')
 
 
+# The nodes beside imu_sensor that draw random numbers.
+DRAWING = ('velocity_meter', 'gnss', 'aided_navigator')
 # What the settings of an instrument and of the navigator must have in common.
 AGREED = (('velocity_meter', ('rate_hz', 'window')), ('gnss', ('gnss',)))
 
@@ -96,9 +107,28 @@ class AidedSimulationSettings:
                              f'of imu_sensor, {sensor.output}')
         check_frames(self.simulation.motion_generator, velocity_meter=self.velocity_meter,
                      gnss=self.gnss, aided_navigator=navigator)
+        self._check_run()
         self._check_streams()
         self._check_route()
         self._check_steering()
+
+    @property
+    def run(self):
+        """Return the number of the run in an ensemble."""
+        return self.simulation.run
+
+    def with_run(self, run):
+        """Return the settings of another run of the ensemble."""
+        return replace(self, simulation=self.simulation.with_run(run), **{
+            node: replace(getattr(self, node), run=run) for node in DRAWING})
+
+    def _check_run(self):
+        """Refuse nodes of different runs."""
+        for node in DRAWING:
+            theirs = getattr(self, node).run
+            if theirs != self.run:
+                raise ValueError(f'{node}: run is {theirs}; expected that of imu_sensor, '
+                                 f'{self.run}: all nodes fly one run of an ensemble')
 
     def _check_streams(self):
         """Refuse streams that the live stages would report with every message."""

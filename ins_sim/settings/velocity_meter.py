@@ -132,6 +132,8 @@ class VelocityMeterSettings(SettingsGroup):
     drop_outs: DropOuts = group(DropOuts)
     seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
                         2147483647)
+    run: int = setting(0, 'number of the run in an ensemble: each draws other random errors', '',
+                       0, 2147483647)
     rate_hz: float = setting(100.0, 'rate of the navigation cycles, that of the IMU', 'Hz', 0.01,
                              20000.0)
     on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '

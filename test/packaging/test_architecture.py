@@ -60,7 +60,7 @@ CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core
         'core.postprocessing', 'core.prediction', 'core.simulation', 'core.ensemble',
         'core.standalone'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
-                         'graph', 'studies', 'report', 'regular_file', 'own_folders',
+                         'graph', 'studies', 'report', 'jobs', 'regular_file', 'own_folders',
                          'ros_parameters', 'visible_text', 'yaml_text'}
 MAY_IMPORT = {
     'settings': set(),
@@ -85,6 +85,7 @@ MAY_IMPORT = {
                                 'core.simulation'},
     'studies': CORE | {'settings'},
     'messages': {'core.attitude', 'core.timeseries'},
+    'jobs': {'settings', 'core.numerics', '__version__'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
              'visible_text', 'yaml_text'},
     'own_folders': set(),

@@ -25,9 +25,9 @@ REST = (math.radians(55.75), math.radians(37.62), 150.0, (0.0,) * 3, (0.0, 0.0, 
         (0.0,) * 3)
 
 
-def gnss(values=None, run=0):
+def gnss(values=None):
     """Return a Gnss of {dotted name: value}."""
-    return Gnss(build(GnssSettings, values or {}), run)
+    return Gnss(build(GnssSettings, values or {}))
 
 
 def truth_of(kind, t_ns, **more):
@@ -210,7 +210,7 @@ def test_the_stream_gives_the_bits_of_the_block():
         for sample in samples(FLIGHT[first:]):
             got += receiver.push(*sample)
         assert repr(got) == repr([f for f in WHOLE if f.t_ns >= T_NS[first]])
-    for other in (gnss(FULL, run=1), gnss({**FULL, 'seed': 5})):
+    for other in (gnss({**FULL, 'run': 1}), gnss({**FULL, 'seed': 5})):
         assert not {f.lat for f in other.advance(FLIGHT) if f.valid} & {f.lat for f in WHOLE}
 
 

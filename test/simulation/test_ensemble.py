@@ -37,7 +37,7 @@ def single(settings, motion, run, initial=None):
     """Return the SimulationResult of a run."""
     if initial is not None:
         settings = replace(settings, strapdown=replace(settings.strapdown, initial=initial(run)))
-    return simulate(settings, motion, twin=False, run=run)
+    return simulate(settings.with_run(run), motion, twin=False)
 
 
 def errors_of(result):

@@ -41,7 +41,7 @@ def errors(settings, windows, beta=0.0, speed=250.0):
 
     Also the part of the windows that is valid.
     """
-    made, v = SignalWindows(settings, 0), (speed * math.cos(beta), 0.0, speed * math.sin(beta))
+    made, v = SignalWindows(settings), (speed * math.cos(beta), 0.0, speed * math.sin(beta))
     found, index = [], 0
     for _ in range(windows):
         total = None

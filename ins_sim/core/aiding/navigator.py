@@ -46,8 +46,6 @@ class AidedNavigator:
     Parameters
     ----------
     settings : AidedNavigatorSettings
-    run : int
-        Number of the realization in an ensemble; each draws other initial errors.
 
     Attributes
     ----------
@@ -55,8 +53,8 @@ class AidedNavigator:
         The instruments that aid: METER, GNSS.
     """
 
-    def __init__(self, settings, run=0):
-        self._settings, self._run = settings, run
+    def __init__(self, settings):
+        self._settings = settings
         self._dt_ns = period_ns(settings.rate_hz)
         self._window_ns = settings.window.cycles * self._dt_ns
         self._step_ns = settings.window.step_cycles * self._dt_ns
@@ -184,8 +182,8 @@ class AidedNavigator:
 
     def _start(self, t_ns, omega, f, truth):
         lat, lon, height, v, q_nb = truth
-        draw = indexed_noise(self._settings.seed, self._run, 'aided.initial', 7).normal(0)
-        initial = self._settings.initial
+        settings, initial = self._settings, self._settings.initial
+        draw = indexed_noise(settings.seed, settings.run, 'aided.initial', 7).normal(0)
         tilt, azimuth = 1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad
         error = quaternion.exponential((tilt * draw[4], tilt * draw[5], azimuth * draw[6]))
         place = lat, lon, height, v, quaternion.multiply(error, q_nb)

@@ -34,7 +34,7 @@ class Group:
         strapdown = settings.strapdown
         self.runs = tuple(runs)
         self._dt_ns = period_ns(strapdown.rate_hz)
-        instruments = [with_errors(settings.imu_sensor, run) for run in self.runs]
+        instruments = [with_errors(settings.with_run(run).imu_sensor) for run in self.runs]
         self._gyro = _sensed([i and i.gyro for i in instruments], 0)
         self._accelerometer = _sensed([i and i.accelerometer for i in instruments], 3)
         self._spin = ellipsoid.rotation_rate(strapdown.earth.rotation)

@@ -1,7 +1,8 @@
 """
 Magnetometer and barometer: what surrounds the vehicle, read at whole periods of motion time.
 
-Every error is a function of seed and the index of the sample, its motion time over the period.
+Every error is a function of seed, run and the index of the sample, its motion time over the
+period.
 """
 
 from ins_sim.core.attitude import quaternion
@@ -43,7 +44,7 @@ class Magnetometer(PeriodicSensor):
 
     def __init__(self, settings, field):
         super().__init__(settings.magnetometer.rate_hz,
-                         indexed_noise(settings.seed, 0, 'magnetometer', 3))
+                         indexed_noise(settings.seed, settings.run, 'magnetometer', 3))
         self._sigma, self._field = settings.magnetometer.noise_nt * NT, field
 
     @property
@@ -64,7 +65,7 @@ class Barometer(PeriodicSensor):
 
     def __init__(self, settings):
         super().__init__(settings.barometer.rate_hz,
-                         indexed_noise(settings.seed, 0, 'barometer'))
+                         indexed_noise(settings.seed, settings.run, 'barometer'))
         self._sigma = settings.barometer.noise_pa
 
     @property

@@ -28,8 +28,8 @@ class Gnss(Sensor):
     Raises ValueError where a fix would lie between samples of the truth.
     """
 
-    def __init__(self, settings, run=0):
-        self._settings, self._run = settings, run
+    def __init__(self, settings):
+        self._settings = settings
         self._dt_ns = period_ns(settings.rate_hz)
         self.period_ns = period_ns(settings.gnss.rate_hz)
         if self.period_ns % self._dt_ns:
@@ -140,7 +140,7 @@ class Gnss(Sensor):
             return no_gnss_fix(t_ns, OUTAGE, arrival_ns)
         lat, lon, height, v_n, q_nb, rate = truth
         if self._errors is None:
-            self._errors = _Errors(self._settings, self._run, self.period_ns)
+            self._errors = _Errors(self._settings, self.period_ns)
         off, slip = self._errors.at(t_ns // self.period_ns)
         if _inside(t_ns, self._jumps):
             off = _sum(off, self._jump_m)
@@ -155,11 +155,11 @@ class Gnss(Sensor):
 class _Errors:
     """Errors of position (m) and velocity (m/s) by the index of the fix."""
 
-    def __init__(self, settings, run, dt_ns):
+    def __init__(self, settings, dt_ns):
         # with the first fix: NumPy's generators cost the start of a node nothing
         from ins_sim.core.numerics.noise import BLOCK, indexed_noise
         from ins_sim.core.numerics.processes import Processes
-        errors, seed = settings.errors, settings.seed
+        errors, seed, run = settings.errors, settings.seed, settings.run
         self._sigmas = errors.position_noise_m, errors.velocity_noise_m_s
         self._streams = [indexed_noise(seed, run, f'gnss.{name}', 3)
                          for name in ('position', 'velocity')]

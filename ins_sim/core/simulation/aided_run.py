@@ -47,16 +47,16 @@ def with_truth(motion, blocks):
         yield imu, motion.at(imu.t_ns)
 
 
-def navigate_aided(settings, blocks, meter=None, gnss=None, run=0):
+def navigate_aided(settings, blocks, meter=None, gnss=None):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
     meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
-    arrival, or None; run: of the ensemble.  Faults are handled as on_fault says: the solution
+    arrival, or None.  Faults are handled as on_fault says: the solution
     starts anew from the truth, or ValueError is raised.  Raises ValueError where there is no
     output.
     """
-    chain = _Chain(settings, run)
+    chain = _Chain(settings)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
                if instrument is not None]
     for imu, truth in blocks:
@@ -66,8 +66,8 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, run=0):
 
 
 class _Chain:
-    def __init__(self, settings, run):
-        self._loop = AidedLoop(partial(AidedNavigator, settings, run),
+    def __init__(self, settings):
+        self._loop = AidedLoop(partial(AidedNavigator, settings),
                                period_ns(settings.rate_hz), settings.output_every,
                                settings.on_fault)
         self._parts, self._judged = [], []

@@ -49,11 +49,9 @@ class SteeringChain:
     motion : GuidedMotion
     aided : AidedSimulationSettings, optional
         With them the aided solution steers, else that of the strapdown.
-    run : int
-        Number of the realization in an ensemble.
     """
 
-    def __init__(self, settings, motion, aided=None, run=0):
+    def __init__(self, settings, motion, aided=None):
         generator, sensor = settings.motion_generator, settings.imu_sensor
         self._motion, self._dt_ns = motion, period_ns(sensor.rate_hz)
         self._frame = MapFrame(sensor.datum, sensor.earth.rotation)
@@ -63,19 +61,19 @@ class SteeringChain:
                                      settings.lead_ns)
         else:
             self._imu = StreamImu(sensor)
-        self._errors = with_errors(sensor, run)
-        self._sampler = Sampler(sensor.sampling, sensor.seed, run, 'sampling', self._dt_ns)
+        self._errors = with_errors(sensor)
+        self._sampler = Sampler(sensor.sampling, sensor.seed, sensor.run, 'sampling', self._dt_ns)
         self._meter = self._gnss = self._strapdown = self._aided = None
         strapdown = settings.strapdown
         if aided is not None:
             navigator = aided.aided_navigator
-            make = partial(AidedNavigator, navigator, run)
+            make = partial(AidedNavigator, navigator)
             self._aided = AidedLoop(make, self._dt_ns, navigator.output_every, navigator.on_fault)
             self._aided.waiting, sources = [], self._aided.navigator.sources
             if METER in sources:
-                self._meter = VelocityMeter(aided.velocity_meter, run)
+                self._meter = VelocityMeter(aided.velocity_meter)
             if GNSS in sources:
-                self._gnss = Gnss(aided.gnss, run)
+                self._gnss = Gnss(aided.gnss)
         if aided is None or self._meter is not None and \
                 aided.velocity_meter.attack_angle == 'ins':
             self._strapdown = NavigationLoop(

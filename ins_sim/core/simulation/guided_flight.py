@@ -33,7 +33,7 @@ class GuidedResult:
     counts: tuple = ()
 
 
-def fly(settings, motion, aided=None, progress=None, run=0):
+def fly(settings, motion, aided=None, progress=None):
     """
     Steer a guided motion through a whole run; return the GuidedResult.
 
@@ -50,8 +50,6 @@ def fly(settings, motion, aided=None, progress=None, run=0):
         without them that of the strapdown.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
-    run : int
-        Number of the realization in an ensemble.
 
     Raises
     ------
@@ -76,7 +74,7 @@ def fly(settings, motion, aided=None, progress=None, run=0):
     if sentence:
         steering.notes.append(sentence)
     commands = []
-    for done in _periods(settings, motion, SteeringChain(settings, motion, aided, run), steering,
+    for done in _periods(settings, motion, SteeringChain(settings, motion, aided), steering,
                          commands):
         if progress is not None:
             progress(done)

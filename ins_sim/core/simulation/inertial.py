@@ -39,23 +39,17 @@ class SimulationResult:
     faults: tuple = ()
 
 
-def imu_blocks(settings, motion, run=0):
+def imu_blocks(settings, motion):
     """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
-    return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion), run)
+    return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion))
 
 
 @paused_in_blocks
-def sensed_blocks(sensor, ideal, run=0):
-    """
-    Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one.
-
-    run: number of the run in an ensemble; each has its own random numbers.
-    """
-    if run and sensor.gyro.model == 'dtg':
-        raise ValueError(f'run is {run} with gyro.model dtg; expected 0: the errors of tuned '
-                         'gyros are drawn for one run only')
-    errors = with_errors(sensor, run)
-    sampler = Sampler(sensor.sampling, sensor.seed, run, 'sampling', period_ns(sensor.rate_hz))
+def sensed_blocks(sensor, ideal):
+    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
+    errors = with_errors(sensor)
+    sampler = Sampler(sensor.sampling, sensor.seed, sensor.run, 'sampling',
+                      period_ns(sensor.rate_hz))
     for block in ideal:
         block = sampler.take(block if errors is None else errors.advance(block))
         if len(block):
@@ -132,14 +126,14 @@ class _RecentTruth:
         return self._last
 
 
-def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=0):
+def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
     Return the SimulationResult of SimulationSettings.
 
     motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
     called with the fraction done; collect: called once for each history, it returns what takes
-    the blocks and gives the whole, such as Collected, which keeps it in memory; run: number of the
-    run in an ensemble.  Raises ValueError where the settings name no run of finite length.
+    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
+    where the settings name no run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -160,7 +154,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=
         # The IMU and the navigation ask for the truth at the same instants.
         motion = _RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
-    blocks = watch(_kept(imu_blocks(settings, motion, run), sensed), 0)
+    blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
     for parts in navigate_blocks(settings.strapdown, motion, blocks, faults):
         for store, part in zip(flown, parts):
             store.append(part)
@@ -172,7 +166,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected, run=
     if twin:
         store = collect()
         blocks = watch(_until(int(imu.t_ns[-1]), imu_blocks(
-            settings.without_delays(), motion, run)), total / 2)
+            settings.without_delays(), motion)), total / 2)
         for _, _, part in navigate_blocks(settings.strapdown, motion, blocks):
             store.append(part)
         twin_errors = store.history()

@@ -132,7 +132,8 @@ class ImuSensorNode(StageNode):
             self._parity.expect(settings, self.stage.pair)
 
     def _take_sampling(self, settings):
-        self._sampler = Sampler(settings.sampling, settings.seed, 0, 'sampling', self._dt_ns)
+        self._sampler = Sampler(settings.sampling, settings.seed, settings.run, 'sampling',
+                                self._dt_ns)
 
     def effective_ns(self, name):
         """Return the motion time of the next reading; of tuned gyros, that is not made yet."""

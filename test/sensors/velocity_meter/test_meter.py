@@ -130,9 +130,9 @@ def test_a_run_after_a_jump_back_is_whole(order):
 @pytest.mark.parametrize('mode', MODES)
 def test_seeds_and_runs(mode):
     """The same give the same, others other numbers."""
-    def velocities(run=0, **terms):
+    def velocities(**terms):
         s = meter_settings(mode=mode, window__cycles=10, **terms)
-        return [fix.velocity for fix in VelocityMeter(s, run).advance(*flight(20))]
+        return [fix.velocity for fix in VelocityMeter(s).advance(*flight(20))]
 
     assert velocities() == velocities() != velocities(seed=1)
     assert velocities(run=1) == velocities(run=1) != velocities()

@@ -2,7 +2,7 @@
 From the ideal IMU to the instrument: the errors of both triads, applied to its readings.
 
 Errors act on the mean rate and the mean specific force of a sampling interval.  They are a
-function of seed and instant: the index of a sample is its motion time over the period.
+function of seed, run and instant: the index of a sample is its motion time over the period.
 """
 
 from ins_sim.core.numerics.instants import period_ns
@@ -13,18 +13,16 @@ from ..sensor import Sensor
 from .sampling import consecutive
 
 
-def with_errors(settings, run=0):
+def with_errors(settings):
     """
     Return the InstrumentErrors of ImuSensorSettings, or None where nothing is left to them.
-
-    run: number of the run in an ensemble, part of the key of all random numbers.
 
     Raises ValueError where the error terms do not fit together.
     """
     gyro = outer_gyro_errors(settings)
     if gyro == GyroErrors() and settings.accelerometer.errors == AccelerometerErrors():
         return None
-    return InstrumentErrors(settings, gyro, run)
+    return InstrumentErrors(settings, gyro)
 
 
 def outer_gyro_errors(settings):
@@ -50,7 +48,7 @@ def reported_variances(settings):
 class InstrumentErrors:
     """The errors of gyros (GyroErrors) and accelerometers of one IMU in one run."""
 
-    def __init__(self, settings, gyro_errors, run=0):
+    def __init__(self, settings, gyro_errors):
         # NumPy's generators cost a perfect node's start nothing
         from .triad_errors import TriadErrors
         self._dt_ns = period_ns(settings.rate_hz)
@@ -58,7 +56,7 @@ class InstrumentErrors:
         triads = ((gyro_errors, 'gyro.errors'),
                   (settings.accelerometer.errors, 'accelerometer.errors'))
         self.gyro, self.accelerometer = (
-            TriadErrors(errors, settings.seed, run, name, dt, settings.temperature)
+            TriadErrors(errors, settings.seed, settings.run, name, dt, settings.temperature)
             for errors, name in triads)
 
     def take_over(self, before):

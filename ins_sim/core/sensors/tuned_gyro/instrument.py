@@ -94,7 +94,7 @@ class PairInstrument:
     The gyros of ImuSensorSettings whose model is dtg.
 
     nodes: the instants of a sampling period, as parts of it, at which ``step`` wants the body
-    rate.  Errors are functions of seed and instant; what is carried are the states of rotors,
+    rate.  Errors are functions of seed, run and instant; what is carried are the states of rotors,
     lags, pulses and pick-offs.  Raises ValueError where the settings make no instrument.
     """
 
@@ -110,7 +110,8 @@ class PairInstrument:
         perfect = TunedGyroErrors()
         if replace(errors, speed_ppm=(0.0, 0.0), hunting_hz=perfect.hunting_hz) != perfect:
             from .pair_errors import RotorErrors
-            self._disturbances = RotorErrors(errors, self.pair, settings.seed, self.dt_s)
+            self._disturbances = RotorErrors(errors, self.pair, settings.seed, settings.run,
+                                             self.dt_s)
         self._read_errors(settings)
         self._schedule_fault(dtg.fault)
 
@@ -125,8 +126,9 @@ class PairInstrument:
         if settings.gyro.errors != GyroErrors():
             from ..imu.triad_errors import TriadErrors
             self._read_out = tuple(
-                TriadErrors(case_errors(settings.gyro.errors, axes), settings.seed, 0, name,
-                            self.dt_s, settings.temperature) for axes, name in zip(CASES, NAMES))
+                TriadErrors(case_errors(settings.gyro.errors, axes), settings.seed, settings.run,
+                            name, self.dt_s, settings.temperature)
+                for axes, name in zip(CASES, NAMES))
 
     def change(self, settings):
         """

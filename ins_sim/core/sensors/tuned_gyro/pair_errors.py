@@ -84,11 +84,11 @@ class RotorErrors:
     The disturbances of both gyros, sampling period by sampling period.
 
     errors: TunedGyroErrors; pair: GyroPair; dt_s: sampling period, s.  The noise of the
-    pick-offs is a function of (seed, index).  Raises ValueError for a rotor of which the vibration
-    is not defined.
+    pick-offs is a function of (seed, run, index).  Raises ValueError for a rotor of which the
+    vibration is not defined.
     """
 
-    def __init__(self, errors, pair, seed, dt_s):
+    def __init__(self, errors, pair, seed, run, dt_s):
         self._pair, self._dt_s = pair, dt_s
         per_g, per_g2 = DEG_H / STANDARD_GRAVITY, DEG_H / (STANDARD_GRAVITY * STANDARD_GRAVITY)
         self._by_force = tuple(
@@ -100,7 +100,7 @@ class RotorErrors:
         self._densities = tuple(URAD * n for n in errors.pickoff_noise_urad_sqrt_s)
         self._normals = None
         if any(self._densities):
-            self._normals = indexed_noise(seed, 0, 'gyro.dtg.pickoff', 4)
+            self._normals = indexed_noise(seed, run, 'gyro.dtg.pickoff', 4)
         scale = 1.0 / math.sqrt(dt_s)
         self._spreads = tuple(scale * d for d in self._densities)
         self._constant = tuple(part for each in zip(

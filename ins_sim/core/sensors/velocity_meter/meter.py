@@ -30,8 +30,8 @@ class VelocityMeter:
     """
     The instrument, fed by pushes; any cutting or interleaving of them gives the same fixes.
 
-    settings: VelocityMeterSettings; run: which of an ensemble.  Raises ValueError, one sentence,
-    on settings that do not go together.
+    settings: VelocityMeterSettings.  Raises ValueError, one sentence, on settings that do not go
+    together.
 
     Windows have N cycles and end every ``window.slide_cycles`` of them, or every N, at whole
     multiples in motion time; one that was not seen from its start is not reported.  With
@@ -40,7 +40,7 @@ class VelocityMeter:
     one the fix is invalid, and so it is, 60 s of motion time later, when the INS never gets there.
     """
 
-    def __init__(self, settings, run=0):
+    def __init__(self, settings):
         self._settings = settings
         self._dt_ns = period_ns(settings.rate_hz)
         self._cycles, self._step = settings.window.cycles, settings.window.step_cycles
@@ -51,9 +51,9 @@ class VelocityMeter:
         self.change(settings)
         if settings.mode == 'signal':
             from .pulses import SignalWindows
-            self._method = SignalWindows(settings, run)
+            self._method = SignalWindows(settings)
         else:
-            self._method = SurrogateWindows(settings, run)
+            self._method = SurrogateWindows(settings)
         self._open = OpenWindows(self._method, self._cycles, self._step)
         self._ins = InsMeans(self._dt_ns, self._span_ns, self._step * self._dt_ns)
         self.reset()

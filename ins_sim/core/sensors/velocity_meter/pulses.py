@@ -193,15 +193,15 @@ class SignalWindows:
 
     Each cycle has a field of its own.  One that went on would tie neighbours only over the delay
     and a correlation time, 0.4 and 0.2 ms of a cycle of 10 ms at 250 m/s.  settings:
-    VelocityMeterSettings; run: which of an ensemble.
+    VelocityMeterSettings.
     """
 
-    def __init__(self, settings, run):
+    def __init__(self, settings):
         self._cycles, self._limits = settings.window.cycles, settings.limits
         self._geometry, self._lag_s = antenna_geometry(settings.antennas), settings.lag_s
         self._field, self._correlator = Field(settings), Correlator(settings)
         self._normals = indexed_noise(
-            settings.seed, run, 'velocity_meter.signal', self._field.width, 1)
+            settings.seed, settings.run, 'velocity_meter.signal', self._field.width, 1)
 
     def add(self, total, index, v_last, v):
         """

@@ -41,16 +41,17 @@ class SurrogateWindows:
     """
     Sums and readings of windows by trapezoids over the instants of their cycles.
 
-    settings: VelocityMeterSettings; run: which of an ensemble.
+    settings: VelocityMeterSettings.
     """
 
-    def __init__(self, settings, run):
+    def __init__(self, settings):
         self._surrogate, self._cycles = settings.surrogate, settings.window.cycles
         beam = settings.beam
         self._scale_x = 1.0 + self._surrogate.k_x
         ratio = beam.sigma_theta_z_rad / beam.sigma_theta_x_rad
         self._scale_z = (1.0 + self._surrogate.k_z) * (ratio * ratio)
-        self._normals = indexed_noise(settings.seed, run, 'velocity_meter.surrogate', 2)
+        self._normals = indexed_noise(settings.seed, settings.run,
+                                      'velocity_meter.surrogate', 2)
 
     def add(self, total, index, v_last, v):
         """

@@ -1,0 +1,154 @@
+"""An executor on a Dask cluster of the user (extra cluster)."""
+
+import logging
+import platform
+import time
+import warnings
+
+import numpy as np
+
+from ins_sim import __version__
+
+# How long a scheduler may take to answer, and how long a cluster may be without a worker, s.
+CONNECT_S, NO_WORKER_S = 10.0, 60.0
+# How often the workers are counted, s.
+COUNT_S = 5.0
+
+
+class Cluster:
+    """
+    A Dask cluster; it looks after its own workers, and computes the block of a dead one elsewhere.
+
+    address: of its scheduler, such as tcp://host:8786.  LOST: the error of a future whose workers
+    have ended several times; width: how many threads compute at once.  Raises ValueError where
+    the cluster is not there, has no worker, or has other versions of what computes the numbers.
+    """
+
+    def __init__(self, address):
+        try:
+            import distributed
+        except ImportError:
+            raise ValueError('a scheduler is given, but Dask is not installed; expected '
+                             "pip install 'ins_sim[cluster]'") from None
+        self._address, self._client = address, None
+        self.LOST = (distributed.KilledWorker,)
+        self._log = logging.getLogger('distributed')
+        self._level = self._log.level
+        # What goes wrong is said in a sentence, not in the log of the client.
+        self._log.setLevel(logging.CRITICAL + 1)
+        try:
+            self._connect(distributed)
+            self._pool = self._client.get_executor(pure=False)
+            self._known, self._counted_s, self._seen_s = set(), None, time.monotonic()
+            self._count()
+            if not self._known:
+                raise ValueError(f'the cluster at {address} has no worker; expected one or more, '
+                                 f'such as "dask worker {address} --nthreads 1"')
+        except BaseException:
+            self.close()
+            raise
+
+    def _connect(self, distributed):
+        try:
+            with warnings.catch_warnings():
+                # That versions differ is found out by _check_versions, which refuses.
+                warnings.simplefilter('ignore')
+                self._client = distributed.Client(self._address, timeout=CONNECT_S,
+                                                  set_as_default=False)
+        except (OSError, TypeError, ValueError) as error:
+            raise ValueError(f'there is no Dask scheduler at {self._address} '
+                             f'({" ".join(str(error).split())}); expected an address such as '
+                             'tcp://host:8786') from None
+
+    def submit(self, work, block):
+        """Return the Future of work on a block."""
+        return self._pool.submit(work, block)
+
+    def check(self):
+        """Raise ValueError where the scheduler, or every worker for some time, has gone."""
+        if self._client.status != 'running':
+            raise self.gone()
+        now = time.monotonic()
+        if now - self._counted_s >= COUNT_S:
+            self._count()
+            if now - self._seen_s > NO_WORKER_S:
+                raise ValueError(f'the cluster at {self._address} has had no worker for '
+                                 f'{NO_WORKER_S:g} s; expected one or more')
+
+    def renew(self):
+        """Let the cluster have seen to it; return False: the other futures go on."""
+        return False
+
+    def gone(self):
+        """Return the ValueError of a cluster that has gone away."""
+        return ValueError(f'the cluster at {self._address} has gone away; expected it to stay '
+                          'until the study is done')
+
+    def close(self):
+        """Let go of the cluster, and of what it was still to compute."""
+        if self._client is not None:
+            self._client.close(timeout=CONNECT_S)
+        self._log.setLevel(self._level)
+
+    def _count(self):
+        """Count the workers, and check the versions of new ones."""
+        try:
+            threads = self._client.nthreads()
+            fresh = sorted(set(threads) - self._known)
+            if fresh:
+                _check_versions(self._client, self._address, fresh)
+        except (OSError, AttributeError, TimeoutError):
+            # a scheduler that no longer answers
+            raise self.gone() from None
+        self._known, self._counted_s = set(threads), time.monotonic()
+        self.width = max(1, sum(threads.values()))
+        if threads:
+            self._seen_s = self._counted_s
+
+
+def own_versions():
+    """Return the versions by name of what decides the numbers."""
+    return {'Python': '.'.join(platform.python_version_tuple()[:2]), 'NumPy': np.__version__,
+            'ins_sim': __version__}
+
+
+def _check_versions(client, address, workers):
+    """Raise ValueError where the scheduler or one of some workers does not have our versions."""
+    packages = client.get_versions(check=False)
+    _check_packages(f'the scheduler at {address}', packages['scheduler'])
+    for worker in workers:
+        _check_packages(_worker(address), packages['workers'].get(worker, {}))
+    try:
+        there = client.run_on_scheduler(_asked())
+    except ImportError:
+        there = None
+    _compare(f'the scheduler at {address}', 'ins_sim', there)
+    for there in client.run(_asked(), workers=workers, on_error='return').values():
+        _compare(_worker(address), 'ins_sim', there if isinstance(there, str) else None)
+
+
+def _worker(address):
+    return f'a worker of the cluster at {address}'
+
+
+def _check_packages(place, found):
+    found = found.get('packages', {})
+    _compare(place, 'Python', '.'.join(found.get('python', '').split('.')[:2]))
+    _compare(place, 'NumPy', found.get('numpy'))
+
+
+def _compare(place, name, version):
+    ours = own_versions()[name]
+    if version != ours:
+        raise ValueError(f'{place} has {f"{name} {version}" if version else f"no {name}"}; '
+                         f'expected {name} {ours}, as here: other versions may give other '
+                         'numbers, or cannot read what is to be computed')
+
+
+def _asked():
+    """Return a function that a worker without this module can run, too."""
+    def version():
+        import ins_sim
+        return ins_sim.__version__
+
+    return version

@@ -1,0 +1,36 @@
+"""What decides the numbers of a study, and the digest of what came out."""
+
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+
+from ins_sim import __version__
+from ins_sim.core.numerics.noise import NOISE
+from ins_sim.settings.catalogue import values_of
+
+
+def fingerprint(settings, **inputs):
+    """
+    Return {name: value} of all that decides the numbers of a study, for ``BlockStore``.
+
+    settings: {name of a node: its settings}; inputs: what else decides them, such as the number
+    of runs.  A recording of a motion counts with its content.  Values are those of JSON.
+    """
+    found = {'ins_sim': __version__, 'noise': NOISE, **inputs}
+    for node, group in settings.items():
+        for key, value in values_of(group).items():
+            found[f'{node}: {key}'] = value
+            if key == 'motion.recording.path' and value and Path(value).is_file():
+                found[f'{node}: {key} (SHA-256)'] = sha256(Path(value).read_bytes()).hexdigest()
+    return found
+
+
+def array_digest(arrays):
+    """Return the SHA-256, hexadecimal, of {name: array}: of names, types, shapes and bytes."""
+    total = sha256()
+    for name in sorted(arrays):
+        array = np.ascontiguousarray(arrays[name])
+        total.update(f'{name} {array.dtype.str} {array.shape}\n'.encode())
+        total.update(array.tobytes())
+    return total.hexdigest()

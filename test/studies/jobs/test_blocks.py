@@ -1,0 +1,124 @@
+"""Blocks come in their order, whoever finishes first, and once each, whatever dies on the way."""
+
+import os
+import signal
+import time
+
+from ins_sim.jobs.blocks import ATTEMPTS, run_blocks
+from ins_sim.jobs.executors import open_executor
+from ins_sim.jobs.store import BlockStore
+import numpy as np
+import pytest
+
+
+def square(block):
+    """Return the squares of a block; early blocks take longest."""
+    time.sleep(0.03 * (6 - min(block)))
+    return {'squares': np.array(block) ** 2, 'worker': np.array(os.getpid())}
+
+
+class DiesOnce:
+    """Work whose process is killed at one block, the first times that it is computed."""
+
+    def __init__(self, folder, block, times):
+        self.folder, self.block, self.times = folder, block, times
+
+    def __call__(self, block):
+        """Return the block, or end the process."""
+        if block == self.block:
+            seen = len(list(self.folder.iterdir()))
+            if seen < self.times:
+                (self.folder / str(seen)).touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+        return {'block': np.array(block)}
+
+
+@pytest.mark.parametrize('jobs', [1, 2, 3])
+def test_results_come_in_the_order_of_the_blocks(jobs):
+    """Although the first blocks take longest; and the processes are as many as asked for."""
+    blocks, seen = [range(k, k + 2) for k in range(6)], []
+    with open_executor(jobs) as executor:
+        found = list(run_blocks(square, blocks, executor, progress=seen.append))
+    assert [number for number, _ in found] == list(range(6)) and seen == list(range(1, 7))
+    for number, result in found:
+        assert result['squares'].tolist() == [number ** 2, (number + 1) ** 2]
+    workers = {int(result['worker']) for _, result in found}
+    assert len(workers) <= jobs and (os.getpid() in workers) == (jobs == 1)
+
+
+@pytest.mark.parametrize('times', range(1, ATTEMPTS))
+def test_a_killed_worker_costs_only_time(times, tmp_path):
+    """Every block comes, once, with its result."""
+    with open_executor(2) as executor:
+        found = list(run_blocks(DiesOnce(tmp_path, 3, times), range(8), executor))
+    assert [(n, int(r['block'])) for n, r in found] == [(k, k) for k in range(8)]
+
+
+def test_a_block_that_kills_every_worker_is_named(tmp_path):
+    """The study ends with a sentence; the blocks before were given, and others are not blamed."""
+    found = []
+    with open_executor(2) as executor, pytest.raises(ValueError, match='^block 4 of 8 ended'):
+        for number, _ in run_blocks(DiesOnce(tmp_path, 3, 99), range(8), executor):
+            found.append(number)
+    assert found == [0, 1, 2] and len(list(tmp_path.iterdir())) == ATTEMPTS
+
+
+def refuse(block):
+    """Refuse the third block."""
+    if block == 2:
+        raise ValueError('the third block; expected another')
+    return {'block': np.array(block)}
+
+
+@pytest.mark.parametrize('jobs', [1, 2])
+def test_an_error_of_the_work_is_the_error(jobs):
+    """It comes through as it is."""
+    with open_executor(jobs) as executor, pytest.raises(ValueError, match='^the third block'):
+        list(run_blocks(refuse, range(5), executor))
+
+
+@pytest.mark.parametrize('jobs, scheduler', [(-1, None), (2, 'tcp://host:8786')])
+def test_what_is_no_executor_is_refused(jobs, scheduler):
+    """A sentence names what was given."""
+    with pytest.raises(ValueError, match=f'^jobs is {jobs}'), open_executor(jobs, scheduler):
+        pass
+
+
+def test_finished_blocks_are_not_computed_again(tmp_path):
+    """Neither after an interruption; a damaged one is."""
+    folder, identity = tmp_path / 'blocks', {'a': 1, 'b': (1.5, 'x')}
+    store = BlockStore(folder, identity)
+    with open_executor(2) as executor:
+        before = dict(run_blocks(square, [range(k, k + 2) for k in range(4)], executor, store))
+    (folder / 'block_000002.npz').write_bytes(b'PK damaged')
+    (folder / 'block_000003.npz').unlink()
+    store, computed = BlockStore(folder, identity), []
+    assert store.found == 3
+    with open_executor(1) as executor:
+        after = dict(run_blocks(square, [range(k, k + 2) for k in range(4)], executor, store,
+                                computed.append))
+    assert computed == [1, 2] and sorted(after) == [0, 1, 2, 3]
+    for k in range(4):
+        assert after[k]['squares'].tolist() == before[k]['squares'].tolist()
+        assert (after[k]['worker'] == before[k]['worker']) == (k < 2)
+    store.remove()
+    assert not folder.exists()
+
+
+def test_blocks_of_another_study_are_never_mixed(tmp_path):
+    """The sentence says what differs; with replace they are deleted, and only they."""
+    folder = tmp_path / 'blocks'
+    BlockStore(folder, {'seed': 1, 'rate_hz': 100.0}).save(0, {'x': np.zeros(3)})
+    with pytest.raises(ValueError, match='seed is 1 there and 2 here'):
+        BlockStore(folder, {'seed': 2, 'rate_hz': 100.0})
+    with pytest.raises(ValueError, match='rate_hz is 100.0 there and None here, more is None'):
+        BlockStore(folder, {'seed': 1, 'more': []})
+    assert BlockStore(folder, {'seed': 1, 'rate_hz': 100.0}).found == 1
+    (folder / 'mine.txt').touch()
+    assert BlockStore(folder, {'seed': 2}, replace=True).found == 0
+    assert sorted(path.name for path in folder.iterdir()) == ['mine.txt', 'study.json']
+    other = tmp_path / 'other'
+    other.mkdir()
+    (other / 'mine.txt').touch()
+    with pytest.raises(ValueError, match='it holds no blocks of a study'):
+        BlockStore(other, {}, replace=True)

@@ -1,0 +1,96 @@
+"""A Dask cluster computes the same blocks; one that cannot be used is refused in a sentence."""
+
+import signal
+import sys
+
+from ins_sim.jobs import cluster
+from ins_sim.jobs.blocks import run_blocks
+from ins_sim.jobs.executors import open_executor
+import numpy as np
+import pytest
+from support.nodes.clusters import Processes, slow_block
+
+pytest.importorskip('distributed', reason='needs Dask (extra cluster)')
+
+
+@pytest.fixture
+def processes():
+    """Give a scheduler, and end all at the end."""
+    made = Processes()
+    yield made
+    for process in reversed(made.all):
+        process.kill()
+        process.communicate()
+
+
+def test_a_killed_worker_costs_only_time(processes):
+    """Every block comes, once and in order, although one of two workers is killed on the way."""
+    workers = {process.pid: process for process in (processes.worker(), processes.worker())}
+    found = []
+    with open_executor(scheduler=processes.address) as executor:
+        assert executor.width == 2
+        for number, result in run_blocks(slow_block, range(12), executor):
+            found.append((number, int(result['block'])))
+            if number == 3:
+                workers[int(result['worker'])].send_signal(signal.SIGKILL)
+    assert found == [(k, k) for k in range(12)]
+
+
+def test_a_cluster_that_goes_away_is_named(processes):
+    """The study ends with a sentence when the scheduler ends."""
+    processes.worker()
+    with open_executor(scheduler=processes.address) as executor:
+        with pytest.raises(ValueError, match=f'{processes.address} has gone away'):
+            for number, _ in run_blocks(slow_block, range(50), executor):
+                if number == 1:
+                    processes.all[0].kill()
+
+
+def test_a_cluster_without_workers_is_refused(processes, monkeypatch):
+    """At once; and one that has lost its last worker after a while."""
+    with pytest.raises(ValueError, match='has no worker; expected one or more'):
+        with open_executor(scheduler=processes.address):
+            pass
+    monkeypatch.setattr(cluster, 'COUNT_S', 0.1)
+    monkeypatch.setattr(cluster, 'NO_WORKER_S', 1.0)
+    worker = processes.worker()
+    with open_executor(scheduler=processes.address) as executor:
+        with pytest.raises(ValueError, match='has had no worker for 1 s'):
+            for number, _ in run_blocks(slow_block, range(50), executor):
+                worker.kill()
+
+
+@pytest.mark.parametrize('address, reason', [
+    ('tcp://127.0.0.1:9', 'there is no Dask scheduler at'), ('nowhere', 'there is no Dask')])
+def test_a_scheduler_that_is_not_there(address, reason, monkeypatch):
+    """The sentence names the address."""
+    monkeypatch.setattr(cluster, 'CONNECT_S', 1.0)
+    with pytest.raises(ValueError, match=reason), open_executor(scheduler=address):
+        pass
+
+
+@pytest.mark.parametrize('source, found', [
+    ("__version__ = '0.0.9'\n", 'has ins_sim 0.0.9; expected ins_sim '), (None, 'has no ins_sim')])
+def test_other_versions_are_refused(processes, tmp_path, source, found):
+    """The sentence names both."""
+    if source is not None:
+        (tmp_path / 'ins_sim').mkdir()
+        (tmp_path / 'ins_sim' / '__init__.py').write_text(source, encoding='utf-8')
+    processes.worker(path=tmp_path)
+    with pytest.raises(ValueError, match=found), open_executor(scheduler=processes.address):
+        pass
+
+
+@pytest.mark.parametrize('name', ['Python', 'NumPy'])
+def test_another_python_is_refused(processes, monkeypatch, name):
+    """So is another NumPy, by its version."""
+    processes.worker()
+    theirs = cluster.own_versions()[name]
+    monkeypatch.setattr(cluster, 'own_versions',
+                        lambda: {**dict.fromkeys(('Python', 'NumPy', 'ins_sim'), theirs),
+                                 'Python': '3.0' if name == 'Python' else '.'.join(
+                                     map(str, sys.version_info[:2])),
+                                 'NumPy': '1.0' if name == 'NumPy' else np.__version__})
+    with pytest.raises(ValueError, match=f'has {name} {theirs}; expected {name} [13].0'):
+        with open_executor(scheduler=processes.address):
+            pass
