@@ -50,6 +50,7 @@ from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ins_sim.api.delays import delay_study, DelayStudy
     from ins_sim.api.inputs import presets, read_settings
     from ins_sim.api.offline import predict, simulate, simulate_aided
     from ins_sim.api.readers import open_bag, open_motion
@@ -62,10 +63,11 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'ImuRecord', 'Motion', 'Navigation',
-           'Prediction', 'Run', 'SimulationSettings', 'navigate', 'open_bag', 'open_motion',
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'DelayStudy', 'ImuRecord', 'Motion', 'Navigation',
+           'Prediction', 'Run', 'SimulationSettings', 'delay_study', 'navigate', 'open_bag', 'open_motion',
            'predict', 'presets', 'read_settings', 'simulate', 'simulate_aided']
 _MODULES = {
+    'api.delays': ('DelayStudy', 'delay_study'),
     'api.inputs': ('presets', 'read_settings'),
     'api.offline': ('predict', 'simulate', 'simulate_aided'),
     'api.readers': ('open_bag', 'open_motion'),

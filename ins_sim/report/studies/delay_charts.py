@@ -14,6 +14,7 @@ ARCMIN, ARCSEC = 60.0 * np.degrees(1.0), 3600.0 * np.degrees(1.0)
 # Curves smaller than this part of the largest are drawn once more by themselves.
 SMALL = 0.05
 NAMES = ('latitude', 'longitude')
+LINEAR = 'Linear theory without the rotation of the Earth.'
 
 
 def figure_charts(result):
@@ -31,9 +32,14 @@ def _errors(result):
         if any(row):
             rows += [panel or Panel((), '', '', note='no small ones') for panel in row]
     what = ' and '.join(NAMES[k] for k in picked).capitalize()
-    return (Chart(figure.name, f'{what} error of {names.motion_name(figure.simulation)}, '
-                  f'{names.conditions(figure.simulation)}', tuple(rows), columns=len(picked),
-                  caption='Computed less true. The prediction is that of the linear theory.'),)
+    return (Chart(figure.name, f'{what} error of {_titled(figure)}', tuple(rows),
+                  columns=len(picked),
+                  caption=f'{names.conditions(figure.simulation)} Computed less true. The '
+                  'prediction is that of the linear theory.'),)
+
+
+def _titled(figure):
+    return f'{names.motion_name(figure.simulation)}, {names.late_gyros(figure.simulation)}'
 
 
 def _time(runs):
@@ -72,18 +78,19 @@ def _residual(runs, k):
 def _flight(result):
     """Track and position error of a flight, and what each channel contributes."""
     figure, (run,) = result.figure, result.runs
-    settings = figure.simulation
     factor, label = _time(result.runs)
     metres, unit = scales.scale(scales.LENGTHS, np.abs(run.apart).max())
     apart = run.apart - run.predicted
     fine, fine_unit = scales.scale(scales.LENGTHS, np.abs(apart[:, :2]).max())
-    title = f'{names.motion_name(settings).capitalize()}, {names.conditions(settings)}'
+    motion = names.motion_name(figure.simulation).capitalize()
     panels = (_track(run),
               Panel(_by_axis(run, metres * run.apart, factor), label, f'position error [{unit}]',
                     title='run less the run without delays'),
               Panel(_by_axis(run, fine * apart, factor, labelled=False), label,
                     f'difference [{fine_unit}]', title='run less prediction'))
-    return (Chart(figure.name, title, panels, shared=False), _contributions(result, title))
+    return (Chart(figure.name, f'{motion}, {names.late_gyros(figure.simulation)}', panels,
+                  shared=False, caption=names.conditions(figure.simulation)),
+            _contributions(result, motion))
 
 
 def _by_axis(run, position, factor, labelled=True):
@@ -102,47 +109,48 @@ def _track(run):
                  f'east of the start [{unit}]', f'north of the start [{unit}]', equal=True)
 
 
-def _contributions(result, title):
+def _contributions(result, motion):
     figure, (run,) = result.figure, result.runs
     factor, label = _time(result.runs)
     panels = tuple(
         Panel(tuple(Curve(factor * run.t_s, 1e-6 * run.sensitivity.position[:, k, axis],
                           f'gyro {name}', BODY_AXES[name]) for axis, name in enumerate('xyz')),
               label, f'{way} error [m/us]') for k, way in ((1, 'north'), (0, 'east')))
-    return Chart(f'{figure.name}_by_channel', f'{title}: position error by one microsecond of '
+    return Chart(f'{figure.name}_by_channel', f'{motion}: position error by one microsecond of '
                  'delay of one gyro', panels,
-                 caption='Linear theory. For any three delays add the curves, each times its '
+                 caption=f'{names.conditions(figure.simulation)} Linear theory. For any three delays add the curves, each times its '
                  'delay.')
 
 
 def _rates(result):
-    """Drift over both rates, about one resonance, and across it."""
+    """Drift over both rates, about those of the settings, and over the detuning."""
     figure, found = result.figure, result.map
-    settings, unit = figure.simulation, 'mean drift [deg/h]'
+    unit, axes = 'mean drift [deg/h]', ("psi' [rad/s]", "gamma' [rad/s]")
+    lines = [(k, dash) for k, dash in zip(sorted(found.lines, reverse=True),
+                                          (DASHED, DOTTED) * len(found.lines))]
     whole = Map(found.psi_rates, found.gamma_rates, DEG_PER_HOUR * found.largest, unit)
     near = Map(found.near_psi_rates, found.near_gamma_rates, DEG_PER_HOUR * found.near, unit)
-    axes = "psi' [rad/s]", "gamma' [rad/s]"
-    panels = (Panel((whole, *_lines(found)), *axes, title='largest in each cell', height=2.2,
+    told = ', '.join(f"{dash}: psi' = {k} gamma'" for k, dash in lines)
+    panels = (Panel((whole, *(_line(found.gamma_rates, k, dash) for k, dash in lines)), *axes,
+                    title=f'the largest in each cell; {told}', height=2.2,
                     x_range=_ends(found.psi_rates), y_range=_ends(found.gamma_rates)),
-              Panel((near,), *axes, title='about the rates of the settings', height=1.6),
-              _across(result))
-    return (Chart(figure.name, f'Mean drift of {names.motion_name(settings)}, over '
-                  f'{found.span_s:g} s, {names.late_gyros(settings)}', panels, shared=False,
-                  caption='Linear theory, without the rotation of the Earth.'),)
+              Panel((near, *(_line(found.near_gamma_rates, k, dash) for k, dash in lines)), *axes,
+                    title='about the rates of the settings', height=1.8,
+                    x_range=_ends(found.near_psi_rates), y_range=_ends(found.near_gamma_rates)))
+    title = f'Mean drift of {_titled(figure)}, over {found.span_s:g} s'
+    return (Chart(figure.name, title, panels, shared=False, caption=LINEAR),
+            Chart(f'{figure.name}_across', title, (_across(result),), caption=LINEAR))
+
+
+def _line(gamma_rates, k, dash):
+    """Return the line psi' = k gamma' across a map."""
+    gamma = np.array(_ends(gamma_rates))
+    return Curve(k * gamma, gamma, None, 'white', dash, 0.8)
 
 
 def _ends(middles):
     half = 0.5 * (middles[1] - middles[0])
     return float(middles[0] - half), float(middles[-1] + half)
-
-
-def _lines(found):
-    """Return the lines of resonance, beside the bright cells that they run through."""
-    aside = 3.0 * (found.gamma_rates[1] - found.gamma_rates[0])
-    top = found.gamma_rates[-1]
-    return tuple(Curve(k * (gamma := np.array([-top, top])), gamma + aside,
-                       f"psi' = {k} gamma'", 'white', dash)
-                 for k, dash in zip(sorted(found.lines, reverse=True), (DASHED, DOTTED) * 3))
 
 
 def _across(result):
@@ -167,7 +175,6 @@ def _across(result):
 def _rocking(result):
     """Drift over psi, runs less theory, and over the direction of the axis in the body."""
     figure, found = result.figure, result.map
-    settings = figure.simulation
     psi = np.array([run.settings.motion_generator.motion.psi_deg for run in result.runs])
     curves, points, apart = [], [], []
     for k, name in enumerate(('east', 'north', 'up')):
@@ -180,16 +187,19 @@ def _rocking(result):
         points.append(Markers(psi, measured, f'{name}, runs', BLACK, DOT, 6.0))
         apart.append(Markers(psi, 1e6 * (measured - np.interp(psi, found.psi_deg, drift)), None,
                              colour, DOT, 6.0))
-    panels = (Panel((*curves, *points), 'psi [deg]', 'drift [deg/h]'),
-              Panel((Level(y=0.0), *apart), 'psi [deg]', 'difference [1e-6 deg/h]',
-                    title='runs less linear theory'),
-              Panel((Map(found.azimuth_deg, found.elevation_deg, DEG_PER_HOUR * found.size,
-                         'size of the mean drift [deg/h]'),),
-                    'azimuth of the axis of rocking in the body, forward to left [deg]',
-                    'its elevation [deg]', title='over the direction of the axis', height=1.8))
-    return (Chart(figure.name, f'Mean drift of {names.motion_name(settings)}, '
-                  f'{names.conditions(settings)}', panels, shared=False,
-                  caption='Linear theory, without the rotation of the Earth.'),)
+    title = f'drift of {_titled(figure)}'
+    over_psi = (Panel((*curves, *points), 'psi [deg]', 'drift [deg/h]'),
+                Panel((Level(y=0.0, colour=GREY), *apart), 'psi [deg]',
+                      'difference [1e-6 deg/h]', title='runs less linear theory'))
+    over_direction = Panel(
+        (Map(found.azimuth_deg, found.elevation_deg, DEG_PER_HOUR * found.size,
+             'size of the mean drift [deg/h]'),),
+        'azimuth of the axis of rocking in the body, from forward to left [deg]',
+        'elevation of the axis [deg]', height=1.8)
+    return (Chart(figure.name, f'Up {title}' if len(curves) == 1 else title.capitalize(), over_psi,
+                  caption=f'{names.conditions(figure.simulation)} {LINEAR}'),
+            Chart(f'{figure.name}_directions', f'Mean {title}, over the direction of the axis',
+                  (over_direction,), caption=LINEAR))
 
 
 _MAKERS = {'errors': _errors, 'flight': _flight, 'rates': _rates, 'rocking': _rocking}

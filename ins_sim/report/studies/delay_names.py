@@ -23,13 +23,10 @@ def motion_name(settings):
     """Return the motion of SimulationSettings in words, without what differs between its runs."""
     motion = settings.motion_generator.motion
     if motion.kind == 'two_axis':
-        rates = motion.two_axis
-        return (f"motion 2, psi' about {rates.psi_rate_rad_s:g} and gamma' "
-                f'{rates.gamma_rate_rad_s:g} rad/s, theta {motion.theta_deg:g} deg')
+        return f'motion 2 at theta {motion.theta_deg:g} deg'
     if motion.kind == 'rocking':
         s = motion.rocking
-        return (f'motion 1, rocking by {s.amplitude_deg:g} deg at {s.frequency_hz:g} Hz about the '
-                f'{s.axis} axis')
+        return f'motion 1, {s.amplitude_deg:g} deg at {s.frequency_hz:g} Hz'
     if motion.kind == 'recording':
         return f'recorded flight {Path(motion.recording.path).name}'
     return FLIGHT_NAMES[motion.kind]
@@ -58,6 +55,10 @@ def run_name(settings):
 
 
 def conditions(settings):
-    """Return delays, rate and length of the runs in words."""
-    return (f'{late_gyros(settings)}, {settings.imu_sensor.rate_hz:g} Hz, '
-            f'{settings.motion_generator.duration_s:g} s')
+    """Return in a sentence what is the same in the runs of a figure and not in its title."""
+    motion = settings.motion_generator.motion
+    told = {'two_axis': f"gamma' is {motion.two_axis.gamma_rate_rad_s:g} rad/s, ",
+            'rocking': f'about the {motion.rocking.axis} axis, '}.get(motion.kind, '')
+    sentence = (f'{told}{settings.imu_sensor.rate_hz:g} Hz, '
+                f'{settings.motion_generator.duration_s:g} s.')
+    return sentence[0].upper() + sentence[1:]

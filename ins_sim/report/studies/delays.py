@@ -36,7 +36,7 @@ def study_tables(results):
 def _drifts(runs):
     rows = []
     for run in runs:
-        axis = int(np.argmax(np.abs(run.prediction.drift)))
+        axis = _axis(run, runs)
         drift, _ = published(run)
         rows.append((names.run_name(run.settings), ENU[axis],
                      *(number_text(DEG_PER_HOUR * figures.drift[axis])
@@ -49,6 +49,15 @@ def _drifts(runs):
                      'The least-squares slope of the inertial attitude error, of its largest '
                      'component. Of a detuned run the error swings, and the slope is that of the '
                      'part of a swing that the run covers.')
+
+
+def _axis(run, runs):
+    """Return the axis of the largest drift among the runs of the same motion."""
+    kind = run.settings.motion_generator.motion.kind
+    if kind != 'rocking':
+        return int(np.argmax(np.abs(run.prediction.drift)))
+    return int(np.argmax(np.max([np.abs(other.prediction.drift) for other in runs
+                                 if other.settings.motion_generator.motion.kind == kind], axis=0)))
 
 
 def _positions(runs):

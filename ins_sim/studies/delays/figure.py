@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 import math
+from pathlib import PurePath
 from typing import Any
 
 from ins_sim.settings.by_node import ALL_NODES, NODES
@@ -12,6 +13,12 @@ from ins_sim.settings.simulation import SimulationSettings
 from ins_sim.settings.strapdown import Initial
 
 NODE = 'delay_study'
+# Names of the shipped parameter files: those of the study, and that of a recorded flight.
+SHIPPED = tuple(f'delay_study_{name}' for name in (
+    'figure_1', 'figure_2', 'figure_3', 'figure_4', 'figure_5', 'theta_0', 'second_resonance',
+    'rates', 'rocking'))
+RECORDED = 'delay_study_recorded'
+RECORDING_PATH = 'motion_generator:motion.recording.path'
 # {kind of figure: the motions that it can show}
 FIGURES = {'errors': ('two_axis',), 'rates': ('two_axis',), 'rocking': ('rocking',),
            'flight': ('cruise', 'racetrack', 'aggressive', 'route', 'recording')}
@@ -76,14 +83,37 @@ class DelayFigure:
         return (self.simulation,)
 
 
-def make_figure(name, built, read_motion):
-    """
-    Return the DelayFigure of a parameter file.
+def recorded_name(path):
+    """Return the name of the figure of a recording."""
+    return f'recorded_{PurePath(path).name.partition(".")[0]}'
 
-    built: {node: its settings} of READ_NODES; read_motion: function of MotionGeneratorSettings
-    that returns the motion of a recording.  Raises ValueError on settings that no figure has.
+
+def make_figures(sources, read_nodes, read_motion):
     """
-    nodes = dict(built)
+    Return the DelayFigures of parameter files.
+
+    sources: list of (name, path of the file, assignments); read_nodes: function (paths,
+    assignments, nodes, known nodes) that returns {node: its settings}; read_motion: function of
+    MotionGeneratorSettings that returns the motion of a recording.  Raises ValueError on settings
+    that no figure has, and on two figures of one name.
+    """
+    names = [name for name, _, _ in sources]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f'two figures are named {name}; expected files of different names, '
+                             'as the figures bear them')
+    figures = []
+    for name, path, assignments in sources:
+        nodes = read_nodes([path], assignments, READ_NODES, KNOWN_NODES)
+        try:
+            figures.append(_made(name, nodes, read_motion))
+        except ValueError as error:
+            raise ValueError(f'{name}: {error}') from None
+    return figures
+
+
+def _made(name, nodes, read_motion):
+    """Return the DelayFigure of {node: its settings}."""
     shows = nodes.pop(NODE)
     simulation, motion, notes = SimulationSettings(**nodes), None, ()
     _check(shows, simulation)

@@ -19,7 +19,7 @@ from ins_sim.core.prediction.fourier import fourier_coefficients
 GAMMA_SAMPLES = 16
 NOTHING = 1e-12
 # Cells from the middle of the map over the rates to its edge.
-CELLS = 75
+CELLS = 45
 # Half widths of the map of one resonance and of the cut across it, times the time of the mean.
 NEAR, ACROSS = 20.0, 40.0
 NEAR_POINTS, ACROSS_POINTS = 101, 801

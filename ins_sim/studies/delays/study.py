@@ -17,8 +17,13 @@ class FigureResult:
 
 
 def distinct_runs(figures):
-    """Return the tasks (fly_run, arguments ...) of all runs that DelayFigures need, each once."""
+    """Return the tasks of ``fly_task``, of all runs that DelayFigures need, each once."""
     return list(_tasks(figures).values())
+
+
+def fly_task(task):
+    """Return the DelayRun of a task, which can be pickled."""
+    return fly_run(*task)
 
 
 def gather(figures, flown):
@@ -30,8 +35,7 @@ def gather(figures, flown):
 
 
 def _tasks(figures):
-    return {_key(figure, settings): (fly_run, settings, figure.motion,
-                                     figure.shows.figure == 'flight')
+    return {_key(figure, settings): (settings, figure.motion, figure.shows.figure == 'flight')
             for figure in figures for settings in figure.runs()}
 
 
