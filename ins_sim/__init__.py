@@ -63,9 +63,10 @@ if TYPE_CHECKING:
 
 __version__ = '0.1.0'
 
-__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'DelayStudy', 'ImuRecord', 'Motion', 'Navigation',
-           'Prediction', 'Run', 'SimulationSettings', 'delay_study', 'navigate', 'open_bag', 'open_motion',
-           'predict', 'presets', 'read_settings', 'simulate', 'simulate_aided']
+__all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'DelayStudy', 'ImuRecord', 'Motion',
+           'Navigation', 'Prediction', 'Run', 'SimulationSettings', 'delay_study', 'navigate',
+           'open_bag', 'open_motion', 'predict', 'presets', 'read_settings', 'simulate',
+           'simulate_aided']
 _MODULES = {
     'api.delays': ('DelayStudy', 'delay_study'),
     'api.inputs': ('presets', 'read_settings'),

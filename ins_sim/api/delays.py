@@ -36,8 +36,8 @@ class DelayStudy:
     Attributes
     ----------
     results : tuple of FigureResult
-        Of each figure its settings (``figure``), its runs (``runs``: errors, prediction, zero-delay
-        twin) and its map (``map``), in SI and radians.
+        Of each figure its settings (``figure``), its runs (``runs``: errors, prediction,
+        zero-delay twin) and its map (``map``), in SI and radians.
     """
 
     results: tuple[FigureResult, ...]
@@ -200,9 +200,10 @@ def _runs_dataset(result: FigureResult) -> xarray.Dataset:
     """Return the errors of the runs of a figure."""
     from ins_sim.report.studies.delay_names import short_run_name
     runs = result.runs
-    coords = {'run': ([short_run_name(run.settings) for run in runs], ''),
-              'time': (runs[0].t_s, 's'), 'axis': (ENU, ''),
-              'coordinate': (('latitude', 'longitude'), '')}
+    coords: dict[str, tuple[Any, str]] = {
+        'run': ([short_run_name(run.settings) for run in runs], ''),
+        'time': (runs[0].t_s, 's'), 'axis': (ENU, ''),
+        'coordinate': (('latitude', 'longitude'), '')}
     over = ('run', 'time')
     variables: dict[str, tuple[tuple[str, ...], np.ndarray, str]] = {
         'position': ((*over, 'axis'), np.stack([run.apart for run in runs]), 'm'),
@@ -215,5 +216,5 @@ def _runs_dataset(result: FigureResult) -> xarray.Dataset:
         coords['level_axis'] = ENU[:2], ''
         variables['position_per_delay'] = (
             (*over, 'level_axis', 'body_axis'),
-            np.stack([run.sensitivity.position for run in runs]), 'm/s')
+            np.stack([run.sensitivity.position for run in runs if run.sensitivity]), 'm/s')
     return dataset(coords, variables)

@@ -118,8 +118,8 @@ def _contributions(result, motion):
               label, f'{way} error [m/us]') for k, way in ((1, 'north'), (0, 'east')))
     return Chart(f'{figure.name}_by_channel', f'{motion}: position error by one microsecond of '
                  'delay of one gyro', panels,
-                 caption=f'{names.conditions(figure.simulation)} Linear theory. For any three delays add the curves, each times its '
-                 'delay.')
+                 caption=f'{names.conditions(figure.simulation)} Linear theory. For any '
+                 'three delays add the curves, each times its delay.')
 
 
 def _rates(result):

@@ -178,8 +178,8 @@ def rocking_map(settings, psi_deg):
 
     psi_deg: the curve is over these and a degree apart from the least to the largest.
 
-    With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times R0 (n x T n): what
-    stands beside n x T n is odd in kappa.
+    With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times R0 (n x T n):
+    what stands beside n x T n is odd in kappa.
     """
     motion, tau = settings.motion_generator.motion, delays_s(settings)
     rocking = motion.rocking

@@ -113,7 +113,7 @@ class _Histories:
 
 
 def _at(t_s, prediction):
-    """Return the histories of a Prediction at other instants; they are smooth from step to step."""
+    """Return the histories of a Prediction, which are smooth, at other instants."""
     return _Histories(*(np.stack([np.interp(t_s, prediction.t_s, column) for column in values.T],
                                  axis=-1)
                         for values in (prediction.attitude, prediction.position)))
