@@ -169,7 +169,8 @@ def _across(result):
             Level(x=sign * milli * found.half_width, colour=GREY, dash=DASHED,
                   label=f'half at {milli * found.half_width:.3g} mrad/s' if sign > 0 else None)
             for sign in (-1.0, 1.0))]
-    return Panel(tuple(marks), "detuning of psi' [mrad/s]", 'mean drift [deg/h]')
+    return Panel(tuple(marks), "detuning of psi' [mrad/s]", 'mean drift [deg/h]',
+                 height=1.5)
 
 
 def _rocking(result):

@@ -13,6 +13,9 @@ from .delay_charts import figure_charts
 from .delay_data import all_runs, ARCMIN, published
 
 ENU = ('east', 'north', 'up')
+ROUNDING = 1e-9
+# What a run without delays may err by where the IMU samples the motion often enough, m.
+CLOSED = 0.01
 TITLE = 'Delays of gyro channels: the study of Bogdanov and Fomichev (2018)'
 NO_CURVES = ('The paper prints its figures without data, so no published curve stands beside '
              'these; its numbers stand in the tables.')
@@ -39,9 +42,8 @@ def _drifts(runs):
         axis = _axis(run, runs)
         drift, _ = published(run)
         rows.append((names.run_name(run.settings), ENU[axis],
-                     *(number_text(DEG_PER_HOUR * figures.drift[axis])
-                       for figures in (run.prediction, run.measured)),
-                     f'{DEG_PER_HOUR * run.twin.drift[axis]:.1e}',
+                     *(_drift_text(figures.drift[axis])
+                       for figures in (run.prediction, run.measured, run.twin)),
                      number_text(drift and drift[axis])))
     return PageTable('Drift of the attitude',
                      ('run', 'axis', 'predicted [deg/h]', 'measured [deg/h]',
@@ -49,6 +51,11 @@ def _drifts(runs):
                      'The least-squares slope of the inertial attitude error, of its largest '
                      'component. Of a detuned run the error swings, and the slope is that of the '
                      'part of a swing that the run covers.')
+
+
+def _drift_text(drift):
+    """Return a drift, rad/s, in deg/h: a millionth of what the delays make is rounding."""
+    return number_text(DEG_PER_HOUR * drift if abs(drift) * DEG_PER_HOUR >= ROUNDING else 0.0)
 
 
 def _axis(run, runs):
@@ -67,7 +74,7 @@ def _positions(runs):
         rows.append((names.run_name(run.settings),
                      *(_pair(figures.largest[[1, 0]])
                        for figures in (run.prediction, run.measured)),
-                     f'{run.twin.largest[:2].max():.1e}', '-' if place is None else _pair(place)))
+                     f'{run.twin.largest[:2].max():.2g}', '-' if place is None else _pair(place)))
     return PageTable('Largest position error, north / east',
                      ('run', 'predicted [m]', 'measured [m]', 'without delays [m]',
                       'published [m]'), tuple(rows),
@@ -163,6 +170,10 @@ def _hours(run):
 def study_notes(results):
     """Return the sentences on what was assumed."""
     notes = [note for result in results for note in result.figure.notes]
+    notes += [f'{names.run_name(run.settings)}: without delays the run is off by '
+              f'{run.twin.largest[:2].max():.3g} m, because its motion changes faster than the IMU '
+              'samples it; expected a higher rate_hz, or motion.recording.smoothing_s.'
+              for run in all_runs(results) if run.twin.largest[:2].max() > CLOSED]
     if any(result.figure.shows.figure == 'errors' for result in results):
         notes.append(NO_CURVES)
     if any(result.map is not None for result in results):

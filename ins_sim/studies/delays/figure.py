@@ -18,7 +18,7 @@ SHIPPED = tuple(f'delay_study_{name}' for name in (
     'figure_1', 'figure_2', 'figure_3', 'figure_4', 'figure_5', 'theta_0', 'second_resonance',
     'rates', 'rocking'))
 RECORDED = 'delay_study_recorded'
-RECORDING_PATH = 'motion_generator:motion.recording.path'
+RECORDING_PATH = 'motion.recording.path'
 # {kind of figure: the motions that it can show}
 FIGURES = {'errors': ('two_axis',), 'rates': ('two_axis',), 'rocking': ('rocking',),
            'flight': ('cruise', 'racetrack', 'aggressive', 'route', 'recording')}
@@ -136,7 +136,7 @@ def _within(simulation, motion):
     if not 0 < left_s < generator.duration_s:
         return simulation, ()
     return (replace(simulation, motion_generator=replace(generator, duration_s=float(left_s))),
-            (f'{motion.path} ends after {left_s} s, and so does the run',))
+            (f'The recording {motion.path} ends after {left_s} s, and so does the run.',))
 
 
 def _check(shows, simulation):
