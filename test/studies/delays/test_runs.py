@@ -12,9 +12,11 @@ from ins_sim.studies.delays.runs import fly_run
 from ins_sim.studies.delays.study import distinct_runs, gather
 
 ARCMIN = 60.0 * np.degrees(1.0)
-# Latitude and longitude error of motion 2 at 60 min, arcmin, by its detuning in rad/s.
+# Latitude and longitude error of motion 2 at 60 min, arcmin, by its detuning in rad/s, and half a
+# unit of their last digit.
 SPECIFIED = {0.0: (-2.4100, -0.5962), 0.001: (-0.7498, 2.8011), 0.01: (-0.00935, 0.12526),
              0.1: (-0.00178, 0.01506)}
+HALF_UNIT = {0.0: 5e-5, 0.001: 5e-5, 0.01: 5e-6, 0.1: 5e-6}
 
 
 def figure(name, **values):
@@ -32,14 +34,15 @@ def tuned():
 
 
 def check_end(run, detuning, figures):
-    """Compare the errors after an hour, to 1e-3 of the largest of each curve."""
+    """Compare the errors after an hour, to 1e-3 of the largest of each curve, and its rounding."""
     assert run.t_s[-1] == 3600.0
     assert run.settings.motion_generator.motion.two_axis.detuning_rad_s == detuning
     end, largest = ARCMIN * run.angles[-1], ARCMIN * np.abs(run.angles).max(axis=0)
     print(f'\ndetuned by {detuning:g}: {end} arcmin, specified {SPECIFIED[detuning]}')
     figures.record(f'delays.errors_at_60_min.{detuning:g}', end, 'arcmin', SPECIFIED[detuning],
                    'specification')
-    assert (np.abs(end - SPECIFIED[detuning]) <= 1e-3 * largest).all()
+    off = np.abs(end - SPECIFIED[detuning])
+    assert (off <= 1e-3 * largest + HALF_UNIT[detuning]).all()
 
 
 def check_prediction(run):
