@@ -8,7 +8,7 @@ from support.studies import LATE_MOTION_2_WORDS
 
 from ins_sim.cli.main import main
 from ins_sim import own_folders
-from ins_sim.report import figure
+from ins_sim.report.runs import page
 
 
 def test_simulate_writes_a_run(tmp_path, capsys):
@@ -64,7 +64,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
     def fail(*arguments):
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr(figure, 'save_figure', fail)
+    monkeypatch.setattr(page, 'save_chart', fail)
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run')]) == 2
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(ValueError, match='exists'):

@@ -7,8 +7,9 @@ from ins_sim import parameter_files
 from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.simulation.aided_run import navigate_aided, Reported, with_truth
-from ins_sim.report import aided, aided_figure
-from matplotlib.figure import Figure
+from ins_sim.report import aided
+from ins_sim.report.charts.chart import Curve, Stretch
+from ins_sim.report.runs import aided_charts, page
 import numpy as np
 import pytest
 from scipy.stats import chi2
@@ -29,7 +30,7 @@ def rows(run):
 
 
 def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
-    """Arrays, rows, both figures and parameters that give the same run once more."""
+    """Arrays, rows, figures, track, page and parameters that give the same run once more."""
     chosen, _, free, solution = run
     assert command(tmp_path) == 0
     shown = ' '.join(capsys.readouterr().out.split())
@@ -40,8 +41,9 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
     folder = tmp_path / 'run'
     assert {path.name for path in folder.iterdir()} == {
         '.ins_sim', 'run.npz', 'summary.json',
-        'parameters.yaml', 'manifest.yaml', 'errors.png', 'aided.png'}
-    for name in ('errors.png', 'aided.png'):
+        'parameters.yaml', 'manifest.yaml', 'errors.png', 'aided.png', 'track.png', 'track.kml',
+        'report.html'}
+    for name in ('errors.png', 'aided.png', 'track.png'):
         assert (folder / name).read_bytes().startswith(b'\x89PNG')
     with np.load(folder / 'run.npz') as arrays:
         assert np.array_equal(arrays['errors_position'], free.errors.position)
@@ -121,28 +123,24 @@ def test_the_rows_are_the_errors(run, rows, capsys):
               + f'; mu {mounting.measured:.2f} +- {mounting.sigma:.2f} arcmin (true 20)')
 
 
-def test_the_figure_shows_where_fixes_are_missing(monkeypatch, tmp_path):
-    """Outage shaded, drop-outs a strip of their own, and no mean is drawn through either."""
+def test_the_figure_shows_where_fixes_are_missing():
+    """Outage and drop-outs shaded, each in its colour, and no mean is drawn through either."""
     chosen = settings('drop_outs.start_s:=[20.0,70.0]', 'drop_outs.end_s:=[40.0,75.0]',
                       'outages.start_s:=[30.0]', 'outages.end_s:=[60.0]')
     flight = flown(chosen)[-1]
-    figures = []
-    monkeypatch.setattr(Figure, 'savefig', lambda figure, *_, **__: figures.append(figure))
-    aided_figure.save_figure(tmp_path / 'x.png', 'title', flight, (METER, GNSS), 0.0)
-    figure, = figures
+    chart = aided_charts.aided_chart('title', flight, (METER, GNSS), 0.0)
     start_s = flight.errors.t_ns[0] * 1e-9
-    for axes in figure.axes:
-        strip, = [c for c in axes.collections if c.get_label() == 'no velocity meter']
-        edges = [path.get_extents().intervalx + start_s for path in strip.get_paths()]
+    for panel in chart.panels:
+        assert panel.x_label == 'time [s]'
+        spans = {mark.label: np.transpose([mark.first, mark.last]) + start_s
+                 for mark in panel.marks if isinstance(mark, Stretch)}
         # windows of one second that overlap the drop-outs, stamped at their ends
-        assert np.allclose(edges, [(21.0, 41.0), (71.0, 76.0)])
-        shaded, = [p for p in axes.patches if p.get_label() == 'no GNSS']
-        assert np.allclose(shaded.get_extents().transformed(
-            axes.transData.inverted()).intervalx + start_s, (30.0, 60.0))
+        assert np.allclose(spans['no velocity meter'], [(21.0, 41.0), (71.0, 76.0)])
+        assert np.allclose(spans['no GNSS'], [(30.0, 60.0)])
+        assert len({mark.colour for mark in panel.marks if isinstance(mark, Stretch)}) == 2
     for source, first, last in ((METER, 20.5, 40.5), (GNSS, 29.5, 59.5)):
-        means = [line.get_xdata() + start_s for line in figure.axes[-1].lines
-                 if line.get_linewidth() == 1.6
-                 and line.get_color() == aided_figure.SOURCES[source][0]]
+        means = [mark.x + start_s for mark in chart.panels[-1].marks if isinstance(mark, Curve)
+                 and mark.colour == aided_charts.SOURCES[source][0]]
         assert len(means) == 2 - (source == METER)
         for mean in means:
             assert mean[-1] < first or mean[0] > last
@@ -272,7 +270,7 @@ def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys)
     if where == 'aiding':
         monkeypatch.setattr('ins_sim.core.aiding.navigator.AidedNavigator.step', interrupt)
     else:
-        monkeypatch.setattr(aided_figure, 'save_figure', interrupt)
+        monkeypatch.setattr(page, 'save_chart', interrupt)
     assert command(tmp_path, '--force', flight=flight) == 130
     assert 'interrupted' in capsys.readouterr().err
     assert sorted((p.name, p.read_bytes()) for p in (tmp_path / 'run').iterdir()) == before

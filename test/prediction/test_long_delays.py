@@ -138,11 +138,11 @@ def test_predict_says_what_it_covers(capsys):
 
 def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsys, monkeypatch):
     """With errors on, table and figure leave the prediction out; beside the twin it fits."""
-    from ins_sim.report import figure
+    from ins_sim.report.runs import page
     drawn = []
-    draw = figure.save_figure
-    monkeypatch.setattr(figure, 'save_figure', lambda path, title, errors, prediction=None: (
-        drawn.append(prediction), draw(path, title, errors, prediction)))
+    draw = page.error_chart
+    monkeypatch.setattr(page, 'error_chart', lambda title, errors, prediction=None: (
+        drawn.append(prediction), draw(title, errors, prediction))[-1])
     import json
     for name, more in (('on', ['--params-file', 'imu_tactical_fog']), ('off', [])):
         assert main(['simulate', *LATE_MOTION_2_WORDS, *more, '-p', 'duration_s:=60.0',

@@ -94,7 +94,7 @@ def _panel(panel, x_range, x_label):
     ranges = {} if panel.equal else {'x_range': x_range, 'y_range': _range(bottom, top)}
     drawn = figure(
         height=EQUAL if panel.equal else round(PANEL * panel.height), sizing_mode='stretch_width',
-        match_aspect=panel.equal, tools=TOOLS, active_drag='box_zoom', toolbar_location='above',
+        match_aspect=panel.equal, tools=TOOLS, active_drag='box_zoom', toolbar_location='right',
         x_axis_type='log' if panel.x_scale == LOG else 'linear',
         y_axis_type='log' if panel.y_scale == LOG else 'linear',
         x_axis_label=PlainText(visible(x_label)), y_axis_label=PlainText(visible(panel.y_label)),

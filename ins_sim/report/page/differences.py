@@ -37,10 +37,10 @@ def settings_by_node(settings, name=''):
 
 
 def _shown(value):
-    """Return a value as a parameter file has it; equal numbers of all axes once."""
+    """Return a value as a parameter file has it; equal numbers of all axes once: 3 × 0.1."""
     if isinstance(value, tuple):
         if len(value) > 1 and len(set(value)) == 1:
-            return f'{_shown(value[0])} (each of {len(value)})'
+            return f'{len(value)} × {_shown(value[0])}'
         return '[' + ', '.join(map(_shown, value)) + ']'
     if isinstance(value, bool):
         return str(value).lower()

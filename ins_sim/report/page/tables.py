@@ -8,7 +8,7 @@ from urllib.parse import quote
 import numpy as np
 
 from .differences import changed_settings, settings_by_node
-from .words import cell_text, text
+from .words import breakable, cell_text, text
 
 
 def table_section(table):
@@ -24,7 +24,7 @@ def _table(heads, rows):
     marks = [' class="number"' if right else '' for right in numeric]
     head = ''.join(f'<th scope="col"{mark}>{text(name)}</th>'
                    for mark, name in zip(marks, heads))
-    body = '\n'.join('<tr>' + ''.join(f'<td{mark}>{text(cell_text(value))}</td>'
+    body = '\n'.join('<tr>' + ''.join(f'<td{mark}>{breakable(text(cell_text(value)))}</td>'
                                       for mark, value in zip(marks, row)) + '</tr>'
                      for row in rows)
     return (f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n'

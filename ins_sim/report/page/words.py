@@ -3,13 +3,22 @@
 from html import escape
 import math
 import numbers
+import re
 
 from ins_sim.visible_text import visible
+
+# Between the words of the name of a setting.
+_JOINT = re.compile(r'(?<=[a-z])([._])(?=[a-z])')
 
 
 def text(words):
     """Return a text as it stands in HTML: escaped, and what cannot be seen as escapes."""
     return escape(visible(str(words)))
+
+
+def breakable(escaped):
+    """Return a text in HTML that may be broken within names such as gyro.errors.bias_deg_h."""
+    return _JOINT.sub(r'\1<wbr>', escaped)
 
 
 def cell_text(value):

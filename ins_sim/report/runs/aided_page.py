@@ -6,9 +6,9 @@ from .aided_charts import aided_chart
 from .words import distance
 
 
-def report_chart(report):
-    """Return the Chart of an AidedReport."""
-    return aided_chart(report.title, report.flown, aiding_sources(report.settings),
+def report_chart(title, report):
+    """Return the Chart of an AidedReport on a run of a title."""
+    return aided_chart(f'{title}: {report.title}', report.flown, aiding_sources(report.settings),
                        report.settings.aided_navigator.gate_probability)
 
 

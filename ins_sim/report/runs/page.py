@@ -14,7 +14,6 @@ from ..page.html import REPORT, write_page
 from ..summary import DEG_PER_HOUR, gap_lines, parity_lines, withheld_lines
 from ..table import COLUMNS
 from ..titles import length_words
-from .aided_page import report_answer, report_chart, report_notes, report_table
 from .error_charts import error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
@@ -52,8 +51,12 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     """
     charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
     tables = [_table(rows)]
+    answer = _answer(run.errors)
     if aided is not None:
-        charts.insert(0, report_chart(aided))
+        # Imports the statistics of SciPy, which takes as long as a short run.
+        from .aided_page import report_answer, report_chart, report_notes, report_table
+        answer = report_answer(aided)
+        charts.insert(0, report_chart(title, aided))
         tables.insert(0, report_table(aided))
         notes = [*notes, *report_notes(aided)]
     tracks = run_tracks(run, aided and aided.flown)
@@ -62,7 +65,6 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
         write_tracks(work, title, tracks)
     for chart in charts:
         save_chart(work, chart)
-    answer = _answer(run.errors) if aided is None else report_answer(aided)
     found = {path.name for path in work.iterdir()} - {REPORT}
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),

@@ -25,6 +25,11 @@ class Track:
     height: np.ndarray
     points: bool = False
 
+    @property
+    def start(self):
+        """Return latitude, longitude and height of the first place."""
+        return float(self.lat[0]), float(self.lon[0]), float(self.height[0])
+
 
 def run_tracks(result, flown=None):
     """
@@ -33,7 +38,7 @@ def run_tracks(result, flown=None):
     The list is empty where the vehicle stays at its place.
     """
     tracks = [_thinned('truth', result.truth)]
-    start = tuple(values[0] for values in (tracks[0].lat, tracks[0].lon, tracks[0].height))
+    start = tracks[0].start
     east, north = _from(start, tracks[0])
     if not max(np.abs(east).max(), np.abs(north).max()) > STAYS:
         return []
@@ -62,8 +67,7 @@ def _thinned(name, history):
 
 def _from(start, track):
     """Return east and north (n,) of a Track from a start (lat, lon, height), m."""
-    places = zip(track.lat.tolist(), track.lon.tolist(), track.height.tolist())
-    return np.array([ellipsoid.offset(*start, place)[:2] for place in places]).reshape(-1, 2).T
+    return np.array(ellipsoid.offset(*start, (track.lat, track.lon, track.height))[:2])
 
 
 STYLES = {'truth': {'colour': BLACK}, 'solution': {'colour': BLUE, 'dash': DASHED},
@@ -73,7 +77,7 @@ STYLES = {'truth': {'colour': BLACK}, 'solution': {'colour': BLUE, 'dash': DASHE
 
 def track_chart(title, tracks):
     """Return the Chart of Tracks from above, the first of which is the truth."""
-    start = tuple(values[0] for values in (tracks[0].lat, tracks[0].lon, tracks[0].height))
+    start = tracks[0].start
     places = [_from(start, track) for track in tracks]
     factor, unit = scale(LENGTHS, max(np.abs(place).max() for place in places))
     marks = []

@@ -4,6 +4,6 @@ from ..charts.scales import LENGTHS, scale
 
 
 def distance(metres):
-    """Return a distance as text, in the unit that its size needs."""
+    """Return a distance as text with three digits, in the unit that its size needs."""
     factor, unit = scale(LENGTHS, metres)
-    return f'{metres * factor:.3g} {unit}'
+    return f'{float(f"{metres * factor:.3g}"):g} {unit}'
