@@ -171,8 +171,8 @@ def study_notes(results):
     """Return the sentences on what was assumed."""
     notes = [note for result in results for note in result.figure.notes]
     notes += [f'{names.run_name(run.settings)}: without delays the run is off by '
-              f'{run.twin.largest[:2].max():.3g} m, because its motion changes faster than the IMU '
-              'samples it; expected a higher rate_hz, or motion.recording.smoothing_s.'
+              f'{run.twin.largest[:2].max():.3g} m, because its motion changes faster than the '
+              'IMU samples it; expected a higher rate_hz, or motion.recording.smoothing_s.'
               for run in all_runs(results) if run.twin.largest[:2].max() > CLOSED]
     if any(result.figure.shows.figure == 'errors' for result in results):
         notes.append(NO_CURVES)

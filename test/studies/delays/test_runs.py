@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from support.places import ROOT
+from support.delay_figures import figure
 
-from ins_sim import parameter_files
-from ins_sim.io.motion import read_motion
 from ins_sim.report import summary
-from ins_sim.studies.delays.figure import make_figures
 from ins_sim.studies.delays.runs import fly_run
 from ins_sim.studies.delays.study import distinct_runs, gather
 
@@ -17,14 +14,6 @@ ARCMIN = 60.0 * np.degrees(1.0)
 SPECIFIED = {0.0: (-2.4100, -0.5962), 0.001: (-0.7498, 2.8011), 0.01: (-0.00935, 0.12526),
              0.1: (-0.00178, 0.01506)}
 HALF_UNIT = {0.0: 5e-5, 0.001: 5e-5, 0.01: 5e-6, 0.1: 5e-6}
-
-
-def figure(name, **values):
-    """Return the DelayFigure of config/delay_study_<name>.yaml; __ in keywords are dots."""
-    given = {key.replace('__', '.'): value for key, value in values.items()}
-    path = ROOT / 'config' / f'delay_study_{name}.yaml'
-    made, = make_figures([(path.stem, path, given)], parameter_files.read_nodes, read_motion)
-    return made
 
 
 @pytest.fixture(scope='module')

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from studies.delays.test_runs import figure
+from support.delay_figures import figure, results_of
 from support.places import ROOT
 
 import ins_sim
@@ -14,18 +14,12 @@ from ins_sim.report.charts.chart import Curve, Map
 from ins_sim.report.studies.delay_charts import figure_charts
 from ins_sim.report.studies.delays import answer, study_notes, study_tables
 from ins_sim.studies.delays.figure import FIGURES, RECORDED, SHIPPED
-from ins_sim.studies.delays.study import distinct_runs, fly_task, gather
 
 SHORT = ['-p', 'duration_s:=20.0', '--jobs', '1']
 NAMES = ('figure_1', 'figure_3', 'rates', 'rocking')
 STEMS = ('delay_study_figure_1', 'delay_study_figure_3', 'delay_study_figure_3_by_channel',
          'delay_study_rates', 'delay_study_rates_across', 'delay_study_rocking',
          'delay_study_rocking_directions')
-
-
-def results_of(*figures):
-    """Return the FigureResults of figures."""
-    return gather(figures, [fly_task(task) for task in distinct_runs(figures)])
 
 
 @pytest.fixture(scope='module')
