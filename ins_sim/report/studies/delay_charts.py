@@ -13,6 +13,8 @@ from . import delay_names as names
 ARCMIN, ARCSEC = 60.0 * np.degrees(1.0), 3600.0 * np.degrees(1.0)
 # Curves smaller than this part of the largest are drawn once more by themselves.
 SMALL = 0.05
+# Below so many arcseconds differences are read in milliarcseconds.
+FINE = 0.1
 NAMES = ('latitude', 'longitude')
 LINEAR = 'Linear theory without the rotation of the Earth.'
 
@@ -28,7 +30,8 @@ def _errors(result):
     picked = [k for k, name in enumerate(NAMES) if shown in ('both', name)]
     rows = []
     for make in (_whole, _small, _residual):
-        row = [make(result.runs, k) for k in picked]
+        # the legend of the first stands for all
+        row = [make(result.runs, k, k == picked[0]) for k in picked]
         if any(row):
             rows += [panel or Panel((), '', '', note='no small ones') for panel in row]
     what = ' and '.join(NAMES[k] for k in picked).capitalize()
@@ -47,15 +50,15 @@ def _time(runs):
     return factor, f'time [{unit}]'
 
 
-def _whole(runs, k):
+def _whole(runs, k, labelled):
     factor, label = _time(runs)
     return Panel(tuple(Curve(factor * run.t_s, ARCMIN * run.angles[:, k],
-                             names.short_run_name(run.settings), colour)
+                             names.short_run_name(run.settings) if labelled else None, colour)
                        for run, colour in zip(runs, CYCLE * len(runs))),
                  label, f'{NAMES[k]} error [arcmin]')
 
 
-def _small(runs, k):
+def _small(runs, k, _):
     largest = [np.abs(run.angles[:, k]).max() for run in runs]
     small = [size < SMALL * max(largest) for size in largest]
     if not any(small):
@@ -67,12 +70,13 @@ def _small(runs, k):
                  label, f'{NAMES[k]} error [arcsec]', title='the small ones alone')
 
 
-def _residual(runs, k):
+def _residual(runs, k, _):
     factor, label = _time(runs)
-    return Panel(tuple(Curve(factor * run.t_s,
-                             ARCSEC * (run.angles[:, k] - run.predicted_angles[:, k]), None,
-                             colour) for run, colour in zip(runs, CYCLE * len(runs))),
-                 label, 'difference [arcsec]', title='run less prediction')
+    apart = [ARCSEC * (run.angles[:, k] - run.predicted_angles[:, k]) for run in runs]
+    fine, unit = (1e3, 'mas') if max(np.abs(y).max() for y in apart) < FINE else (1.0, 'arcsec')
+    return Panel(tuple(Curve(factor * run.t_s, fine * y, None, colour)
+                       for run, y, colour in zip(runs, apart, CYCLE * len(runs))),
+                 label, f'difference [{unit}]', title='run less prediction')
 
 
 def _flight(result):

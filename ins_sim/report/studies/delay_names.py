@@ -57,8 +57,7 @@ def run_name(settings):
 def conditions(settings):
     """Return in a sentence what is the same in the runs of a figure and not in its title."""
     motion = settings.motion_generator.motion
-    told = {'two_axis': f"gamma' is {motion.two_axis.gamma_rate_rad_s:g} rad/s, ",
-            'rocking': f'about the {motion.rocking.axis} axis, '}.get(motion.kind, '')
-    sentence = (f'{told}{settings.imu_sensor.rate_hz:g} Hz, '
-                f'{settings.motion_generator.duration_s:g} s.')
-    return sentence[0].upper() + sentence[1:]
+    told = {'two_axis': f", gamma' = {motion.two_axis.gamma_rate_rad_s:g} rad/s",
+            'rocking': f', rocking about the {motion.rocking.axis} axis'}.get(motion.kind, '')
+    return (f'{settings.imu_sensor.rate_hz:g} Hz, {settings.motion_generator.duration_s:g} s'
+            f'{told}.')
