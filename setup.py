@@ -11,11 +11,16 @@ with open(package_name + '/__init__.py', encoding='utf-8') as stream:
 
 # The chunks of MCAP.  From Python 3.14 zstd is in the standard library.
 COMPRESSION = ['lz4<5', 'backports.zstd<2; python_version < "3.14"']
+# Many runs on a Dask cluster of the user's.
+CLUSTER = ['distributed']
 DATAFRAME = ['pandas<4']
 # Compiles the loops of offline runs; the numbers are the same without it.
 FAST = ['numba<1']
 # The World Magnetic Model of imu/mag.
 MAGNETIC = ['pygeomag>=1.1,<2']
+# Figures in report.html that can be zoomed.
+REPORT = ['bokeh>=3.4,<4']
+XARRAY = ['xarray']
 
 # Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
@@ -36,13 +41,17 @@ setup(
     extras_require={
         # On a machine with ROS 2 rclpy comes from the system, hence never unconditionally.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
+        'cluster': CLUSTER,
         'compression': COMPRESSION,
         'dataframe': DATAFRAME,
         'fast': FAST,
         'magnetic': MAGNETIC,
+        'report': REPORT,
+        'xarray': XARRAY,
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': [*COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, 'pytest<9', 'pytest-xdist<4',
-                 'hypothesis<7', 'flake8<8', 'mypy<3', 'colcon-ros>=0.5,<0.6',
+        'test': [*CLUSTER, *COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, *REPORT, *XARRAY,
+                 'pytest<9', 'pytest-xdist<4', 'hypothesis<7', 'flake8<8', 'mypy<3',
+                 'colcon-ros>=0.5,<0.6',
                  # what results are compared with
                  'allantools', 'geographiclib<3', 'mpmath<2', 'mcap<2', 'rosbags<0.12',
                  # what reads our bags

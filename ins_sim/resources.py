@@ -30,6 +30,11 @@ def config(name):
     return _find('config', name, '.yaml')
 
 
+def config_names():
+    """Return the names of the parameter files, sorted."""
+    return _names('config', '.yaml')
+
+
 def parameter_file(name):
     """
     Return the path of a parameter file given by path or by the name of a shipped one.
@@ -60,10 +65,14 @@ def _find(folder, name, suffix):
         path = directory / folder / f'{name}{suffix}'
         if path.is_file():
             return path
-    known = sorted({path.name.removesuffix(suffix) for directory in share_directories()
-                    for path in (directory / folder).glob(f'*{suffix}')})
+    known = _names(folder, suffix)
     if not known:
         raise FileNotFoundError(f'no {folder} named {name!r}; none was installed in '
                                 + ', '.join(str(path) for path in share_directories()))
     raise FileNotFoundError(f'no {folder} named {name!r}; expected one of {", ".join(known)} '
                             f'(nearest: {nearest_name(name, known)})')
+
+
+def _names(folder, suffix):
+    return sorted({path.name.removesuffix(suffix) for directory in share_directories()
+                   for path in (directory / folder).glob(f'*{suffix}')})

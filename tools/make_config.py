@@ -6,7 +6,7 @@ import textwrap
 
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.by_node import ALL_NODES
-from ins_sim.settings.catalogue import flatten
+from ins_sim.settings.catalogue import flatten, remark, sentence_of, value_text
 from ins_sim.settings.presets import navigator_values, PRESETS
 
 HEAD = """\
@@ -21,30 +21,6 @@ FLOOR = ('"In-run" is the lowest Allan deviation, the figure of data sheets: bia
          'the B of IEEE Std 952, is that over 0.664.')
 
 
-def text(value):
-    """Return a value as YAML that ROS reads with the right type."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, tuple):
-        return '[' + ', '.join(text(v) for v in value) + ']'
-    return repr(value) if isinstance(value, float) else f'"{value}"' if value == '' else str(value)
-
-
-def remark(f, settable):
-    """Return the comment of a field: doc, unit, range, choices, whether it can be set later."""
-    m = f.metadata
-    parts = [m['doc']]
-    if m['unit']:
-        parts[0] += f' [{m["unit"]}]'
-    if m['low'] is not None:
-        parts.append(f'{m["low"]:g} to {m["high"]:g}')
-    if m['choices']:
-        parts.append('one of ' + ', '.join(m['choices']))
-    if settable:
-        parts.append('can be set while the node runs')
-    return '; '.join(parts)
-
-
 def lines(cls, indent):
     """Yield the lines of a settings class."""
     yield from written(tree(cls), indent)
@@ -57,7 +33,7 @@ def tree(cls, settable=None, prefix=''):
     settable: names, by default those of the class.
     """
     settable = cls.SETTABLE if settable is None else settable
-    return {f.name: (f.default_factory.__doc__.strip().splitlines()[0],
+    return {f.name: (sentence_of(f.default_factory),
                      tree(f.default_factory, settable, f'{prefix}{f.name}.'))
             if is_dataclass(f.default_factory) else (f, prefix + f.name in settable)
             for f in fields(cls)}
@@ -84,7 +60,7 @@ def written(names, indent):
         else:
             for line in textwrap.wrap(remark(head, rest), 97 - indent):
                 yield f'{pad}# {line}'
-            yield f'{pad}{name}: {text(head.default)}'
+            yield f'{pad}{name}: {value_text(head.default)}'
 
 
 def of_nodes_alone():
@@ -125,11 +101,11 @@ def preset_document(preset):
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',
             '/**:', '  ros__parameters:',
             '    # of imu_sensor, and of strapdown for its covariances']
-    out += [f'    {key}: {text(value)}' for key, value in preset.values.items()]
+    out += [f'    {key}: {value_text(value)}' for key, value in preset.values.items()]
     if 'output' in preset.values:
         out += [f'    input: {preset.values["output"]}']
     out += ['    # of aided_navigator']
-    out += [f'    {key}: {text(value)}' for key, value in navigator_values(preset).items()]
+    out += [f'    {key}: {value_text(value)}' for key, value in navigator_values(preset).items()]
     return '\n'.join(out) + '\n'
 
 

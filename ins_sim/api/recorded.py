@@ -208,7 +208,8 @@ class Navigation:
             raise ValueError(f'{comparison.name} has no {record}; expected another record')
         return track.t_ns, {record: track.values}
 
-    def save(self, folder: Folder, overwrite: bool = False) -> None:
+    def save(self, folder: Folder, overwrite: bool = False, *, csv: bool = False,
+             tum: bool = False) -> None:
         """
         Write the navigation as ``ins_sim navigate -o`` does.
 
@@ -219,6 +220,11 @@ class Navigation:
             navigation.png.
         overwrite : bool, optional
             Replace the folder if it holds a navigation.
+        csv : bool, optional
+            Write the solution and its errors as CSV tables too.
+        tum : bool, optional
+            Write the solution as a TUM file too, which evo reads, in the plane tangent to the
+            Earth at its first position.
 
         Raises
         ------
@@ -229,7 +235,7 @@ class Navigation:
         from ins_sim.report import navigation
         with whole_folder(checked_path('folder', folder), overwrite, navigation.MARK,
                           'overwrite=True') as work:
-            navigation.write_navigation(work, self.settings, self.name, self.result)
+            navigation.write_navigation(work, self.settings, self.name, self.result, csv, tum)
 
 
 def navigate(source: Name | ImuRecord, values: Values | None = None, names: Names = (),

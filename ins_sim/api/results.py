@@ -138,7 +138,8 @@ class Run:
         names = ('errors', 'states', 'truth', 'imu', 'twin')
         return chosen({name: getattr(self, name) for name in names}, record)
 
-    def save(self, folder: Folder, overwrite: bool = False) -> None:
+    def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
+             tum: bool = False) -> None:
         """
         Write the run as ``ins_sim simulate -o`` does.
 
@@ -152,19 +153,29 @@ class Run:
         folder : str or path
         overwrite : bool, optional
             Replace the folder if it holds a run.
+        thin : int, optional
+            Write every thin-th output instant of truth, solution and errors; the record of the
+            IMU stays whole.
+        csv : bool, optional
+            Write a CSV table of each record too, with the columns of ``to_dataframe``.
+        tum : bool, optional
+            Write the trajectories in the map frame too, as TUM files, which evo reads.
 
         Raises
         ------
         ValueError
             Where the folder exists and is not to be replaced, or holds no run.
         """
-        self._write(folder, overwrite, None)
+        self._write(folder, overwrite, None, (thin, csv, tum))
 
-    def _write(self, folder: Folder, overwrite: bool, report: Any) -> None:
+    def _write(self, folder: Folder, overwrite: bool, report: Any,
+               files: tuple[int, bool, bool]) -> None:
         from ins_sim.own_folders import existing_parent, whole_folder
         from ins_sim.report import guided, storage, summary, titles
+        from ins_sim.report.files.wanted import WantedFiles
         from ins_sim.report.runs.page import run_notes
         from ins_sim.report.spool import Spool
+        wanted = WantedFiles(*files)
         checked_path('folder', folder)
         with Spool(existing_parent(folder)) as spool, whole_folder(
                 folder, overwrite, storage.MARK, 'overwrite=True') as work:
@@ -181,7 +192,8 @@ class Run:
             storage.write_run(work, self.settings, self.result,
                               [*rows, *guided.guided_rows(self.steered)], prediction, title,
                               report, self.own_motion, self.steered,
-                              run_notes(self.settings, self.result, prediction, self.steered))
+                              run_notes(self.settings, self.result, prediction, self.steered),
+                              wanted)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -270,12 +282,13 @@ class AidedRun:
         names = ('errors', 'states', 'truth')
         return chosen({name: getattr(self, name) for name in names}, record)
 
-    def save(self, folder: Folder, overwrite: bool = False) -> None:
+    def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
+             tum: bool = False) -> None:
         """Write the run as ``ins_sim simulate --aided -o`` does; see ``Run.save``."""
         from ins_sim.report import aided
         rows = aided.aided_rows(self.settings, self.result, self.run.states, self.run.errors)
-        self.run._write(folder, overwrite,
-                        aided.AidedReport(self.settings, self.result, rows))
+        self.run._write(folder, overwrite, aided.AidedReport(self.settings, self.result, rows),
+                        (thin, csv, tum))
 
 
 def _length(states: NavStates) -> str:

@@ -24,6 +24,22 @@ def add_force(parser, replaced):
     parser.add_argument('--force', action='store_true', help=f'replace {replaced}')
 
 
+def add_tables(parser):
+    """Add --csv and --tum, what is written beside the arrays."""
+    parser.add_argument('--csv', action='store_true', help='also write every record as a CSV '
+                        'table, for pandas, MATLAB or a spreadsheet')
+    parser.add_argument('--tum', action='store_true', help='also write the trajectories as TUM '
+                        'files, for evo')
+
+
+def add_thin(parser):
+    """Add --thin."""
+    parser.add_argument('--thin', type=int, default=1, metavar='N', help='write every N-th '
+                        'output instant of truth, solution and errors; the record of the IMU '
+                        'stays whole, figures and printed tables are made of all instants '
+                        '(default: %(default)s)')
+
+
 def add_storage(parser):
     """Add --storage and --compression of a bag."""
     parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',

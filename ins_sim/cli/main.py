@@ -3,7 +3,8 @@
 import argparse
 import sys
 
-from . import convert, demo, export, info, navigate, play, predict, record, simulate
+from . import (convert, demo, describe, export, info, listing, navigate, play, predict, record,
+               simulate)
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
 from ins_sim.entry import command, INTERRUPTED
@@ -16,7 +17,7 @@ ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
 LONGEST = 2000
 # In the order of the printed list.
-VERBS = {'simulate': simulate, 'info': info, 'convert': convert, 'export': export,
+VERBS = {'simulate': simulate, 'list': listing, 'describe': describe, 'info': info, 'convert': convert, 'export': export,
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
          'delay-study': delay_study, 'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,

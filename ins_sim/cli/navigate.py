@@ -15,6 +15,7 @@ def add_arguments(parser):
     arguments.add_settings(parser)
     arguments.add_output(parser, 'ins_sim_navigation', 'folder of the solution')
     arguments.add_force(parser, 'the solution in DIR')
+    arguments.add_tables(parser)
 
 
 def run(chosen):
@@ -34,7 +35,8 @@ def run(chosen):
         sources = imu.read_imu(chosen.recording, settings)
         with progress_bars(console) as add_bar:
             result = navigate(settings, sources, add_bar('navigating'))
-        navigation.write_navigation(work, settings, sources.name, result)
+        navigation.write_navigation(work, settings, sources.name, result, chosen.csv,
+                                    chosen.tum)
     navigation.show_navigation(sources.name, result, console)
     console.print(f'written: {chosen.output}')
     return 0

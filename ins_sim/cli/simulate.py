@@ -17,6 +17,8 @@ def add_arguments(parser):
     parser.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
     parser.add_argument('--aided', action='store_true', help='also run velocity meter, GNSS and '
                         'aided navigator on the same readings of the IMU')
+    arguments.add_thin(parser)
+    arguments.add_tables(parser)
     parser.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
                         'the nodes would publish into a rosbag2 bag')
     arguments.add_storage(parser)
@@ -35,10 +37,12 @@ def run(chosen):
     from ins_sim.own_folders import existing_parent, whole_folder
     from ins_sim.report import guided, spool, storage, summary, table, titles
     from ins_sim.report.console import PlainConsole
+    from ins_sim.report.files.wanted import WantedFiles
     from ins_sim.report.runs.page import run_notes
     from .progress import progress_bars
     if chosen.aided:
         from ins_sim.core.simulation.aided import make_instruments, simulate_aided
+    wanted = WantedFiles(chosen.thin, chosen.csv, chosen.tum)
     aided = arguments.read_aided_settings(chosen) if chosen.aided else None
     settings = aided.simulation if aided else arguments.read_settings(chosen)
     write_bag = _bag_writer(chosen, settings)
@@ -69,12 +73,14 @@ def run(chosen):
             report = None if aided is None else _report(aided, flown, result)
             notes = run_notes(settings, result, prediction, steered)
             storage.write_run(work, settings, result, rows, prediction, title, report,
-                              steered=steered, notes=notes)
+                              steered=steered, notes=notes, wanted=wanted)
         table.show_table(title, rows, console)
         for line in notes:
             console.print(line)
         if report is not None:
             report.show(console)
+        for line in wanted.lines(result):
+            console.print(line)
         console.print(f'written: {chosen.output}')
         if write_bag is not None:
             write_bag(result, motion, steered, console,

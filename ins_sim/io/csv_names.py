@@ -35,15 +35,15 @@ def _imu(kind, axis):
     """Return the patterns of what others call an axis of an IMU, with the unit they have."""
     if kind == 'rate':
         return ((rf'(.*[./])?angular_velocity[./_]{axis}', 'rad/s'),
-                (rf'w_rs_s_{axis}', 'rad/s'),
+                (rf'w_rs_s_{axis}|omega_{axis}_rad_s', 'rad/s'),
                 (rf'(gyr|gyro|gyroscope)[ _.]?{axis}', None))
     return ((rf'(.*[./])?linear_acceleration[./_]{axis}', 'm/s^2'),
-            (rf'a_rs_s_{axis}', 'm/s^2'),
+            (rf'a_rs_s_{axis}|f_{axis}_m_s2', 'm/s^2'),
             (rf'(acc|accel|accelerometer)[ _.]?{axis}', None))
 
 
 _TIME = ((r'field\.header\.stamp', 'ns'), (r'%time', 'ns'), (r'#?timestamp', None),
-         (r'time|t', None), (r'__time', 's'))
+         (r'time|t', None), (r't_ns', 'ns'), (r'__time', 's'))
 # Kind of each column, and patterns of other names with the unit that goes with the name; None
 # where it has to be in brackets, or named.
 KNOWN = {

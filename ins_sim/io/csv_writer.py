@@ -1,4 +1,4 @@
-"""Write the CSV files that ``csv_flight`` and ``csv_imu`` read, without losing a bit."""
+"""Write CSV files, of which each number gives its bits back, and those that are read here."""
 
 import gzip
 from pathlib import Path
@@ -25,12 +25,28 @@ def write_imu(path, imu):
     _write(path, imu.t_ns, csv_imu.IMU, (*imu.omega.T, *imu.f.T))
 
 
+def write_rows(path, names, blocks):
+    """Write names and blocks of rows, each block being its columns.  Raises OSError."""
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(','.join(names) + '\n')
+        for block in blocks:
+            file.writelines(f'{row}\n' for row in _rows(map(_texts, block)))
+
+
+def _texts(column):
+    """Return the numbers of a column in the shortest text that gives their bits back."""
+    return map(repr, column.tolist())
+
+
+def _rows(texts):
+    return (','.join(row) for row in zip(*texts))
+
+
 def _write(path, t_ns, names, values):
-    """Write t_s, exact, and columns, each number in the shortest text that gives its bits back."""
+    """Write t_s, exact, and columns."""
     path = Path(path)
     stamps = (seconds(t).removesuffix(' s') for t in t_ns.tolist())
-    texts = [stamps, *(map(repr, column.tolist()) for column in values)]
-    lines = [','.join(('t_s', *names)), *(','.join(row) for row in zip(*texts)), '']
+    lines = [','.join(('t_s', *names)), *_rows([stamps, *map(_texts, values)]), '']
     data = '\n'.join(lines).encode()
     if path.name.endswith('.gz'):
         data = gzip.compress(data, mtime=0)

@@ -12,7 +12,6 @@ from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER
 from ins_sim.core.numerics.units import DEG
 from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.settings.simulation import AidedSimulationSettings
-from . import aided_arrays
 from .consistency import mean_interval, THREE_SIGMA
 
 # of the table: head, text of a Row or '', and what it means where that is not plain
@@ -61,10 +60,6 @@ class AidedReport:
         if not told:
             return 'not aided by any fix'
         return f'aided by {self.settings.aided_navigator.filter}: {", ".join(told)}'
-
-    def arrays(self):
-        """Return {name: array} for run.npz."""
-        return aided_arrays.aided_arrays(self.flown)
 
     def parameters(self):
         """Return the text of the parameter file of all six nodes."""

@@ -10,6 +10,11 @@ GNSS_COLUMNS = ('t_ns', 'lat', 'lon', 'height', 'v_n', 'position_sigma', 'veloci
                 'status', 'arrival_ns')
 
 
+def aided_records(flown):
+    """Return {name: History} of an AidedResult."""
+    return {f'aided_{name}': getattr(flown, name) for name in ('truth', 'states', 'errors')}
+
+
 def aided_arrays(flown):
     """
     Return the arrays of an AidedResult by name.
@@ -18,10 +23,8 @@ def aided_arrays(flown):
     gnss_<field>: as in ``core.timeseries.fixes``, one row per fix; judged_<field>: what the
     filter did with each fix: source, t_ns, nis (NaN: not weighed), freedom, taken, reason.
     """
-    found = {}
-    for name in ('truth', 'states', 'errors'):
-        record = getattr(flown, name)
-        found.update({f'aided_{name}_{k}': v for k, v in record.arrays().items()})
+    found = {f'{name}_{field}': values for name, record in aided_records(flown).items()
+             for field, values in record.arrays().items()}
     for source, fixes, columns in ((METER, flown.velocity_fixes, VELOCITY_COLUMNS),
                                    (GNSS, flown.gnss_fixes, GNSS_COLUMNS)):
         found.update({f'{source}_{name}': np.array([getattr(fix, name) for fix in fixes])

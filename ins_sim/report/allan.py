@@ -34,6 +34,14 @@ class Allan:
     deviation: np.ndarray
     length_s: float
 
+    def relative_sigma(self):
+        """
+        Return the relative standard deviation of the variance of one channel at each tau (m,).
+
+        sqrt(tau/T) of a record of length T (IEEE Std 952, C.1.2, to a factor of the overlap).
+        """
+        return np.sqrt(self.tau_s / self.length_s)
+
     def channels(self, which):
         """Return the Allan of some channels, by number."""
         return Allan(self.tau_s, self.deviation[:, which], self.length_s)
@@ -61,11 +69,11 @@ class Coefficients:
         """
         Return which coefficients, in the order above, the Allan they were fitted to shows.
 
-        The variance at tau has the relative standard deviation sqrt(tau/T) of a record of length
-        T (IEEE Std 952, C.1.2, to a factor of the overlap), over the root of the channels.
+        The mean variance of several channels has the relative standard deviation of one over the
+        root of their number.
         """
         squares = self.parts(allan.tau_s) ** 2
-        doubt = np.sqrt(allan.tau_s / (allan.length_s * allan.deviation.shape[-1]))
+        doubt = allan.relative_sigma() / math.sqrt(allan.deviation.shape[-1])
         least = np.maximum(SEEN, SIGMAS * doubt)[:, None] * squares.sum(axis=-1, keepdims=True)
         return ((squares >= least) & (squares > 0.0)).any(axis=0)
 

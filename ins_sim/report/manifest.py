@@ -13,12 +13,12 @@ SIGNAL = 'the signals of the velocity meter are made by Fourier transforms'
 OBJECT = 'the motion is an object of the caller'
 
 
-def manifest(settings, aided=None, own_motion=False):
+def manifest(settings, aided=None, own_motion=False, thin=1):
     """
     Return the text of manifest.yaml.
 
     settings: SimulationSettings; aided: AidedSimulationSettings or None; own_motion: whether the
-    motion is not that of the settings.
+    motion is not that of the settings; thin: every how many output instants are in the files.
     """
     reasons = []
     if own_motion:
@@ -32,4 +32,6 @@ def manifest(settings, aided=None, own_motion=False):
     told = {'noise': NOISE, 'bits': HERE if reasons else EVERYWHERE}
     if reasons:
         told['bits_reason'] = '; '.join(reasons)
+    if thin > 1:
+        told['thin'] = int(thin)
     return yaml.safe_dump(told, sort_keys=False)

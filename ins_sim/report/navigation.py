@@ -1,21 +1,32 @@
-"""A recorded navigation: notes and tables for a terminal, figure, numbers and arrays on disk."""
+"""A recorded navigation: notes and tables for a terminal, figures, report and arrays on disk."""
 
-from dataclasses import asdict, fields
+from dataclasses import asdict
 import json
+import math
 
 import numpy as np
 from rich.table import Table
 
 from ins_sim import parameter_files
-from ins_sim.core.navigation.errors import position_error
+from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.postprocessing.comparison import error_rows
-from ins_sim.core.postprocessing.reference import SampledTrack
+from ins_sim.core.timeseries.histories import NavStates
+from ins_sim.core.timeseries.named_columns import columns
+from ins_sim.io.csv_writer import write_rows
+from ins_sim.settings.place import Datum
+from .charts.png import save_chart
+from .charts.scales import amount, LENGTHS, TIMES
 from .console import PlainConsole
-from .plotting import new_figure, save_png, thinned
+from .files.packed_arrays import write_arrays
+from .files.tables import write_tables
+from .files.trajectories import write_trajectories
+from .navigation_charts import navigation_charts, navigation_tracks
+from .page.content import Page, PageTable
+from .page.html import write_page
+from .runs.kml import FILE, write_tracks
 from .table import number_text
 
 MARK = 'nav.npz'
-OTHERS = ('tab:orange', 'tab:purple')
 COLUMNS = (('after_s', 'after [s]'), ('horizontal_m', 'horizontal [m]'),
            ('vertical_m', 'up [m]'), ('speed_m_s', 'velocity [m/s]'), ('tilt_deg', 'tilt [deg]'),
            ('heading_deg', 'heading [deg]'))
@@ -44,24 +55,34 @@ def show_navigation(title, result, console=None):
         console.print(table)
 
 
-def write_navigation(work, settings, title, result):
+def write_navigation(work, settings, title, result, csv=False, tum=False):
     """
     Write a Navigation into a folder.
 
     nav.npz holds states_<field> and, for reference k, error_<k>_<kind>_t_ns and
-    error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables.
+    error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables. csv:
+    also states.csv and error_<k>_<kind>.csv; tum: also ins.tum, in the plane tangent at the first
+    position.
     """
     start_ns, end_ns = _span(result)
-    arrays = {f'states_{f.name}': np.concatenate([getattr(s, f.name) for s in result.states])
-              for f in fields(result.states[0])}
+    states = NavStates.concatenate(result.states)
+    arrays = {f'states_{name}': values for name, values in states.arrays().items()}
     arrays['segment_start_ns'] = np.array([s.t_ns[0] for s in result.states])
+    if csv:
+        write_tables(work, {'states': states})
     for k, comparison in enumerate(result.comparisons):
         for kind in ('position', 'velocity', 'attitude'):
             track = getattr(comparison, kind)
             if track is not None:
                 arrays[f'error_{k}_{kind}_t_ns'] = track.t_ns
                 arrays[f'error_{k}_{kind}'] = track.values
-    np.savez(work / MARK, **arrays)
+                if csv:
+                    write_rows(work / f'error_{k}_{kind}.csv', ('t_ns', *columns(
+                        kind, track.values)), [(track.t_ns, *track.values.T)])
+    write_arrays(work / MARK, arrays)
+    if tum:
+        datum = Datum(math.degrees(states.lat[0]), math.degrees(states.lon[0]), states.height[0])
+        write_trajectories(work, MapFrame(datum, True), {'ins': states})
     summary = {'recording': title, 'start_ns': start_ns, 'end_ns': end_ns,
                'figures': result.figures, 'notes': result.notes,
                'errors': {c.name: [asdict(r) for r in error_rows(c, start_ns, end_ns)]
@@ -69,57 +90,49 @@ def write_navigation(work, settings, title, result):
     (work / 'summary.json').write_text(json.dumps(summary, indent=1) + '\n', encoding='utf-8')
     (work / 'parameters.yaml').write_text(
         parameter_files.dump_nodes({'navigate': settings}), encoding='utf-8')
-    save_figure(work / 'navigation.png', title, result)
+    charts = navigation_charts(title, result, settings.gap_factor)
+    for chart in charts:
+        save_chart(work, chart)
+    write_tracks(work, title, navigation_tracks(result))
+    write_page(work, _page(title, settings, result, charts))
 
 
-def save_figure(path, title, result):
-    """Save the way and the errors over time as PNG."""
-    figure = new_figure(13, 9)
-    grid = figure.add_gridspec(3, 2)
-    way = figure.add_subplot(grid[:, 0])
-    first = result.states[0]
-    start_ns, origin = int(first.t_ns[0]), (first.lat[0], first.lon[0], first.height[0])
-    tracks = [('solution', SampledTrack(s.t_ns, np.stack([s.lat, s.lon, s.height], axis=-1)))
-              for s in result.states]
-    end_ns = _span(result)[1]
-    for reference in result.references:
-        track = reference.position
-        if track is not None:
-            inside = (track.t_ns >= start_ns) & (track.t_ns <= end_ns)
-            tracks.append((reference.name, SampledTrack(track.t_ns[inside], track.values[inside])))
-    for k, (name, track) in enumerate(tracks):
-        place = np.array([position_error(*p, *origin) for p in thinned(track.values).tolist()])
-        if len(place):
-            own = k < len(result.states)
-            way.plot(place[:, 0], place[:, 1], lw=1.2, label=None if own and k else name,
-                     color='tab:blue' if own else OTHERS[k - len(result.states)])
-    way.plot(0.0, 0.0, 'ko', ms=5, label='start')
-    way.set(xlabel='east [m]', ylabel='north [m]')
-    way.axis('equal')
-    panels = (('position', 'position error [m]', 1.0), ('velocity', 'velocity error [m/s]', 1.0),
-              ('attitude', 'attitude error [deg]', np.degrees(1.0)))
-    for row, (kind, label, unit) in enumerate(panels):
-        axes = figure.add_subplot(grid[row, 1])
-        for comparison, style in zip(result.comparisons, ('-', '--', ':')):
-            track = getattr(comparison, kind)
-            if track is None:
-                continue
-            t_s = (thinned(track.t_ns) - start_ns) * 1e-9
-            values = thinned(track.values) * unit
-            axes.plot(t_s, np.hypot(values[:, 0], values[:, 1]), style, color='tab:red',
-                      label=f'{"tilt" if kind == "attitude" else "horizontal"}, '
-                            f'{comparison.name}')
-            axes.plot(t_s, values[:, 2], style, color='tab:green',
-                      label=f'{"about up" if kind == "attitude" else "up"}, {comparison.name}')
-        axes.set_ylabel(label)
-        axes.grid(alpha=0.3)
-        if axes.lines:
-            axes.legend(loc='best', fontsize='x-small')
-        else:
-            axes.text(0.5, 0.5, 'no reference', ha='center', va='center',
-                      transform=axes.transAxes)
-    axes.set_xlabel('time since the start [s]')
-    way.grid(alpha=0.3)
-    way.legend(loc='best', fontsize='small')
-    figure.suptitle(title)
-    save_png(figure, path)
+def _page(title, settings, result, charts):
+    """Return the Page of a navigation."""
+    start_ns, end_ns = _span(result)
+    tables = tuple(
+        PageTable(f'Solution less {c.name}', tuple(head for _, head in COLUMNS),
+                  tuple(tuple('-' if value is None else value
+                              for value in (getattr(row, name) for name, _ in COLUMNS))
+                        for row in error_rows(c, start_ns, end_ns)))
+        for c in result.comparisons)
+    return Page(f'Navigation on the recording {title}', _answer(result), charts, tables,
+                tuple(result.notes), settings,
+                files={MARK: 'the solution and its errors (numpy.load)',
+                       'summary.json': 'figures, notes and errors', 'parameters.yaml':
+                       'the parameters, which navigate takes again',
+                       **{f'{chart.name}.png': chart.title for chart in charts},
+                       FILE: 'the track for programs of maps'})
+
+
+def _answer(result):
+    """Return the sentence about a Navigation: what it is off at its end."""
+    start_ns, end_ns = _span(result)
+    length = amount(TIMES, (end_ns - start_ns) * 1e-9)
+    if not result.comparisons:
+        return (f'The strapdown navigated for {length}. There is no reference to compare it '
+                'with.')
+    sentences = []
+    for comparison in result.comparisons:
+        end = error_rows(comparison, start_ns, end_ns)[-1]
+        words = []
+        if end.horizontal_m is not None:
+            words.append(f'{amount(LENGTHS, end.horizontal_m)} off horizontally')
+        if end.speed_m_s is not None:
+            words.append(f'{end.speed_m_s:.3g} m/s in horizontal velocity')
+        if end.heading_deg is not None:
+            words.append(f'{abs(end.heading_deg):.3g} deg in heading')
+        sentences.append(
+            f'After {length} the solution is {", ".join(words)} from {comparison.name}.'
+            if words else f'{comparison.name} ends before the solution does.')
+    return ' '.join(sentences)

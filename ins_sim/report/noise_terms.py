@@ -70,6 +70,24 @@ class Noise:
     together: allan.Coefficients
     settings: np.ndarray | None
 
+    def fitted(self):
+        """Return the Allan deviation of the fit to all axes at each tau (m,), SI."""
+        return np.sqrt(self.together.deviation(self.allan.tau_s) ** 2 + self.known)
+
+    def expected(self):
+        """
+        Return the Allan deviation that the settings ask for at each tau (m,), SI.
+
+        The root of the mean variance of the axes; None where no settings are known, or where they
+        ask for no noise.
+        """
+        if self.settings is None:
+            return None
+        noisy = self.settings[:, [AXES.index(axis) for axis in self.axes]]
+        mean = allan.Coefficients(*np.sqrt(np.mean(noisy ** 2, axis=-1)).tolist())
+        deviation = np.sqrt(mean.deviation(self.allan.tau_s) ** 2 + self.known)
+        return deviation if deviation.all() else None
+
     def rows(self):
         """
         Return for each Term a dict of texts and numbers in its unit.

@@ -3,48 +3,62 @@
 from dataclasses import asdict
 import json
 from pathlib import Path
-from zipfile import ZipFile
-
-import numpy as np
-from numpy.lib import format as npy_format
 
 from ins_sim import parameter_files
-from ins_sim.core.timeseries.histories import BLOCK, ImuSamples
+from ins_sim.core.earth.frames import MapFrame
+from ins_sim.core.timeseries.histories import ImuSamples
+from .aided_arrays import aided_arrays, aided_records
+from .files.packed_arrays import write_arrays
+from .files.stored_arrays import read_arrays
+from .files.tables import write_tables
+from .files.trajectories import write_trajectories
+from .files.wanted import WantedFiles
 from .guided import guided_arrays
 from .manifest import manifest
 from .runs.page import write_report
-from .stored_arrays import read_arrays
 
 MARK = 'summary.json'
 ARRAYS = 'run.npz'
 PARAMETERS = 'parameters.yaml'
 MANIFEST = 'manifest.yaml'
+# {name of a trajectory: record}
+TRAJECTORIES = {'truth': 'truth', 'ins': 'states', 'aided': 'aided_states'}
 _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f', (None, 3)),
         'imu_parity': ('f', (None,))}
 
 
 def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False,
-              steered=None, notes=()):
+              steered=None, notes=(), wanted=WantedFiles()):
     """
     Write a SimulationResult, and what was predicted of it or None, into a folder.
 
     run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
     aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
     own_motion: whether the motion is not that of the settings; steered: GuidedResult of a guided
-    motion, or None; notes: sentences for the page (``runs.page.run_notes``).
+    motion, or None; notes: sentences for the page (``runs.page.run_notes``); wanted: the files,
+    and of how many instants.
     """
-    arrays = {**run_arrays(run), **guided_arrays(steered)}
+    records = run_records(wanted.kept(run))
+    arrays = {**_arrays_of(records), **guided_arrays(steered)}
     if prediction is not None:
         arrays['predicted_t_s'] = prediction.t_s
         arrays['predicted_position'] = prediction.position
     parameters = parameter_files.dump(settings)
     if aided is not None:
-        arrays.update(aided.arrays())
+        solution = wanted.kept(aided.flown)
+        arrays.update(aided_arrays(solution))
+        records.update(aided_records(solution))
         parameters = aided.parameters()
     write_arrays(work / ARRAYS, arrays)
+    if wanted.csv:
+        write_tables(work, records)
+    if wanted.tum:
+        generator = settings.motion_generator
+        write_trajectories(work, MapFrame(generator.datum, generator.earth.rotation), {
+            name: records[record] for name, record in TRAJECTORIES.items() if record in records})
     (work / PARAMETERS).write_text(parameters, encoding='utf-8')
     (work / MANIFEST).write_text(
-        manifest(settings, aided and aided.settings, own_motion), encoding='utf-8')
+        manifest(settings, aided and aided.settings, own_motion, wanted.thin), encoding='utf-8')
     told = [*rows, *(aided.rows if aided else ())]
     (work / MARK).write_text(json.dumps([asdict(r) for r in told], indent=1) + '\n',
                              encoding='utf-8')
@@ -53,28 +67,18 @@ def write_run(work, settings, run, rows, prediction, title, aided=None, own_moti
 
 def run_arrays(run):
     """Return the arrays of a SimulationResult as {<record>_<field>: array}."""
-    arrays = {}
-    for name in ('truth', 'imu', 'states', 'errors', 'twin'):
-        record = getattr(run, name)
-        if record is not None:
-            arrays.update({f'{name}_{k}': v for k, v in record.arrays().items()})
-    return arrays
+    return _arrays_of(run_records(run))
 
 
-def write_arrays(path, arrays):
-    """Write arrays by name, or SpooledColumns, as ``numpy.savez`` does, block by block."""
-    with ZipFile(path, 'w') as archive:
-        for name, array in arrays.items():
-            # The size is known only afterwards: it may be beyond what a small header can hold.
-            with archive.open(f'{name}.npy', 'w', force_zip64=True) as member:
-                if isinstance(array, np.ndarray):
-                    npy_format.write_array(member, array, allow_pickle=False)
-                    continue
-                npy_format.write_array_header_1_0(member, {
-                    'descr': npy_format.dtype_to_descr(array.dtype), 'fortran_order': False,
-                    'shape': array.shape})
-                for first in range(0, len(array), BLOCK):
-                    member.write(array[first:first + BLOCK].data)
+def run_records(run):
+    """Return {name: History} of a SimulationResult."""
+    records = {name: getattr(run, name) for name in ('truth', 'imu', 'states', 'errors', 'twin')}
+    return {name: record for name, record in records.items() if record is not None}
+
+
+def _arrays_of(records):
+    return {f'{name}_{field}': values for name, record in records.items()
+            for field, values in record.arrays().items()}
 
 
 def read_imu(folder):

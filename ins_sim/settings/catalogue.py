@@ -33,6 +33,46 @@ def values_of(settings, prefix=''):
     return values
 
 
+def value_text(value):
+    """Return a value as YAML that ROS reads with the right type."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return '[' + ', '.join(value_text(v) for v in value) + ']'
+    return repr(value) if isinstance(value, float) else f'"{value}"' if value == '' else str(value)
+
+
+def remark(f, settable=False):
+    """Return what is said of a field: doc, unit, range, choices, whether it can be set later."""
+    m = f.metadata
+    parts = [m['doc']]
+    if m['unit']:
+        parts[0] += f' [{m["unit"]}]'
+    if m['low'] is not None:
+        parts.append(f'{m["low"]:g} to {m["high"]:g}')
+    if m['choices']:
+        parts.append('one of ' + ', '.join(m['choices']))
+    if settable:
+        parts.append('can be set while the node runs')
+    return '; '.join(parts)
+
+
+def groups_of(cls, prefix=''):
+    """Return {dotted name: class} of the groups of a settings class, in the order of naming."""
+    names = {}
+    for f in fields(cls):
+        if is_dataclass(f.default_factory):
+            name = prefix + f.name
+            names[name] = f.default_factory
+            names.update(groups_of(f.default_factory, f'{name}.'))
+    return names
+
+
+def sentence_of(cls):
+    """Return the first line of the docstring of a settings class."""
+    return cls.__doc__.strip().splitlines()[0]
+
+
 def build(cls, values):
     """
     Return the settings object of a class from {dotted name: value}; missing names take defaults.

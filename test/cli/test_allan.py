@@ -18,7 +18,8 @@ SIGMA = np.array([0.01, 0.02, 0.03])
 
 
 def rows(folder):
-    """Return {(triad, symbol): row} of a finished folder, whose figures are pictures."""
+    """Return {(triad, symbol): row} of a finished folder, with its pictures and its report."""
+    assert 'Allan deviation of the gyro' in (folder / 'report.html').read_text(encoding='utf-8')
     for triad in ('gyro', 'accelerometer'):
         assert (folder / f'{triad}.png').read_bytes().startswith(b'\x89PNG')
     return {(row['triad'], row['symbol']): row

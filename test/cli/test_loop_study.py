@@ -42,6 +42,8 @@ def test_flights_and_conditions(short, tmp_path, capsys):
     assert not found['conditions'][0]['lateral']
     for name in ('histories_0', 'conventional_1000_1'):
         assert (tmp_path / 'a' / f'{name}.png').stat().st_size > 10000
+    page = (tmp_path / 'a' / 'report.html').read_text(encoding='utf-8')
+    assert '2 of 2 flights end quiet' in page and 'Closed loop under conditions' in page
 
 
 @pytest.mark.slow

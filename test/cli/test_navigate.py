@@ -88,7 +88,9 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
               f'{np.linalg.norm(at_200):.4f} m at 200 Hz')
     rest = at_100 - 4.0 / 3.0 * (at_100 - at_200)
     assert np.linalg.norm(rest) < 0.01 * np.linalg.norm(at_100)
-    assert (out / 'navigation.png').read_bytes().startswith(b'\x89PNG')
+    for name in ('navigation', 'track'):
+        assert (out / f'{name}.png').read_bytes().startswith(b'\x89PNG')
+    assert 'off horizontally' in (out / 'report.html').read_text(encoding='utf-8')
     with np.load(out / 'nav.npz') as arrays:
         assert arrays['states_q_nb'].shape == (2001, 4)
         assert arrays['states_t_ns'][0] == EPOCH

@@ -101,7 +101,8 @@ MAY_IMPORT = {
     # it stands before all others
     'entry': {'cli'},
     '__main__': {'entry'},
-    'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file', 'visible_text'},
+    'report': CORE | {'settings', 'studies', 'parameter_files', 'regular_file', 'visible_text',
+                      'io.csv_writer'},
     'api': FILES_AND_BAGS,
     'ros': FILES_AND_BAGS | {'entry'},
     'testing': {'api', 'messages', 'parameter_files', 'ros', 'settings'},

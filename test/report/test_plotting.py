@@ -32,7 +32,7 @@ def test_the_backend_of_the_program_stays():
     """A notebook that imports the reports keeps its inline plots: pyplot's backend is its own."""
     code = ('import matplotlib\n'
             'matplotlib.use("svg")\n'
-            'import ins_sim.report.runs.aided_charts, ins_sim.report.allan_figure\n'
+            'import ins_sim.report.runs.aided_charts, ins_sim.report.charts.png\n'
             'import ins_sim.report.studies.tuned_gyro, ins_sim.report.runs.page\n'
             'import ins_sim.report.studies.filters, ins_sim.report.navigation\n'
             'from ins_sim.report.plotting import new_figure\n'

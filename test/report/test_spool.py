@@ -5,7 +5,8 @@ import pytest
 
 from ins_sim.core.timeseries.collecting import Collected
 from ins_sim.core.timeseries.histories import NavStates
-from ins_sim.report import spool, storage
+from ins_sim.report import spool
+from ins_sim.report.files.packed_arrays import write_arrays
 
 COUNT = 20000
 PARTS = [slice(None), slice(5, 70), slice(10, 5), slice(-5, None), slice(COUNT, None),
@@ -74,8 +75,8 @@ def test_arrays_and_columns_are_saved_alike(tmp_path):
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())
-        storage.write_arrays(tmp_path / 'columns.npz', read.arrays())
-    storage.write_arrays(tmp_path / 'arrays.npz', history.arrays())
+        write_arrays(tmp_path / 'columns.npz', read.arrays())
+    write_arrays(tmp_path / 'arrays.npz', history.arrays())
     for name in ('columns', 'arrays'):
         with np.load(tmp_path / f'{name}.npz') as found:
             assert list(found) == list(history.arrays())

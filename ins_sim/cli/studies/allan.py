@@ -23,7 +23,7 @@ def add_arguments(parser):
                         help='topic of the bag, where it has more than one of sensor_msgs/msg/Imu')
     parser.add_argument('--duration', type=float, default=None, metavar='S',
                         help=f'length of the simulated record, s (default: {DURATION_S:.0f})')
-    arguments.add_output(parser, 'ins_sim_allan', 'folder of the two figures')
+    arguments.add_output(parser, 'ins_sim_allan', 'folder of the two figures and the report')
     arguments.add_force(parser, 'the figures in DIR')
 
 
@@ -36,17 +36,26 @@ def run(chosen):
 
 def _analyse(chosen, work):
     from ins_sim.core.sensors.tuned_gyro.pair import COVARIANCE_FACTORS
-    from ins_sim.report import allan_figure, allan_record, noise_terms
+    from ins_sim.report import allan_record, noise_terms
+    from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
-    console = PlainConsole()
-    imu, settings, title = _record(chosen, console)
+    from ins_sim.report.page.html import REPORT, write_page
+    from ins_sim.report.studies import allan as report
+    from ins_sim.report.titles import instrument_words
+    console, notes = PlainConsole(), []
+
+    def note(sentence):
+        notes.append(sentence)
+        console.print(sentence)
+
+    imu, settings, name = _record(chosen, console, note)
     try:
         record = allan_record.regular_record(imu, _given_rate(chosen, settings))
     except ValueError as error:
-        raise ValueError(f'{title}: {error}') from None
+        raise ValueError(f'{name}: {error}') from None
     imu, rate_hz = record.imu, record.rate_hz
-    for note in record.notes:
-        console.print(f'{title}: {note}')
+    for sentence in record.notes:
+        note(f'{name}: {sentence}')
     found = []
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
@@ -56,19 +65,23 @@ def _analyse(chosen, work):
         noise = noise_terms.analyse_noise(triad, samples, rate_hz, sensor and sensor.errors,
                                           factors)
         if noise is None:
-            console.print(f'{triad}: constant throughout, no noise to show')
+            note(f'{triad}: constant throughout, no noise to show')
         else:
             found.append(noise)
     if not found:
-        raise ValueError(f'{title}: both triads are constant throughout; {EXPECTED}')
-    title = f'{title}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'
-    for noise in found:
-        allan_figure.save_figure(work / f'{noise.triad}.png', title, noise)
+        raise ValueError(f'{name}: both triads are constant throughout; {EXPECTED}')
+    words = name if settings is None else f'{instrument_words(settings.imu_sensor)} ({name})'
+    charts = [report.allan_chart(words, noise) for noise in found]
+    for chart in charts:
+        save_chart(work, chart)
+    write_page(work, report.allan_page(words, found, notes, settings, charts))
     rows = [row for noise in found for row in noise.rows()]
     (work / MARK).write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
+    title = f'{name}, {rate_hz:.6g} Hz, {found[0].allan.length_s:.6g} s'
     for noise in found:
         noise_terms.show_noise(noise, title, console)
         console.print(f'figure: {Path(chosen.output) / noise.triad}.png')
+    console.print(f'report: {Path(chosen.output) / REPORT}')
     return 0
 
 
@@ -79,8 +92,12 @@ def _given_rate(chosen, settings):
     return settings.imu_sensor.rate_hz if given else None
 
 
-def _record(chosen, console):
-    """Return the ImuSamples, the SimulationSettings behind them or None, and a title."""
+def _record(chosen, console, note):
+    """
+    Return the ImuSamples, the SimulationSettings behind them or None, and a name.
+
+    note: function that takes a sentence about the record.
+    """
     from ins_sim import parameter_files
     from ins_sim.bags.storages import is_bag
     from ins_sim.core.sensors.imu.with_errors import with_errors
@@ -106,8 +123,8 @@ def _record(chosen, console):
         settings = parameter_files.read([source / storage.PARAMETERS, *given], chosen.param)
         kind = settings.motion_generator.motion.kind
         if kind != 'static':
-            console.print(f'{source}: the motion is {kind}, not static: its own Allan deviation '
-                          'is in the record')
+            note(f'{source}: the motion is {kind}, not static: its own Allan deviation is in the '
+                 'record')
         return storage.read_imu(source), settings, source.name
     if not source.exists() or not is_bag(source):
         raise ValueError(f'{source} is neither a run of "ins_sim simulate" ({storage.ARRAYS}) nor '

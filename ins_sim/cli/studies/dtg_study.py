@@ -19,15 +19,18 @@ def add_arguments(parser):
                         f'repeated (default: {" and ".join(SHIPPED)})')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                         help='one parameter, for every table')
-    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures, replaced')
+    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures and the report, '
+                         'replaced')
 
 
 def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
     from ins_sim import parameter_files
     from ins_sim.own_folders import whole_folder
-    from ins_sim.report.studies import tuned_gyro as report
+    from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
+    from ins_sim.report.page.html import REPORT, write_page
+    from ins_sim.report.studies import tuned_gyro as report
     from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
     studies = {}
     for path in arguments.parameter_paths(chosen, SHIPPED):
@@ -38,15 +41,18 @@ def run(chosen):
                                                         {NODE: TunedGyroStudySettings})[NODE]
     console = PlainConsole()
     with whole_folder(chosen.output, replace=True) as work:
-        for name, settings in studies.items():
-            report.save_figure(work / f'{name}.png', settings, *_study(name, settings, console))
+        found = [_study(name, settings, console) for name, settings in studies.items()]
+        for one in found:
+            save_chart(work, one.chart)
+        write_page(work, report.study_page(found))
     for name in studies:
         console.print(f'figure: {Path(chosen.output) / name}.png')
+    console.print(f'report: {Path(chosen.output) / REPORT}')
     return 0
 
 
 def _study(name, settings, console):
-    """Show one table; return the Cells of the curve, those of the table, and the limits."""
+    """Show one table; return its TunedGyroStudy."""
     from ins_sim.report.studies import tuned_gyro as report
     from ins_sim.studies import tuned_gyro as study
     from ..progress import progress_bars
@@ -59,5 +65,6 @@ def _study(name, settings, console):
         curve = study.study_curve(settings, lambda: show(next(done))) or cells
     report.show_study(settings, cells, console)
     if limits:
-        report.show_limits(settings, limits, console)
-    return curve, cells, limits
+        console.print(report.limits_sentence(settings, limits))
+    chart = report.study_chart(name, settings, curve, cells, limits)
+    return report.TunedGyroStudy(name, settings, cells, limits, chart)

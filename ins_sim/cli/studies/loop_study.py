@@ -14,6 +14,7 @@ DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lat
                'of the parameters.')
 SHIPPED = ('guided_flight',)
 MARK = 'loop_study.json'
+TITLE = 'Flight steered by its own aided solution'
 PARTS = ('table', 'limits', 'conditions', 'map')
 
 
@@ -26,7 +27,7 @@ def add_arguments(parser):
                         'of the map (default: %(default)s)')
     parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
                         'as many as cores)')
-    arguments.add_output(parser, 'ins_sim_loop', 'folder of figures and numbers')
+    arguments.add_output(parser, 'ins_sim_loop', 'folder of figures, numbers and report')
     arguments.add_force(parser, 'what is in DIR')
 
 
@@ -34,7 +35,11 @@ def run(chosen):
     """Fly, show and save; return the exit code."""
     from ins_sim.core.guidance.steering import margin_sentence
     from ins_sim.own_folders import whole_folder
+    from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
+    from ins_sim.report.page.html import REPORT, write_page
+    from ins_sim.report.studies import closed_loop as report
+    from ins_sim.report.titles import instrument_words
     from ins_sim.studies.closed_loop import study_loop
     if chosen.gains < 1 or chosen.jobs < 0:
         raise ValueError(f'--gains is {chosen.gains} and --jobs {chosen.jobs}; expected 1 or more '
@@ -47,17 +52,32 @@ def run(chosen):
     generator = settings.simulation.motion_generator
     if warning := margin_sentence(generator.guidance, generator.motion.guided):
         console.print(warning)
-    found = {}
     with whole_folder(chosen.output, chosen.force, MARK) as folder:
-        for part in dict.fromkeys(chosen.parts):
-            found[part] = _MAKERS[part](chosen, settings, loop, console, folder)
-        (folder / MARK).write_text(json.dumps(found, indent=1) + '\n', encoding='utf-8')
-    console.print(f'figures and numbers: {chosen.output}')
+        found = {part: _MAKERS[part](chosen, settings, loop, console)
+                 for part in dict.fromkeys(chosen.parts)}
+        numbers = {name: part.numbers for name, part in found.items()}
+        (folder / MARK).write_text(json.dumps(numbers, indent=1) + '\n', encoding='utf-8')
+        sensor = settings.simulation.imu_sensor
+        page = report.loop_page(f'{TITLE}: {instrument_words(sensor)}, {sensor.rate_hz:g} Hz',
+                                settings, list(found.values()))
+        for chart in page.charts:
+            save_chart(folder, chart)
+        write_page(folder, page)
+    console.print(f'figures, numbers and {REPORT}: {chosen.output}')
     return 0
 
 
-def _table(chosen, settings, loop, console, folder):
+def _show(rows, title, console):
+    """Print the table of LoopRows; return it."""
     from ins_sim.report.studies import closed_loop as report
+    table = report.flights_table(title, rows)
+    report.show_table(table, console)
+    return table
+
+
+def _table(chosen, settings, loop, console):
+    from ins_sim.report.studies import closed_loop as report
+    from ins_sim.report.studies.closed_loop_charts import histories_chart
     from ins_sim.studies.closed_loop import fly_case, lateral_flight, TABLE
     from ..workers import run_all
     flights = run_all([(fly_case, settings, case) for case in TABLE], chosen.jobs, console,
@@ -65,12 +85,15 @@ def _table(chosen, settings, loop, console, folder):
     alone = run_all([(lateral_flight, settings, loop, case) for case in TABLE], chosen.jobs,
                     console, 'flights of the lateral channel alone')
     rows = [report.loop_row(*row) for row in zip(TABLE, flights, alone)]
-    report.show_flights('Closed loop', rows, console)
+    table = _show(rows, 'Closed loop', console)
+    charts = []
     for k_z in dict.fromkeys(case.k_z for case in TABLE):
         shown = [k for k, case in enumerate(TABLE) if case.k_z == k_z and case.duration_s <= 300.0]
-        report.save_histories(folder / f'histories_{k_z:g}.png', f'Closed loop, k_z = {k_z:g}',
-                              [_name(TABLE[k]) for k in shown], [flights[k] for k in shown])
-    return [asdict(row) for row in rows]
+        charts.append(histories_chart(
+            f'histories_{k_z:g}', f'{TITLE}: lateral scale error of the meter k_z = {k_z:g}',
+            [_name(TABLE[k]) for k in shown], [flights[k] for k in shown]))
+    return report.LoopPart([asdict(row) for row in rows], report.flights_answer(rows),
+                           tuple(charts), (table,))
 
 
 def _name(case):
@@ -79,7 +102,7 @@ def _name(case):
     return case.label + engaged + offset
 
 
-def _limits(chosen, settings, loop, console, folder):
+def _limits(chosen, settings, loop, console):
     from ins_sim.report.studies import closed_loop as report
     from ins_sim.studies.closed_loop import (AT_THE_LIMIT, cases_near, flown_limits,
                                              growth_of_flight, linear_limits)
@@ -89,13 +112,16 @@ def _limits(chosen, settings, loop, console, folder):
                       chosen.jobs, console, 'flights')
     rows = [report.LimitRow(case.label, limit.k_z, limit.frequency, flown) for case, limit, flown
             in zip(AT_THE_LIMIT, linear, flown_limits(linear, growths))]
-    report.show_limits(rows, console)
-    return [asdict(row) for row in rows]
+    table = report.limits_table(rows)
+    report.show_table(table, console)
+    return report.LoopPart([asdict(row) for row in rows], report.limits_answer(rows),
+                           tables=(table,))
 
 
-def _conditions(chosen, settings, loop, console, folder):
+def _conditions(chosen, settings, loop, console):
     from ins_sim import parameter_files
     from ins_sim.report.studies import closed_loop as report
+    from ins_sim.report.studies.closed_loop_charts import histories_chart
     from ins_sim.studies.closed_loop import CONDITIONS, fly_case, VARIED
     from ..workers import run_all
     paths = arguments.parameter_paths(chosen, SHIPPED)
@@ -105,28 +131,34 @@ def _conditions(chosen, settings, loop, console, folder):
                       'flights')
     rows = [report.loop_row(case, flight, condition=name)
             for (name, case, _), flight in zip(flown, flights)]
-    report.show_flights('Closed loop under conditions', rows, console)
+    table = _show(rows, 'Closed loop under conditions', console)
+    charts = []
     for case in VARIED:
         shown = [k for k, (_, other, _) in enumerate(flown) if other is case]
-        report.save_histories(folder / f'{case.filter}_{case.cycles}_{case.gain:g}.png',
-                              f'{case.label}, k_z = {case.k_z:g}', [flown[k][0] for k in shown],
-                              [flights[k] for k in shown])
-    return [asdict(row) for row in rows]
+        charts.append(histories_chart(
+            f'{case.filter}_{case.cycles}_{case.gain:g}',
+            f'{TITLE}: {case.label}, lateral scale error of the meter k_z = {case.k_z:g}',
+            [flown[k][0] for k in shown], [flights[k] for k in shown]))
+    return report.LoopPart([asdict(row) for row in rows],
+                           f'Under conditions {report.flights_answer(rows)}', tuple(charts),
+                           (table,))
 
 
-def _map(chosen, settings, loop, console, folder):
+def _map(chosen, settings, loop, console):
     import math
-    from ins_sim.report.studies import closed_loop as report
+    from ins_sim.report.studies.closed_loop import LoopPart
+    from ins_sim.report.studies.closed_loop_charts import map_answer, map_chart
     from ins_sim.studies.stability_map import map_curves, PANELS
     from ..workers import run_all
     most = math.radians(settings.simulation.motion_generator.guidance.limit_deg)
     curves = run_all([(map_curves, loop, panel, chosen.gains, most) for panel in PANELS],
                      chosen.jobs, console, 'panels')
-    report.save_map(folder / 'map.png', PANELS, curves)
-    return [{'filter': panel.label, 'gains': found.gains.tolist(),
-             'linear': found.linear.tolist(),
-             'flown': {f'{start:g} m': values.tolist() for start, values in found.flown.items()}}
-            for panel, found in zip(PANELS, curves)]
+    numbers = [{'filter': panel.label, 'gains': found.gains.tolist(),
+                'linear': found.linear.tolist(),
+                'flown': {f'{start:g} m': values.tolist()
+                          for start, values in found.flown.items()}}
+               for panel, found in zip(PANELS, curves)]
+    return LoopPart(numbers, map_answer(curves), (map_chart(PANELS, curves),))
 
 
 _MAKERS = {'table': _table, 'limits': _limits, 'conditions': _conditions, 'map': _map}

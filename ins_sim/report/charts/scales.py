@@ -18,3 +18,15 @@ def scale(units, largest):
     units: LENGTHS, SPEEDS, ANGLES or TIMES; largest: the largest value, in SI.
     """
     return next((factor, unit) for least, factor, unit in units if largest >= least or not least)
+
+
+def amount(units, value):
+    """Return a value in SI as text: three digits at least, in the unit of its size."""
+    factor, unit = scale(units, abs(value))
+    value *= factor
+    return f'{value:.0f} {unit}' if abs(value) >= 999.5 else f'{value:.3g} {unit}'
+
+
+def distance(metres):
+    """Return a distance as text, as ``amount`` does."""
+    return amount(LENGTHS, metres)

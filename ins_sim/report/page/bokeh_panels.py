@@ -22,9 +22,11 @@ from .bokeh_marks import draw
 
 TOOLS = 'box_zoom,pan,wheel_zoom,reset,save'
 PANEL, EQUAL = 250, 480
-VERSION = __version__
+VERSION, OLDEST = __version__, (3, 4)
 # Room for the numbers at the axes, so that panels stand below each other.
 LEFT, RIGHT = 68, 14
+if tuple(int(part) for part in VERSION.split('.')[:2]) < OLDEST:
+    raise ImportError(f'Bokeh is {VERSION}; expected 3.4 or newer', name='bokeh')
 _ID = re.compile(r'"id":"(p\d+)"')
 _EMBED = """
 (function () {

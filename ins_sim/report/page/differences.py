@@ -1,5 +1,6 @@
 """The settings of a run that differ from the defaults."""
 
+from collections import Counter
 from dataclasses import fields, is_dataclass
 
 from ins_sim.settings.catalogue import flatten, values_of
@@ -11,17 +12,19 @@ def changed_settings(settings):
     Return rows (name, value, default, unit, nodes) of the settings that are not the default.
 
     settings: of one node, or of several nodes as their fields. A setting that has the same value
-    in several nodes is one row.
+    in several nodes is one row; nodes: those that have it so, or 'all' that know it.
     """
-    rows = {}
+    rows, known = {}, Counter()
     for node, given in settings_by_node(settings).items():
+        known.update(values_of(given).keys())
         described, defaults = flatten(type(given)), values_of(type(given)())
         for name, value in values_of(given).items():
             if value != defaults[name]:
                 row = (name, _shown(value), _shown(defaults[name]),
                        described[name].metadata['unit'])
                 rows.setdefault(row, []).append(node)
-    return [(*row, ', '.join(nodes)) for row, nodes in rows.items()]
+    return [(*row, 'all' if len(nodes) == known[row[0]] > 1 else ', '.join(nodes))
+            for row, nodes in rows.items()]
 
 
 def settings_by_node(settings, name=''):

@@ -13,7 +13,7 @@ from .words import text
 
 REPORT = 'report.html'
 NO_BOKEH = ('The figures are images. They can be zoomed in a report that is written where Bokeh '
-            'is installed: pip install "ins_sim[report]".')
+            '3.4 or newer is installed: pip install "ins_sim[report]".')
 
 
 def write_page(folder, page):

@@ -29,7 +29,8 @@ td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 code { font-size: 0.9em; }
 dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 2px 16px; }
 dd { margin: 0; }
-@media (max-width: 600px) { th, td { padding-right: 8px; } table { font-size: 0.8em; } }
+@media (max-width: 600px) { th, td { padding-right: 8px; } table { font-size: 0.8em; }
+  .settings :is(th, td):last-child { display: none; } }
 @media print {
   body { max-width: none; font-size: 11pt; padding: 0; }
   h2 { break-after: avoid; }

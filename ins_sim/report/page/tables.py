@@ -18,7 +18,7 @@ def table_section(table):
             f'{_table(table.heads, table.rows)}{note}</section>')
 
 
-def _table(heads, rows):
+def _table(heads, rows, kind=''):
     # A column of numbers stands at the right.
     numeric = [any(isinstance(row[k], numbers.Real) for row in rows) for k in range(len(heads))]
     marks = [' class="number"' if right else '' for right in numeric]
@@ -27,7 +27,7 @@ def _table(heads, rows):
     body = '\n'.join('<tr>' + ''.join(f'<td{mark}>{breakable(text(cell_text(value)))}</td>'
                                       for mark, value in zip(marks, row)) + '</tr>'
                      for row in rows)
-    return (f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n'
+    return (f'<div class="wide"><table{kind}>\n<thead><tr>{head}</tr></thead>\n'
             f'<tbody>\n{body}\n</tbody></table></div>\n')
 
 
@@ -39,7 +39,8 @@ def settings_section(page, bokeh):
         parts.append('<p>Settings that differ from the defaults: '
                      f'{len(changed) or "none"}.</p>')
         if changed:
-            parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed))
+            parts.append(_table(('setting', 'value', 'default', 'unit', 'of'), changed,
+                                ' class="settings"'))
     digests = [(f'digest of {name}', value) for name, value in page.digest.items()]
     facts = [*_seeds(page.settings), *digests, *_versions(bokeh)]
     parts.append('<dl>' + ''.join(f'<dt>{text(name)}</dt><dd><code>{text(value)}</code></dd>'

@@ -30,5 +30,5 @@ def cell_text(value):
     if isinstance(value, numbers.Integral):
         return str(int(value))
     if isinstance(value, numbers.Real):
-        return f'{value + 0.0:.4g}'
+        return f'{float(f"{value + 0.0:.4g}"):.10g}'
     return str(value)

@@ -1,9 +1,9 @@
 """What the page of a run says of its aided solution."""
 
 from ..aided import AIDED, aiding_sources, column_meanings, fault_lines, filled_columns, fix_lines
+from ..charts.scales import distance
 from ..page.content import PageTable
 from .aided_charts import aided_chart
-from .words import distance
 
 
 def report_chart(title, report):

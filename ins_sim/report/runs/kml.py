@@ -15,6 +15,7 @@ FILE = 'track.kml'
 # aabbggrr, as KML has it: the colours of the figures.
 COLOURS = {'truth': 'ff000000', 'solution': 'ffb27200', 'aided solution': 'ffb27200',
            'strapdown alone': 'ff005ed5', 'GNSS fixes': 'ff009fe6'}
+OTHER = 'ff009fe6'
 NOTE = ('Heights are above the ellipsoid of WGS 84; a program that takes them as heights above '
         'the sea draws them up to about 100 m too high or too low.')
 
@@ -30,7 +31,7 @@ def write_tracks(folder, title, tracks):
 
 
 def _placemark(track):
-    colour = COLOURS[track.name]
+    colour = COLOURS.get(track.name, OTHER)
     if track.points:
         parts = [f'<Point><altitudeMode>absolute</altitudeMode><coordinates>{place}'
                  '</coordinates></Point>' for place in _coordinates(*_degrees(track))]

@@ -2,12 +2,14 @@
 
 import hashlib
 import math
+from pathlib import Path
 
 import numpy as np
 
 from ins_sim.core.timeseries.histories import BLOCK
 from .. import coverage
 from ..charts.png import save_chart
+from ..charts.scales import distance
 from ..guided import guided_lines
 from ..page.content import Page, PageTable
 from ..page.html import REPORT, write_page
@@ -17,7 +19,6 @@ from ..titles import length_words
 from .error_charts import error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
-from .words import distance
 
 # What is in the files of a run.
 FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
@@ -25,6 +26,8 @@ FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'manifest.yaml': 'where the numbers are the same to the last bit',
          'errors.png': 'the errors of the strapdown', 'aided.png': 'the aided solution',
          'track.png': 'the track from above', FILE: 'the track for programs of maps'}
+# And of those that are written on request.
+KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
 
 
@@ -66,11 +69,14 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     for chart in charts:
         save_chart(work, chart)
     found = {path.name for path in work.iterdir()} - {REPORT}
+    files = {name: what for name, what in FILES.items() if name in found}
+    files.update({name: KINDS[Path(name).suffix] for name in sorted(found)
+                  if Path(name).suffix in KINDS})
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
         tuple([*notes, OBJECT] if own_motion else notes),
         aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
-        {name: what for name, what in FILES.items() if name in found}))
+        files))
 
 
 def _table(rows):

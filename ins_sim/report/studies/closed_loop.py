@@ -1,16 +1,16 @@
-"""The study of the closed loop: its table, its limits and its figures."""
+"""The study of the closed loop: its tables, what they say, and its report."""
 
 from dataclasses import dataclass
-from itertools import cycle
 
-from matplotlib import colormaps
-import numpy as np
 from rich import box
 from rich.table import Table
 
 from ins_sim.studies.closed_loop import QUIET_DEG
-from ins_sim.studies.stability_map import MOST_K_Z
-from ..plotting import new_figure, save_png
+from ..charts.chart import Chart
+from ..page.content import Page, PageTable
+
+# Columns of words.
+TEXTS = ('with', 'filter')
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,20 @@ class LimitRow:
     flown: float
 
 
+@dataclass(frozen=True)
+class LoopPart:
+    """
+    What one part of the study has found.
+
+    numbers: for the file of JSON; answer: in a sentence; charts; tables.
+    """
+
+    numbers: list
+    answer: str
+    charts: tuple[Chart, ...] = ()
+    tables: tuple[PageTable, ...] = ()
+
+
 def loop_row(case, flight, lateral=None, condition=''):
     """Return the LoopRow of a LoopCase and its LoopFlight; lateral: that of the channel alone."""
     published = {} if case.published is None else {
@@ -61,22 +75,19 @@ def _figures(flight):
             'swing_m': flight.swing_m, 'end_m': float(flight.z[-1])}
 
 
-def show_flights(title, rows, console):
-    """Print the table of LoopRows: the whole chain, the lateral channel alone, and published."""
-    table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
-                  caption='half the range of beta, deg, and of z, m, over the last 30 %; rad/s; z '
-                  'at the end, m; second the same of the lateral channel alone, in brackets what '
-                  f'is published (<{QUIET_DEG}: quiet)')
-    if any(r.condition for r in rows):
-        table.add_column('with')
-    table.add_column('filter')
-    for head in ('k_z', 'z0', 'engaged', 'beta', 'rad/s', 'z', 'z end'):
-        table.add_column(head, justify='right')
-    for r in rows:
-        cells = [r.case, f'{r.k_z:g}', f'{r.offset_m:g}', f'{r.engage_s:g}',
-                 *(_cell(r, name) for name in ('beta_deg', 'frequency', 'swing_m', 'end_m'))]
-        table.add_row(*([r.condition] if any(q.condition for q in rows) else []), *cells)
-    console.print(table)
+def flights_table(title, rows):
+    """Return the PageTable of LoopRows: whole chain, lateral channel alone, and published."""
+    varied = any(r.condition for r in rows)
+    heads = ('filter', 'k_z', 'z0', 'engaged', 'beta', 'rad/s', 'z', 'z end')
+    cells = [(r.case, f'{r.k_z:g}', f'{r.offset_m:g}', f'{r.engage_s:g}',
+              *(_cell(r, name) for name in ('beta_deg', 'frequency', 'swing_m', 'end_m')))
+             for r in rows]
+    return PageTable(
+        title, ('with', *heads) if varied else heads,
+        tuple((r.condition, *row) if varied else row for r, row in zip(rows, cells)),
+        'half the range of beta, deg, and of z, m, over the last 30 %; rad/s; z at the end, m; '
+        'second the same of the lateral channel alone, in brackets what is published '
+        f'(<{QUIET_DEG}: quiet)')
 
 
 def _cell(row, name):
@@ -89,55 +100,52 @@ def _cell(row, name):
     return f'{text} ({published})'
 
 
-def show_limits(rows, console):
-    """Print the limits of k_z by the linear theory and by flights of the whole chain."""
-    table = Table(title='Limits of stability, k_z', box=box.SIMPLE_HEAD, pad_edge=False,
-                  collapse_padding=True)
-    table.add_column('filter')
-    for head in ('linear', 'rad/s', 'flown', 'off'):
-        table.add_column(head, justify='right')
-    for r in rows:
-        table.add_row(r.case, f'{r.linear:.4f}', f'{r.frequency:.3f}', f'{r.flown:.4f}',
-                      f'{100.0 * (r.flown / r.linear - 1.0):+.2f} %')
-    console.print(table)
+def limits_table(rows):
+    """Return the PageTable of LimitRows: by the linear theory and by flights of the chain."""
+    return PageTable('Limits of stability, k_z', ('filter', 'linear', 'rad/s', 'flown', 'off'),
+                     tuple((r.case, f'{r.linear:.4f}', f'{r.frequency:.3f}', f'{r.flown:.4f}',
+                            f'{100.0 * (r.flown / r.linear - 1.0):+.2f} %') for r in rows))
 
 
-def save_map(path, panels, curves):
-    """Save the stability map: for each MapPanel its MapCurves."""
-    figure = new_figure(12, 8)
-    for axes, panel, found in zip(figure.subplots(2, 3, sharey=True).flat, panels, curves):
-        axes.fill_between(found.gains, found.linear, MOST_K_Z, color='tab:red', alpha=0.12)
-        axes.plot(found.gains, found.linear, color='black', lw=1.2, label='linear limit')
-        for (start, limits), mark in zip(found.flown.items(), ('o', 'x')):
-            axes.plot(found.gains, limits, mark, ms=5, mfc='none',
-                      label=f'flown from z0 = {start:g} m')
-        axes.set_xscale('log')
-        axes.xaxis.set_major_formatter('{x:g}')
-        axes.set_ylim(0.0, MOST_K_Z)
-        axes.set_title(panel.label, fontsize='medium')
-        axes.set_xlabel('K_v [1/s]' if panel.slides else
-                        'K' if panel.kind == 'paper_corrected' else 'gain of a fix')
-        axes.grid(which='both', alpha=0.3)
-    figure.axes[min(2, len(panels) - 1)].legend(fontsize='small', loc='lower left')
-    for row in figure.axes[::3]:
-        row.set_ylabel('lateral scale error of the meter, k_z')
-    figure.suptitle('Stability of the loop: unstable above (shaded)')
-    save_png(figure, path)
+def show_table(table, console):
+    """Print a PageTable of the study, all but its first texts to the right."""
+    shown = Table(title=table.title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
+                  caption=table.note or None)
+    for head in table.heads:
+        shown.add_column(head, justify='left' if head in TEXTS else 'right')
+    for row in table.rows:
+        shown.add_row(*row)
+    console.print(shown)
 
 
-def save_histories(path, title, names, flights):
-    """Save sideslip and offset, dotted the estimated one, of LoopFlights with these names."""
-    figure = new_figure(10, 8)
-    top, bottom = figure.subplots(2, 1, sharex=True)
-    for name, flight, colour in zip(names, flights, cycle(colormaps['tab20'].colors)):
-        top.plot(flight.t_s, np.degrees(flight.beta), lw=0.9, color=colour)
-        bottom.plot(flight.t_s, flight.z, lw=0.9, color=colour, label=name)
-        bottom.plot(flight.t_s, flight.z_estimated, lw=0.9, ls=':', color=colour)
-    top.set_ylabel('sideslip [deg]')
-    bottom.set_ylabel('offset from the leg [m], dotted: estimated')
-    bottom.set_xlabel('time [s]')
-    for axes in (top, bottom):
-        axes.grid(alpha=0.3)
-    bottom.legend(fontsize='small', loc='best')
-    figure.suptitle(title)
-    save_png(figure, path)
+def flights_answer(rows):
+    """Return the sentence about LoopRows: how many end quiet, and which swings most."""
+    quiet = [r for r in rows if r.frequency is None]
+    text = (f'{len(quiet)} of {len(rows)} flights end quiet (the sideslip swings by less than '
+            f'{QUIET_DEG} deg)')
+    if len(quiet) == len(rows):
+        return f'{text}.'
+    most = max(rows, key=lambda r: r.beta_deg)
+    condition = f', {most.condition}' if most.condition else ''
+    return (f'{text}; of the others {most.case} at k_z = {most.k_z:g}{condition} swings most: '
+            f'{most.beta_deg:.2g} deg of sideslip and {most.swing_m:.3g} m to either side.')
+
+
+def limits_answer(rows):
+    """Return the sentence about LimitRows."""
+    off = max(abs(r.flown / r.linear - 1.0) for r in rows)
+    return (f'Flights of the whole chain lose stability within {100.0 * off:.2g} % of the k_z of '
+            'the linear theory.')
+
+
+def loop_page(title, settings, parts):
+    """
+    Return the Page of the study.
+
+    title: of the motion, in words; settings: AidedSimulationSettings; parts: LoopParts.
+    """
+    charts = tuple(chart for part in parts for chart in part.charts)
+    return Page(title, ' '.join(part.answer for part in parts), charts,
+                tuple(table for part in parts for table in part.tables), settings=settings,
+                files={**{f'{chart.name}.png': chart.title for chart in charts},
+                       'loop_study.json': 'the numbers of every flight'})

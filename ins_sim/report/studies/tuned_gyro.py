@@ -1,9 +1,34 @@
-"""The study of the tuned-gyro paper in tables and figures."""
+"""The study of the tuned-gyro paper: its tables, its charts and its report."""
 
+from dataclasses import dataclass
+
+import numpy as np
 from rich.table import Table
 
-from ins_sim.settings.tuned_gyro import SWEEPS
-from ..plotting import new_figure, save_png
+from ins_sim.settings.tuned_gyro import SWEEPS, TunedGyroStudySettings
+from ..charts import palette
+from ..charts.chart import (Chart, CIRCLE, Curve, DASHED, DOT, DOTTED, Level, Markers, Panel)
+from ..page.content import Page, PageTable
+
+METHODS = {'rk4': 'RK4', 'exact': 'matrix exponentials'}
+# Of the values, left free on either side.
+ROOM = 0.03
+
+
+@dataclass(frozen=True)
+class TunedGyroStudy:
+    """
+    One table, computed.
+
+    name: of the parameter file; settings; cells: of the table; limits: speeds, Hz, between which
+    RK4 is stable (None: no limit on that side), or () where they were not looked for; chart.
+    """
+
+    name: str
+    settings: TunedGyroStudySettings
+    cells: tuple
+    limits: tuple
+    chart: Chart
 
 
 def study_title(settings):
@@ -11,7 +36,7 @@ def study_title(settings):
     held = (f'rotors at {settings.rotor_speed_hz:g} Hz' if settings.sweep == 'base_rate' else
             f'base at {settings.base_rate_rad_s:g} rad/s')
     return (f'{settings.amplitude_deg:g} deg of roll, {held}, preset {settings.preset}, '
-            f'{settings.method} at {settings.step_ms:g} ms')
+            f'{METHODS[settings.method]} at {settings.step_ms:g} ms')
 
 
 def show_study(settings, cells, console):
@@ -29,40 +54,87 @@ def show_study(settings, cells, console):
     console.print(table)
 
 
-def show_limits(settings, limits, console):
-    """Print between which speeds RK4 is stable; None is a side without a limit."""
+def limits_sentence(settings, limits):
+    """Return between which speeds RK4 is stable; None is a side without a limit."""
     low, high = ('no limit' if limit is None else f'{limit:.1f}' for limit in limits)
     paper = settings.paper_limits_hz
-    console.print(f'RK4 at {settings.step_ms:g} ms is stable from {low} to {high} Hz'
-                  + ('; the paper: {:g} to {:g} Hz'.format(*paper) if paper else ''))
+    return (f'RK4 at {settings.step_ms:g} ms is stable from {low} to {high} Hz'
+            + ('; the paper: {:g} to {:g} Hz'.format(*paper) if paper else ''))
 
 
-def save_figure(path, settings, curve, cells, limits=()):
+def study_chart(name, settings, curve, cells, limits=()):
     """
-    Save the error of the amplitude over its cause as PNG.
+    Return the Chart of the error of the amplitude over its cause; name: of its file.
 
     curve: Cells of a dense sweep; cells: those of the table, the paper's values drawn in as
-    points; limits: speeds, Hz, at which the program of the paper becomes unstable.
+    points, and below how far ours are from them; limits: speeds, Hz, at which the program of the
+    paper becomes unstable.
     """
-    figure = new_figure(8, 5)
-    axes = figure.subplots()
-    true_deg = settings.amplitude_deg
-    axes.plot([c.value for c in curve], [c.poisson_deg - true_deg for c in curve],
-              label='simulated')
+    true_deg, cause = settings.amplitude_deg, SWEEPS[settings.sweep]
+    values = np.array([c.value for c in curve])
+    marks = [Curve(values, np.array([c.poisson_deg for c in curve]) - true_deg, 'simulated',
+                   palette.BLUE)]
+    printed = [c for c in cells if c.paper_deg is not None]
+    panels = []
+    if printed:
+        paper = np.array([c.paper_deg for c in printed])
+        ours = np.array([c.poisson_deg for c in printed])
+        causes = np.array([c.value for c in printed])
+        marks.append(Markers(causes, paper - true_deg, 'printed in the paper', palette.BLACK,
+                             CIRCLE, 7.0))
+        panels = [Panel((Level(y=0.0, colour=palette.BLACK),
+                         Markers(causes, ours - paper, 'ours less the paper', palette.BLUE, DOT,
+                                 7.0)), cause, 'difference [deg]')]
+    for side, ours_hz, paper_hz in zip(('below', 'above'), limits or (None, None),
+                                       settings.paper_limits_hz or (None, None)):
+        if ours_hz is not None:
+            marks.append(Level(x=ours_hz, label=f'RK4 is unstable {side} {ours_hz:.1f} Hz',
+                               colour=palette.RED, dash=DASHED))
+        if paper_hz is not None:
+            marks.append(Level(x=paper_hz, label=f'in the paper {side} {paper_hz:g} Hz',
+                               colour=palette.GREY, dash=DOTTED))
+    lines = [mark.x for mark in marks if isinstance(mark, Level)]
+    first, last = min([*values, *lines]), max([*values, *lines])
+    room = ROOM * (last - first)
+    top = Panel(tuple(marks), cause, 'error of the amplitude [deg]', height=2.0,
+                x_range=(first - room, last + room))
+    title = f'Roll of a rocking base through two tuned gyros: {study_title(settings)}'
+    return Chart(name, title, (top, *panels))
+
+
+def study_page(studies):
+    """Return the Page of a list of TunedGyroStudy."""
+    return Page(
+        'Two dynamically tuned gyros on a rocking base, after Sapegin, Romanov and Bugaiov (2016)',
+        ' '.join(_answer(study) for study in studies), tuple(study.chart for study in studies),
+        tuple(_table(study) for study in studies),
+        files={f'{study.name}.png': study.chart.title for study in studies})
+
+
+def _answer(study):
+    """Return the sentence about a table, and its limits."""
+    settings, cells = study.settings, study.cells
+    worst = max(cells, key=lambda c: abs(c.poisson_deg - settings.amplitude_deg))
+    what = SWEEPS[settings.sweep].partition(' [')[0]
+    unit = SWEEPS[settings.sweep].partition('[')[2].rstrip(']')
+    text = (f'A roll of {settings.amplitude_deg:g} deg is recovered as {worst.poisson_deg:.3f} '
+            f'deg at a {what} of {worst.value:g} {unit}, the worst of {len(cells)}')
     printed = [c for c in cells if c.paper_deg is not None]
     if printed:
-        axes.plot([c.value for c in printed], [c.paper_deg - true_deg for c in printed], 'ko',
-                  label='paper')
-    label = 'limits of stability'
-    for limit in limits:
-        if limit is not None:
-            axes.axvline(limit, color='tab:red', ls='--', lw=1, label=label)
-            axes.annotate(f'{limit:.1f} Hz', (limit, 0.5), color='tab:red', rotation=90,
-                          xycoords=('data', 'axes fraction'), va='center', ha='right')
-            label = None
-    axes.set_xlabel(SWEEPS[settings.sweep])
-    axes.set_ylabel('error of the roll amplitude [deg]')
-    axes.set_title(study_title(settings), fontsize='medium')
-    axes.grid(alpha=0.3)
-    axes.legend()
-    save_png(figure, path)
+        off = max(abs(c.poisson_deg - c.paper_deg) for c in printed)
+        text += f'; the paper is met within {off:.2g} deg'
+    if study.limits:
+        text += f'. {limits_sentence(settings, study.limits)}'
+    return f'{text}.'
+
+
+def _table(study):
+    """Return the table of the Cells of a study."""
+    heads = (SWEEPS[study.settings.sweep], 'Poisson [deg]', 'Euler vector [deg]', 'paper [deg]',
+             'ours less paper [deg]')
+    rows = tuple((f'{c.value:g}', f'{c.poisson_deg:.4f}', f'{c.euler_vector_deg:.4f}',
+                  *(('-', '-') if c.paper_deg is None else
+                    (f'{c.paper_deg:g}', f'{c.poisson_deg - c.paper_deg:+.4f}')))
+                 for c in study.cells)
+    return PageTable(f'Recovered amplitude: {study_title(study.settings)}', heads, rows,
+                     f'Parameters: {study.name}.')

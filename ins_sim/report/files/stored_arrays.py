@@ -10,7 +10,8 @@ from numpy.lib import format as npy_format
 from ins_sim.regular_file import check_regular
 from ins_sim.settings.shown import shown
 
-# Arrays of a run are not compressed; what gains more than a hundred times fills the memory.
+# Of a run at least the stamps do not shrink much: what gains more than a hundred times as a whole
+# is made to fill the memory.
 _FREE, _RATIO = 1 << 26, 100
 
 
@@ -34,6 +35,7 @@ def read_arrays(path, shapes, optional=()):
     arrays, length = {}, None
     try:
         with ZipFile(path) as archive:
+            _check_size(archive, shapes)
             for name, (kinds, shape) in shapes.items():
                 if name in optional and f'{name}.npy' not in archive.namelist():
                     continue
@@ -50,11 +52,19 @@ def read_arrays(path, shapes, optional=()):
     return arrays
 
 
+def _check_size(archive, names):
+    """Raise ValueError where the arrays of some names unpack to more than those of a run can."""
+    there = set(archive.namelist())
+    members = [archive.getinfo(f'{name}.npy') for name in names if f'{name}.npy' in there]
+    packed, size = (sum(getattr(info, key) for info in members)
+                    for key in ('compress_size', 'file_size'))
+    if size > max(_FREE, _RATIO * packed):
+        raise ValueError(f'{members[0].filename} and the others have {packed} bytes, which '
+                         f'unpacks to {size}')
+
+
 def _member(archive, name):
     info = archive.getinfo(name)
-    if info.file_size > max(_FREE, _RATIO * info.compress_size):
-        raise ValueError(f'{name} has {info.compress_size} bytes and unpacks to '
-                         f'{info.file_size}')
     with archive.open(info) as stream:
         version = npy_format.read_magic(stream)
         if version not in ((1, 0), (2, 0)):

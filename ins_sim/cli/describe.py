@@ -1,0 +1,101 @@
+"""Verb describe: what a parameter means, or what a shipped file sets."""
+
+import textwrap
+
+HELP = 'what a parameter, a group of them or a shipped file means'
+DESCRIPTION = ('Describe a parameter or a group of parameters: meaning, unit, bounds, default, '
+               'and the nodes and verbs that have it; or a node or verb, with all its '
+               'parameters; or a shipped parameter file, with what it sets. Without a name: the '
+               'groups.')
+WIDTH = 79
+# So many names that end alike are told.
+MOST = 6
+
+
+def add_arguments(parser):
+    """Add the arguments of the verb to its parser."""
+    parser.add_argument('name', nargs='?', default=None, metavar='NAME',
+                        help='such as gyro.errors, gyro.delay_us.y, strapdown or racetrack')
+
+
+def run(chosen):
+    """Describe; return the exit code."""
+    from ins_sim.report.console import PlainConsole
+    console = PlainConsole()
+    for line in described(chosen.name):
+        console.print(line)
+    return 0
+
+
+def described(name):
+    """Return the lines on a name, or on all groups; ValueError where nothing is called so."""
+    from ins_sim import resources
+    from .known_settings import known_groups, known_parameters, READERS
+    groups = known_groups()
+    if name is None:
+        return [line for group in groups if '.' not in group.name
+                for line in _entry(f'{group.name}  ({", ".join(group.readers)})', group.words)]
+    parameters = known_parameters()
+    inside = [p for p in parameters if p.name == name or p.name.startswith(f'{name}.')]
+    if inside:
+        return _parameters(name, [g for g in groups if g.name == name], inside)
+    if name in resources.config_names():
+        return _file(name, parameters)
+    if name in READERS:
+        return _parameters(name, [], [p for p in parameters if name in p.readers])
+    raise ValueError(_unknown(name, {p.name for p in parameters}, {
+        *(g.name for g in groups), *resources.config_names(), *READERS}))
+
+
+def _parameters(name, groups, parameters):
+    """Return the lines on parameters, with who has them where that is not said of the group."""
+    lines, alike = [], {p.readers for p in parameters}
+    for group in groups:
+        lines += _entry(f'{name}  ({", ".join(group.readers)})', group.words)
+    if len(groups) != 1 and len(alike) == 1 and len(parameters) > 1:
+        lines += [f'{name}  ({", ".join(parameters[0].readers)})']
+    told = len(alike) == 1 and len(parameters) > 1
+    for parameter in parameters:
+        readers = '' if told else f'  ({", ".join(parameter.readers)})'
+        lines += ['', *_entry(f'{parameter.name}: {parameter.default}{readers}',
+                              parameter.words)]
+    return lines[1:] if lines and not lines[0] else lines
+
+
+def _file(name, parameters):
+    """Return the lines on a shipped file: its comment, and what it sets."""
+    from ins_sim.settings.catalogue import value_text
+    from .shipped_files import shipped_file
+    file = shipped_file(name)
+    lines, section = [str(file.path), *(f'    {line}' for line in file.head)], None
+    for node, key, value in file.values:
+        if node != section:
+            of = 'every node that knows it' if node in ('*', '**') else node
+            lines += ['', f'for {of}:']
+            section = node
+        words = next(p.words for p in parameters if p.name == key
+                     and (node in p.readers or node in ('*', '**')))
+        text = value_text(tuple(value) if isinstance(value, list) else value)
+        lines += _entry(f'  {key}: {text}', words)
+    return lines
+
+
+def _entry(head, words):
+    """Return a head and words below it, folded."""
+    fold = textwrap.TextWrapper(WIDTH, subsequent_indent='        ', break_long_words=False,
+                                break_on_hyphens=False)
+    told = textwrap.TextWrapper(WIDTH, initial_indent='    ', subsequent_indent='    ',
+                                break_long_words=False, break_on_hyphens=False)
+    return [*fold.wrap(head), *told.wrap(words)]
+
+
+def _unknown(name, parameters, others):
+    from ins_sim.settings.shown import cut, shown
+    from ins_sim.settings.suggest import nearest_name
+    ending = sorted(p for p in parameters if p.endswith(f'.{name}'))
+    if ending:
+        more = f' and {len(ending) - MOST} more' if len(ending) > MOST else ''
+        near = f'it is the end of {", ".join(ending[:MOST])}{more}'
+    else:
+        near = f'the nearest known one is {cut(nearest_name(name, parameters | others))!r}'
+    return (f'{shown(name)} is no parameter, no group, no node and no shipped file; {near}')

@@ -1,0 +1,56 @@
+"""What reads parameters, and what is known of a parameter or a group of them."""
+
+from dataclasses import dataclass
+
+from ins_sim.settings.by_node import ALL_NODES
+from ins_sim.settings.catalogue import flatten, groups_of, remark, sentence_of, value_text
+from ins_sim.settings.navigate import NAVIGATE
+from ins_sim.settings.recorded_imu import CONVERT
+from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
+
+# The verbs that have parameters of their own, by the name of their section.
+VERBS = {**NAVIGATE, **CONVERT, 'dtg_study': TunedGyroStudySettings}
+READERS = {**ALL_NODES, **VERBS}
+
+
+@dataclass(frozen=True)
+class KnownParameter:
+    """
+    A parameter as some nodes or verbs know it.
+
+    name: dotted; default: as YAML; words: meaning, unit, bounds, choices; readers: the nodes and
+    verbs, in the order of READERS.
+    """
+
+    name: str
+    default: str
+    words: str
+    readers: tuple
+
+
+@dataclass(frozen=True)
+class KnownGroup:
+    """A group of parameters: its dotted name, a sentence, and the nodes and verbs that have it."""
+
+    name: str
+    words: str
+    readers: tuple
+
+
+def known_parameters():
+    """Return a list of KnownParameters; a name that differs from node to node comes repeatedly."""
+    found = {}
+    for reader, cls in READERS.items():
+        for name, f in flatten(cls).items():
+            key = name, value_text(f.default), remark(f, name in cls.SETTABLE)
+            found.setdefault(key, []).append(reader)
+    return [KnownParameter(*key, tuple(readers)) for key, readers in found.items()]
+
+
+def known_groups():
+    """Return a list of KnownGroups; one that differs from node to node comes repeatedly."""
+    found = {}
+    for reader, cls in READERS.items():
+        for name, group in groups_of(cls).items():
+            found.setdefault((name, sentence_of(group)), []).append(reader)
+    return [KnownGroup(*key, tuple(readers)) for key, readers in found.items()]

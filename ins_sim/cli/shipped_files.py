@@ -1,0 +1,81 @@
+"""The shipped parameter files: what each is for, and what it sets."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ins_sim import resources
+from ins_sim.ros_parameters import Parameters
+from ins_sim.yaml_text import read_bytes
+from .known_settings import ALL_NODES, VERBS
+
+# Names of all kinds, with what stands above their list.
+MOTIONS, INSTRUMENTS, STUDIES, OTHERS = 'motions', 'instruments', 'studies', 'others'
+HEADS = {
+    MOTIONS: 'motions, for simulate, predict and the nodes: --params-file NAME',
+    INSTRUMENTS: 'instruments, beside a motion: --params-file MOTION --params-file NAME',
+    STUDIES: 'studies, for the verb that their line names: --params-file NAME',
+    OTHERS: 'others, to look up, to copy from, and for the nodes'}
+# They hold every parameter with its default.
+DEFAULTS = ('default', 'navigate')
+
+
+@dataclass(frozen=True)
+class ShippedFile:
+    """
+    A parameter file.
+
+    name; path; head: the comment at its head, a list of lines; values: (node, '**' for all, name
+    of the parameter, value) in order.
+    """
+
+    name: str
+    path: Path
+    head: list
+    values: list
+
+    @property
+    def kind(self):
+        """Return its kind: one of HEADS."""
+        names = {name.partition('.')[0] for _, name, _ in self.values}
+        if self.name in DEFAULTS:
+            return OTHERS
+        if any(node in VERBS for node, _, _ in self.values):
+            return STUDIES
+        if 'motion' in names:
+            return MOTIONS
+        return INSTRUMENTS if names & {'gyro', 'accelerometer'} else OTHERS
+
+    @property
+    def words(self):
+        """Return the first sentence of the comment at its head."""
+        told = []
+        for line in self.head:
+            if not line or line.startswith(' '):
+                break
+            told.append(line)
+        text = ' '.join(told)
+        return text.partition('. ')[0].rstrip('.:,')
+
+
+def shipped_file(name):
+    """Return a ShippedFile by its name; FileNotFoundError where there is none."""
+    path = resources.config(name)
+    content, parameters = read_bytes(path), Parameters()
+    parameters.add_file(content, str(path))
+    head = []
+    for line in content.decode('utf-8').splitlines():
+        if not line.startswith('#'):
+            break
+        head.append(line[1:].removeprefix(' '))
+    values = [(section.rpartition('/')[2], key, one.value)
+              for section, key, one, _ in parameters.given()]
+    return ShippedFile(name, path, head, values)
+
+
+def shipped_files():
+    """Return {kind: ShippedFiles sorted by name}; every one is of one kind."""
+    found = {kind: [] for kind in HEADS}
+    for name in resources.config_names():
+        file = shipped_file(name)
+        found[file.kind].append(file)
+    return found

@@ -1,0 +1,47 @@
+"""Charts as PNG: of a known size, whatever the texts hold, with the same bytes each time."""
+
+from io import BytesIO
+
+from ins_sim.report.charts.chart import Chart, Curve, LOG, Panel
+from ins_sim.report.charts.png import chart_png, DPI, save_chart, WIDTH
+from ins_sim.report.charts.scales import LENGTHS, scale, TIMES
+from matplotlib.image import imread
+import numpy as np
+import pytest
+from support.charts import every_mark
+
+
+@pytest.mark.parametrize('chart', every_mark(), ids=lambda chart: chart.name)
+def test_every_mark_is_drawn(chart, tmp_path):
+    """A picture of ten inches with more than a frame in it; twice the same bytes."""
+    path = save_chart(tmp_path, chart)
+    assert path == tmp_path / f'{chart.name}.png'
+    pixels = imread(path)
+    assert pixels.shape[1] == WIDTH * DPI and len(pixels) >= 200
+    assert len(np.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)) > 20
+    assert path.read_bytes() == chart_png(chart)
+
+
+@pytest.mark.parametrize('words', ['d\udce9sk.csv', 'a$b_\\frac$c', '$x^$', '<b>&', 'x' * 300])
+def test_texts_of_any_kind_are_drawn(words):
+    """Names of files that are no UTF-8, that look like formulas, or that are long."""
+    curve = Curve(np.arange(3.0), np.arange(3.0), words)
+    chart = Chart('x', words, (Panel((curve,), words, words, title=words, note=words),),
+                  caption=words)
+    assert imread(BytesIO(chart_png(chart))).shape[1] == WIDTH * DPI
+
+
+@pytest.mark.parametrize('values', [[], [np.nan] * 3, [0.0] * 3, [-1.0, -2.0, -3.0]])
+@pytest.mark.parametrize('axis', ['linear', LOG])
+def test_a_curve_without_values_is_an_empty_panel(values, axis):
+    """Nothing, not a number, a constant, and negative values on a logarithmic axis."""
+    curve = Curve(np.arange(len(values)) + 1.0, np.array(values), 'curve')
+    chart_png(Chart('x', 'x', (Panel((curve,), 'x', 'y', x_scale=axis, y_scale=axis),)))
+
+
+@pytest.mark.parametrize('units, largest, unit', [
+    (LENGTHS, 9999.0, 'm'), (LENGTHS, 1e4, 'km'), (LENGTHS, 0.05, 'mm'), (LENGTHS, 0.0, 'mm'),
+    (TIMES, 90.0, 's'), (TIMES, 3600.0, 'min'), (TIMES, 2e4, 'h')])
+def test_units_fit_the_size(units, largest, unit):
+    """Kilometres where metres would have five digits."""
+    assert scale(units, largest)[1] == unit
