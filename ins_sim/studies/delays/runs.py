@@ -86,6 +86,9 @@ def fly_run(settings, motion=None, with_sensitivity=False):
     motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
     flown = simulate(settings, motion)
     truth, errors, twin = flown.truth, flown.errors, flown.twin
+    if len(errors) < 2:
+        raise ValueError(f'strapdown: output_every is {settings.strapdown.output_every}, which '
+                         'leaves one instant of the run; expected at least two')
     t_s = (errors.t_ns - errors.t_ns[0]) * 1e-9
     growth = _Growth(t_s, truth, ellipsoid.rotation_rate(generator.earth.rotation))
     predicted = _at(t_s, predict(settings, motion))

@@ -48,6 +48,7 @@ def test_every_figure_is_a_picture_and_in_the_report(study):
     for text in ('Latitude error of motion 2 at theta -30 deg', 'Largest position error',
                  'One microsecond of delay of one gyro: cruise', 'no published curve stands'):
         assert text in page
+    assert '<name>cruise</name>' in (study / 'track.kml').read_text(encoding='utf-8')
     assert len(page) <= 5e6
 
 
@@ -178,6 +179,8 @@ def test_from_python(tmp_path):
      'the study of delays expects instruments and a start without other errors'),
     ('figure_3', {'duration_s': 0.0}, 'duration_s is 0, endless'),
     ('figure_3', {'detuning_rad_s': 0.0}, "unknown parameter 'detuning_rad_s'"),
+    ('figure_1', {'output_every': 1000, 'duration_s': 5.0}, 'output_every is 1000, which leaves '
+     'one instant of the run; expected at least two'),
     ('recorded', {}, 'motion.recording.path is empty'),
     ('recorded', {'motion.recording.path': 'absent.csv'}, 'absent.csv'),
     ('figure_9', {}, "no config named 'delay_study_figure_9'")])
