@@ -16,6 +16,7 @@ SCRIPTS = (
     ('steps', ['60000'], ['360000'], False),
     ('whole_run', ['600'], ['3600'], False),
     ('memory', [], ['--full'], False),
+    ('run_files', [], [], False),
     ('pyins_peer', ['600'], ['3600'], False),
     ('parts', ['600'], ['3600'], False),
     ('tuned_gyro', [], [], False),

@@ -95,7 +95,7 @@ def document():
 
 def preset_document(preset):
     """Return the overlay of an instrument preset."""
-    out = [f'# Instrument errors of a {preset.datasheet}.', '#']
+    out = [f'# Errors of a {preset.datasheet}.', '#']
     out += [f'# {line}' for line in textwrap.wrap(preset.figures, 95)]
     out += [f'# {line}' for line in textwrap.wrap(FLOOR, 95)]
     out += ['# Written by tools/make_config.py from ins_sim/settings/presets.py.',

@@ -30,6 +30,7 @@ def run(chosen):
 def described(name):
     """Return the lines on a name, or on all groups; ValueError where nothing is called so."""
     from ins_sim import resources
+    from ins_sim.settings.catalogue import sentence_of
     from .known_settings import known_groups, known_parameters, READERS
     groups = known_groups()
     if name is None:
@@ -38,28 +39,30 @@ def described(name):
     parameters = known_parameters()
     inside = [p for p in parameters if p.name == name or p.name.startswith(f'{name}.')]
     if inside:
-        return _parameters(name, [g for g in groups if g.name == name], inside)
+        return _parameters([g for g in groups if g.name == name], inside)
     if name in resources.config_names():
         return _file(name, parameters)
     if name in READERS:
-        return _parameters(name, [], [p for p in parameters if name in p.readers])
+        own = (p for p in parameters if name in p.readers)
+        return [*_entry(name, sentence_of(READERS[name])),
+                *(line for p in own for line in ('', *_entry(_head(p), p.words)))]
     raise ValueError(_unknown(name, {p.name for p in parameters}, {
         *(g.name for g in groups), *resources.config_names(), *READERS}))
 
 
-def _parameters(name, groups, parameters):
-    """Return the lines on parameters, with who has them where that is not said of the group."""
-    lines, alike = [], {p.readers for p in parameters}
-    for group in groups:
-        lines += _entry(f'{name}  ({", ".join(group.readers)})', group.words)
-    if len(groups) != 1 and len(alike) == 1 and len(parameters) > 1:
-        lines += [f'{name}  ({", ".join(parameters[0].readers)})']
-    told = len(alike) == 1 and len(parameters) > 1
-    for parameter in parameters:
-        readers = '' if told else f'  ({", ".join(parameter.readers)})'
-        lines += ['', *_entry(f'{parameter.name}: {parameter.default}{readers}',
-                              parameter.words)]
-    return lines[1:] if lines and not lines[0] else lines
+def _parameters(groups, parameters):
+    """Return the lines on the groups of a name and the parameters in them."""
+    told = [_entry(f'{group.name}  ({", ".join(group.readers)})', group.words)
+            for group in groups]
+    # Who has a parameter is said of the group, if all of it are alike.
+    alike = len(groups) == 1 and {p.readers for p in parameters} == {groups[0].readers}
+    told += [_entry(_head(p) if alike else f'{_head(p)}  ({", ".join(p.readers)})', p.words)
+             for p in parameters]
+    return [line for entry in told for line in ('', *entry)][1:]
+
+
+def _head(parameter):
+    return f'{parameter.name}: {parameter.default}'
 
 
 def _file(name, parameters):
@@ -70,11 +73,11 @@ def _file(name, parameters):
     lines, section = [str(file.path), *(f'    {line}' for line in file.head)], None
     for node, key, value in file.values:
         if node != section:
-            of = 'every node that knows it' if node in ('*', '**') else node
+            of = 'every node that knows it' if node == '**' else node
             lines += ['', f'for {of}:']
             section = node
         words = next(p.words for p in parameters if p.name == key
-                     and (node in p.readers or node in ('*', '**')))
+                     and (node in p.readers or node == '**'))
         text = value_text(tuple(value) if isinstance(value, list) else value)
         lines += _entry(f'  {key}: {text}', words)
     return lines

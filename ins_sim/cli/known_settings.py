@@ -1,15 +1,18 @@
 """What reads parameters, and what is known of a parameter or a group of them."""
 
 from dataclasses import dataclass
+from functools import cache
 
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten, groups_of, remark, sentence_of, value_text
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.recorded_imu import CONVERT
 from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
+from ins_sim.studies.delays.figure import DelayFigureSettings
 
 # The verbs that have parameters of their own, by the name of their section.
-VERBS = {**NAVIGATE, **CONVERT, 'dtg_study': TunedGyroStudySettings}
+VERBS = {**NAVIGATE, **CONVERT, 'delay_study': DelayFigureSettings,
+         'dtg_study': TunedGyroStudySettings}
 READERS = {**ALL_NODES, **VERBS}
 
 
@@ -37,20 +40,30 @@ class KnownGroup:
     readers: tuple
 
 
+@cache
 def known_parameters():
     """Return a list of KnownParameters; a name that differs from node to node comes repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
-            key = name, value_text(f.default), remark(f, name in cls.SETTABLE)
+            key = name, value_text(f.default), remark(f)
             found.setdefault(key, []).append(reader)
-    return [KnownParameter(*key, tuple(readers)) for key, readers in found.items()]
+    return [KnownParameter(name, default, words + _settable(name, readers), tuple(readers))
+            for (name, default, words), readers in found.items()]
 
 
+def _settable(name, readers):
+    """Return what is to be said of the nodes that take a parameter while they run."""
+    takers = [reader for reader in readers if name in READERS[reader].SETTABLE]
+    return f'; can be set while {" or ".join(takers)} runs' if takers else ''
+
+
+@cache
 def known_groups():
     """Return a list of KnownGroups; one that differs from node to node comes repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, group in groups_of(cls).items():
-            found.setdefault((name, sentence_of(group)), []).append(reader)
+            words = sentence_of(group).replace('``', '')
+            found.setdefault((name, words), []).append(reader)
     return [KnownGroup(*key, tuple(readers)) for key, readers in found.items()]

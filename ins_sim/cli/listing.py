@@ -1,10 +1,13 @@
 """Verb list: the shipped motions, instruments and studies."""
 
+import textwrap
+
 HELP = 'the shipped motions, instruments and studies'
 DESCRIPTION = ('List the parameter files that are shipped, with a line each, and the verbs that '
                'are studies. "ins_sim describe NAME" tells more of one.')
+# Of a name from the margin; of words where the terminal is narrow; of a line in a pipe.
+INDENT, LEAST, LONGEST = 2, 30, 10000
 KINDS = ('motions', 'instruments', 'studies', 'others')
-INDENT = 2
 
 
 def add_arguments(parser):
@@ -15,10 +18,9 @@ def add_arguments(parser):
 
 def run(chosen):
     """List; return the exit code."""
-    from rich.table import Table
     from ins_sim.report.console import PlainConsole
     from . import shipped_files
-    console, first = PlainConsole(), True
+    console = PlainConsole()
     files = shipped_files.shipped_files()
     kinds = KINDS if chosen.kind is None else (chosen.kind,)
     parts = [(shipped_files.HEADS[kind], [(file.name, file.words) for file in files[kind]])
@@ -26,17 +28,23 @@ def run(chosen):
     if 'studies' in kinds:
         parts.insert(kinds.index('studies') + 1, (
             'studies, as verbs: ins_sim VERB --help', study_verbs()))
-    width = max(len(name) for _, rows in parts for name, _ in rows)
-    for head, rows in parts:
-        console.print(head if first else f'\n{head}')
-        first = False
-        table = Table.grid(padding=(0, 2), pad_edge=False)
-        table.add_column(min_width=width + INDENT, no_wrap=True)
-        table.add_column()
-        for name, words in rows:
-            table.add_row(' ' * INDENT + name, words)
-        console.print(table)
+    # In a pipe a line each, however long.
+    for line in lines(parts, console.width if console.is_terminal else LONGEST):
+        console.print(line)
     return 0
+
+
+def lines(parts, width):
+    """Return the lines of parts (head, rows of name and words), folded at a width."""
+    longest = max(len(name) for _, rows in parts for name, _ in rows)
+    told = []
+    for head, rows in parts:
+        told += ['', head]
+        for name, words in rows:
+            start = f'{"":{INDENT}}{name:{longest}}  '
+            told += textwrap.wrap(words, max(width, len(start) + LEAST), initial_indent=start,
+                                  subsequent_indent=' ' * len(start))
+    return told[1:]
 
 
 def study_verbs():

@@ -17,9 +17,10 @@ ROS_ARGS = '--ros-args'
 # Of a sentence about an error; longer ones are cut.
 LONGEST = 2000
 # In the order of the printed list.
-VERBS = {'simulate': simulate, 'list': listing, 'describe': describe, 'info': info, 'convert': convert, 'export': export,
-         'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
-         'delay-study': delay_study, 'dtg-study': dtg_study, 'dtg-report': dtg_report,
+VERBS = {'simulate': simulate, 'list': listing, 'describe': describe, 'info': info,
+         'convert': convert, 'export': export, 'record': record, 'play': play,
+         'predict': predict, 'navigate': navigate, 'demo': demo, 'delay-study': delay_study,
+         'dtg-study': dtg_study, 'dtg-report': dtg_report,
          'compare-orientation': compare_orientation, 'compare-filters': compare_filters,
          'loop-study': loop_study, 'allan': allan}
 NODE_VERBS = ('record', 'play')

@@ -6,14 +6,14 @@ from pathlib import Path
 from ins_sim import resources
 from ins_sim.ros_parameters import Parameters
 from ins_sim.yaml_text import read_bytes
-from .known_settings import ALL_NODES, VERBS
+from .known_settings import VERBS
 
 # Names of all kinds, with what stands above their list.
 MOTIONS, INSTRUMENTS, STUDIES, OTHERS = 'motions', 'instruments', 'studies', 'others'
 HEADS = {
     MOTIONS: 'motions, for simulate, predict and the nodes: --params-file NAME',
     INSTRUMENTS: 'instruments, beside a motion: --params-file MOTION --params-file NAME',
-    STUDIES: 'studies, for the verb that their line names: --params-file NAME',
+    STUDIES: 'studies, for the verb before the colon: --params-file NAME',
     OTHERS: 'others, to look up, to copy from, and for the nodes'}
 # They hold every parameter with its default.
 DEFAULTS = ('default', 'navigate')
@@ -39,22 +39,27 @@ class ShippedFile:
         names = {name.partition('.')[0] for _, name, _ in self.values}
         if self.name in DEFAULTS:
             return OTHERS
-        if any(node in VERBS for node, _, _ in self.values):
+        if self.verb:
             return STUDIES
         if 'motion' in names:
             return MOTIONS
         return INSTRUMENTS if names & {'gyro', 'accelerometer'} else OTHERS
 
     @property
+    def verb(self):
+        """Return the verb that reads a section of its own, or ''."""
+        return next((node.replace('_', '-') for node, _, _ in self.values if node in VERBS), '')
+
+    @property
     def words(self):
-        """Return the first sentence of the comment at its head."""
+        """Return the first sentence of the comment at its head, behind the verb of a study."""
         told = []
         for line in self.head:
             if not line or line.startswith(' '):
                 break
             told.append(line)
-        text = ' '.join(told)
-        return text.partition('. ')[0].rstrip('.:,')
+        text = ' '.join(told).partition('. ')[0].rstrip('.:,')
+        return f'{self.verb}: {text}' if self.kind == STUDIES else text
 
 
 def shipped_file(name):

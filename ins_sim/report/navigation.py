@@ -24,6 +24,7 @@ from .navigation_charts import navigation_charts, navigation_tracks
 from .page.content import Page, PageTable
 from .page.html import write_page
 from .runs.kml import FILE, write_tracks
+from .runs.page import requested
 from .table import number_text
 
 MARK = 'nav.npz'
@@ -94,11 +95,11 @@ def write_navigation(work, settings, title, result, csv=False, tum=False):
     for chart in charts:
         save_chart(work, chart)
     write_tracks(work, title, navigation_tracks(result))
-    write_page(work, _page(title, settings, result, charts))
+    write_page(work, _page(title, settings, result, charts, requested(work)))
 
 
-def _page(title, settings, result, charts):
-    """Return the Page of a navigation."""
+def _page(title, settings, result, charts, files):
+    """Return the Page of a navigation; files: those that were written on request."""
     start_ns, end_ns = _span(result)
     tables = tuple(
         PageTable(f'Solution less {c.name}', tuple(head for _, head in COLUMNS),
@@ -112,7 +113,7 @@ def _page(title, settings, result, charts):
                        'summary.json': 'figures, notes and errors', 'parameters.yaml':
                        'the parameters, which navigate takes again',
                        **{f'{chart.name}.png': chart.title for chart in charts},
-                       FILE: 'the track for programs of maps'})
+                       FILE: 'the track for programs of maps', **files})
 
 
 def _answer(result):

@@ -62,7 +62,8 @@ def write_run(work, settings, run, rows, prediction, title, aided=None, own_moti
     told = [*rows, *(aided.rows if aided else ())]
     (work / MARK).write_text(json.dumps([asdict(r) for r in told], indent=1) + '\n',
                              encoding='utf-8')
-    write_report(work, settings, run, rows, prediction, title, aided, notes, own_motion)
+    write_report(work, settings, run, rows, prediction, title, aided,
+                 [*notes, *wanted.lines(run)], own_motion)
 
 
 def run_arrays(run):

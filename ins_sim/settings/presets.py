@@ -121,8 +121,8 @@ _RLG = _preset(
 # 0.01 to 0.05 deg/h/g^2, torquer 50 to 500 ppm and 10 to 50 ppm, 100 to 400 deg/s, axes 0.05 to
 # 0.5 mrad, ARW 0.002 to 0.02 deg/sqrt(h), pulses 0.1 to 1 arcsec.
 _DTG = _preset(
-    'tactical_dtg', 'tactical dynamically tuned gyros with quartz accelerometers (model of IEEE '
-    'Std 813)',
+    'tactical_dtg', 'tactical-grade IMU with dynamically tuned gyros and quartz accelerometers '
+    '(model of IEEE Std 813)',
     'judgement within the ranges of the class; gyro: fixed drift 1 deg/h, Gauss-Markov 0.02 deg/h '
     'over 100 s, floor 0.033 deg/h, mass unbalance 0.5 deg/h/g, quadrature 1 deg/h/g, spin axis '
     '0.1 deg/h/g, anisoelastic 0.02 deg/h/g^2, pick-off 10 urad, speed and hunting 5 ppm, product '

@@ -102,3 +102,16 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     assert 'rostopic' in path.read_text()
     assert export(tmp_path, *instrument, '--force') == 2
     assert 'is no file; --force replaces only a file' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('words', [
+    '--params-file racetrack --params-file imu_tactical_fog',
+    '--aided --params-file route_flight --params-file imu_tactical_fog -p window.cycles:=100'])
+def test_the_instrument_of_a_run(words, tmp_path):
+    """parameters.yaml of a run, aided or not, gives the file of its preset."""
+    assert main(['simulate', *words.split(), '-p', 'duration_s:=2.0', '-o',
+                 str(tmp_path / 'run')]) == 0
+    settings = tmp_path / 'run' / 'parameters.yaml'
+    assert export(tmp_path / 'run.yaml', '--params-file', settings) == 0
+    assert export(tmp_path / 'preset.yaml', '--params-file', 'imu_tactical_fog') == 0
+    assert (tmp_path / 'run.yaml').read_text() == (tmp_path / 'preset.yaml').read_text()

@@ -2,7 +2,6 @@
 
 import hashlib
 import math
-from pathlib import Path
 
 import numpy as np
 
@@ -70,13 +69,17 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
         save_chart(work, chart)
     found = {path.name for path in work.iterdir()} - {REPORT}
     files = {name: what for name, what in FILES.items() if name in found}
-    files.update({name: KINDS[Path(name).suffix] for name in sorted(found)
-                  if Path(name).suffix in KINDS})
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
         tuple([*notes, OBJECT] if own_motion else notes),
         aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
-        files))
+        {**files, **requested(work)}))
+
+
+def requested(work):
+    """Return {name: what it is} of the files in a folder that are written on request."""
+    return {path.name: KINDS[path.suffix] for path in sorted(work.iterdir())
+            if path.suffix in KINDS}
 
 
 def _table(rows):
