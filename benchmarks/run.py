@@ -23,6 +23,7 @@ SCRIPTS = (
     ('filters', [], [], False),
     ('ensemble', [], [], False),
     ('budget', [], [], False),
+    ('delay_study', ['600'], ['3600'], False),
     ('bags', ['20000'], ['100000'], False),
     ('velocity_meter', ['400', '20'], ['2000', '100'], False),
     ('live_chain', ['--quick'], [], True),

@@ -8,9 +8,11 @@ from ins_sim.settings.catalogue import flatten, groups_of, remark, sentence_of, 
 from ins_sim.settings.navigate import NAVIGATE
 from ins_sim.settings.recorded_imu import CONVERT
 from ins_sim.settings.tuned_gyro import TunedGyroStudySettings
+from ins_sim.studies.delays.figure import DelayFigureSettings
 
 # The verbs that have parameters of their own, by the name of their section.
-VERBS = {**NAVIGATE, **CONVERT, 'dtg_study': TunedGyroStudySettings}
+VERBS = {**NAVIGATE, **CONVERT, 'delay_study': DelayFigureSettings,
+         'dtg_study': TunedGyroStudySettings}
 READERS = {**ALL_NODES, **VERBS}
 
 

@@ -50,6 +50,7 @@ def imu_csv(path):
     ['compare-filters', '--runs', '1', '-p', 'duration_s:=10.0', '-o', 'OUT', '--force'],
     ['loop-study', '-o', 'OUT', '--force'],
     ['navigate', 'imu.csv', '-o', 'OUT', '--force'], ['dtg-study', '-o', 'OUT'],
+    ['delay-study', '-o', 'OUT', '--force'],
     ['convert', 'imu.csv', 'OUT', '--force']])
 def test_a_folder_of_others_stays(words, tmp_path, monkeypatch, capsys):
     """Whatever names the files have that are in it: exit code 2, and all is there."""

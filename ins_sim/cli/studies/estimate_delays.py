@@ -44,7 +44,7 @@ def _estimate(chosen, console):
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.charts.png import save_chart
     from ins_sim.report.page.html import write_page
-    from ins_sim.report.studies import delay_charts, delay_estimate as report
+    from ins_sim.report.studies import delay_estimate as report, delay_estimate_charts
     if chosen.duration is not None:
         raise ValueError(f'--duration is {chosen.duration:g}; expected no SOURCE with it')
     with whole_folder(chosen.output, chosen.force, report.MARK) as work:
@@ -61,9 +61,9 @@ def _estimate(chosen, console):
         one = all(s.imu_sensor.gyro.delay_us == delays for s in settings)
         known = (delays.x, delays.y, delays.z) if all(is_run) and one else None
         title = ', '.join(triad.records)
-        charts = delay_charts.estimate_charts(title, triad)
-        page = delay_charts.estimate_page(title, triad, known, charts, settings[0],
-                                          tuple(dict.fromkeys(notes)))
+        charts = delay_estimate_charts.estimate_charts(title, triad)
+        page = delay_estimate_charts.estimate_page(title, triad, known, charts, settings[0],
+                                                   tuple(dict.fromkeys(notes)))
         for chart in charts:
             save_chart(work, chart)
         (work / report.MARK).write_text(json.dumps(report.as_json(triad, known), indent=1) + '\n',

@@ -8,7 +8,7 @@ from ins_sim.launching import arguments
 from support.places import ROOT
 
 CONFIG = {path.stem: yaml.safe_load(path.read_text(encoding='utf-8'))
-          for path in (ROOT / 'config').glob('*.yaml')}
+          for path in (ROOT / 'config').glob('*.yaml') if '_study_' not in path.stem}
 
 
 def shared(name):

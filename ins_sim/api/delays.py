@@ -1,0 +1,220 @@
+"""The study of delays of gyro channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+import os
+from typing import Any, TYPE_CHECKING
+
+import numpy as np
+
+from ins_sim import parameter_files, resources
+from ins_sim.core.timeseries.named_columns import BODY, ENU
+from ins_sim.io.motion import read_motion
+from ins_sim.jobs.blocks import run_blocks
+from ins_sim.jobs.executors import open_executor
+from ins_sim.studies.delays.figure import (make_figures, RECORDED, recorded_name, RECORDING_PATH,
+                                           SHIPPED)
+from ins_sim.studies.delays.maps import RatesMap, RockingMap
+from ins_sim.studies.delays.study import distinct_runs, FigureResult, fly_task, gather
+from .dataframes import dataframe
+from .datasets import dataset
+from .inputs import checked_path, files, Names, plain, Values
+from .results import Folder
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DelayStudy:
+    """
+    The figures of the study of delays.
+
+    Attributes
+    ----------
+    results : tuple of FigureResult
+        Of each figure its settings (``figure``), its runs (``runs``: errors, prediction,
+        zero-delay twin) and its map (``map``), in SI and radians.
+    """
+
+    results: tuple[FigureResult, ...]
+
+    def __repr__(self) -> str:
+        """Return one line; a notebook shows it."""
+        return f'<DelayStudy: {", ".join(self.names)}>'
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the figures."""
+        return tuple(result.figure.name for result in self.results)
+
+    def result(self, name: str) -> FigureResult:
+        """Return the FigureResult of a name; ValueError where there is none."""
+        for result in self.results:
+            if result.figure.name == name:
+                return result
+        raise ValueError(f'name is {name!r}; expected one of {", ".join(self.names)}')
+
+    def to_dataframe(self, name: str) -> pandas.DataFrame:
+        """
+        Return the curves of a figure, or the cells of its map, as a DataFrame.
+
+        Parameters
+        ----------
+        name : str
+            One of ``names``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The columns of the CSV file of that name; the index is the first of them.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed.
+        ValueError
+            Where there is no such figure.
+        """
+        from ins_sim.report.studies.delay_data import figure_tables
+        columns = dict(figure_tables(self.result(name))[name])
+        first = next(iter(columns))
+        frame = dataframe(columns.pop(first), columns)
+        frame.index.name = first
+        return frame
+
+    def to_xarray(self, name: str) -> xarray.Dataset:
+        """
+        Return a figure as a Dataset.
+
+        Parameters
+        ----------
+        name : str
+            One of ``names``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Of the errors of runs dimensions run, time and axis, of a map those of its axes; in SI
+            and radians.
+
+        Raises
+        ------
+        ImportError
+            Where xarray is not installed.
+        ValueError
+            Where there is no such figure.
+        """
+        result = self.result(name)
+        if isinstance(result.map, RatesMap):
+            return dataset({'gamma_rate': (result.map.gamma_rates, 'rad/s'),
+                            'psi_rate': (result.map.psi_rates, 'rad/s')},
+                           {'drift': (('gamma_rate', 'psi_rate'), result.map.largest, 'rad/s')})
+        if isinstance(result.map, RockingMap):
+            return dataset({'elevation': (result.map.elevation_deg, 'deg'),
+                            'azimuth': (result.map.azimuth_deg, 'deg'),
+                            'psi': (result.map.psi_deg, 'deg'), 'axis': (ENU, '')},
+                           {'size': (('elevation', 'azimuth'), result.map.size, 'rad/s'),
+                            'drift': (('psi', 'axis'), result.map.drift, 'rad/s')})
+        return _runs_dataset(result)
+
+    def save(self, folder: Folder, overwrite: bool = False) -> None:
+        """
+        Write the study as ``ins_sim delay-study -o`` does.
+
+        Parameters
+        ----------
+        folder : str or path
+        overwrite : bool, optional
+            Replace the folder if it holds such a study.
+
+        Raises
+        ------
+        ValueError
+            Where the folder exists and is not to be replaced, or holds something else.
+        """
+        from ins_sim.own_folders import whole_folder
+        from ins_sim.report.studies.delay_folder import MARK, write_study
+        checked_path('folder', folder)
+        with whole_folder(folder, overwrite, MARK, 'overwrite=True') as work:
+            write_study(work, self.results)
+
+
+def delay_study(names: Names = SHIPPED, values: Values | None = None,
+                recordings: Names = (), jobs: int = 0) -> DelayStudy:
+    """
+    Repeat the study of delays of Bogdanov and Fomichev (2018).
+
+    Parameters
+    ----------
+    names : str, path, or a list of these, optional
+        Parameter files, one a figure: names of shipped ones, or paths. By default those of the
+        verb ``delay-study``.
+    values : mapping, optional
+        Values by the name of the parameter, for every figure; they win over the files.
+    recordings : str, path, or a list of these, optional
+        Recorded flights, each of which is one more figure.
+    jobs : int, optional
+        Processes; 0: as many as cores; 1: the present one alone.
+
+    Returns
+    -------
+    DelayStudy
+
+    Raises
+    ------
+    ValueError
+        In one sentence, on settings that no figure has and on recordings that cannot be used.
+    FileNotFoundError
+        Where there is no such file.
+
+    Examples
+    --------
+    >>> import ins_sim
+    >>> study = ins_sim.delay_study('delay_study_rates', {'duration_s': 60.0,
+    ...                             'detunings_rad_s': [0.0]}, jobs=1)
+    >>> study.result('delay_study_rates').map.lines
+    (-2, 2)
+    """
+    given: dict[str, Any] = plain(values)
+    sources = [(path.stem, path, given) for path in files(names)]
+    paths = [recordings] if isinstance(recordings, (str, os.PathLike)) else recordings
+    if not isinstance(paths, Iterable):
+        raise ValueError(f'recordings is {recordings!r}; expected a path or a list of paths')
+    for path in paths:
+        name = os.fspath(checked_path('recordings', path))
+        sources.append((recorded_name(name), resources.config(RECORDED),
+                        {**given, RECORDING_PATH: name}))
+    if not sources:
+        raise ValueError('names and recordings are empty; expected at least one figure')
+    figures = make_figures(sources, parameter_files.read_nodes, read_motion)
+    with open_executor(jobs) as executor:
+        flown = [run for _, run in run_blocks(fly_task, distinct_runs(figures), executor)]
+    return DelayStudy(gather(figures, flown))
+
+
+def _runs_dataset(result: FigureResult) -> xarray.Dataset:
+    """Return the errors of the runs of a figure."""
+    from ins_sim.report.studies.delay_names import short_run_name
+    runs = result.runs
+    coords: dict[str, tuple[Any, str]] = {
+        'run': ([short_run_name(run.settings) for run in runs], ''),
+        'time': (runs[0].t_s, 's'), 'axis': (ENU, ''),
+        'coordinate': (('latitude', 'longitude'), '')}
+    over = ('run', 'time')
+    variables: dict[str, tuple[tuple[str, ...], np.ndarray, str]] = {
+        'position': ((*over, 'axis'), np.stack([run.apart for run in runs]), 'm'),
+        'predicted_position': ((*over, 'axis'), np.stack([run.predicted for run in runs]), 'm'),
+        'angles': ((*over, 'coordinate'), np.stack([run.angles for run in runs]), 'rad'),
+        'predicted_angles': ((*over, 'coordinate'),
+                             np.stack([run.predicted_angles for run in runs]), 'rad')}
+    if result.figure.shows.figure == 'flight':
+        coords['body_axis'] = BODY, ''
+        coords['level_axis'] = ENU[:2], ''
+        variables['position_per_delay'] = (
+            (*over, 'level_axis', 'body_axis'),
+            np.stack([run.sensitivity.position for run in runs if run.sensitivity]), 'm/s')
+    return dataset(coords, variables)
