@@ -11,10 +11,14 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.prediction.predict import predict
 from ins_sim.core.timeseries.histories import ImuSamples
 from ins_sim.io.motion import read_motion
+from ins_sim import parameter_files
 from ins_sim.settings.by_node import NODES
 from ins_sim.core.simulation.guided_flight import fly
 from ins_sim.core.simulation.inertial import imu_blocks, simulate
 from ins_sim.settings.simulation import SimulationSettings
+from ins_sim.studies.delays.figure import make_figures
+from ins_sim.studies.delays.study import distinct_runs, fly_task, gather
+from support.places import ROOT
 
 DEG_PER_HOUR = 206264.806
 
@@ -90,3 +94,16 @@ def spread(function, *arguments):
     # Forked: a function of a test module has no name that a new process could import.
     with ProcessPoolExecutor(mp_context=multiprocessing.get_context('fork')) as pool:
         return list(pool.map(function, *arguments))
+
+
+def delay_figure(name, **values):
+    """Return the DelayFigure of config/delay_study_<name>.yaml; __ in keywords are dots."""
+    given = {key.replace('__', '.'): value for key, value in values.items()}
+    path = ROOT / 'config' / f'delay_study_{name}.yaml'
+    made, = make_figures([(path.stem, path, given)], parameter_files.read_nodes, read_motion)
+    return made
+
+
+def delay_results(*figures):
+    """Return the FigureResults of DelayFigures."""
+    return gather(figures, [fly_task(task) for task in distinct_runs(figures)])

@@ -143,7 +143,8 @@ def _rates(result):
                     x_range=_ends(found.near_psi_rates), y_range=_ends(found.near_gamma_rates)))
     title = f'Mean drift of {_titled(figure)}, over {found.span_s:g} s'
     return (Chart(figure.name, title, panels, shared=False, caption=LINEAR),
-            Chart(f'{figure.name}_across', title, (_across(result),), caption=LINEAR))
+            Chart(f'{figure.name}_across', f'{title}, over the detuning', (_across(result),),
+                  caption=LINEAR))
 
 
 def _line(gamma_rates, k, dash):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.special import j1
-from support.delay_figures import figure
+from support.studies import delay_figure as figure
 
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.numerics.units import DEG_PER_HOUR

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.delay_figures import figure
+from support.studies import delay_figure as figure
 
 from ins_sim.report import summary
 from ins_sim.studies.delays.runs import fly_run

@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 import pytest
-from support.delay_figures import figure, results_of
 from support.places import ROOT
+from support.studies import delay_figure as figure, delay_results as results_of
 
 import ins_sim
 from ins_sim.cli.main import main
