@@ -116,7 +116,7 @@ def test_run_time_needs_five_libraries_and_ros():
     assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
     of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
     # pytest: ins_sim.testing offers a fixture where it is there
-    extras = {'pandas', 'numba', 'pygeomag', 'bokeh', 'pytest'}
+    extras = {'pandas', 'numba', 'pygeomag', 'bokeh', 'xarray', 'distributed', 'pytest'}
     assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
         of_ros | extras)
 
