@@ -182,10 +182,13 @@ def _track_panel(ways, near=None):
     """Return the Panel of ways (label, colour, dash, places), about the start if near, m."""
     factor, unit = scale(LENGTHS, near or _size(ways))
     whole = near is None
-    marks = [Curve(*(way * factor), label if whole else None, colour, dash)
-             for label, colour, dash, way in ways]
+    marks = []
+    for label, colour, dash, way in ways:
+        if not whole:
+            # Cut off, as a range would be: the page finds that of equal axes from the data.
+            way = np.where(np.abs(way).max(axis=0) <= NEAR * near, way, np.nan)
+        marks.append(Curve(*(way * factor), label if whole else None, colour, dash))
     marks.append(Markers(np.zeros(1), np.zeros(1), 'start' if whole else None, palette.BLACK,
                          CIRCLE, 7.0))
-    shown = None if whole else (-NEAR * near * factor, NEAR * near * factor)
     return Panel(tuple(marks), f'east of the start [{unit}]', f'north of the start [{unit}]',
-                 '' if whole else 'about the start', x_range=shown, y_range=shown, equal=True)
+                 '' if whole else 'about the start', equal=True)
