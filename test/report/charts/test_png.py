@@ -8,7 +8,7 @@ from ins_sim.report.charts.scales import LENGTHS, scale, TIMES
 from matplotlib.image import imread
 import numpy as np
 import pytest
-from support.charts import every_mark
+from support.reports.charts import every_mark
 
 
 @pytest.mark.parametrize('chart', every_mark(), ids=lambda chart: chart.name)

@@ -1,8 +1,8 @@
 """Reports in a real browser, at the widths of a desk and of a telephone."""
 
 from support.aided_runs import command
-from support.browser import find_browser, seen
-from support.charts import every_mark
+from support.reports.browser import find_browser, seen
+from support.reports.charts import every_mark
 from ins_sim.report.page.content import Page, PageTable
 from ins_sim.report.page.html import REPORT, write_page
 import pytest
@@ -73,7 +73,7 @@ def test_without_bokeh_the_images_are_seen(tmp_path, without_bokeh):
 
 def test_a_missing_browser_is_a_failure_in_ci_alone(monkeypatch):
     """Elsewhere the test is skipped, and says what it looked for."""
-    monkeypatch.setattr('support.browser.NAMES', ('no-such-browser',))
+    monkeypatch.setattr('support.reports.browser.NAMES', ('no-such-browser',))
     for value, outcome in (('true', pytest.fail.Exception), ('', pytest.skip.Exception)):
         monkeypatch.setenv('CI', value)
         with pytest.raises(outcome, match='no browser: none of no-such-browser is in the PATH'):

@@ -14,7 +14,7 @@ from ins_sim.report.page.html import NO_BOKEH, REPORT, write_page
 from ins_sim.report.page.words import cell_text
 import numpy as np
 import pytest
-from support.charts import every_mark
+from support.reports.charts import every_mark
 
 MEGABYTE = 1e6
 SETTINGS = parameter_files.read([resources.config('motion_2'), resources.config('delay_y_1us'),

@@ -1,0 +1,1 @@
+"""What the tests of reports draw, and the browser that opens them."""
