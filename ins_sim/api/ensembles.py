@@ -250,14 +250,14 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
     """
     check_jobs(jobs, scheduler)
     aided = isinstance(settings, AidedSimulationSettings)
+    if not aided and not isinstance(settings, SimulationSettings):
+        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
+                         'AidedSimulationSettings of read_settings')
     store, plan = None, (AidedPlan if aided else EnsemblePlan)(settings, runs, instants)
     if isinstance(settings, AidedSimulationSettings):
         check_aided_flight(plan, read_motion(settings.simulation.motion_generator))
-    elif isinstance(settings, SimulationSettings):
-        check_runs(settings, read_motion(settings.motion_generator))
     else:
-        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
-                         'AidedSimulationSettings of read_settings')
+        check_runs(settings, read_motion(settings.motion_generator))
     if blocks is not None:
         from ins_sim.jobs.store import BlockStore
         store = BlockStore(checked_path('blocks', blocks), plan.identity())
