@@ -15,8 +15,9 @@ from ins_sim.core.timeseries.named_columns import columns, COLUMNS, ENU, UNITS
 from ins_sim.io.motion import read_motion
 from ins_sim.jobs.executors import check_jobs, open_executor
 from ins_sim.settings.simulation import SimulationSettings
-from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
-                                             PERCENTS, worst_run)
+from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_digest,
+                                             ensemble_errors, EnsembleErrors, PERCENTS,
+                                             worst_run)
 from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
 from .dataframes import dataframe
 from .datasets import dataset
@@ -78,8 +79,8 @@ class MonteCarlo:
     @property
     def digest(self) -> str:
         """SHA-256 of statistics and ends, the same whatever computed them."""
-        from ins_sim.jobs.fingerprint import array_digest
-        return str(array_digest(self.result.arrays()))
+        digest: str = ensemble_digest(self.result)
+        return digest
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
         """

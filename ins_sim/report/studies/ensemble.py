@@ -9,9 +9,8 @@ from rich.table import Table
 
 from ins_sim import parameter_files
 from ins_sim.core.ensemble.result import EnsembleResult
-from ins_sim.jobs.fingerprint import array_digest
-from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
-                                             worst_run)
+from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_digest, ensemble_errors,
+                                             EnsembleErrors, PERCENTS, worst_run)
 from ..charts.png import save_chart
 from ..files.packed_arrays import write_arrays
 from ..manifest import manifest
@@ -49,7 +48,7 @@ class EnsembleReport:
 def ensemble_report(title, settings, result):
     """Return the EnsembleReport of an EnsembleResult."""
     return EnsembleReport(title, settings, result, ensemble_errors(result), worst_run(result),
-                          array_digest(result.arrays()))
+                          ensemble_digest(result))
 
 
 def ensemble_title(settings, runs):
