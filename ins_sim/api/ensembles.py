@@ -17,8 +17,9 @@ from ins_sim.jobs.executors import check_jobs, open_executor
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.studies.aided_ensembles import (AidedEnsembleResult, AidedPlan, check_aided_flight,
                                              fly_aided_ensemble)
-from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
-                                             PERCENTS, worst_run)
+from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_digest,
+                                             ensemble_errors, EnsembleErrors, PERCENTS,
+                                             worst_run)
 from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
 from .consistency import (consistency_coords, consistency_variables, fixes_dataframe,
                           nees_columns)
@@ -86,8 +87,8 @@ class MonteCarlo:
     @property
     def digest(self) -> str:
         """SHA-256 of statistics and ends, the same whatever computed them."""
-        from ins_sim.jobs.fingerprint import array_digest
-        return str(array_digest((self.aided or self.result).arrays()))
+        digest: str = ensemble_digest(self.aided or self.result)
+        return digest
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
         """

@@ -1,7 +1,7 @@
 """Ensembles over many processes: their blocks, the work of one, and the result of all."""
 
 from dataclasses import dataclass
-from functools import lru_cache, reduce
+from functools import lru_cache
 from typing import Any, Callable
 import warnings
 
@@ -110,5 +110,5 @@ def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
     has the same bits whatever the executor.  Raises ValueError as the stages do.
     """
     work = EnsembleWork(plan, read_motion)
-    return reduce(joined, (of_arrays(arrays) for _, arrays in run_blocks(
-        work, plan.blocks(), executor, store, progress)))
+    return joined(of_arrays(arrays) for _, arrays in run_blocks(
+        work, plan.blocks(), executor, store, progress))

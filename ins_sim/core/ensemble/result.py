@@ -1,6 +1,6 @@
 """What is kept of many runs, and how the results of blocks of them become one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -52,21 +52,29 @@ def of_arrays(arrays):
         tuple(arrays['diverged'].tolist()), tuple(map(tuple, arrays['restarted'].tolist())))
 
 
-def joined(first, second):
+def joined(results):
     """
-    Return the EnsembleResult of the runs of two, the second going on where the first ends.
+    Return the EnsembleResult of the runs of some, each going on where the one before ends.
 
-    Raises ValueError where they are of different instants.
+    They are taken one after the other, in their order.  Raises ValueError where they do not
+    follow each other or are of different instants.
     """
-    if not np.array_equal(first.t_ns, second.t_ns) or first.runs.stop != second.runs.start:
-        raise ValueError(f'runs {first.runs} and {second.runs} do not go together; expected '
-                         'consecutive runs with the same instants')
-    return EnsembleResult(
-        range(first.runs.start, second.runs.stop), first.t_ns,
-        first.statistics.joined(second.statistics), first.horizontal.joined(second.horizontal),
-        np.concatenate([first.final, second.final]),
-        np.concatenate([first.final_errors, second.final_errors]),
-        first.diverged + second.diverged, first.restarted + second.restarted)
+    whole, final, final_errors, diverged, restarted = None, [], [], (), ()
+    for part in results:
+        if whole is None:
+            whole = part
+        elif np.array_equal(whole.t_ns, part.t_ns) and whole.runs.stop == part.runs.start:
+            whole = replace(whole, runs=range(whole.runs.start, part.runs.stop),
+                            statistics=whole.statistics.joined(part.statistics),
+                            horizontal=whole.horizontal.joined(part.horizontal))
+        else:
+            raise ValueError(f'runs {whole.runs} and {part.runs} do not go together; expected '
+                             'consecutive runs with the same instants')
+        final.append(part.final)
+        final_errors.append(part.final_errors)
+        diverged, restarted = diverged + part.diverged, restarted + part.restarted
+    return replace(whole, final=np.concatenate(final), final_errors=np.concatenate(final_errors),
+                   diverged=diverged, restarted=restarted)
 
 
 class ErrorTally:

@@ -75,7 +75,7 @@ def test_statistics_that_have_travelled_are_the_same():
     whole = simulate_runs(settings, motion, range(40), instants)
     parts = [of_arrays(simulate_runs(settings, motion, runs, instants).arrays())
              for runs in (range(32), range(32, 40))]
-    both = joined(*parts)
+    both = joined(parts)
     same(of_arrays(whole.arrays()), whole)
     for name in ('final', 'final_errors', 't_ns'):
         np.testing.assert_array_equal(getattr(both, name), getattr(whole, name))
@@ -83,7 +83,7 @@ def test_statistics_that_have_travelled_are_the_same():
     np.testing.assert_array_equal(both.horizontal.histogram, whole.horizontal.histogram)
     np.testing.assert_allclose(both.statistics.mean, whole.statistics.mean, rtol=1e-9, atol=1e-15)
     with pytest.raises(ValueError, match='do not go together'):
-        joined(*parts[::-1])
+        joined(parts[::-1])
 
 
 def test_horizontal_sizes_are_counted():
