@@ -197,8 +197,9 @@ class MonteCarlo:
         from ins_sim.report.studies import ensemble
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, ensemble.ARRAYS, 'overwrite=True') as work:
+            title = ensemble.ensemble_title(self.settings, len(self.runs))
             ensemble.write_ensemble(work, ensemble.ensemble_report(
-                self.settings, self.aided or self.result))
+                title, self.settings, self.aided or self.result))
 
 
 def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: int = 1000,

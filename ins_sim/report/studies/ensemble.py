@@ -56,12 +56,11 @@ class EnsembleReport:
         return self.settings if self.aided is None else self.settings.simulation
 
 
-def ensemble_report(settings, found):
+def ensemble_report(title, settings, found):
     """Return the EnsembleReport of an EnsembleResult or an AidedEnsembleResult."""
     aided = found if isinstance(found, AidedEnsembleResult) else None
     result = found if aided is None else aided.errors
-    return EnsembleReport(ensemble_title(settings, len(result.runs)), settings, result,
-                          ensemble_errors(result), worst_run(result),
+    return EnsembleReport(title, settings, result, ensemble_errors(result), worst_run(result),
                           ensemble_digest(found), aided)
 
 
