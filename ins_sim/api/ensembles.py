@@ -17,8 +17,9 @@ from ins_sim.jobs.executors import check_jobs, open_executor
 from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 from ins_sim.studies.aided_ensembles import (AidedEnsembleResult, AidedPlan, check_aided_flight,
                                              fly_aided_ensemble)
-from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_errors, EnsembleErrors,
-                                             PERCENTS, worst_run)
+from ins_sim.studies.ensemble_errors import (COLUMNS as PARTS, ensemble_digest,
+                                             ensemble_errors, EnsembleErrors, PERCENTS,
+                                             worst_run)
 from ins_sim.studies.ensembles import EnsemblePlan, fly_ensemble, INSTANTS
 from .consistency import (consistency_coords, consistency_variables, fixes_dataframe,
                           nees_columns)
@@ -86,8 +87,8 @@ class MonteCarlo:
     @property
     def digest(self) -> str:
         """SHA-256 of statistics and ends, the same whatever computed them."""
-        from ins_sim.jobs.fingerprint import array_digest
-        return str(array_digest((self.aided or self.result).arrays()))
+        digest: str = ensemble_digest(self.aided or self.result)
+        return digest
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
         """
@@ -196,8 +197,9 @@ class MonteCarlo:
         from ins_sim.report.studies import ensemble
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, ensemble.ARRAYS, 'overwrite=True') as work:
+            title = ensemble.ensemble_title(self.settings, len(self.runs))
             ensemble.write_ensemble(work, ensemble.ensemble_report(
-                self.settings, self.aided or self.result))
+                title, self.settings, self.aided or self.result))
 
 
 def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: int = 1000,
@@ -250,14 +252,14 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
     """
     check_jobs(jobs, scheduler)
     aided = isinstance(settings, AidedSimulationSettings)
+    if not aided and not isinstance(settings, SimulationSettings):
+        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
+                         'AidedSimulationSettings of read_settings')
     store, plan = None, (AidedPlan if aided else EnsemblePlan)(settings, runs, instants)
     if isinstance(settings, AidedSimulationSettings):
         check_aided_flight(plan, read_motion(settings.simulation.motion_generator))
-    elif isinstance(settings, SimulationSettings):
-        check_runs(settings, read_motion(settings.motion_generator))
     else:
-        raise ValueError(f'settings are {type(settings).__name__}; expected SimulationSettings or '
-                         'AidedSimulationSettings of read_settings')
+        check_runs(settings, read_motion(settings.motion_generator))
     if blocks is not None:
         from ins_sim.jobs.store import BlockStore
         store = BlockStore(checked_path('blocks', blocks), plan.identity())

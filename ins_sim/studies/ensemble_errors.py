@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ins_sim.core.ensemble.result import EnsembleResult, horizontal_of
+from ins_sim.jobs.fingerprint import array_digest
 from .error_circle import error_circle
 
 QUANTITIES = ('attitude', 'velocity', 'position')
@@ -52,6 +53,11 @@ def ensemble_errors(result: EnsembleResult) -> EnsembleErrors:
           for values in (horizontal.rms, sizes)),
         {percent: error_circle(mean, covariance, part)
          for percent, part in CEP_PARTS.items()})
+
+
+def ensemble_digest(result) -> str:
+    """Return the SHA-256 of statistics and ends, the same whatever computed them."""
+    return array_digest(result.arrays())
 
 
 def worst_run(result):

@@ -57,6 +57,14 @@ def test_there_is_a_pressure_everywhere():
     assert 0.0 < pressure(1e6) < pressure(9e4) < pressure(-500.0) < 1.08e5
 
 
+def test_each_run_has_noise_of_its_own():
+    """The same run the same, another run another, of both sensors."""
+    settings = [build(ImuSensorSettings, {'run': run}) for run in (0, 1, 1)]
+    for make in (Barometer, lambda s: Magnetometer(s, east)):
+        zero, one, again = (np.ravel(make(s).due(0)).tolist() for s in settings)
+        assert one == again != zero
+
+
 def east(lat, lon, height):
     """Return a field of 50 uT to the east."""
     return 5e-5, 0.0, 0.0

@@ -60,7 +60,8 @@ def run(chosen):
                 console.print(f'{len(store)} of {len(plan.blocks())} blocks are kept in '
                               f'{store.folder}: the same command goes on from there')
             raise
-        found = report.ensemble_report(plan.settings, result)
+        found = report.ensemble_report(report.ensemble_title(plan.settings, plan.runs),
+                                       plan.settings, result)
         report.write_ensemble(folder, found)
     store.remove()
     report.show(found, console)

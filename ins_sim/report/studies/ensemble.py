@@ -9,11 +9,10 @@ from rich.table import Table
 
 from ins_sim import parameter_files
 from ins_sim.core.ensemble.result import EnsembleResult
-from ins_sim.jobs.fingerprint import array_digest
 from ins_sim.settings.simulation import AidedSimulationSettings
 from ins_sim.studies.aided_ensembles import AidedEnsembleResult
-from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_errors, EnsembleErrors, PERCENTS,
-                                             worst_run)
+from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_digest, ensemble_errors,
+                                             EnsembleErrors, PERCENTS, worst_run)
 from ..charts.png import save_chart
 from ..files.packed_arrays import write_arrays
 from ..manifest import manifest
@@ -57,13 +56,12 @@ class EnsembleReport:
         return self.settings if self.aided is None else self.settings.simulation
 
 
-def ensemble_report(settings, found):
+def ensemble_report(title, settings, found):
     """Return the EnsembleReport of an EnsembleResult or an AidedEnsembleResult."""
     aided = found if isinstance(found, AidedEnsembleResult) else None
     result = found if aided is None else aided.errors
-    return EnsembleReport(ensemble_title(settings, len(result.runs)), settings, result,
-                          ensemble_errors(result), worst_run(result),
-                          array_digest(found.arrays()), aided)
+    return EnsembleReport(title, settings, result, ensemble_errors(result), worst_run(result),
+                          ensemble_digest(found), aided)
 
 
 def ensemble_title(settings, runs):

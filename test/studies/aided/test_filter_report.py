@@ -1,0 +1,91 @@
+"""What the comparison of filters says: which was best, by how much, and who is consistent."""
+
+from ins_sim.report.charts.chart import Curve, DASHED, SOLID
+from ins_sim.report.studies.consistency import judged
+from ins_sim.report.studies.filter_charts import answer, charts_of
+from ins_sim.report.studies.filters import filter_row
+from ins_sim.studies.filters import cases_of, FilterCase, FilterFlight
+import numpy as np
+import pytest
+
+TIMES_S = np.arange(0.0, 3001.0, 5.0)
+
+
+def flight(end_m, sigma_m=np.nan, square=np.nan, nis=()):
+    """Return a FilterFlight whose error grows evenly, east and north alike."""
+    error = np.zeros((len(TIMES_S), 3))
+    error[:, :2] = (end_m / np.sqrt(2.0) * TIMES_S / TIMES_S[-1])[:, None]
+    freedom = np.tile([2, 2, 0, 4], (len(TIMES_S), 1)) * np.isfinite(square)
+    freedom[0] = 0
+    nees = np.where(freedom > 0, square, np.nan)
+    return FilterFlight(TIMES_S, error, np.full(error.shape, sigma_m), error[:, 0], error[:, 0],
+                        error, nees, freedom, np.array(nis, dtype=float),
+                        10.0 * (1.0 + np.arange(len(nis))), 0, '')
+
+
+def study():
+    """Return the rows and flights of a comparison with a filter twice, and two equal ones."""
+    flown = {FilterCase('free', 1000): flight(9000.0), FilterCase('paper', 1000): flight(9000.0),
+             FilterCase('window_kf', 1000): flight(900.0, 100.0, 40.0, [5.0] * 300),
+             FilterCase('eskf', 1000): flight(300.0, 200.0, 2.0, [2.0] * 300),
+             FilterCase('eskf', 100): flight(310.0, 200.0, 2.0, [2.0] * 300)}
+    flights = [[one] * 12 for one in flown.values()]
+    return [filter_row(case, f) for case, f in zip(flown, flights)], flights
+
+
+def test_the_answer():
+    """The best beside the next filter, not beside itself; those outside NIS or NEES are named."""
+    rows, _ = study()
+    assert answer(rows, 3000.0) == (
+        'Of 5 filters over 12 flights of 50 min, eskf, N 1000, was best: rms horizontal error at '
+        'the end 300 m, 3 times less than window_kf, N 1000 (900 m). Too sure of itself by NIS '
+        'and by NEES of the position at the end: window_kf, N 1000. Consistent by NIS and by NEES '
+        'of the position at the end: eskf, N 1000; eskf, N 100. Without a covariance, so that '
+        'nothing can be said: free, N 1000; paper, N 1000.')
+
+
+def test_rows_have_nees_at_the_end():
+    """Mean over flights, the interval of as many chi-squares, and the degrees of freedom."""
+    rows, _ = study()
+    by = {row.name: row for row in rows}
+    assert by['free, N 1000'].nees == {}
+    mean, low, high, freedom = by['eskf, N 1000'].nees['position']
+    # chi-square of 24 degrees of freedom (Abramowitz and Stegun, table 26.8), over 12
+    assert (mean, freedom) == (2.0, 2)
+    assert low == pytest.approx(12.401 / 12.0, rel=1e-4)
+    assert high == pytest.approx(39.364 / 12.0, rel=1e-4)
+    assert list(by['eskf, N 1000'].nees) == ['position', 'velocity', 'state']
+
+
+def test_equal_curves_are_one_with_both_names():
+    """A filter has one colour in all charts, and its windows have dashes."""
+    rows, flights = study()
+    errors, consistency, shown = charts_of(rows, flights)
+    curves = [mark for mark in errors.panels[0].marks if isinstance(mark, Curve)]
+    assert [curve.label for curve in curves] == [
+        'free, N 1000 and paper, N 1000', 'window_kf, N 1000', 'eskf, N 1000', 'eskf, N 100']
+    assert [curve.dash for curve in curves] == [SOLID, SOLID, SOLID, DASHED]
+    assert errors.panels[0].y_label == 'rms error [m]' and errors.panels[0].x_label == 'time [min]'
+    assert shown.title == 'Position error of each flight, filter eskf, N 1000'
+    nees = [mark for mark in consistency.panels[0].marks if isinstance(mark, Curve)]
+    assert {c.label: c.colour for c in nees}.items() <= {c.label: c.colour for c in curves}.items()
+    # the filter that is 20 times too sure of itself is within what is shown
+    assert consistency.panels[0].y_range[1] > 20.0
+
+
+@pytest.mark.parametrize('mean, words', [
+    (2.0, 'consistent'), (4.0, 'too sure of itself'), (0.5, 'more cautious than it need be'),
+    (np.nan, ''), (None, '')])
+def test_where_a_mean_lies(mean, words):
+    """In words."""
+    assert judged(mean, 1.0, 3.0) == words
+
+
+def test_cases():
+    """The first window for all, the others for the eskf; what is unknown is refused."""
+    assert cases_of(['free', 'eskf', 'free'], [100, 10]) == (
+        FilterCase('free', 100), FilterCase('eskf', 100), FilterCase('eskf', 10))
+    with pytest.raises(ValueError, match="filter is 'ukf'; expected one of free, conventional"):
+        cases_of(['ukf'])
+    with pytest.raises(ValueError, match='there is no filter; expected one or more'):
+        cases_of([])
