@@ -123,12 +123,12 @@ def budget_tables(linear, answers, compared):
     numbers = [int(np.argmin(np.abs(linear.t_s - part * linear.t_s[-1]))) for part in PARTS]
     tables = [_total_table(linear, numbers)]
     count = len(linear.random)
-    for sources, part, title in (
+    for sources, part, words in (
             (linear.random, slice(0, count), 'Errors that differ from run to run, each alone '
              '(sigma)'), (linear.fixed, slice(count, None), 'Errors that are the same in every '
                           'run, each alone')):
         if sources:
-            tables.append(_source_table(linear, sources, part, numbers, title))
+            tables.append(_source_table(linear, sources, part, numbers, words))
     if linear.random or linear.fixed:
         tables.append(_sensitivity_table(linear))
     tables += [_answer_table(answer) for answer in answers if not answer.met]
@@ -151,7 +151,7 @@ def _heads(linear, numbers):
     return [f'at {linear.t_s[k]:.6g} s' for k in numbers]
 
 
-def _source_table(linear, sources, part, numbers, title):
+def _source_table(linear, sources, part, numbers, words):
     made = shares(linear, QUANTITIES['horizontal'])
     metres = made.contributions()[part][:, numbers]
     squares = made.by_source()[part, -1] / max(made.rms[-1] * made.rms[-1], 1e-300)
@@ -163,7 +163,7 @@ def _source_table(linear, sources, part, numbers, title):
                   f'{100.0 * squares[k]:.1f} %', float(tilt[k]), float(azimuth[k]))
                  for k in order)
     heads = [f'{head} [m]' for head in _heads(linear, numbers)]
-    return PageTable(title, ('source', 'parameter', *heads, 'of the square', 'tilt [arcsec]',
+    return PageTable(words, ('source', 'parameter', *heads, 'of the square', 'tilt [arcsec]',
                              'azimuth [arcsec]'), rows,
                      'Horizontal position error, ranked; tilt, azimuth and share of the square of '
                      'the whole at the end.' + _silent(sources, order))
