@@ -15,6 +15,7 @@ from ..charts import scales
 from ..charts.png import save_chart
 from ..page.content import Page, PageTable
 from ..page.html import write_page
+from ..titles import length_words, title
 from .budget_charts import charts, SCALES
 
 MARK = 'budget.json'
@@ -30,21 +31,14 @@ LEFT_OUT = ('Left out: range and pulses of the instruments, jitter, latency and 
             'samples, errors of the algorithms, and errors of second order.')
 
 
-def budget_title(settings):
-    """Return in words what a budget is of."""
-    generator = settings.motion_generator
-    return (f'{generator.motion.kind.replace("_", " ")}, IMU at '
-            f'{settings.imu_sensor.rate_hz:g} Hz, {generator.duration_s:g} s')
-
-
 def write_budget(folder, settings, linear, answers, compared, beside):
     """
     Write all that is told of a LinearBudget into a folder (pathlib.Path).
 
     answers: RequirementAnswers; compared: ComparedQuantities of beside: BesideRuns, or None.
     """
-    title = budget_title(settings)
-    drawn = charts(linear, title, compared)
+    words = title(settings)
+    drawn = charts(linear, words, compared)
     for chart in drawn:
         save_chart(folder, chart)
     tables = budget_tables(linear, answers, compared)
@@ -56,7 +50,7 @@ def write_budget(folder, settings, linear, answers, compared, beside):
                         fixed=[s.key for s in linear.fixed])
     (folder / SETTINGS).write_text(parameter_files.dump(settings), encoding='utf-8')
     write_page(folder, Page(
-        f'Error budget: {title}', ' '.join([answer_sentence(linear),
+        f'Error budget: {words}', ' '.join([answer_sentence(linear),
                                             *map(requirement_sentence, answers)]),
         drawn, tables, notes, settings, {},
         {MARK: 'tables and answers', ARRAYS: 'covariances and mean errors by source, SI',
@@ -75,7 +69,7 @@ def show_budget(settings, linear, answers, compared, beside, console):
         console.print(shown)
     for note in budget_notes(linear, compared, beside):
         console.print(note)
-    console.print(f'{budget_title(settings)}: {answer_sentence(linear)}')
+    console.print(f'{title(settings)}: {answer_sentence(linear)}')
     for answer in answers:
         console.print(requirement_sentence(answer))
 
@@ -90,7 +84,7 @@ def answer_sentence(linear):
     k = int(np.argmax(parts))
     source = (*linear.random, *linear.fixed)[k]
     cep = _cep(linear, 0.5)[-1]
-    return (f'After {_time_text(end)} the position is {_text(LENGTH, rms)} off (rms; CEP50 '
+    return (f'After {length_words(end)} the position is {_text(LENGTH, rms)} off (rms; CEP50 '
             f'{_text(LENGTH, cep)}); {100.0 * parts[k]:.0f} % of the square of it comes from '
             f'the {source.label}.')
 
@@ -129,12 +123,12 @@ def budget_tables(linear, answers, compared):
     numbers = [int(np.argmin(np.abs(linear.t_s - part * linear.t_s[-1]))) for part in PARTS]
     tables = [_total_table(linear, numbers)]
     count = len(linear.random)
-    for sources, part, title in (
+    for sources, part, words in (
             (linear.random, slice(0, count), 'Errors that differ from run to run, each alone '
              '(sigma)'), (linear.fixed, slice(count, None), 'Errors that are the same in every '
                           'run, each alone')):
         if sources:
-            tables.append(_source_table(linear, sources, part, numbers, title))
+            tables.append(_source_table(linear, sources, part, numbers, words))
     if linear.random or linear.fixed:
         tables.append(_sensitivity_table(linear))
     tables += [_answer_table(answer) for answer in answers if not answer.met]
@@ -157,7 +151,7 @@ def _heads(linear, numbers):
     return [f'at {linear.t_s[k]:.6g} s' for k in numbers]
 
 
-def _source_table(linear, sources, part, numbers, title):
+def _source_table(linear, sources, part, numbers, words):
     made = shares(linear, QUANTITIES['horizontal'])
     metres = made.contributions()[part][:, numbers]
     squares = made.by_source()[part, -1] / max(made.rms[-1] * made.rms[-1], 1e-300)
@@ -169,7 +163,7 @@ def _source_table(linear, sources, part, numbers, title):
                   f'{100.0 * squares[k]:.1f} %', float(tilt[k]), float(azimuth[k]))
                  for k in order)
     heads = [f'{head} [m]' for head in _heads(linear, numbers)]
-    return PageTable(title, ('source', 'parameter', *heads, 'of the square', 'tilt [arcsec]',
+    return PageTable(words, ('source', 'parameter', *heads, 'of the square', 'tilt [arcsec]',
                              'azimuth [arcsec]'), rows,
                      'Horizontal position error, ranked; tilt, azimuth and share of the square of '
                      'the whole at the end.' + _silent(sources, order))
@@ -274,13 +268,6 @@ def _text(unit, value):
     factor, name = scales.scale(((1000.0, 1e-3, 'km'), *scales.LENGTHS[1:]) if unit == LENGTH
                                 else SCALES[unit], value)
     return f'{factor * value:.4g} {name}'
-
-
-def _time_text(t_s):
-    for unit, size in (('h', 3600.0), ('min', 60.0)):
-        if t_s >= size and abs(t_s / size - round(t_s / size)) < 1e-9:
-            return f'{t_s / size:g} {unit}'
-    return f'{t_s:g} s'
 
 
 def _numbers(linear, answers, tables, notes):

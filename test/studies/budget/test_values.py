@@ -89,3 +89,14 @@ def test_the_parts_make_the_whole(fog):
         variance = np.diagonal(linear.total_covariance(), axis1=1, axis2=2)[:, axes].sum(axis=1)
         mean = np.square(linear.total_mean()[:, axes]).sum(axis=1)
         assert fog.rms(name) == pytest.approx(np.sqrt(variance + mean), rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('motion', [{'motion.kind': 'static'}, {'motion.kind': 'cruise'}])
+def test_linear_theory_ends_for_the_mems_at_rest(motion):
+    """At rest and on cruise after half an hour, and by the turn of the axes over the Earth."""
+    found = ins_sim.budget(ins_sim.read_settings('imu_tactical_mems',
+                                                 {'duration_s': 3600.0, **motion}))
+    assert 1500.0 < found.linear_until() < 2100.0
+    k = found.linear.at(found.linear_until())
+    assert found.rms('azimuth')[k] < 0.1
