@@ -13,7 +13,7 @@ import time
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main as command
-from ins_sim.core.budget.linear_budget import error_budget
+from ins_sim.core.prediction.budget.linear_budget import error_budget
 from ins_sim.io.motion import read_motion
 
 CASES = (('racetrack', 'imu_tactical_fog'), ('racetrack', 'imu_tactical_mems'),

@@ -9,7 +9,7 @@ from typing import Any, TYPE_CHECKING, Union
 
 import numpy as np
 
-from ins_sim.core.budget.linear_budget import error_budget, LinearBudget, SAME_S
+from ins_sim.core.prediction.budget.linear_budget import error_budget, LinearBudget, SAME_S
 from ins_sim.core.motion.motion import Motion
 from ins_sim.core.timeseries.named_columns import ENU
 from ins_sim.report.studies.budget_beside import read_study

@@ -58,7 +58,7 @@ STREAMS = EARTH | {'core.timeseries', 'core.streams'}
 CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
         'core.motion', 'core.sensors', 'core.navigation', 'core.aiding', 'core.guidance',
         'core.postprocessing', 'core.prediction', 'core.simulation', 'core.ensemble',
-        'core.budget', 'core.standalone', 'core.calibration'}
+        'core.standalone', 'core.calibration'}
 FILES_AND_BAGS = CORE | {'settings', 'messages', 'bags', 'io', 'parameter_files', 'resources',
                          'graph', 'studies', 'report', 'jobs', 'regular_file', 'own_folders',
                          'ros_parameters', 'visible_text', 'yaml_text'}
@@ -79,12 +79,10 @@ MAY_IMPORT = {
     'core.prediction': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
                                 'core.sensors'},
     'core.simulation': (CORE | {'settings'}) - {'core.postprocessing', 'core.prediction',
-                                                'core.ensemble', 'core.budget', 'core.standalone',
+                                                'core.ensemble', 'core.standalone',
                                                 'core.calibration'},
     'core.standalone': EARTH | {'settings', 'core.timeseries', 'core.navigation',
                                 'core.postprocessing', 'core.simulation'},
-    'core.budget': EARTH | {'settings', 'core.timeseries', 'core.navigation', 'core.motion',
-                            'core.sensors', 'core.prediction'},
     'core.ensemble': STREAMS | {'settings', 'core.motion', 'core.sensors', 'core.navigation',
                                 'core.aiding', 'core.simulation'},
     'studies': CORE | {'settings', 'jobs'},

@@ -25,8 +25,8 @@ def add_arguments(parser):
 
 def run(chosen):
     """Propagate, show and save; return the exit code."""
-    from ins_sim.core.budget.linear_budget import error_budget
-    from ins_sim.core.budget.propagation import navigation_span_s
+    from ins_sim.core.prediction.budget.linear_budget import error_budget
+    from ins_sim.core.prediction.budget.propagation import navigation_span_s
     from ins_sim.io.motion import read_motion
     from ins_sim.own_folders import check_free, whole_folder
     from ins_sim.report.console import PlainConsole

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ins_sim import parameter_files
-from ins_sim.core.budget.propagation import navigation_start_s
+from ins_sim.core.prediction.budget.propagation import navigation_start_s
 from ins_sim.studies.budget.beside import BesideRuns
 from ..files.stored_arrays import read_arrays
 from ..storage import PARAMETERS

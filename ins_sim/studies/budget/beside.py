@@ -6,8 +6,8 @@ import os
 import numpy as np
 from scipy.stats import chi2, norm
 
-from ins_sim.core.budget.linear_budget import INTERVALS, SAME_S
-from ins_sim.core.budget.propagation import navigation_start_s
+from ins_sim.core.prediction.budget.linear_budget import INTERVALS, SAME_S
+from ins_sim.core.prediction.budget.propagation import navigation_start_s
 from ins_sim.core.ensemble.many_runs import simulate_runs
 from .quantities import LINEAR_UP_TO, QUANTITIES, second_order, shares
 

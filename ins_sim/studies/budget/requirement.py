@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from ins_sim.core.budget.sources import ErrorSource
+from ins_sim.core.prediction.budget.sources import ErrorSource
 from ins_sim.settings import shown
 from ..error_circle import error_circle
 from .quantities import ANGLE, LENGTH, QUANTITIES, SPEED

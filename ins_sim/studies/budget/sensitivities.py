@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ins_sim.core.budget.sources import ErrorSource
+from ins_sim.core.prediction.budget.sources import ErrorSource
 from .quantities import shares
 
 

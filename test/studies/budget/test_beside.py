@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ins_sim
-from ins_sim.core.budget.linear_budget import LinearBudget
-from ins_sim.core.budget.sources import ErrorSource
+from ins_sim.core.prediction.budget.linear_budget import LinearBudget
+from ins_sim.core.prediction.budget.sources import ErrorSource
 from ins_sim.studies.budget.beside import BesideRuns, compared, rms_scatter, sigma_interval
 
 SOURCE = ErrorSource('one', 'one', 'm', (1.0,), (1.0,), False, 0, 'white')

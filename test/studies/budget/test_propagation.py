@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ins_sim
-from ins_sim.core.budget import propagation
-from ins_sim.core.budget.interval_responses import mean_variance
+from ins_sim.core.prediction.budget import propagation
+from ins_sim.core.prediction.budget.interval_responses import mean_variance
 from ins_sim.core.simulation.free_covariance import free_covariance
 from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 from ins_sim.io.motion import read_motion

@@ -4,8 +4,8 @@ import numpy as np
 
 from ins_sim.core.attitude.matrix import dcm_of
 from ins_sim.core.earth.rates import rate_of_n
-from ins_sim.core.prediction.drift import drift_density
 from ins_sim.core.timeseries.histories import Truth
+from ..drift import drift_density
 
 # Instants at which a motion is evaluated at once.
 AT_ONCE = 16384

@@ -6,10 +6,10 @@ import math
 import numpy as np
 
 from ins_sim.core.numerics.instants import period_ns
-from ins_sim.core.prediction.late_turns import is_long, late_force, late_turns
 from ins_sim.core.sensors.imu.ideal import MotionImu
 from ins_sim.core.sensors.imu.triad_errors import discrete_lag, TriadErrors
 from ins_sim.core.sensors.imu.triad_model import KEYS, triad_model
+from ..late_turns import is_long, late_force, late_turns
 from .sources import ACCELEROMETER, ErrorSource, FIXED_WORDS, GYRO, triad_source
 
 LAG = 'bandwidth_hz'
