@@ -1,6 +1,8 @@
 """Charts as PNG: of a known size, whatever the texts hold, with the same bytes each time."""
 
 from io import BytesIO
+import subprocess
+import sys
 
 from ins_sim.report.charts.chart import Chart, Curve, LOG, Panel
 from ins_sim.report.charts.png import chart_png, DPI, save_chart, WIDTH
@@ -45,3 +47,16 @@ def test_a_curve_without_values_is_an_empty_panel(values, axis):
 def test_units_fit_the_size(units, largest, unit):
     """Kilometres where metres would have five digits."""
     assert scale(units, largest)[1] == unit
+
+
+def test_the_backend_of_the_program_stays():
+    """A notebook that imports the reports keeps its inline plots: pyplot's backend is its own."""
+    code = ('import matplotlib\n'
+            'matplotlib.use("svg")\n'
+            'import ins_sim.report.runs.page, ins_sim.report.navigation\n'
+            'from ins_sim.report.charts.chart import Chart, Level, Panel\n'
+            'from ins_sim.report.charts.png import chart_png\n'
+            'chart_png(Chart("x", "x", (Panel((Level(0.0),), "x", "y"),)))\n'
+            'print(matplotlib.get_backend())\n')
+    run = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == 'svg'
