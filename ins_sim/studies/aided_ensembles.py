@@ -1,7 +1,6 @@
 """Ensembles of the whole aided chain: statistics of errors, NEES and NIS of blocks of runs."""
 
 from dataclasses import dataclass
-from functools import reduce
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -80,14 +79,26 @@ def of_aided_arrays(arrays):
                                tuple(zip(errors.diverged, arrays['refused'].tolist())))
 
 
-def joined_aided(first, second):
-    """Return the AidedEnsembleResult of the runs of two, as ``core.ensemble.result.joined``."""
-    (nees, fixes), (others, further) = first.consistency, second.consistency
-    return AidedEnsembleResult(
-        joined(first.errors, second.errors),
-        Consistency(merged_sums(nees, others),
-                    {s: merged_fixes(fixes[s], further[s]) for s in fixes}),
-        first.refused + second.refused)
+def joined_aided(results):
+    """Return the AidedEnsembleResult of the runs of some, as ``core.ensemble.result.joined``."""
+    consistency, refused = None, ()
+
+    def errors():
+        nonlocal consistency, refused
+        for part in results:
+            consistency = (part.consistency if consistency is None
+                           else _merged(consistency, part.consistency))
+            refused += part.refused
+            yield part.errors
+
+    whole = joined(errors())
+    return AidedEnsembleResult(whole, consistency, refused)
+
+
+def _merged(a, b):
+    """Return the Consistency of the runs of both."""
+    return Consistency(merged_sums(a.nees, b.nees),
+                       {s: merged_fixes(a.fixes[s], b.fixes[s]) for s in a.fixes})
 
 
 @dataclass(frozen=True)
@@ -203,8 +214,8 @@ def fly_aided_ensemble(plan, read_motion, executor, store=None, progress=None):
     The result has the same bits whatever the executor.  Raises ValueError as the stages do.
     """
     work = AidedWork(plan, read_motion)
-    return reduce(joined_aided, (of_aided_arrays(arrays) for _, arrays in run_blocks(
-        work, plan.blocks(), executor, store, progress)))
+    return joined_aided(of_aided_arrays(arrays) for _, arrays in run_blocks(
+        work, plan.blocks(), executor, store, progress))
 
 
 def check_aided_flight(plan, motion):

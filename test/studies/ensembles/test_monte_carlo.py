@@ -133,9 +133,9 @@ def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, ca
 
 
 def test_python_refuses_other_settings():
-    """Those of the aided simulation."""
-    with pytest.raises(ValueError, match='settings are AidedSimulationSettings; expected'):
-        ins_sim.monte_carlo(ins_sim.read_settings(['route_flight'], aided=True))
+    """Those of no simulation."""
+    with pytest.raises(ValueError, match='settings are dict; expected SimulationSettings or'):
+        ins_sim.monte_carlo({'duration_s': 1.0})
 
 
 def test_nodes_fly_one_run():
