@@ -80,9 +80,9 @@ def test_a_hundred_flights(case, figures):
     """
     NEES at the end and NIS of every fix against their 95 % intervals for a hundred flights.
 
-    With errors of the filter's model and no others all lie inside, and so do 95 % of the fixes,
-    within what their number allows (three sigma). Of the other instruments the figures are
-    recorded; docs/design/aided_ensembles.md says why they lie where they do.
+    With errors of the filter's model and no others NEES and NIS lie inside; with any of these
+    instruments NIS does at 95 % of the fixes, within what their number allows (three sigma). Of
+    the others NEES is recorded; docs/design/aided_ensembles.md says why it lies where it does.
     """
     files, assignments = CASES[case]
     found = consistency(files, (*FLIGHT, *assignments), FLIGHTS, 0)
@@ -93,8 +93,8 @@ def test_a_hundred_flights(case, figures):
         print(f'{case}, {name}: {mean:.3f} at the end, expected {one.expected[-1]:g} ({low:.3f} '
               f'to {high:.3f}); inside at {100.0 * share:.1f} % of {(one.count > 0).sum()}')
         figures.record(f'aided_ensemble.{case}.{name}', (mean, low, high, 100.0 * share))
-        if case == 'model' or name.startswith('nis.velocity'):
+        if case == 'model':
             assert low < mean < high, name
-        if case == 'model' and name.startswith('nis'):
+        if name.startswith('nis'):
             count = int((one.count > 0).sum())
             assert abs(share - 0.95) < 3.0 * np.sqrt(0.95 * 0.05 / count), name
