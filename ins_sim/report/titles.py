@@ -37,7 +37,8 @@ def motion_words(motion):
         axis = motion.rocking.axis
         about = f'body axis {axis}' if axis in 'xyz' else axis
         return f'Rocking about {about}' + (' (motion 1)' if axis == 'north' else '')
-    return MOTIONS[motion.kind]
+    # a kind of the user's own has its own name
+    return MOTIONS.get(motion.kind, motion.kind)
 
 
 def instrument_words(sensor):

@@ -7,7 +7,7 @@ from ins_sim.api.datasets import dataset, DIMENSIONS
 from ins_sim.core.timeseries.named_columns import COLUMNS, ENU, UNITS
 import numpy as np
 import pytest
-from support.imu_records import record_at_rest
+from support.readings.imu_records import record_at_rest
 from support.studies import LATE_MOTION_2
 
 AT_REST = {'initial.position': 'given', 'initial.latitude_deg': 45.0,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.recorded_imu import recorded, run, SECOND, stamps
+from support.readings.recorded_imu import recorded, run, SECOND, stamps
 
 from ins_sim.core.postprocessing.reference import SampledTrack
 from ins_sim.report.charts.chart import Curve, Markers, Stretch

@@ -146,7 +146,8 @@ def test_every_shipped_study_runs(path, tmp_path, capsys):
     assert main(['dtg-study', '--params-file', path.stem, '-o', str(tmp_path),
                  '-p', 'step_ms:=1.0', '-p', 'values:=[230.0]', '-p', 'paper_deg:=[10.0]',
                  '-p', 'curve_values:=[220.0, 230.0]', '-p', 'base_rate_rad_s:=300.0']) == 0
-    assert {p.name for p in tmp_path.iterdir()} == {'.ins_sim', f'{path.stem}.png'}
+    assert {p.name for p in tmp_path.iterdir()} == {
+        '.ins_sim', 'report.html', f'{path.stem}.png'}
     assert '1 ms' in capsys.readouterr().out
 
 

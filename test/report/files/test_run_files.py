@@ -11,7 +11,7 @@ from ins_sim.io.csv_imu import read_imu
 from ins_sim.report.files.wanted import WantedFiles
 import numpy as np
 import pytest
-from support.imu_records import record_at_rest
+from support.readings.imu_records import record_at_rest
 from support.studies import LATE_MOTION_2, LATE_MOTION_2_WORDS
 
 SHORT = ('-p', 'duration_s:=2.0')

@@ -70,12 +70,13 @@ def test_a_scheduler_that_is_not_there(address, reason, monkeypatch):
 
 
 @pytest.mark.parametrize('source, found', [
-    ("__version__ = '0.0.9'\n", 'has ins_sim 0.0.9; expected ins_sim '), (None, 'has no ins_sim')])
+    ("__version__ = '0.0.9'\n", 'has ins_sim 0.0.9; expected ins_sim '),
+    # as where it is not installed
+    ("raise ModuleNotFoundError('ins_sim', name='ins_sim')\n", 'has no ins_sim')])
 def test_other_versions_are_refused(processes, tmp_path, source, found):
     """The sentence names both."""
-    if source is not None:
-        (tmp_path / 'ins_sim').mkdir()
-        (tmp_path / 'ins_sim' / '__init__.py').write_text(source, encoding='utf-8')
+    (tmp_path / 'ins_sim').mkdir()
+    (tmp_path / 'ins_sim' / '__init__.py').write_text(source, encoding='utf-8')
     processes.worker(path=tmp_path)
     with pytest.raises(ValueError, match=found), open_executor(scheduler=processes.address):
         pass
