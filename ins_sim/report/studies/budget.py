@@ -38,7 +38,7 @@ def write_budget(folder, settings, linear, answers, compared, beside):
     answers: RequirementAnswers; compared: ComparedQuantities of beside: BesideRuns, or None.
     """
     words = title(settings)
-    drawn = charts(linear, words, compared)
+    drawn = charts(linear, words, compared, [a.requirement for a in answers])
     for chart in drawn:
         save_chart(folder, chart)
     tables = budget_tables(linear, answers, compared)

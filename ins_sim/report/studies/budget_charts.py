@@ -6,8 +6,9 @@ from ins_sim.studies.budget.quantities import (ANGLE, LENGTH, LINEAR_UP_TO, QUAN
                                                second_order, shares, SPEED)
 from ins_sim.studies.error_circle import error_circle
 from ..charts import scales
-from ..charts.chart import Band, Bars, Chart, Curve, DASHED, Level, LOG, Markers, Panel, Stack
-from ..charts.palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, RED
+from ..charts.chart import (Band, Bars, Chart, Curve, DASHED, Level, LOG, Markers, Panel, Stack,
+                            TRIANGLE)
+from ..charts.palette import BLACK, BLUE, CYCLE, EAST_NORTH_UP, GREEN, GREY, ORANGE, RED
 
 SCALES = {LENGTH: scales.LENGTHS, SPEED: scales.SPEEDS, ANGLE: scales.ANGLES}
 # Sources that have a surface or a curve of their own; the smaller ones have one together.
@@ -22,11 +23,19 @@ DASHED_NOTE = ('Dashed: the axes have turned so far ({:g} rad) that errors of se
                'and the budget is a guide only.')
 
 
-def charts(linear, title, compared):
-    """Return the Charts of a LinearBudget; compared: ComparedQuantities of an ensemble."""
+# Quantities that share a figure, in which requirements on them are marked.
+PLACES = ('horizontal', 'north', 'east')
+
+
+def charts(linear, title, compared, required=()):
+    """
+    Return the Charts of a LinearBudget.
+
+    compared: ComparedQuantities of an ensemble; required: Requirements.
+    """
     found = [_stacked(linear, 'budget_position', f'Who makes the position error: {title}',
                       ('horizontal',)),
-             _total(linear, f'Position error of the budget: {title}'),
+             _total(linear, f'Position error of the budget: {title}', required),
              _sources(linear, f'Each source alone: {title}'),
              _ranking(linear, f'Ranking at {linear.t_s[-1]:g} s: {title}'),
              _stacked(linear, 'budget_velocity', f'Who makes the velocity error: {title}',
@@ -103,20 +112,23 @@ def _colours(linear, shown):
     return [own.get(k) or (free.pop(0) if free else PALE[1]) for k in shown]
 
 
-def _total(linear, title):
+def _total(linear, title, required):
     t, x_label = _time(linear)
     rms = shares(linear, QUANTITIES['horizontal']).rms
     mean, covariance = linear.total_mean()[:, :2], linear.total_covariance()[:, :2, :2]
     curves = {'horizontal rms': (rms, BLACK),
-              'CEP95': (error_circle(mean, covariance, 0.95), RED),
+              'CEP95': (error_circle(mean, covariance, 0.95), GREEN),
               'CEP50': (error_circle(mean, covariance, 0.5), ORANGE),
-              'north rms': (shares(linear, QUANTITIES['north']).rms, BLUE),
-              'east rms': (shares(linear, QUANTITIES['east']).rms, GREEN)}
+              'north rms': (shares(linear, QUANTITIES['north']).rms, EAST_NORTH_UP['north']),
+              'east rms': (shares(linear, QUANTITIES['east']).rms, EAST_NORTH_UP['east'])}
     factor, unit = scales.scale(scales.LENGTHS, curves['CEP95'][0].max())
     marks = [curve for label, (values, colour) in curves.items()
              for curve in parted(linear, t, factor * values, label, colour, 1.6)]
+    marks += [Markers(np.interp([r.t_s], linear.t_s, t), np.array([factor * r.limit]),
+                      f'required: {r.text}', BLACK, TRIANGLE, 8.0)
+              for r in required if r.quantity in PLACES]
     return Chart('budget_total', title, (Panel(tuple(marks), x_label,
-                                               f'position error [{unit}]'),),
+                                               f'position error [{unit}]', height=1.5),),
                  caption=_caption(linear))
 
 

@@ -13,6 +13,7 @@ from ins_sim.settings.simulation import AidedSimulationSettings
 from ins_sim.studies.aided_ensembles import AidedEnsembleResult
 from ins_sim.studies.ensemble_errors import (COLUMNS, ensemble_digest, ensemble_errors,
                                              EnsembleErrors, PERCENTS, worst_run)
+from .. import titles
 from ..charts.png import save_chart
 from ..files.packed_arrays import write_arrays
 from ..manifest import manifest
@@ -65,13 +66,11 @@ def ensemble_report(title, settings, found):
 
 
 def ensemble_title(settings, runs):
-    """Return a line that names motion, length, filter and number of runs."""
+    """Return the title of the simulation, with filter and number of runs."""
     aided = isinstance(settings, AidedSimulationSettings)
     simulation = settings.simulation if aided else settings
-    generator = simulation.motion_generator
     filter_ = f', filter {settings.aided_navigator.filter}' if aided else ''
-    return (f'{generator.motion.kind}, {generator.duration_s:g} s at '
-            f'{simulation.imu_sensor.rate_hz:g} Hz{filter_}, {runs} run{"s" * (runs != 1)}')
+    return f'{titles.title(simulation)}{filter_}, {runs} run{"s" * (runs != 1)}'
 
 
 def flight_command(report, parameters=PARAMETERS):

@@ -19,6 +19,7 @@ TURN = np.linspace(0.0, 2.0 * np.pi, 181)
 def ensemble_charts(title, errors, result, worst):
     """Return the charts of EnsembleErrors and EnsembleResult; worst: number and error, or None."""
     charts = [_horizontal(title, errors), *(_by_axis(title, errors, name) for name in COLUMNS)]
+    charts = [chart for chart in charts if chart.panels]
     ends = result.final_errors[np.isfinite(result.final_errors).all(axis=1)]
     if len(ends):
         charts += [_scatter(title, errors, result, worst), _histogram(title, errors, ends)]
@@ -41,7 +42,8 @@ def _bands(x, percentiles, colour):
     """Return the bands between percentiles, the widest first, and the median."""
     pairs = [(k, len(PERCENTS) - 1 - k) for k in range(len(PERCENTS) // 2)]
     bands = [Band(x, percentiles[low], percentiles[high],
-                  f'{PERCENTS[low]} to {PERCENTS[high]} % of the runs', colour)
+                  f'{PERCENTS[low]} to {PERCENTS[high]} % of the runs',
+                  colour if low else palette.GREY)
              for low, high in pairs]
     return [*bands, Curve(x, percentiles[len(PERCENTS) // 2], 'median', colour)]
 
@@ -65,12 +67,15 @@ def _by_axis(title, errors, name):
     factor, unit = scale(UNITS[name], _largest(found, mean + sigma, mean - sigma))
     panels = []
     for k, axis in enumerate(AXES):
+        if not _largest(found[:, :, k]):
+            # held by the truth: nothing to see
+            continue
         colour = palette.EAST_NORTH_UP[axis]
         marks = _bands(x, factor * found[:, :, k], colour)
         marks += [Curve(x, factor * (mean + side * sigma)[:, k],
                         'mean +- sigma' if side > 0.0 else None, palette.BLACK, DASHED, 1.0)
                   for side in (1.0, -1.0)]
-        panels.append(Panel(tuple(marks), label if k == 2 else '', f'{axis} [{unit}]'))
+        panels.append(Panel(tuple(marks), label, f'{axis} [{unit}]'))
     return Chart(name, f'{title}: {name} error', tuple(panels))
 
 
