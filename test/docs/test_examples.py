@@ -16,10 +16,11 @@ BLOCKS = re.findall(r'```(\w+)\n(.*?)```', README, re.DOTALL)
 COMMANDS = [[line for line in text.splitlines() if line.startswith('ins_sim ')]
             for kind, text in BLOCKS if kind == 'sh']
 # verbs that simulate or predict are shortened; those that need live nodes are tested with them
-SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters'}
+SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters',
+             'monte-carlo'}
 LIVE = {'record', 'play'}
-# takes a quarter of an hour whatever its flights are; test_loop_study shortens it
-LONG = {'loop-study'}
+# take minutes whatever their flights are; tests of their own shorten them
+LONG = {'loop-study', 'delay-study'}
 DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
 
 
@@ -37,6 +38,7 @@ def test_commands_of_the_readme(lines, tmp_path, monkeypatch, request):
             assert parser().parse_args(words).verb == words[0]
         else:
             short = ['-p', 'duration_s:=2.0'] if words[0] in SHORTENED else []
+            short += ['--runs', '2'] if words[0] == 'monte-carlo' else []
             assert main([*words, *short]) == 0, line
 
 
