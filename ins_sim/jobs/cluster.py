@@ -53,6 +53,8 @@ class Cluster:
             with warnings.catch_warnings():
                 # That versions differ is found out by _check_versions, which refuses.
                 warnings.simplefilter('ignore')
+                # A client of no address at all would wait for itself when it is deleted.
+                distributed.comm.get_address_host_port(self._address)
                 self._client = distributed.Client(self._address, timeout=CONNECT_S,
                                                   set_as_default=False)
         except (OSError, TypeError, ValueError) as error:

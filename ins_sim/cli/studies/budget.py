@@ -41,7 +41,7 @@ def run(chosen):
     linear = error_budget(settings, motion, times_of(wanted, navigation_span_s(settings)))
     answers = [answer(linear, requirement) for requirement in wanted]
     beside = None
-    if chosen.beside:
+    if chosen.beside is not None:
         beside = read_study(chosen.beside, settings)
     elif chosen.runs:
         beside = fly_beside(settings, motion, linear, chosen.runs)

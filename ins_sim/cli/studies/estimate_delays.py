@@ -114,7 +114,9 @@ def _compare(chosen, console):
     from ins_sim.studies import bench_motions as study
     from ins_sim import parameter_files
     settings = parameter_files.read(arguments.parameter_paths(chosen, [INSTRUMENT]), chosen.param)
-    sensor, duration_s = settings.imu_sensor, chosen.duration or DURATION_S
+    sensor, duration_s = settings.imu_sensor, chosen.duration
+    if duration_s is None:
+        duration_s = DURATION_S
     dt_s = period_ns(sensor.rate_hz) * 1e-9
     white = triad_model(sensor.gyro.errors, dt_s, 'gyro.errors').white
     if sensor.gyro.model != 'ideal' or not all(white):

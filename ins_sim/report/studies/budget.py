@@ -6,6 +6,8 @@ import numpy as np
 from rich.table import Table
 
 from ins_sim import parameter_files
+from ins_sim.core.prediction.budget.linear_budget import INTERVALS
+from ins_sim.studies.budget.beside import not_compared
 from ins_sim.studies.budget.quantities import (ANGLE, LENGTH, linear_until, LINEAR_UP_TO,
                                                QUANTITIES, shares)
 from ins_sim.studies.budget.requirement import UNITS
@@ -106,8 +108,8 @@ def requirement_sentence(answer):
     if answer.random is None:
         every = 'all random errors together do not suffice, for the fixed ones exceed it'
     else:
-        every = f'all random errors x {answer.random:.4f}'
-    return f'{found}; {told}; {every}; everything x {answer.everything:.4f}.'
+        every = f'all random errors x {answer.random:.4g}'
+    return f'{found}; {told}; {every}; everything x {answer.everything:.4g}.'
 
 
 def _way(improvement):
@@ -115,7 +117,7 @@ def _way(improvement):
     if values is None:
         return f'no {source.label}'
     text = ', '.join(f'{v:.4g}' for v in dict.fromkeys(values))
-    return f'{source.label} x {improvement.factor:.4f} ({text} {source.unit})'
+    return f'{source.label} x {improvement.factor:.4g} ({text} {source.unit})'
 
 
 def budget_tables(linear, answers, compared):
@@ -241,6 +243,11 @@ def budget_notes(linear, compared, beside):
                          'their range, which the budget leaves out.')
     if beside is not None:
         notes.append(_ensemble_note(compared, beside))
+        left_out = not_compared(linear, beside)
+        if left_out:
+            notes.append(f'{left_out} of the {len(beside.t_s)} instants of the ensemble are left '
+                         f'out: the budget, which divides the run by {INTERVALS}, has none then, '
+                         'or fewer than 2 runs count.')
         if any(source.triad is None for source in linear.random):
             notes.append('No run draws errors of the start: for the comparison the budget is '
                          'taken without the standard deviations of initial.*.')
@@ -253,6 +260,9 @@ def _ensemble_note(compared, beside):
         lost = (f' {len(beside.diverged)} of them diverged and count no further: '
                 f'{", ".join(map(str, beside.diverged[:MOST_NAMED]))}'
                 + (' and others.' if len(beside.diverged) > MOST_NAMED else '.'))
+    if not compared:
+        return (f'The ensemble of {beside.runs} runs is not compared: no random error of the '
+                f'budget moves a quantity.{lost}')
     off = [found.name for found in compared if found.differs.any()]
     told = ('is inside its 99.9 % interval everywhere' if not off else
             f'leaves its 99.9 % interval in {", ".join(off)}')

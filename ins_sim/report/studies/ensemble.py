@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 import json
 import math
+from shlex import quote
 
 import numpy as np
 from rich.table import Table
@@ -76,7 +77,7 @@ def ensemble_title(settings, runs):
 def flight_command(report, parameters=PARAMETERS):
     """Return the command that flies the worst run alone, to the bit."""
     number, aided = report.worst[0], '' if report.aided is None else ' --aided'
-    return (f'ins_sim simulate{aided} --params-file {parameters} -p run:={number} '
+    return (f'ins_sim simulate{aided} --params-file {quote(parameters)} -p run:={number} '
             f'-o run_{number}')
 
 

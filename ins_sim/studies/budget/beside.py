@@ -119,6 +119,22 @@ def rms_scatter(covariance, mean, count):
     return 0.5 * np.sqrt(variance / count) / square
 
 
+def not_compared(budget, beside):
+    """Return how many instants of BesideRuns, but for the start, ``compared`` has to leave out."""
+    later = beside.t_s > SAME_S
+    return int(np.count_nonzero(later & ~_common(_apart(budget, beside), beside)))
+
+
+def _apart(budget, beside):
+    """Return how far apart the instants of a budget and of runs are, (n, m), s."""
+    return np.abs(budget.t_s[:, np.newaxis] - beside.t_s)
+
+
+def _common(apart, beside):
+    """Return which instants of runs the budget has, too, and scatter at all, (m,)."""
+    return (apart.min(axis=0) <= SAME_S) & (beside.t_s > SAME_S) & (beside.count > 1)
+
+
 def compared(budget, beside):
     """
     Return the ComparedQuantities of BesideRuns and a LinearBudget, at their common instants.
@@ -127,11 +143,15 @@ def compared(budget, beside):
     vertical channel that follows the truth, are left out, and so is the start.  Raises ValueError
     where there is no common instant.
     """
-    off = np.abs(budget.t_s[:, np.newaxis] - beside.t_s)
-    common = (off.min(axis=0) <= SAME_S) & (beside.t_s > SAME_S) & (beside.count > 1)
+    if beside.count.max() < 2:
+        raise ValueError(f'the ensemble has {beside.count.max()} run that counts; expected at '
+                         'least 2, whose scatter is compared with the budget')
+    off = _apart(budget, beside)
+    common = _common(off, beside)
     if not common.any():
-        raise ValueError(f'the ensemble has its instants at {beside.t_s.tolist()} s; expected '
-                         f'some of the budget, which divides the run by {INTERVALS}')
+        raise ValueError(f'the ensemble has {len(beside.t_s)} instants from {beside.t_s[0]:g} to '
+                         f'{beside.t_s[-1]:g} s, of which none can be compared; expected some of '
+                         f'the budget, which divides the run by {INTERVALS}, with at least 2 runs')
     numbers, count = off.argmin(axis=0)[common], beside.count[common]
     t_s, mean, covariance = budget.t_s[numbers], beside.mean[common], beside.covariance[common]
     budget = without_start(budget)

@@ -180,3 +180,42 @@ def test_sensitivities_are_derivatives():
     key = 'gyro.errors.bandwidth_hz'
     slope = (rms(**{key: 51.0}) - rms(**{key: 49.0})) / 2.0
     assert slopes[key, ''] == pytest.approx(slope, rel=0.1)
+
+
+def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
+    """Of 10 intervals a budget of 360 has all instants, of 7 the last one; one run has none."""
+    said = []
+    for instants, runs in ((11, 2), (8, 2), (11, 1)):
+        study = tmp_path / f'mc_{instants}_{runs}'
+        assert main(['monte-carlo', *FILES, '--runs', str(runs), '--jobs', '1', '--instants',
+                     str(instants), '-o', str(study)]) == 0
+        if runs == 2:
+            assert main(['budget', *FILES, '--beside', str(study), '-o',
+                         str(tmp_path / f'b_{instants}')]) == 0
+            said.append(' '.join(capsys.readouterr().out.split()))
+    assert 'instants of the ensemble are left out' not in said[0]
+    assert '6 of the 8 instants of the ensemble are left out' in said[1]
+    capsys.readouterr()
+    assert 'has 1 run that counts; expected at least 2' in refused(
+        capsys, *FILES, '--beside', str(study), '-o', str(tmp_path / 'b'))
+
+
+def test_ideal_instruments_are_not_said_to_agree(capsys, tmp_path):
+    """Nothing scatters, so nothing is compared."""
+    assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--runs', '2',
+                 '-o', str(tmp_path / 'b')]) == 0
+    said = ' '.join(capsys.readouterr().out.split())
+    assert 'is not compared: no random error' in said and 'inside its' not in said
+
+
+def test_an_empty_name_of_a_study_is_refused(capsys, tmp_path):
+    """It is not taken as no comparison."""
+    assert 'holds no ensemble.npz' in refused(
+        capsys, *FILES, '--beside', '', '-o', str(tmp_path / 'b'))
+
+
+def test_a_factor_is_never_shown_as_zero(capsys, tmp_path):
+    """A requirement that asks for a billionth."""
+    assert main(['budget', *FILES, '--require', 'horizontal rms 1e-9 m at 60 s', '-o',
+                 str(tmp_path / 'b')]) == 0
+    assert 'everything x 1.2' in ' '.join(capsys.readouterr().out.split())

@@ -1,6 +1,7 @@
 """The verb monte-carlo and ins_sim.monte_carlo: what they write, and what they refuse."""
 
 import json
+import shlex
 
 import ins_sim
 from ins_sim.cli.main import main
@@ -156,3 +157,13 @@ def test_an_ensemble_of_no_runs_has_no_statistics():
     settings = ins_sim.read_settings(NAMES, {'duration_s': 1.0})
     found = simulate_runs(settings, read_motion(settings.motion_generator), range(0), [1.0])
     assert found.statistics.count.tolist() == [0] and found.final.shape == (0, 10)
+
+
+def test_the_command_of_the_worst_run_can_be_pasted(tmp_path, monkeypatch, capsys):
+    """Into a shell, wherever the study is: the folder stays one word."""
+    monkeypatch.chdir(tmp_path)
+    folder = 'a b <script> & "q"'
+    assert main([*WORDS, '--runs', '2', '-o', folder]) == 0
+    command, = (line for line in capsys.readouterr().out.splitlines()
+                if line.startswith('ins_sim simulate'))
+    assert f'{folder}/parameters.yaml' in shlex.split(command)

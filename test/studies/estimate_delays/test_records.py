@@ -183,3 +183,11 @@ def test_without_a_source_motions_are_compared(tmp_path, capsys):
     said = capsys.readouterr().out
     assert 'Of the motions compared rocking of the parameters shows delays best' in said
     assert 'as fast as the bench allows' in said
+
+
+@pytest.mark.parametrize('duration', ['0', '-5', 'nan'])
+def test_a_motion_of_no_length_is_refused(duration, tmp_path, capsys):
+    """Nor is a length of 0 s taken for the default."""
+    assert main(['estimate-delays', '--duration', duration, '-o', str(tmp_path / 'e')]) == 2
+    assert f'--duration is {duration} s; expected more than 0' in capsys.readouterr().err
+    assert not (tmp_path / 'e').exists()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support.nodes.clusters import Processes, slow_block
 
-pytest.importorskip('distributed', reason='needs Dask (extra cluster)')
+distributed = pytest.importorskip('distributed', reason='needs Dask (extra cluster)')
 
 
 @pytest.fixture
@@ -66,6 +66,17 @@ def test_a_scheduler_that_is_not_there(address, reason, monkeypatch):
     """The sentence names the address."""
     monkeypatch.setattr(cluster, 'CONNECT_S', 1.0)
     with pytest.raises(ValueError, match=reason), open_executor(scheduler=address):
+        pass
+
+
+@pytest.mark.parametrize('address', ['nowhere', '', 'tcp:/localhost:8786', 'http://localhost:1'])
+def test_a_misspelt_address_makes_no_client(address, monkeypatch):
+    """One that has failed to begin waits 20 s for itself when it is deleted, and says so."""
+    def client(*_, **__):
+        pytest.fail('a client was made')
+
+    monkeypatch.setattr(distributed, 'Client', client)
+    with pytest.raises(ValueError, match='there is no Dask'), open_executor(scheduler=address):
         pass
 
 
