@@ -75,8 +75,8 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     >>> found.ranked()[0].label
     'gyro turn-on bias'
     >>> answer = found.requirement('horizontal rms 7408 m at 3600 s')
-    >>> f'{answer.alone[0].values[0]:.4f} {answer.alone[0].source.unit}'
-    '0.6827 deg/h'
+    >>> f'{answer.alone[0].values[0]:.3f} {answer.alone[0].source.unit}'
+    '0.683 deg/h'
     """
     check_settings(settings, SimulationSettings)
     flown = given_motion(settings, motion)
