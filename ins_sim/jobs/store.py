@@ -119,7 +119,7 @@ class BlockStore:
 def _changed(before, now):
     """Return what differs between two identities, in words."""
     keys = [key for key in {**before, **now} if before.get(key) != now.get(key)]
-    said = [f'{key} is {shown(before.get(key))} there and {shown(now.get(key))} now'
+    said = [f'{key} is {shown(before.get(key))} there and {shown(now.get(key))} here'
             for key in keys[:MOST_NAMED]]
     if len(keys) > MOST_NAMED:
         said.append(f'and {len(keys) - MOST_NAMED} more')

@@ -51,8 +51,8 @@ def consistency_table(consistency):
     if not rows:
         return None
     return PageTable('consistency of the filter at the last instant', HEADS, tuple(rows),
-                     'each interval holds for one instant; the errors of a run at successive instants '
-                     'are correlated, so that NEES outside of its interval stays there for a while')
+                     'each interval holds for one instant; errors of a run at successive instants '
+                     'are correlated, so that NEES stays outside of its interval for a while')
 
 
 def consistency_chart(t_ns, consistency):
@@ -76,7 +76,8 @@ def consistency_chart(t_ns, consistency):
         return None
     runs = int(nees.count.max(initial=0)) or max(int(one.sums.count.max())
                                                  for one in fixes.values())
-    return Chart('consistency', f'Consistency of the filter: mean NEES and NIS of {runs} runs', tuple(panels),
+    return Chart('consistency', f'Consistency of the filter: mean NEES and NIS of {runs} runs',
+                 tuple(panels),
                  caption='At each instant, 95 of 100 ensembles of a consistent filter lie in the '
                  'band; errors of a run at successive instants are correlated.')
 

@@ -124,9 +124,10 @@ def budget_tables(linear, answers, compared):
     tables = [_total_table(linear, numbers)]
     count = len(linear.random)
     for sources, part, words in (
-            (linear.random, slice(0, count), 'Errors that differ from run to run, each alone '
-             '(standard deviation)'), (linear.fixed, slice(count, None), 'Errors that are the same in every '
-                          'run, each alone')):
+            (linear.random, slice(0, count),
+             'Errors that differ from run to run, each alone (standard deviation)'),
+            (linear.fixed, slice(count, None),
+             'Errors that are the same in every run, each alone')):
         if sources:
             tables.append(_source_table(linear, sources, part, numbers, words))
     if linear.random or linear.fixed:
@@ -163,8 +164,8 @@ def _source_table(linear, sources, part, numbers, words):
                   f'{100.0 * squares[k]:.1f} %', float(tilt[k]), float(azimuth[k]))
                  for k in order)
     heads = [f'{head} [m]' for head in _heads(linear, numbers)]
-    return PageTable(words, ('source', 'parameter', *heads, 'share of the mean square', 'tilt [arcsec]',
-                             'azimuth [arcsec]'), rows,
+    return PageTable(words, ('source', 'parameter', *heads, 'share of the mean square',
+                             'tilt [arcsec]', 'azimuth [arcsec]'), rows,
                      'Horizontal position error of each source, ranked; tilt, azimuth and share of '
                      'the mean square at the end.' + _silent(sources, order))
 
@@ -242,8 +243,8 @@ def budget_notes(linear, compared, beside):
     if beside is not None:
         notes.append(_ensemble_note(compared, beside))
         if any(source.triad is None for source in linear.random):
-            notes.append('The runs have no random initial errors: the comparison leaves the standard '
-                         'deviations of initial.* out of the budget.')
+            notes.append('The runs have no random initial errors: the comparison leaves the '
+                         'standard deviations of initial.* out of the budget.')
     return tuple(notes)
 
 

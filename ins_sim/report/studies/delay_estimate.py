@@ -88,8 +88,8 @@ def differences(triad):
 
 def sentences(triad):
     """Return the notes on a TriadEstimate, one sentence each."""
-    told = ['"delay and lag" is the sum of the delay of the channel and the lag of the instrument, '
-            'relative to the stamps; a reading is the mean over the sampling interval before '
+    told = ['"delay and lag" is the sum of the delay of the channel and the lag of the '
+            'instrument, relative to the stamps; a reading is the mean over the sampling interval before '
             'its stamp']
     for channel in triad.channels:
         if channel.refused:
@@ -100,8 +100,8 @@ def sentences(triad):
         told.append(f'the standard deviations of {", ".join(by_walk)} are computed from the angle '
                     'random walk in the settings; the residuals agree with it')
     if others:
-        told.append(f'the standard deviations of {", ".join(others)} are computed from the scatter '
-                    'of the residuals')
+        told.append(f'the standard deviations of {", ".join(others)} are computed from the '
+                    'scatter of the residuals')
     told += [alike for channel in triad.channels for alike in _alike(channel)]
     return [*told, *triad.notes]
 

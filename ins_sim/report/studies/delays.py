@@ -141,7 +141,8 @@ def answer(results):
                     f'the attitude drifts by {_drift(worst):.3g} deg/h and the position error '
                     f'reaches {_far(worst):.4g} m in {_hours(worst)}')
         if best is not worst:
-            said[-1] += f'; with {names.short_run_name(best.settings)} it reaches {_far(best):.3g} m'
+            said[-1] += (f'; with {names.short_run_name(best.settings)} it reaches '
+                         f'{_far(best):.3g} m')
     if flights:
         worst = max(flights, key=_far)
         said.append(f'Of {len(flights)} flights the {names.motion_name(worst.settings)} has the '
