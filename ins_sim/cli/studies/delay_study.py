@@ -7,8 +7,8 @@ from .. import arguments
 HELP = 'figures and tables of the paper on delays of gyro channels'
 DESCRIPTION = ('Simulate the motions of Bogdanov and Fomichev (2018) with delayed gyro channels, '
                'and compare the errors with the published ones: position errors of motion 2, '
-               'tuned and detuned, and of three flights; maps of the drift over the rates of motion 2 '
-               'and over the direction of rocking; the contribution of each channel.')
+               'tuned and detuned, and of three flights; maps of the drift over the rates of '
+               'motion 2 and over the direction of rocking; the contribution of each channel.')
 
 
 def add_arguments(parser):

@@ -8,9 +8,9 @@ from .. import arguments
 HELP = 'estimate delays of gyro channels from readings under a known motion'
 DESCRIPTION = ('Estimate delays, biases, scale factors and misalignments of the gyro channels '
                'from readings under a known motion: folders of "simulate", bags with Imu '
-               'messages and the truth, or CSV files of an IMU with the motion in motion.*. Several SOURCEs '
-               'are records of one instrument. Without SOURCE: compare bench motions by the '
-               'standard deviation of the delays that they would give.')
+               'messages and the truth, or CSV files of an IMU with the motion in motion.*. '
+               'Several SOURCEs are records of one instrument. Without SOURCE: compare bench '
+               'motions by the standard deviation of the delays that they would give.')
 DURATION_S = 600.0
 INSTRUMENT = 'imu_tactical_fog'
 

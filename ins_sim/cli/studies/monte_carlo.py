@@ -5,8 +5,8 @@ from .. import arguments
 HELP = 'statistics of the errors of many runs of a simulation'
 DESCRIPTION = ('Simulate many runs, which differ in their random numbers, on all cores or on a '
                'Dask cluster. Writes statistics of their errors over time, the errors of every '
-               'run at its end, figures and a report. After an interruption the same command resumes '
-               'the study.')
+               'run at its end, figures and a report. After an interruption the same command '
+               'resumes the study.')
 
 
 def add_arguments(parser):

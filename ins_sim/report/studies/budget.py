@@ -166,8 +166,8 @@ def _source_table(linear, sources, part, numbers, words):
     heads = [f'{head} [m]' for head in _heads(linear, numbers)]
     return PageTable(words, ('source', 'parameter', *heads, 'share of the mean square',
                              'tilt [arcsec]', 'azimuth [arcsec]'), rows,
-                     'Horizontal position error of each source, ranked; tilt, azimuth and share of '
-                     'the mean square at the end.' + _silent(sources, order))
+                     'Horizontal position error of each source, ranked; tilt, azimuth and share '
+                     'of the mean square at the end.' + _silent(sources, order))
 
 
 def _silent(sources, shown):

@@ -89,8 +89,8 @@ def differences(triad):
 def sentences(triad):
     """Return the notes on a TriadEstimate, one sentence each."""
     told = ['"delay and lag" is the sum of the delay of the channel and the lag of the '
-            'instrument, relative to the stamps; a reading is the mean over the sampling interval before '
-            'its stamp']
+            'instrument, relative to the stamps; a reading is the mean over the sampling interval '
+            'before its stamp']
     for channel in triad.channels:
         if channel.refused:
             told.append(f'{channel.axis}: the delay is not observable: {channel.refused}')
