@@ -36,24 +36,25 @@ Folder = Union[str, 'os.PathLike[str]']
 def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: int = 0,
            motion: Motion | None = None, beside: Folder | None = None) -> ErrorBudget:
     """
-    Propagate the errors of a simulation by source, without a simulation.
+    Return the error budget of a strapdown: the contribution of each error source.
 
-    Linear covariance of the free strapdown along the motion: every error of the settings makes a
-    share of the error of position, velocity and attitude (docs/budget.md).
+    Propagates each error of the settings by linear covariance along the motion of an unaided
+    strapdown; nothing is simulated unless ``runs`` are asked for (docs/budget.md; docs/theory.md,
+    "Error budget").
 
     Parameters
     ----------
     settings : SimulationSettings
-        Of ``read_settings``.
+        From ``read_settings``.
     times_s : iterable of float, optional
-        Times since the start of the navigation, s, at which the budget is wanted beside its 361
-        even ones.
+        Times since the start of the navigation, s, at which the budget is computed in addition to
+        its 361 evenly spaced times.
     runs : int, optional
-        How many runs to simulate beside it, for a comparison; 0 or at least 2.
+        Number of runs to simulate for a comparison; 0 or at least 2.
     motion : Motion, optional
-        A motion of your own, in place of the one that the settings name.
+        A motion of your own, used instead of the one in the settings.
     beside : str or path, optional
-        Folder of a study of ``monte_carlo`` of the same settings, to be compared with.
+        Folder of a study of ``monte_carlo`` with the same settings, for a comparison.
 
     Returns
     -------
@@ -62,8 +63,9 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     Raises
     ------
     ValueError
-        In one sentence, where the settings describe no run of finite length or no motion, where a
-        time lies outside of the run, and where no linear budget covers the instrument.
+        If the settings describe no run of finite length or no valid motion, if a time lies outside
+        of the run, if the instrument or the motion is not covered (tuned gyros, guided motions),
+        or if both ``runs`` and ``beside`` are given.
 
     Examples
     --------
@@ -75,8 +77,8 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     >>> found.ranked()[0].label
     'gyro turn-on bias'
     >>> answer = found.requirement('horizontal rms 7408 m at 3600 s')
-    >>> f'{answer.alone[0].values[0]:.4f} {answer.alone[0].source.unit}'
-    '0.6827 deg/h'
+    >>> f'{answer.alone[0].values[0]:.3f} {answer.alone[0].source.unit}'
+    '0.683 deg/h'
     """
     check_settings(settings, SimulationSettings)
     flown = given_motion(settings, motion)
@@ -95,7 +97,7 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
 @dataclass(frozen=True, eq=False, repr=False)
 class ErrorBudget:
     """
-    The error budget of a free strapdown along a motion.
+    The error budget of an unaided strapdown along a motion.
 
     Attributes
     ----------
@@ -104,7 +106,7 @@ class ErrorBudget:
     linear : LinearBudget
         Covariances and mean errors by source: position, velocity and attitude, East, North, Up.
     beside : BesideRuns
-        The runs beside it, or None.
+        The simulated runs to compare with, or None.
     """
 
     settings: SimulationSettings
@@ -124,7 +126,7 @@ class ErrorBudget:
 
     @property
     def sources(self) -> tuple[Any, ...]:
-        """The ErrorSources: those that differ from run to run, then those that do not."""
+        """The ErrorSources: those that differ from run to run, then the fixed ones."""
         return (*self.linear.random, *self.linear.fixed)
 
     def rms(self, quantity: str = 'horizontal') -> np.ndarray:
@@ -140,7 +142,7 @@ class ErrorBudget:
 
     def error_circle(self, part: float = 0.5) -> np.ndarray:
         """
-        Return the radius that holds a part of the horizontal errors, (n,), m: CEP for 0.5.
+        Return the radius that contains a part of the horizontal errors, (n,), m: CEP for 0.5.
 
         Parameters
         ----------
@@ -155,36 +157,41 @@ class ErrorBudget:
 
     def contributions(self, quantity: str = 'horizontal') -> dict[str, np.ndarray]:
         """
-        Return what each source makes alone, {name of the parameter: (n,)}, m, m/s or rad.
+        Return the error caused by each source alone, {name of the parameter: (n,)}.
 
-        Of a source that differs from run to run it is a standard deviation, of another one the
-        size of the error.
+        In m, m/s or rad; for a source that differs from run to run a standard deviation, for a
+        fixed one the magnitude of its error.
         """
         found = shares(self.linear, _quantity(quantity)).contributions()
         return {source.key: row for source, row in zip(self.sources, found)}
 
     def ranked(self, quantity: str = 'horizontal', t_s: float | None = None) -> list[Any]:
-        """Return the ErrorSources by what they make at a time, by default the last one."""
+        """Return the ErrorSources, the largest first, at a time, s, by default the end."""
         k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
         made = shares(self.linear, _quantity(quantity)).contributions()[:, k]
         return [self.sources[i] for i in np.argsort(-made, kind='stable')]
 
     def sensitivities(self, quantity: str = 'horizontal',
                       t_s: float | None = None) -> list[Sensitivity]:
-        """Return how a quantity changes with each parameter at a time, by default the last."""
+        """Return how a quantity changes with each parameter at a time, s, by default the end."""
         k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
         found: list[Sensitivity] = sensitivities(self.linear, _quantity(quantity), k)
         return found
 
     def requirement(self, text: str) -> RequirementAnswer:
         """
-        Return what would have to improve to meet a requirement.
+        Return what must improve to meet a requirement.
 
         Parameters
         ----------
         text : str
-            Such as ``'horizontal rms 1852 m at 3600 s'``. At a time that is none of ``t_s`` the
-            errors are propagated anew.
+            Such as ``'horizontal rms 1852 m at 3600 s'`` (docs/budget.md). For a time that is not
+            in ``t_s`` the errors are propagated again.
+
+        Raises
+        ------
+        ValueError
+            If the text is not a requirement, or the time lies outside of the run.
         """
         wanted, linear = parse_requirement(text), self.linear
         times = times_of([wanted], linear.t_s[-1])
@@ -194,12 +201,12 @@ class ErrorBudget:
         return found
 
     def linear_until(self) -> float | None:
-        """Return the time, s, from which on errors of second order show, or None."""
+        """Return the time, s, after which errors of second order are not negligible, or None."""
         until: float | None = linear_until(self.linear)
         return until
 
     def compared(self) -> list[ComparedQuantity]:
-        """Return the ensemble over the budget, quantity by quantity; empty without runs."""
+        """Return the ratio of ensemble to budget for each quantity; empty without runs."""
         found: list[ComparedQuantity] = []
         if self.beside is not None:
             found = compared(self.linear, self.beside)
@@ -207,10 +214,10 @@ class ErrorBudget:
 
     def to_dataframe(self, quantity: str = 'horizontal') -> pandas.DataFrame:
         """
-        Return the total and what each source makes alone of a quantity, as a DataFrame.
+        Return the total of a quantity, and the error of each source alone, as a DataFrame.
 
-        The index ``t_ns`` is the time since the start of the navigation in ns; the columns are
-        ``rms`` and the parameters.
+        The index ``t_ns`` is the time since the start of the navigation in ns; the columns, in m,
+        m/s or rad, are ``rms`` and the names of the parameters.
         """
         table = {'rms': self.rms(quantity), **self.contributions(quantity)}
         return dataframe(np.round(1e9 * self.t_s).astype(np.int64), table)
@@ -219,8 +226,8 @@ class ErrorBudget:
         """
         Return covariances and mean errors as a Dataset.
 
-        Dimensions source, time (s), error and error_2: covariance (source, time, error, error_2)
-        of the random sources and mean (fixed_source, time, error).
+        Variables: ``covariance`` (source, time, error, error_2) of the random sources and ``mean``
+        (fixed_source, time, error) of the fixed ones, in SI and radians; time in s.
         """
         names = [f'{what}_{axis}' for what in ('position', 'velocity', 'attitude') for axis in ENU]
         return dataset(
@@ -233,7 +240,7 @@ class ErrorBudget:
     def save(self, folder: Folder, overwrite: bool = False,
              requirements: Iterable[str] = ()) -> None:
         """
-        Write the budget as ``ins_sim budget -o`` does: figures, tables, numbers and report.html.
+        Write the folder of ``ins_sim budget -o``: figures, tables, arrays and report.html.
 
         Parameters
         ----------
@@ -241,12 +248,12 @@ class ErrorBudget:
         overwrite : bool, optional
             Replace the folder if it holds a budget.
         requirements : iterable of str, optional
-            Requirements that the report answers.
+            Requirements to be answered in the report.
 
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or a requirement is none.
+            If the folder exists and must not be replaced, or a text is not a requirement.
         """
         from ins_sim.own_folders import whole_folder
         from ins_sim.report.studies import budget as report

@@ -1,4 +1,4 @@
-"""Delays and other errors of gyro channels from records under a known motion."""
+"""Delays and other errors of gyro channels, from readings under a known motion."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class DelayEstimate:
     Attributes
     ----------
     triad : TriadEstimate
-        All that was found; the properties below give its fields.
+        All estimates; the properties below give the delays.
     notes : tuple of str
-        What was found, assumed and left out, in sentences.
+        Sentences on assumptions and on what was left out or cannot be determined.
     """
 
     triad: TriadEstimate
@@ -56,7 +56,7 @@ class DelayEstimate:
 
     @property
     def delays(self) -> np.ndarray:
-        """Delay and lag of x, y, z together, s, (3,); not a number where it does not show."""
+        """Sum of delay and lag of x, y, z, s, (3,); NaN if it is not observable."""
         return np.array([np.nan if c.refused else c.delay for c in self.triad.channels])
 
     @property
@@ -66,23 +66,23 @@ class DelayEstimate:
 
     @property
     def lags(self) -> np.ndarray:
-        """Part of the delays that is the lag of the bandwidth, by its model, s, (3,)."""
+        """Part of the delays that the bandwidth causes according to its model, s, (3,)."""
         return np.zeros(3) if self.triad.lags is None else self.triad.lags
 
     def to_dataframe(self) -> pandas.DataFrame:
         """
-        Return every value as a row of a DataFrame.
+        Return the estimates as a DataFrame, one row for each value.
 
         Returns
         -------
         pandas.DataFrame
-            The columns axis, name, unit, value, sigma, and told, whether the record tells the
-            value; if not, sigma is hardly less than that of what is known beforehand.
+            Columns ``axis``, ``name``, ``unit``, ``value``, ``sigma`` and ``told``: whether the
+            record determines the value; if not, sigma is about the a-priori one.
 
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         """
         try:
             import pandas
@@ -97,19 +97,19 @@ class DelayEstimate:
 
     def to_xarray(self) -> xarray.Dataset:
         """
-        Return the values as a Dataset, SI and rad.
+        Return the estimates as a Dataset, in SI and radians.
 
         Returns
         -------
         xarray.Dataset
-            Of dimension body_axis: delay, lag, scale_factor; with towards: misalignment; with
-            record: bias; each but lag with its standard deviation, such as
-            delay_sigma.
+            ``delay``, ``lag`` and ``scale_factor`` (body_axis), ``misalignment`` (body_axis,
+            towards), ``bias`` (body_axis, record); all but ``lag`` with their standard
+            deviations, such as ``delay_sigma``.
 
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         """
         turned, turned_sigma = np.zeros((3, 3)), np.zeros((3, 3))
         for k, channel in enumerate(self.triad.channels):
@@ -139,16 +139,16 @@ def estimate_delays(sources: Source | Sequence[Source], values: Values | None = 
     Parameters
     ----------
     sources : Run, path, or a sequence of these
-        Runs of ``simulate``, folders of such runs, bags with Imu messages, CSV files of an IMU.
-        All are of one triad; each has a bias of its own.
+        Runs of ``simulate``, folders of such runs, bags with Imu messages, or CSV files of an IMU.
+        All are records of one instrument; each has its own bias.
     values : mapping, optional
-        Values of parameters by name, such as the motion of a bench,
-        ``{'motion.kind': 'rocking'}``, and the noise of the gyros. Without a motion that of a
-        run, or the truth in a bag, counts.
+        Values of parameters by name, such as the motion of the bench,
+        ``{'motion.kind': 'rocking'}``, and the noise of the gyros. If no motion is given, that of
+        the run or the truth in the bag is used.
     names : str, path, or a list of these, optional
-        Parameter files, which come before ``values``.
+        Parameter files; ``values`` override them.
     topic : str, optional
-        Topic of the Imu messages of a bag, where it has more than one.
+        Topic of the Imu messages in a bag, if it has more than one.
 
     Returns
     -------
@@ -157,10 +157,10 @@ def estimate_delays(sources: Source | Sequence[Source], values: Values | None = 
     Raises
     ------
     ValueError
-        In one sentence, on a record that cannot be used or is not of the motion, and where the
-        motion shows the delay of no channel.
+        If a record cannot be used or does not fit the motion, or if the motion does not show the
+        delay of any channel.
     FileNotFoundError
-        Where there is no such record.
+        If a record does not exist.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The comparison of aiding filters and the record of what it says."""
+"""The comparison of the aiding filters, and its result."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ Progress = Union[Callable[[float], object], None]
 @dataclass(frozen=True, eq=False, repr=False)
 class FilterComparison:
     """
-    Several filters over the same flights.
+    Results of several filters on the same flights.
 
     Attributes
     ----------
     settings : AidedSimulationSettings
-        Flight k has the seeds of these plus k.
+        Settings of flight 0; the seeds of flight k are these plus k.
     found : ComparedFilters
-        ``flown`` has of each case the FilterFlights, one a flight; ``digest`` is the SHA-256 of
-        them all, the same whatever computed them.
+        ``flown`` holds for each case a FilterFlight for each flight; ``digest`` is the SHA-256 of
+        all of them.
     rows : tuple of FilterRow
-        What is said of each case: errors, NIS and NEES with their intervals.
+        Summary of each case: errors, NIS and NEES with their intervals.
     """
 
     settings: AidedSimulationSettings
@@ -57,22 +57,24 @@ class FilterComparison:
 
     @property
     def best(self) -> str:
-        """The filter, with its window, whose rms horizontal error at the end is smallest."""
+        """Name of the filter (and window) with the smallest rms horizontal error at the end."""
         return str(min(self.rows, key=lambda row: row.end_m).name)
 
     @property
     def digest(self) -> str:
-        """SHA-256 of all flights, the same whatever computed them."""
+        """SHA-256 of all flights; it does not depend on the workers."""
         return self.found.digest
 
     def to_dataframe(self) -> pandas.DataFrame:
         """
-        Return a row a case: the fields of FilterRow, and NEES at the end by block of states.
+        Return a DataFrame with a row for each case.
+
+        The columns are the fields of FilterRow, and NEES at the end by block of states.
 
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         """
         table: dict[str, list[Any]] = {}
         for row in self.rows:
@@ -95,7 +97,7 @@ class FilterComparison:
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         """
         def stacked(of: Callable[[FilterFlight], np.ndarray]) -> np.ndarray:
             return np.array([[of(flight) for flight in flights] for flights in self.found.flown])
@@ -117,7 +119,7 @@ class FilterComparison:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the comparison as ``ins_sim compare-filters -o`` does.
+        Write the folder of ``ins_sim compare-filters -o``.
 
         Parameters
         ----------
@@ -128,7 +130,7 @@ class FilterComparison:
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or holds no comparison.
+            If the folder exists and must not be replaced, or does not hold a comparison.
         """
         from ins_sim.own_folders import whole_folder
         from ins_sim.report.studies import filter_charts
@@ -141,7 +143,7 @@ class FilterComparison:
 
 
 def _type(values: list[Any]) -> Any:
-    """Return the type of a column: floats where a number is missing."""
+    """Return the type of a column: float if a value is missing."""
     return float if any(value is None for value in values) else None
 
 
@@ -150,26 +152,27 @@ def compare_filters(settings: AidedSimulationSettings, runs: int = 24,
                     jobs: int = 0, scheduler: str | None = None, blocks: Folder | None = None,
                     progress: Progress = None) -> FilterComparison:
     """
-    Fly the filters of the aided navigator over the same flights.
+    Simulate the same flights with several filters of the aided navigator.
 
     Parameters
     ----------
     settings : AidedSimulationSettings
-        Of ``read_settings(..., aided=True)``; flight k has their seeds plus k.
+        From ``read_settings(..., aided=True)``; the seeds of flight k are these plus k.
     runs : int, optional
-        How many flights.
+        Number of flights.
     filters : sequence of str, optional
-        Their names; by default all.
+        Names of the filters; by default all.
     cycles : sequence of int, optional
-        Cycles of a fix of the velocity meter: the first for all filters, the others for eskf as
-        well. By default ``window.cycles``.
+        Numbers of navigation cycles in a fix of the velocity meter: the first is used for all
+        filters, the others in addition for eskf. By default ``window.cycles``.
     jobs : int, optional
-        Processes; 0: as many as cores, 1: this one alone. The result has the same bits.
+        Number of processes; 0: one for each core, 1: this process alone. The result does not
+        depend on it.
     scheduler : str, optional
-        Address of a Dask scheduler, such as ``'tcp://host:8786'``, in the place of processes.
+        Address of a Dask scheduler, such as ``'tcp://host:8786'``, used instead of processes.
     blocks : str or path, optional
-        Folder in which finished flights are kept, so that the same call goes on where an
-        interrupted one was. It is left as it is.
+        Folder in which finished flights are kept, so that the same call resumes an interrupted
+        one. It is not deleted at the end.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
 
@@ -180,8 +183,8 @@ def compare_filters(settings: AidedSimulationSettings, runs: int = 24,
     Raises
     ------
     ValueError
-        As ``simulate_aided`` does; on an unknown filter; where the folder holds flights of other
-        settings; where the cluster cannot be used.
+        As ``simulate_aided``; on an unknown filter; if ``blocks`` holds flights of other
+        settings; if the cluster cannot be used.
 
     Examples
     --------

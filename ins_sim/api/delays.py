@@ -1,4 +1,4 @@
-"""The study of delays of gyro channels."""
+"""The study of gyro channel delays, and its result."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class DelayStudy:
     Attributes
     ----------
     results : tuple of FigureResult
-        Of each figure its settings (``figure``), its runs (``runs``: errors, prediction,
-        zero-delay twin) and its map (``map``), in SI and radians.
+        For each figure its settings (``figure``), its runs (``runs``: errors, prediction, and the
+        twin without delays) and its map (``map``), in SI and radians.
     """
 
     results: tuple[FigureResult, ...]
@@ -52,7 +52,7 @@ class DelayStudy:
         return tuple(result.figure.name for result in self.results)
 
     def result(self, name: str) -> FigureResult:
-        """Return the FigureResult of a name; ValueError where there is none."""
+        """Return the FigureResult of a name; ValueError if there is none."""
         for result in self.results:
             if result.figure.name == name:
                 return result
@@ -70,14 +70,14 @@ class DelayStudy:
         Returns
         -------
         pandas.DataFrame
-            The columns of the CSV file of that name; the index is the first of them.
+            The columns of the CSV file of the figure; the first one is the index.
 
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         ValueError
-            Where there is no such figure.
+            If there is no such figure.
         """
         from ins_sim.report.studies.delay_data import figure_tables
         columns = dict(figure_tables(self.result(name))[name])
@@ -98,15 +98,15 @@ class DelayStudy:
         Returns
         -------
         xarray.Dataset
-            Of the errors of runs dimensions run, time and axis, of a map those of its axes; in SI
-            and radians.
+            For errors of runs the dimensions are run, time and axis, for a map its axes. SI and
+            radians; the axes of the map of rocking are in degrees.
 
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         ValueError
-            Where there is no such figure.
+            If there is no such figure.
         """
         result = self.result(name)
         if isinstance(result.map, RatesMap):
@@ -123,7 +123,7 @@ class DelayStudy:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the study as ``ins_sim delay-study -o`` does.
+        Write the folder of ``ins_sim delay-study -o``.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class DelayStudy:
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or holds something else.
+            If the folder exists and must not be replaced, or holds something else.
         """
         from ins_sim.own_folders import whole_folder
         from ins_sim.report.studies.delay_folder import MARK, write_study
@@ -146,19 +146,21 @@ class DelayStudy:
 def delay_study(names: Names = SHIPPED, values: Values | None = None,
                 recordings: Names = (), jobs: int = 0) -> DelayStudy:
     """
-    Repeat the study of delays of Bogdanov and Fomichev (2018).
+    Repeat the study of gyro channel delays of Bogdanov and Fomichev (2018).
+
+    See docs/delay_study.md. All default figures take half a minute on two cores.
 
     Parameters
     ----------
     names : str, path, or a list of these, optional
-        Parameter files, one a figure: names of shipped ones, or paths. By default those of the
-        verb ``delay-study``.
+        Parameter files, each describing a figure: names of shipped ones, or paths. By default the
+        nine figures of the verb ``delay-study``; ``()`` for recordings alone.
     values : mapping, optional
-        Values by the name of the parameter, for every figure; they win over the files.
+        Values of parameters by name, for all figures; they override the files.
     recordings : str, path, or a list of these, optional
-        Recorded flights, each of which is one more figure.
+        Recorded flights (CSV files or bags), each of which adds a figure.
     jobs : int, optional
-        Processes; 0: as many as cores; 1: the present one alone.
+        Number of processes; 0: one for each core; 1: this process alone.
 
     Returns
     -------
@@ -167,9 +169,9 @@ def delay_study(names: Names = SHIPPED, values: Values | None = None,
     Raises
     ------
     ValueError
-        In one sentence, on settings that no figure has and on recordings that cannot be used.
+        If a parameter does not exist or does not fit a figure, or a recording cannot be used.
     FileNotFoundError
-        Where there is no such file.
+        If a file does not exist.
 
     Examples
     --------
@@ -197,7 +199,7 @@ def delay_study(names: Names = SHIPPED, values: Values | None = None,
 
 
 def _runs_dataset(result: FigureResult) -> xarray.Dataset:
-    """Return the errors of the runs of a figure."""
+    """Return the Dataset of the errors of the runs of a figure."""
     from ins_sim.report.studies.delay_names import short_run_name
     runs = result.runs
     coords: dict[str, tuple[Any, str]] = {

@@ -1,4 +1,4 @@
-"""The ensemble of a simulation and the record of what it says."""
+"""Ensembles of a simulation, and their result."""
 
 from __future__ import annotations
 
@@ -38,19 +38,19 @@ Progress = Union[Callable[[float], object], None]
 @dataclass(frozen=True, eq=False, repr=False)
 class MonteCarlo:
     """
-    Many runs of one simulation.
+    Statistics of many runs of a simulation.
 
     Attributes
     ----------
     settings : SimulationSettings or AidedSimulationSettings
-        Those of the first run; run k has ``settings.with_run(k)``.
+        Settings of the first run; those of run k are ``settings.with_run(k)``.
     result : EnsembleResult
-        The running statistics, and the solution and its errors at the end of every run.
+        The accumulated statistics, and the solution and its errors at the end of every run.
     errors : EnsembleErrors
-        Mean, sigma, rms, percentiles and CEP at the instants.
+        Mean, sigma, rms, percentiles and CEP at the instants ``errors.t_ns`` (m,).
     aided : AidedEnsembleResult
-        Of the aided chain: ``aided.consistency`` has NEES at the instants and NIS of the fixes,
-        and ``aided.refused`` says why a run does not count. None without aiding.
+        For the aided navigator: ``aided.consistency`` holds NEES at the instants and NIS of the
+        fixes, ``aided.refused`` the reasons why runs are excluded. None without aiding.
     """
 
     settings: SimulationSettings | AidedSimulationSettings
@@ -70,45 +70,45 @@ class MonteCarlo:
 
     @property
     def final_errors(self) -> dict[str, np.ndarray]:
-        """Attitude (rad), velocity (m/s), position (m) error of every run at its end, (n, 3)."""
+        """Errors at the end of each run: attitude (rad), velocity (m/s), position (m), (n, 3)."""
         return {name: self.result.final_errors[:, part] for name, part in PARTS.items()}
 
     @property
     def worst(self) -> tuple[int, float] | None:
-        """Number and horizontal error, m, of the run that ends farthest off."""
+        """Number and error, m, of the run with the largest horizontal error at the end."""
         found: tuple[int, float] | None = worst_run(self.result)
         return found
 
     @property
     def diverged(self) -> tuple[int, ...]:
-        """The numbers of the runs that did not stay finite; they count no further."""
+        """Numbers of the runs that diverged; they are excluded from then on."""
         return self.result.diverged
 
     @property
     def digest(self) -> str:
-        """SHA-256 of statistics and ends, the same whatever computed them."""
+        """SHA-256 of the statistics and final errors; it does not depend on the workers."""
         digest: str = ensemble_digest(self.aided or self.result)
         return digest
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
         """
-        Return the statistics, or the ends of the runs, as a DataFrame.
+        Return the statistics, or the final errors of the runs, as a DataFrame.
 
         Parameters
         ----------
         record : {'errors', 'final', 'velocity_meter', 'gnss'}
-            The first has a row an instant, the index ``t_ns``, and columns such as
-            ``position_sigma_north_m`` and ``position_cep95_m``, and of the aided chain
-            ``nees_position`` with its 95 % interval, ``nees_position_low`` and ``_high``; the
-            second has a row a run, the index ``run``, and columns such as ``position_north_m``;
-            the others, of the aided chain, have a row a fix with the mean ``nis``.
+            ``errors``: a row for each instant, index ``t_ns``, columns such as
+            ``position_sigma_north_m`` and ``position_cep95_m``; with aiding also
+            ``nees_position`` and its 95 % interval, ``nees_position_low`` and ``_high``.
+            ``final``: a row for each run, index ``run``, columns such as ``position_north_m``.
+            The others, with aiding only: a row for each fix with the mean ``nis``.
 
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         ValueError
-            Where record is another.
+            If there is no such record.
         """
         if record == 'final':
             table: dict[str, np.ndarray] = {}
@@ -132,15 +132,16 @@ class MonteCarlo:
 
     def to_xarray(self) -> xarray.Dataset:
         """
-        Return statistics and ends as a Dataset with the dimensions run, time, axis, percent.
+        Return statistics and final errors as a Dataset.
 
-        That of the aided chain also has NEES by block of states, dimensions time and block, and
-        NIS by fix, dimensions ``velocity_meter_time`` and ``gnss_time``.
+        The dimensions are run, time (ns), axis (east, north, up) and percent; units are in the
+        attributes. With aiding it also holds NEES by block of states (time, block), and NIS by
+        fix (``velocity_meter_time`` and ``gnss_time``).
 
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         """
         variables: dict[str, Any] = {'runs': (('time',), self.errors.count, '')}
         variables.update({name: (dims, values, UNITS[unit])
@@ -180,7 +181,7 @@ class MonteCarlo:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the study as ``ins_sim monte-carlo -o`` does.
+        Write the folder of ``ins_sim monte-carlo -o``.
 
         Parameters
         ----------
@@ -191,7 +192,7 @@ class MonteCarlo:
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or holds no study.
+            If the folder exists and must not be replaced, or does not hold a study.
         """
         from ins_sim.own_folders import whole_folder
         from ins_sim.report.studies import ensemble
@@ -206,25 +207,25 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
                 instants: int = INSTANTS, jobs: int = 0, scheduler: str | None = None,
                 blocks: Folder | None = None, progress: Progress = None) -> MonteCarlo:
     """
-    Simulate many runs, which differ in their random numbers, and keep statistics of their errors.
+    Simulate many runs with different random numbers, and return statistics of their errors.
 
     Parameters
     ----------
     settings : SimulationSettings or AidedSimulationSettings
-        Of ``read_settings``; their ``run`` is the number of the first run. With
-        AidedSimulationSettings the whole aided chain is simulated, and NEES and NIS are kept.
+        From ``read_settings``; their ``run`` is the number of the first run. With
+        AidedSimulationSettings the aided navigator is simulated, and NEES and NIS are computed.
     runs : int, optional
-        How many.
+        Number of runs.
     instants : int, optional
-        At how many instants, evenly from the start of the strapdown to the end, statistics are
-        kept.
+        Number of instants of the statistics, evenly from the start of the strapdown to the end.
     jobs : int, optional
-        Processes; 0: as many as cores, 1: this one alone. The result has the same bits.
+        Number of processes; 0: one for each core, 1: this process alone. The result does not
+        depend on it.
     scheduler : str, optional
-        Address of a Dask scheduler, such as ``'tcp://host:8786'``, in the place of processes.
+        Address of a Dask scheduler, such as ``'tcp://host:8786'``, used instead of processes.
     blocks : str or path, optional
-        Folder in which finished blocks are kept, so that the same call goes on where an
-        interrupted one was. It is left as it is.
+        Folder in which finished blocks are kept, so that the same call resumes an interrupted
+        one. It is not deleted at the end.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
 
@@ -235,8 +236,8 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
     Raises
     ------
     ValueError
-        As ``simulate`` does; where the folder holds blocks of other settings; where the cluster
-        cannot be used.
+        As ``simulate``; if ``blocks`` holds blocks of other settings; if the cluster cannot be
+        used.
 
     Examples
     --------

@@ -25,15 +25,15 @@ def add_force(parser, replaced):
 
 
 def add_jobs(parser):
-    """Add --jobs and --scheduler: what computes the runs."""
-    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
-                        'as many as cores)')
-    parser.add_argument('--scheduler', metavar='ADDRESS', default=None, help='the scheduler of a '
-                        'Dask cluster to compute on, such as tcp://host:8786 (extra cluster)')
+    """Add --jobs and --scheduler."""
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='number of '
+                        'processes (default: one for each core)')
+    parser.add_argument('--scheduler', metavar='ADDRESS', default=None, help='compute on the Dask '
+                        'cluster of this scheduler, such as tcp://host:8786 (extra cluster)')
 
 
 def add_tables(parser):
-    """Add --csv and --tum, what is written beside the arrays."""
+    """Add --csv and --tum, which write further files."""
     parser.add_argument('--csv', action='store_true', help='also write every record as a CSV '
                         'table, for pandas, MATLAB or a spreadsheet')
     parser.add_argument('--tum', action='store_true', help='also write the trajectories as TUM '
@@ -42,9 +42,9 @@ def add_tables(parser):
 
 def add_thin(parser):
     """Add --thin."""
-    parser.add_argument('--thin', type=int, default=1, metavar='N', help='write every N-th '
-                        'output instant of truth, solution and errors; the record of the IMU '
-                        'stays whole, figures and printed tables are made of all instants '
+    parser.add_argument('--thin', type=int, default=1, metavar='N', help='write only every '
+                        'N-th output instant of truth, solution and errors; the IMU record is '
+                        'not thinned, and figures and printed tables use all instants '
                         '(default: %(default)s)')
 
 

@@ -1,14 +1,13 @@
-"""Verb describe: what a parameter means, or what a shipped file sets."""
+"""Verb describe: meaning of a parameter, or content of a shipped file."""
 
 import textwrap
 
-HELP = 'what a parameter, a group of them or a shipped file means'
-DESCRIPTION = ('Describe a parameter or a group of parameters: meaning, unit, bounds, default, '
-               'and the nodes and verbs that have it; or a node or verb, with all its '
-               'parameters; or a shipped parameter file, with what it sets. Without a name: the '
-               'groups.')
+HELP = 'describe a parameter, a group of parameters or a shipped file'
+DESCRIPTION = ('Describe a parameter or a group of parameters (meaning, unit, bounds, default, '
+               'and the nodes and verbs that have it), a node or verb with all its parameters, or '
+               'a shipped parameter file with all that it sets. Without a name: list the groups.')
 WIDTH = 79
-# So many names that end alike are told.
+# Most names with the same ending that a message lists.
 MOST = 6
 
 
@@ -28,7 +27,7 @@ def run(chosen):
 
 
 def described(name):
-    """Return the lines on a name, or on all groups; ValueError where nothing is called so."""
+    """Return the lines on a name, or on all groups; ValueError if there is no such name."""
     from ins_sim import resources
     from ins_sim.settings.catalogue import sentence_of
     from .known_settings import known_groups, known_parameters, READERS
@@ -54,7 +53,7 @@ def _parameters(groups, parameters):
     """Return the lines on the groups of a name and the parameters in them."""
     told = [_entry(f'{group.name}  ({", ".join(group.readers)})', group.words)
             for group in groups]
-    # Who has a parameter is said of the group, if all of it are alike.
+    # If all parameters of a group have the same readers, these are named once, with the group.
     alike = len(groups) == 1 and {p.readers for p in parameters} == {groups[0].readers}
     told += [_entry(_head(p) if alike else f'{_head(p)}  ({", ".join(p.readers)})', p.words)
              for p in parameters]
@@ -98,7 +97,7 @@ def _unknown(name, parameters, others):
     ending = sorted(p for p in parameters if p.endswith(f'.{name}'))
     if ending:
         more = f' and {len(ending) - MOST} more' if len(ending) > MOST else ''
-        near = f'it is the end of {", ".join(ending[:MOST])}{more}'
+        near = f'there are {", ".join(ending[:MOST])}{more}'
     else:
         near = f'the nearest known one is {cut(nearest_name(name, parameters | others))!r}'
-    return (f'{shown(name)} is no parameter, no group, no node and no shipped file; {near}')
+    return (f'{shown(name)} is not a parameter, group, node, verb or shipped file; {near}')

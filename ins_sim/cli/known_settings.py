@@ -1,4 +1,4 @@
-"""What reads parameters, and what is known of a parameter or a group of them."""
+"""The nodes and verbs that read parameters, and descriptions of parameters and groups."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +19,7 @@ READERS = {**ALL_NODES, **VERBS}
 @dataclass(frozen=True)
 class KnownParameter:
     """
-    A parameter as some nodes or verbs know it.
+    A parameter, as it is defined for some nodes or verbs.
 
     name: dotted; default: as YAML; words: meaning, unit, bounds, choices; readers: the nodes and
     verbs, in the order of READERS.
@@ -42,7 +42,7 @@ class KnownGroup:
 
 @cache
 def known_parameters():
-    """Return a list of KnownParameters; a name that differs from node to node comes repeatedly."""
+    """Return a list of KnownParameters; a name with several definitions is listed repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
@@ -53,14 +53,14 @@ def known_parameters():
 
 
 def _settable(name, readers):
-    """Return what is to be said of the nodes that take a parameter while they run."""
+    """Return a remark on the nodes that accept a parameter while they run, or ''."""
     takers = [reader for reader in readers if name in READERS[reader].SETTABLE]
     return f'; can be set while {" or ".join(takers)} runs' if takers else ''
 
 
 @cache
 def known_groups():
-    """Return a list of KnownGroups; one that differs from node to node comes repeatedly."""
+    """Return a list of KnownGroups; a name with several definitions is listed repeatedly."""
     found = {}
     for reader, cls in READERS.items():
         for name, group in groups_of(cls).items():

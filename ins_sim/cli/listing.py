@@ -2,10 +2,10 @@
 
 import textwrap
 
-HELP = 'the shipped motions, instruments and studies'
-DESCRIPTION = ('List the parameter files that are shipped, with a line each, and the verbs that '
-               'are studies. "ins_sim describe NAME" tells more of one.')
-# Of a name from the margin; of words where the terminal is narrow; of a line in a pipe.
+HELP = 'list the shipped motions, instruments and studies'
+DESCRIPTION = ('List the shipped parameter files, one per line, and the verbs that are studies. '
+               '"ins_sim describe NAME" shows what a file sets.')
+# Indent of a name; least width of the text in a narrow terminal; width of a line in a pipe.
 INDENT, LEAST, LONGEST = 2, 30, 10000
 KINDS = ('motions', 'instruments', 'studies', 'others')
 
@@ -13,7 +13,7 @@ KINDS = ('motions', 'instruments', 'studies', 'others')
 def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
     parser.add_argument('kind', nargs='?', choices=KINDS, metavar='KIND', default=None,
-                        help='only these: %(choices)s')
+                        help='list only one kind: %(choices)s')
 
 
 def run(chosen):
@@ -28,7 +28,7 @@ def run(chosen):
     if 'studies' in kinds:
         parts.insert(kinds.index('studies') + 1, (
             'studies, as verbs: ins_sim VERB --help', study_verbs()))
-    # In a pipe a line each, however long.
+    # In a pipe each entry is one line, however long.
     for line in lines(parts, console.width if console.is_terminal else LONGEST):
         console.print(line)
     return 0

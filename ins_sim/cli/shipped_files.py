@@ -1,4 +1,4 @@
-"""The shipped parameter files: what each is for, and what it sets."""
+"""The shipped parameter files: purpose and values of each."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,13 +8,13 @@ from ins_sim.ros_parameters import Parameters
 from ins_sim.yaml_text import read_bytes
 from .known_settings import VERBS
 
-# Names of all kinds, with what stands above their list.
+# The kinds, with the heading of each list.
 MOTIONS, INSTRUMENTS, STUDIES, OTHERS = 'motions', 'instruments', 'studies', 'others'
 HEADS = {
     MOTIONS: 'motions, for simulate, predict and the nodes: --params-file NAME',
-    INSTRUMENTS: 'instruments, beside a motion: --params-file MOTION --params-file NAME',
+    INSTRUMENTS: 'instruments, added to a motion: --params-file MOTION --params-file NAME',
     STUDIES: 'studies, for the verb before the colon: --params-file NAME',
-    OTHERS: 'others, to look up, to copy from, and for the nodes'}
+    OTHERS: 'others, for reference and for the nodes'}
 # They hold every parameter with its default.
 DEFAULTS = ('default', 'navigate')
 
@@ -52,7 +52,7 @@ class ShippedFile:
 
     @property
     def words(self):
-        """Return the first sentence of the comment at its head, behind the verb of a study."""
+        """Return the first sentence of the comment at its head; of a study, after its verb."""
         told = []
         for line in self.head:
             if not line or line.startswith(' '):
@@ -78,7 +78,7 @@ def shipped_file(name):
 
 
 def shipped_files():
-    """Return {kind: ShippedFiles sorted by name}; every one is of one kind."""
+    """Return {kind: list of ShippedFiles sorted by name}; each file has one kind."""
     found = {kind: [] for kind in HEADS}
     for name in resources.config_names():
         file = shipped_file(name)

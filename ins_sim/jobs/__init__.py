@@ -1,7 +1,7 @@
 """
-Work that is shared out: blocks of a study over processes of this machine or of a Dask cluster.
+Parallel computation: blocks of a study on processes of this machine or on a Dask cluster.
 
-``blocks`` hands the blocks out and gives their results in order, whoever finishes first;
-``executors`` opens what computes them, and ``store`` keeps the finished ones on disk, so that a
-study that was interrupted goes on where it was.
+``blocks`` distributes the blocks and yields their results in order, whichever finishes first;
+``executors`` opens the workers, and ``store`` keeps finished blocks on disk, so that an
+interrupted study resumes where it stopped.
 """

@@ -1,14 +1,14 @@
-"""Blocks of a study: handed out to an executor, and their results in the order of the blocks."""
+"""Distribute the blocks of a study to an executor, and yield their results in order."""
 
 from collections import deque
 from concurrent.futures import CancelledError, FIRST_COMPLETED, wait
 
-# A block that ends its worker is computed so often before the study is given up; the last time
-# with nothing beside it, so that no other block can be to blame.
+# Attempts to compute a block whose worker ends before the study is given up. During the last one
+# no other block is running, so that this block is certainly the cause.
 ATTEMPTS = 3
-# Blocks handed out for each that is computed at the same time: the next one waits at the worker.
+# Blocks submitted for each that is computed at a time: the next one already waits at the worker.
 AHEAD = 2
-# How often an executor is asked whether it is still there, s.
+# Interval at which the executor is checked, s.
 LOOK_S = 1.0
 
 
@@ -19,15 +19,15 @@ def run_blocks(work, blocks, executor, store=None, progress=None):
     Parameters
     ----------
     work : callable
-        ``work(block)`` returns the result, for a store a dict of arrays by name. Both can be
-        pickled. An error it raises ends the study.
+        ``work(block)`` returns the result; with a store, a dict of arrays by name. ``work`` and
+        the blocks must be picklable. An error raised by it ends the study.
     blocks : sequence
     executor : LocalProcesses, ThisProcess or Cluster
         Of ``executors.open_executor``.
     store : BlockStore, optional
-        Keeps the results of finished blocks; what it holds is not computed again.
+        Keeps the results of finished blocks; blocks in it are not computed again.
     progress : callable, optional
-        Called with the number of blocks computed; those of the store do not count.
+        Called with the number of blocks computed so far, without those from the store.
 
     Yields
     ------
@@ -37,7 +37,7 @@ def run_blocks(work, blocks, executor, store=None, progress=None):
     Raises
     ------
     ValueError
-        Where a block ends its worker each time, and where the executor has gone away.
+        If a block ends its worker in every attempt, or the executor is lost.
     """
     queue = _Queue(work, blocks, executor)
     queue.waiting.extend(n for n in range(len(blocks)) if store is None or n not in store)
@@ -60,14 +60,14 @@ def run_blocks(work, blocks, executor, store=None, progress=None):
 
 
 class _Queue:
-    """The blocks that are still to be computed, and those under way."""
+    """The blocks that still have to be computed, and those that are submitted."""
 
     def __init__(self, work, blocks, executor):
         self._work, self._blocks, self._executor = work, blocks, executor
         self.waiting, self._alone, self._flying, self._lost = deque(), deque(), {}, {}
 
     def collect(self, wanted):
-        """Hand out blocks; return (number, result) of those that have finished since, or none."""
+        """Submit blocks; return a list of (number, result) of those that have finished."""
         self._hand_out(wanted)
         finished, _ = wait(self._flying, LOOK_S, FIRST_COMPLETED)
         self._executor.check()
@@ -81,7 +81,7 @@ class _Queue:
             except CancelledError:
                 raise self._executor.gone() from None
         if lost:
-            # A pool of processes breaks as a whole: which block it was is not known.
+            # A pool of processes breaks as a whole; it does not tell which block was the cause.
             if self._executor.renew():
                 lost += self._flying.values()
                 self._flying.clear()
@@ -91,11 +91,11 @@ class _Queue:
 
     def _hand_out(self, wanted):
         if self._alone:
-            # Beside a suspect there is nothing; it is flown before the others go on.
+            # A block under suspicion is computed alone, before the others continue.
             if not self._flying:
                 self._submit(self._alone)
             return
-        # No result waits for its turn behind more than a few others.
+        # Limit how far ahead blocks are computed: finished results wait in memory for their turn.
         last = wanted + AHEAD * self._executor.width
         while (self.waiting and len(self._flying) < AHEAD * self._executor.width
                and self.waiting[0] <= last):
@@ -103,11 +103,11 @@ class _Queue:
                 break
 
     def _submit(self, waiting):
-        """Hand out the first of some; return whether there was somebody to take it."""
+        """Submit the first waiting block; return whether the executor accepted it."""
         try:
             future = self._executor.submit(self._work, self._blocks[waiting[0]])
         except self._executor.LOST:
-            # A process ended since: the futures of those under way tell which blocks are lost.
+            # A process has ended: the futures of the submitted blocks will tell which are lost.
             if not self._flying:
                 self._executor.renew()
             return False
@@ -115,11 +115,11 @@ class _Queue:
         return True
 
     def _again(self, number):
-        """Let a block whose worker ended be computed again; ValueError after so many times."""
+        """Queue a block again whose worker has ended; ValueError after ATTEMPTS."""
         times = self._lost[number] = self._lost.get(number, 0) + 1
         if times == ATTEMPTS:
             raise ValueError(
                 f'block {number + 1} of {len(self._blocks)} ended the process that computed it '
-                f'{ATTEMPTS} times, the last time with no other block beside it; expected a '
-                'worker that stays alive: has it enough memory?')
+                f'{ATTEMPTS} times, the last time while no other block was running; expected a '
+                'worker that stays alive: does it have enough memory?')
         (self._alone if times == ATTEMPTS - 1 else self.waiting).appendleft(number)

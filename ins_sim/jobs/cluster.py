@@ -9,19 +9,19 @@ import numpy as np
 
 from ins_sim import __version__
 
-# How long a scheduler may take to answer, and how long a cluster may be without a worker, s.
+# Longest time until the scheduler answers, and longest time without a worker, s.
 CONNECT_S, NO_WORKER_S = 10.0, 60.0
-# How often the workers are counted, s.
+# Interval at which the workers are counted, s.
 COUNT_S = 5.0
 
 
 class Cluster:
     """
-    A Dask cluster; it looks after its own workers, and computes the block of a dead one elsewhere.
+    A Dask cluster, which itself computes the block of a dead worker on another one.
 
     address: of its scheduler, such as tcp://host:8786.  LOST: the error of a future whose workers
-    have ended several times; width: how many threads compute at once.  Raises ValueError where
-    the cluster is not there, has no worker, or has other versions of what computes the numbers.
+    have ended several times; width: number of threads.  Raises ValueError if the cluster cannot
+    be reached, has no worker, or has other versions of Python, NumPy or ins_sim.
     """
 
     def __init__(self, address):
@@ -34,7 +34,7 @@ class Cluster:
         self.LOST = (distributed.KilledWorker,)
         self._log = logging.getLogger('distributed')
         self._level = self._log.level
-        # What goes wrong is said in a sentence, not in the log of the client.
+        # Errors are reported in one sentence instead of the log of the client.
         self._log.setLevel(logging.CRITICAL + 1)
         try:
             self._connect(distributed)
@@ -51,7 +51,7 @@ class Cluster:
     def _connect(self, distributed):
         try:
             with warnings.catch_warnings():
-                # That versions differ is found out by _check_versions, which refuses.
+                # _check_versions compares the versions and refuses other ones.
                 warnings.simplefilter('ignore')
                 # A client of no address at all would wait for itself when it is deleted.
                 distributed.comm.get_address_host_port(self._address)
@@ -67,7 +67,7 @@ class Cluster:
         return self._pool.submit(work, block)
 
     def check(self):
-        """Raise ValueError where the scheduler, or every worker for some time, has gone."""
+        """Raise ValueError if the scheduler is lost, or no worker was there for NO_WORKER_S."""
         if self._client.status != 'running':
             raise self.gone()
         now = time.monotonic()
@@ -78,16 +78,16 @@ class Cluster:
                                  f'{NO_WORKER_S:g} s; expected one or more')
 
     def renew(self):
-        """Let the cluster have seen to it; return False: the other futures go on."""
+        """Do nothing, as the cluster recovers itself; return False: other futures stay valid."""
         return False
 
     def gone(self):
-        """Return the ValueError of a cluster that has gone away."""
-        return ValueError(f'the cluster at {self._address} has gone away; expected it to stay '
-                          'until the study is done')
+        """Return the ValueError of a cluster that is lost."""
+        return ValueError(f'the connection to the cluster at {self._address} is lost; expected it '
+                          'to run until the study is complete')
 
     def close(self):
-        """Let go of the cluster, and of what it was still to compute."""
+        """Disconnect from the cluster and cancel what it still computes."""
         if self._client is not None:
             self._client.close(timeout=CONNECT_S)
         self._log.setLevel(self._level)
@@ -100,7 +100,7 @@ class Cluster:
             if fresh:
                 _check_versions(self._client, self._address, fresh)
         except (OSError, AttributeError, TimeoutError):
-            # a scheduler that no longer answers
+            # The scheduler no longer answers.
             raise self.gone() from None
         self._known, self._counted_s = set(threads), time.monotonic()
         self.width = max(1, sum(threads.values()))
@@ -109,7 +109,7 @@ class Cluster:
 
 
 def own_versions():
-    """Return the versions by name of what decides the numbers."""
+    """Return {name: version} of the programs on which the numbers depend."""
     return {'Python': '.'.join(platform.python_version_tuple()[:2]), 'NumPy': np.__version__,
             'ins_sim': __version__}
 
@@ -143,12 +143,12 @@ def _compare(place, name, version):
     ours = own_versions()[name]
     if version != ours:
         raise ValueError(f'{place} has {f"{name} {version}" if version else f"no {name}"}; '
-                         f'expected {name} {ours}, as here: other versions may give other '
-                         'numbers, or cannot read what is to be computed')
+                         f'expected {name} {ours}, as on this machine: other versions may give '
+                         'other numbers, or cannot read the blocks')
 
 
 def _asked():
-    """Return a function that a worker without this module can run, too."""
+    """Return a function that also runs on a worker without this module."""
     def version():
         import ins_sim
         return ins_sim.__version__

@@ -1,4 +1,4 @@
-"""What computes the blocks of a study: this process, processes of this machine, or a cluster."""
+"""Executors for the blocks of a study: this process, local processes, or a cluster."""
 
 from contextlib import contextmanager
 
@@ -8,14 +8,14 @@ from .processes import cores, LocalProcesses, ThisProcess
 @contextmanager
 def open_executor(jobs=0, scheduler=None):
     """
-    Give an executor for ``run_blocks``, and end it with the block.
+    Open an executor for ``run_blocks``; leaving the context closes it.
 
     Parameters
     ----------
     jobs : int, optional
-        Processes of this machine; 0: as many as cores; 1: the present one alone.
+        Number of local processes; 0: one for each core; 1: this process alone.
     scheduler : str, optional
-        Address of the scheduler of a Dask cluster, in the place of processes.
+        Address of the scheduler of a Dask cluster, used instead of local processes.
 
     Yields
     ------
@@ -24,7 +24,7 @@ def open_executor(jobs=0, scheduler=None):
     Raises
     ------
     ValueError
-        Where both are given, or jobs is negative, or the cluster cannot be used.
+        If both are given, jobs is negative, or the cluster cannot be used.
     """
     check_jobs(jobs, scheduler)
     if scheduler is not None:
@@ -40,9 +40,9 @@ def open_executor(jobs=0, scheduler=None):
 
 
 def check_jobs(jobs, scheduler=None):
-    """Raise ValueError where there is no such number of processes, or a scheduler as well."""
+    """Raise ValueError if jobs is negative, or given together with a scheduler."""
     if jobs < 0:
-        raise ValueError(f'jobs is {jobs}; expected 0 (every core) or more')
+        raise ValueError(f'jobs is {jobs}; expected 0 (all cores) or more')
     if scheduler is not None and jobs:
-        raise ValueError(f'jobs is {jobs}, and a scheduler is given; expected one of them: a '
-                         'cluster has workers of its own')
+        raise ValueError(f'jobs is {jobs}, and a scheduler is given; expected only one of them: a '
+                         'cluster has its own workers')

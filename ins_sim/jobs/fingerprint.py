@@ -1,4 +1,4 @@
-"""What decides the numbers of a study, and the digest of what came out."""
+"""Fingerprint of what determines the numbers of a study, and digest of its results."""
 
 from hashlib import sha256
 from pathlib import Path
@@ -12,10 +12,10 @@ from ins_sim.settings.catalogue import values_of
 
 def fingerprint(settings, **inputs):
     """
-    Return {name: value} of all that decides the numbers of a study, for ``BlockStore``.
+    Return {name: value} of everything that determines the numbers of a study, for ``BlockStore``.
 
-    settings: {name of a node: its settings}; inputs: what else decides them, such as the number
-    of runs.  A recording of a motion counts with its content.  Values are those of JSON.
+    settings: {name of a node: its settings}; inputs: everything else, such as the number of runs.
+    Of a recorded motion the content of the file counts.  Values are JSON types.
     """
     found = {'ins_sim': __version__, 'noise': NOISE, **inputs}
     for node, group in settings.items():

@@ -1,4 +1,4 @@
-"""A process that ends with the one that started it, however that ends."""
+"""Let a process end when its parent ends, for whatever reason."""
 
 import ctypes
 import os
@@ -8,7 +8,7 @@ PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent(parent, number=signal.SIGTERM):
-    """Get a signal when the parent, whose process id is given, ends; end now if it has."""
+    """Receive a signal when the parent (its process id) ends; end now if it has ended."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(number))
     if os.getppid() != parent:
         os.kill(os.getpid(), number)

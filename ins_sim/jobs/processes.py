@@ -1,4 +1,4 @@
-"""Executors on this machine: processes of their own, or the present one."""
+"""Executors on this machine: this process, or local processes."""
 
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -9,7 +9,7 @@ from .parent import end_with_parent
 
 
 class ThisProcess:
-    """Computes each block at once, in the process that hands it out."""
+    """Computes each block in this process, as soon as it is submitted."""
 
     LOST, width = (), 1
 
@@ -20,17 +20,17 @@ class ThisProcess:
         return future
 
     def check(self):
-        """Find it there."""
+        """Do nothing: this process cannot be lost."""
 
     def close(self):
-        """Leave nothing behind."""
+        """Do nothing: nothing is running."""
 
 
 class LocalProcesses:
     """
-    Processes of this machine, which end with this one.
+    Local processes, which end when this process ends.
 
-    LOST: the error of a future whose process has ended; width: how many compute at once.
+    LOST: the error of a future whose process has ended; width: number of processes.
     """
 
     LOST = (BrokenProcessPool,)
@@ -44,16 +44,16 @@ class LocalProcesses:
         return self._pool.submit(work, block)
 
     def check(self):
-        """Find it there: what happens to a process is told by its futures."""
+        """Do nothing: the futures report what happens to a process."""
 
     def renew(self):
-        """Make new processes, one having ended; return True: all futures are lost."""
+        """Replace all processes after one has ended; return True: all futures are lost."""
         self.close()
         self._pool = ProcessPoolExecutor(self.width, initializer=_begin_worker)
         return True
 
     def close(self):
-        """End the processes without waiting for what they compute, which may take minutes."""
+        """Kill the processes without waiting for their blocks, which may take minutes."""
         for process in (self._pool._processes or {}).values():
             process.kill()
         self._pool.shutdown(cancel_futures=True)
@@ -65,7 +65,7 @@ def cores():
 
 
 def _begin_worker():
-    """Leave the signals of a terminal to the process that started this one, and end with it."""
+    """Ignore the Ctrl-C of the terminal, which the parent handles, and end with the parent."""
     end_with_parent(os.getppid(), signal.SIGKILL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -1,4 +1,4 @@
-"""Finished blocks of a study on disk, so that an interrupted one goes on where it was."""
+"""Finished blocks of a study on disk, from which an interrupted study resumes."""
 
 from contextlib import suppress
 import json
@@ -17,33 +17,34 @@ MOST_NAMED = 3
 
 class BlockStore:
     """
-    A folder of finished blocks, each an .npz that was written whole.
+    A folder of finished blocks, each a complete .npz file.
 
     Parameters
     ----------
     folder : str or path
-        Made with the first block. Only one process may use it.
+        Created with the first block. Only one process may use it at a time.
     identity : dict
-        What decides the numbers, of ``fingerprint``. Blocks of another are never mixed with these.
+        What determines the numbers, from ``fingerprint``. Blocks of different identities are never
+        mixed.
     replace : bool, optional
-        Whether the blocks of another study are deleted, in place of an error.
+        Delete the blocks of another study instead of raising an error.
 
     Raises
     ------
     ValueError
-        Where the folder holds something else, or blocks of another study: the sentence names
-        what differs.
+        If the folder holds something else, or blocks of another study; the message names what
+        differs.
 
     Attributes
     ----------
     found : int
-        How many blocks were there already.
+        Number of blocks that the folder already held.
 
     """
 
     def __init__(self, folder, identity, replace=False):
         self.folder = Path(folder)
-        # as it comes back from the file
+        # As it is read back from the file, for the comparison.
         identity = json.loads(json.dumps(identity))
         self._identity = identity
         before = self._before()
@@ -78,7 +79,7 @@ class BlockStore:
             return None
 
     def save(self, number, arrays):
-        """Keep the arrays by name of a block; the first one makes the folder."""
+        """Keep the arrays by name of a block; the first one creates the folder."""
         if not self._begun:
             self.folder.mkdir(parents=True, exist_ok=True)
             _write(self.folder / IDENTITY, lambda stream: stream.write(
@@ -88,7 +89,7 @@ class BlockStore:
         self._there.add(number)
 
     def remove(self):
-        """Delete the blocks, and the folder where it holds nothing else."""
+        """Delete the blocks, and the folder if it holds nothing else."""
         for path in (*self.folder.glob('block_*.npz*'), *self.folder.glob(f'{IDENTITY}*')):
             path.unlink(missing_ok=True)
         self._there.clear()
@@ -100,7 +101,7 @@ class BlockStore:
         return self.folder / f'block_{number:06d}.npz'
 
     def _before(self):
-        """Return the identity of what is in the folder, or None where nothing is."""
+        """Return the identity of the study in the folder, or None if there is none."""
         if not self.folder.exists():
             return None
         if self.folder.is_dir() and not any(self.folder.iterdir()):
@@ -111,8 +112,8 @@ class BlockStore:
                 return found
         except (OSError, ValueError):
             pass
-        raise ValueError(f'{self.folder} is in the way: it holds no blocks of a study; expected '
-                         'it to be moved')
+        raise ValueError(f'{self.folder} exists but holds no blocks of a study; expected a free '
+                         'name: move or delete it')
 
 
 def _changed(before, now):
@@ -126,7 +127,7 @@ def _changed(before, now):
 
 
 def _write(path, write):
-    """Write a file whole or not at all."""
+    """Write a file completely or not at all."""
     part = path.with_name(f'{path.name}.part')
     with open(part, 'wb') as stream:
         write(stream)

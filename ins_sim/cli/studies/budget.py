@@ -1,30 +1,31 @@
-"""Verb budget: which error of the instruments makes how much of the error of the position."""
+"""Verb budget: contribution of each error source to the navigation error."""
 
 from .. import arguments
 
-HELP = 'the error budget of a strapdown: linear covariance by source'
-DESCRIPTION = ('Propagate the errors of the instruments and of the start along the motion, each '
-               'by itself and without noise: who makes the error, how it changes with each '
-               'parameter, and what must improve to meet a requirement.')
+HELP = 'error budget of a strapdown: contribution of each error source'
+DESCRIPTION = ('Propagate each error of the instruments and of the initial state along the motion '
+               'by linear covariance, without a simulation: how much each source contributes, how '
+               'the error changes with each parameter, and what must improve to meet a '
+               'requirement.')
 
 
 def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
     parser.add_argument('--require', action='append', default=[], metavar='TEXT',
-                        help="what is required, such as 'horizontal rms 1852 m at 3600 s': says "
-                        'what must improve; may be repeated')
+                        help="requirement, such as 'horizontal rms 1852 m at 3600 s': the budget "
+                        'then says what must improve to meet it; may be repeated')
     beside = parser.add_mutually_exclusive_group()
-    beside.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs beside '
-                        'the budget and compare (default: none)')
-    beside.add_argument('--beside', metavar='STUDY', help='compare with the ensemble in the '
-                        'folder of a study of monte-carlo of the same settings')
+    beside.add_argument('--runs', type=int, default=0, metavar='N', help='simulate N runs and '
+                        'compare them with the budget (default: none)')
+    beside.add_argument('--beside', metavar='STUDY', help='compare the budget with a study of '
+                        'monte-carlo in the folder STUDY, with the same settings')
     arguments.add_output(parser, 'ins_sim_budget', 'folder of figures, tables and report.html')
     arguments.add_force(parser, 'the budget in DIR')
 
 
 def run(chosen):
-    """Propagate, show and save; return the exit code."""
+    """Propagate, print and save; return the exit code."""
     from ins_sim.core.prediction.budget.linear_budget import error_budget
     from ins_sim.core.prediction.budget.propagation import navigation_span_s
     from ins_sim.io.motion import read_motion

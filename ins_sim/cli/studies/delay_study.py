@@ -1,14 +1,14 @@
-"""Verb delay-study: the figures and tables of the paper on delays, and what it leaves out."""
+"""Verb delay-study: figures and tables of the paper on gyro channel delays, and more."""
 
 import json
 
 from .. import arguments
 
-HELP = 'the figures and tables of the paper on delays of gyro channels'
-DESCRIPTION = ('Fly the motions of Bogdanov and Fomichev (2018) with late gyros, and show figures '
-               'and tables beside what they publish: position errors of motion 2, tuned and '
-               'detuned, three flights, the drift over the rates of motion 2 and over the '
-               'direction of rocking, and what each channel contributes.')
+HELP = 'figures and tables of the paper on delays of gyro channels'
+DESCRIPTION = ('Simulate the motions of Bogdanov and Fomichev (2018) with delayed gyro channels, '
+               'and compare the errors with the published ones: position errors of motion 2, '
+               'tuned and detuned, and of three flights; maps of the drift over the rates of '
+               'motion 2 and over the direction of rocking; the contribution of each channel.')
 
 
 def add_arguments(parser):
@@ -17,8 +17,8 @@ def add_arguments(parser):
                         help='parameter file of one figure, or the name of a shipped one; may be '
                         'repeated (default: the nine shipped ones named delay_study_*)')
     parser.add_argument('--recording', action='append', default=[], metavar='FILE',
-                        help='recorded flight, a CSV file or a bag, which is one more figure; may '
-                        'be repeated')
+                        help='recorded flight, a CSV file or a bag, as a figure; may be repeated. '
+                        'Without --params-file only these figures are made')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
                         help='one parameter, for every figure')
     parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
@@ -28,7 +28,7 @@ def add_arguments(parser):
 
 
 def run(chosen):
-    """Fly, show and save; return the exit code."""
+    """Simulate, print and save; return the exit code."""
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies.delay_folder import MARK, write_study

@@ -1,16 +1,16 @@
-"""Verb estimate-delays: delays of gyro channels from a record of a bench, or how to get one."""
+"""Verb estimate-delays: gyro channel delays from a bench test, or a comparison of motions."""
 
 import json
 from pathlib import Path
 
 from .. import arguments
 
-HELP = 'delays of gyro channels from a record under a known motion'
+HELP = 'estimate delays of gyro channels from readings under a known motion'
 DESCRIPTION = ('Estimate delays, biases, scale factors and misalignments of the gyro channels '
-               'from readings under a known motion: folders of "simulate", bags with Imu messages '
-               'and their truth, or CSV files of an IMU with the motion in motion.*; several are '
-               'taken together. Without SOURCE: compare motions of a bench by how well they would '
-               'show delays.')
+               'from readings under a known motion: folders of "simulate", bags with Imu '
+               'messages and the truth, or CSV files of an IMU with the motion in motion.*. '
+               'Several SOURCEs are records of one instrument. Without SOURCE: compare bench '
+               'motions by the standard deviation of the delays that they would give.')
 DURATION_S = 600.0
 INSTRUMENT = 'imu_tactical_fog'
 
@@ -21,7 +21,7 @@ def add_arguments(parser):
                         help='folder of a run or of a rosbag2 bag, or CSV file of an IMU')
     arguments.add_settings(parser, f'without SOURCE {INSTRUMENT}')
     parser.add_argument('--topic', default=None, metavar='NAME',
-                        help='topic of a bag, where it has more than one of sensor_msgs/msg/Imu')
+                        help='topic in a bag, if it has more than one of sensor_msgs/msg/Imu')
     parser.add_argument('--duration', type=float, default=None, metavar='S',
                         help=f'without SOURCE: length of a motion, s (default: {DURATION_S:g})')
     arguments.add_output(parser, 'ins_sim_delays', 'folder of figures, numbers and report')
@@ -29,13 +29,13 @@ def add_arguments(parser):
 
 
 def run(chosen):
-    """Estimate or compare, show and save; return the exit code."""
+    """Estimate or compare, print and save; return the exit code."""
     from ins_sim.report.console import PlainConsole
     console = PlainConsole()
     if chosen.sources:
         return _estimate(chosen, console)
     if chosen.topic is not None:
-        raise ValueError(f'--topic is {chosen.topic}; expected a bag as SOURCE with it')
+        raise ValueError(f'--topic is {chosen.topic}, but there is no SOURCE; expected a bag')
     return _compare(chosen, console)
 
 
@@ -46,7 +46,8 @@ def _estimate(chosen, console):
     from ins_sim.report.page.html import write_page
     from ins_sim.report.studies import delay_estimate as report, delay_estimate_charts
     if chosen.duration is not None:
-        raise ValueError(f'--duration is {chosen.duration:g}; expected no SOURCE with it')
+        raise ValueError(f'--duration is {chosen.duration:g}, but a SOURCE is given; expected '
+                         'only one of them, as --duration is for comparing motions')
     with whole_folder(chosen.output, chosen.force, report.MARK) as work:
         records, notes, settings, is_run = [], [], [], []
         for source in chosen.sources:
@@ -120,9 +121,9 @@ def _compare(chosen, console):
     dt_s = period_ns(sensor.rate_hz) * 1e-9
     white = triad_model(sensor.gyro.errors, dt_s, 'gyro.errors').white
     if sensor.gyro.model != 'ideal' or not all(white):
-        raise ValueError('the gyros of the parameters have no white noise on some axis; expected '
-                         'gyro.errors.angle_random_walk_deg_sqrt_h of all, as "--params-file '
-                         f'{INSTRUMENT}" has it')
+        raise ValueError('the gyros have no white noise on at least one axis; expected '
+                         'gyro.errors.angle_random_walk_deg_sqrt_h above 0 on all axes, as in '
+                         f'"--params-file {INSTRUMENT}"')
     if not 0.0 < duration_s <= 1e6:
         raise ValueError(f'--duration is {duration_s:g} s; expected more than 0 and at most 1e+06')
     cases, motion = study.bench_cases(), settings.motion_generator.motion

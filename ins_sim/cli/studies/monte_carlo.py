@@ -1,30 +1,31 @@
-"""Verb monte-carlo: many runs of one simulation, and the statistics of their errors."""
+"""Verb monte-carlo: statistics of the errors of many runs of a simulation."""
 
 from .. import arguments
 
-HELP = 'many runs of one simulation: how far off, how sure'
+HELP = 'statistics of the errors of many runs of a simulation'
 DESCRIPTION = ('Simulate many runs, which differ in their random numbers, on all cores or on a '
-               'Dask cluster, and write statistics of their errors at instants, the end of every '
-               'run, figures and a report. A study that was interrupted goes on where it was when '
-               'the same command is given again.')
+               'Dask cluster. Writes statistics of their errors over time, the errors of every '
+               'run at its end, figures and a report. After an interruption the same command '
+               'resumes the study.')
 
 
 def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser)
-    parser.add_argument('--runs', type=int, default=1000, metavar='N', help='how many runs, from '
-                        'that of the parameter run on (default: %(default)s)')
-    parser.add_argument('--aided', action='store_true', help='of the aided navigator with its '
-                        'instruments: also NEES and NIS of the filter')
-    parser.add_argument('--instants', type=int, default=61, metavar='N', help='instants of the '
-                        'statistics, evenly over the run (default: %(default)s)')
+    parser.add_argument('--runs', type=int, default=1000, metavar='N', help='number of '
+                        'runs; the first one has the number of the parameter run (default: '
+                        '%(default)s)')
+    parser.add_argument('--aided', action='store_true', help='simulate the aided navigator with '
+                        'its instruments; adds NEES and NIS of the filter')
+    parser.add_argument('--instants', type=int, default=61, metavar='N', help='number of instants '
+                        'of the statistics, evenly over the run (default: %(default)s)')
     arguments.add_jobs(parser)
     arguments.add_output(parser, 'ins_sim_ensemble', 'folder of the study')
-    arguments.add_force(parser, 'the study in DIR, and blocks of another one')
+    arguments.add_force(parser, 'the study in DIR, and kept blocks of another study')
 
 
 def run(chosen):
-    """Fly, show and write; return the exit code."""
+    """Simulate, print and write; return the exit code."""
     from ins_sim.core.ensemble.many_runs import check_runs
     from ins_sim.io.motion import read_motion
     from ins_sim.jobs.executors import check_jobs, open_executor
@@ -49,7 +50,8 @@ def run(chosen):
     with whole_folder(chosen.output, chosen.force, report.ARRAYS) as folder:
         store = BlockStore(f'{chosen.output}.blocks', plan.identity(), chosen.force)
         if store.found:
-            console.print(f'{store.found} of {len(plan.blocks())} blocks found in {store.folder}')
+            console.print(f'{store.found} of {len(plan.blocks())} blocks found in {store.folder}: '
+                          'resuming the study')
         try:
             with progress_bars(console) as add_bar, open_executor(
                     chosen.jobs, chosen.scheduler) as executor:
@@ -58,7 +60,7 @@ def run(chosen):
         except BaseException:
             if len(store):
                 console.print(f'{len(store)} of {len(plan.blocks())} blocks are kept in '
-                              f'{store.folder}: the same command goes on from there')
+                              f'{store.folder}: the same command resumes from there')
             raise
         found = report.ensemble_report(report.ensemble_title(plan.settings, plan.runs),
                                        plan.settings, result)

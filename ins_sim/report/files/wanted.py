@@ -11,9 +11,9 @@ class WantedFiles:
     """
     What is written of a run beside its tables and figures.
 
-    thin: every how many output instants the files hold, from the first one on; csv: whether
-    tables are written too; tum: whether trajectories for evo are.  Raises ValueError where thin
-    is no whole number of at least 1.
+    thin: the files hold every thin-th output instant, beginning with the first; csv: whether to
+    write tables too; tum: whether to write trajectories for evo too.  Raises ValueError if thin
+    is not a whole number of at least 1.
     """
 
     thin: int = 1
@@ -37,13 +37,13 @@ class WantedFiles:
             if record is not None})
 
     def lines(self, result):
-        """Return what is to be said of a thinned result."""
+        """Return a line on what the files of a thinned result hold, or no line."""
         count = len(result.errors)
         if self.thin == 1:
             return []
         return [f'the files hold {len(range(0, count, self.thin))} of {count} output instants '
-                f'(thin {self.thin}) and every reading of the IMU; what is printed and drawn is '
-                'made of all']
+                f'(thin {self.thin}) and every reading of the IMU; tables and figures use '
+                'all instants']
 
 
 class EveryNth:

@@ -1,4 +1,4 @@
-"""What stands in a report: the answer, figures, tables, what was simulated, and the data."""
+"""Content of a report: answer, figures, tables, notes, settings and data files."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -25,7 +25,7 @@ class Page:
     """
     A report.
 
-    title: what was simulated, in words; answer: what came out, in one sentence or a few; charts
+    title: what was simulated, in words; answer: the result in a few sentences; charts
     and tables, in their order; notes: sentences on what was dropped, assumed or left out;
     settings: SimulationSettings, AidedSimulationSettings or NavigateSettings, of which those that
     differ from the defaults are shown, or None; digest: of the numbers, by name; files: names of

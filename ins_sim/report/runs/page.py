@@ -21,12 +21,12 @@ from .track import run_tracks, track_chart
 
 # What is in the files of a run.
 FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
-         'parameters.yaml': 'every setting; it gives the same run again',
-         'manifest.yaml': 'where the numbers are the same to the last bit',
+         'parameters.yaml': 'every parameter; with it simulate repeats the run',
+         'manifest.yaml': 'on which machines the numbers are the same to the last bit',
          'errors.png': 'the errors of the strapdown',
          'delays.png': 'the errors less those of the zero-delay twin',
          'aided.png': 'the aided solution', 'track.png': 'the track from above',
-         FILE: 'the track for programs of maps', 'bag': 'the topics of the nodes'}
+         FILE: 'the track for map programs', 'bag': 'the topics of the nodes'}
 # And of those that are written on request.
 KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
@@ -113,7 +113,7 @@ def _table(rows):
 
 
 def _answer(errors):
-    """Return where the solution is at the end, in a sentence."""
+    """Return the position error and the largest drift at the end, in a sentence."""
     last = len(errors) - 1
     east, north, up = errors.position[last].tolist()
     length = length_words((int(errors.t_ns[last]) - int(errors.t_ns[0])) * 1e-9)

@@ -51,8 +51,8 @@ def consistency_table(consistency):
     if not rows:
         return None
     return PageTable('consistency of the filter at the last instant', HEADS, tuple(rows),
-                     'intervals hold at one instant over the runs; the errors of a run at several '
-                     'instants are not independent, so that an excursion of NEES lasts')
+                     'each interval holds for one instant; errors of a run at successive instants '
+                     'are correlated, so that NEES stays outside of its interval for a while')
 
 
 def consistency_chart(t_ns, consistency):
@@ -76,20 +76,20 @@ def consistency_chart(t_ns, consistency):
         return None
     runs = int(nees.count.max(initial=0)) or max(int(one.sums.count.max())
                                                  for one in fixes.values())
-    return Chart('consistency', 'Does the filter know how far it is off? Mean of '
-                 f'{runs} runs', tuple(panels),
-                 caption='At one instant a consistent filter lies in the band in 95 of 100 '
-                 'ensembles; errors of a run at several instants are not independent.')
+    return Chart('consistency', f'Consistency of the filter: mean NEES and NIS of {runs} runs',
+                 tuple(panels),
+                 caption='At each instant, 95 of 100 ensembles of a consistent filter lie in the '
+                 'band; errors of a run at successive instants are correlated.')
 
 
 def consistency_answer(consistency):
     """Return in a sentence whether the filter is consistent."""
     rows = consistency_rows(consistency)
     if not rows:
-        return 'The filter has no covariance, so that there is neither NEES nor NIS.'
+        return 'The filter has no covariance, hence neither NEES nor NIS.'
     outside = [row for row in rows if row[5] != 'consistent']
     if not outside:
-        return ('The filter is consistent: NEES and NIS of the last instant lie in their 95 % '
+        return ('The filter is consistent: NEES and NIS at the last instant lie in their 95 % '
                 'intervals.')
     return 'At the last instant the filter is ' + ', and '.join(
         f'{row[5]} by {row[0]} ({row[1]:.2f}, expected {row[2]:.2f}, {row[3]} in 95 % of '
@@ -100,10 +100,10 @@ def consistency_notes(result, filter_name):
     """Return sentences on what does not count; result: AidedEnsembleResult."""
     notes = []
     if result.errors.statistics.count.any() and not result.consistency.nees.count.any():
-        notes.append(f'filter {filter_name} has no covariance: there is no NEES')
+        notes.append(f'filter {filter_name} has no covariance, hence no NEES')
     for source, one in result.consistency.fixes.items():
         refused, taken = int(one.refused.sum()), int(one.taken.sum())
         if refused:
             notes.append(f'{INSTRUMENTS[source]}: {refused} of {refused + taken} valid fixes of '
-                         'all runs were not taken')
+                         'all runs were rejected')
     return notes

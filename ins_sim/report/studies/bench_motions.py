@@ -107,8 +107,8 @@ def _speed(sweep, noise):
         Panel(tuple(by_frequency), 'frequency [Hz]', 'standard deviation of a delay [us]',
               'Against frequency', LOG, LOG),
         Panel(tuple(by_acceleration), 'largest angular acceleration of the bench [deg/s^2]',
-              'standard deviation of a delay [us]', 'Against angular acceleration: what counts is '
-              'how fast the rate changes', LOG, LOG)),
+              'standard deviation of a delay [us]', 'Against angular acceleration, on which '
+              'the standard deviation depends', LOG, LOG)),
         shared=False, caption=f'{noise}. Curves end at the range of the gyros.')
 
 

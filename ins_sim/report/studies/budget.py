@@ -25,17 +25,17 @@ ARRAYS, SETTINGS = 'budget.npz', 'parameters.yaml'
 ARCSEC = 3600.0 * np.degrees(1.0)
 # Parts of the run at which tables have their columns.
 PARTS = (1.0 / 6.0, 0.5, 1.0)
-# Of what must improve, a source is told if without it the error is less than this part of it.
+# A source is listed in the answer to a requirement if the error without it is below this part.
 LITTLE = 0.999
-# So many runs are named.
+# Most runs that are listed by number.
 MOST_NAMED = 20
-LEFT_OUT = ('Left out: range and pulses of the instruments, jitter, latency and losses of '
-            'samples, errors of the algorithms, and errors of second order.')
+LEFT_OUT = ('Not covered: range and quantisation of the instruments, jitter, latency and loss of '
+            'samples, errors of the algorithms, and effects of second order.')
 
 
 def write_budget(folder, settings, linear, answers, compared, beside):
     """
-    Write all that is told of a LinearBudget into a folder (pathlib.Path).
+    Write report, figures, tables and arrays of a LinearBudget into a folder (pathlib.Path).
 
     answers: RequirementAnswers; compared: ComparedQuantities of beside: BesideRuns, or None.
     """
@@ -56,7 +56,7 @@ def write_budget(folder, settings, linear, answers, compared, beside):
                                             *map(requirement_sentence, answers)]),
         drawn, tables, notes, settings, {},
         {MARK: 'tables and answers', ARRAYS: 'covariances and mean errors by source, SI',
-         SETTINGS: 'what was simulated', **{f'{c.name}.png': c.title for c in drawn}}))
+         SETTINGS: 'every parameter', **{f'{c.name}.png': c.title for c in drawn}}))
 
 
 def show_budget(settings, linear, answers, compared, beside, console):
@@ -77,45 +77,45 @@ def show_budget(settings, linear, answers, compared, beside, console):
 
 
 def answer_sentence(linear):
-    """Return the answer: how far off the position is at the end, and who makes most of it."""
+    """Return the horizontal error at the end, and its largest source, in a sentence."""
     made = shares(linear, QUANTITIES['horizontal'])
     end, rms = linear.t_s[-1], float(made.rms[-1])
     if not rms > 0.0:
-        return 'The settings have no errors that move the position.'
+        return 'The settings contain no error that affects the position.'
     parts = made.by_source()[:, -1] / (rms * rms)
     k = int(np.argmax(parts))
     source = (*linear.random, *linear.fixed)[k]
     cep = _cep(linear, 0.5)[-1]
-    return (f'After {length_words(end)} the position is {_text(LENGTH, rms)} off (rms; CEP50 '
-            f'{_text(LENGTH, cep)}); {100.0 * parts[k]:.0f} % of the square of it comes from '
-            f'the {source.label}.')
+    return (f'After {length_words(end)} the horizontal position error is {_text(LENGTH, rms)} rms '
+            f'(CEP50 {_text(LENGTH, cep)}); {100.0 * parts[k]:.0f} % of its mean square comes '
+            f'from the {source.label}.')
 
 
 def requirement_sentence(answer):
     """Return what would have to improve to meet a requirement, in one sentence."""
     r, unit = answer.requirement, QUANTITIES[answer.requirement.quantity].unit
-    found = f'{r.text}: the budget has {_text(unit, answer.found)}'
+    found = f'{r.text}: the budget gives {_text(unit, answer.found)}'
     if answer.met:
         return f'{found}, which meets it.'
     enough = [i for i in answer.alone if i.factor is not None]
     if enough:
         ways = ', or '.join(_way(i) for i in enough)
-        told = f'it is met by one source alone: {ways}'
+        told = f'it is met by improving one source alone: {ways}'
     else:
         best = answer.alone[0]
-        told = (f'no single source suffices ({_text(unit, best.without)} without the '
+        told = (f'no single source suffices ({_text(unit, best.without)} remains without the '
                 f'{best.source.label})')
     if answer.random is None:
-        every = 'all random errors together do not suffice, for the fixed ones exceed it'
+        every = 'all random errors together do not suffice, as the fixed ones exceed it'
     else:
-        every = f'all random errors x {answer.random:.4g}'
-    return f'{found}; {told}; {every}; everything x {answer.everything:.4g}.'
+        every = f'or multiply all random errors by {answer.random:.4g}'
+    return f'{found}; {told}; {every}; or all errors by {answer.everything:.4g}.'
 
 
 def _way(improvement):
     source, values = improvement.source, improvement.values
     if values is None:
-        return f'no {source.label}'
+        return f'without the {source.label}'
     text = ', '.join(f'{v:.4g}' for v in dict.fromkeys(values))
     return f'{source.label} x {improvement.factor:.4g} ({text} {source.unit})'
 
@@ -126,9 +126,10 @@ def budget_tables(linear, answers, compared):
     tables = [_total_table(linear, numbers)]
     count = len(linear.random)
     for sources, part, words in (
-            (linear.random, slice(0, count), 'Errors that differ from run to run, each alone '
-             '(sigma)'), (linear.fixed, slice(count, None), 'Errors that are the same in every '
-                          'run, each alone')):
+            (linear.random, slice(0, count),
+             'Errors that differ from run to run, each alone (standard deviation)'),
+            (linear.fixed, slice(count, None),
+             'Errors that are the same in every run, each alone')):
         if sources:
             tables.append(_source_table(linear, sources, part, numbers, words))
     if linear.random or linear.fixed:
@@ -145,7 +146,7 @@ def _total_table(linear, numbers):
                * shares(linear, q).rms[numbers])) for q in QUANTITIES.values()]
     rows[1:1] = [(f'CEP{100 * part:.0f}', 'm', *(float(x) for x in _cep(linear, part)[numbers]))
                  for part in (0.5, 0.95)]
-    return PageTable('The whole budget', ('error', 'unit', *_heads(linear, numbers)),
+    return PageTable('All errors together', ('error', 'unit', *_heads(linear, numbers)),
                      tuple(rows))
 
 
@@ -165,16 +166,16 @@ def _source_table(linear, sources, part, numbers, words):
                   f'{100.0 * squares[k]:.1f} %', float(tilt[k]), float(azimuth[k]))
                  for k in order)
     heads = [f'{head} [m]' for head in _heads(linear, numbers)]
-    return PageTable(words, ('source', 'parameter', *heads, 'of the square', 'tilt [arcsec]',
-                             'azimuth [arcsec]'), rows,
-                     'Horizontal position error, ranked; tilt, azimuth and share of the square of '
-                     'the whole at the end.' + _silent(sources, order))
+    return PageTable(words, ('source', 'parameter', *heads, 'share of the mean square',
+                             'tilt [arcsec]', 'azimuth [arcsec]'), rows,
+                     'Horizontal position error of each source, ranked; tilt, azimuth and share '
+                     'of the mean square at the end.' + _silent(sources, order))
 
 
 def _silent(sources, shown):
     """Return a sentence on the sources that make no error here, or ''."""
     silent = [source.label for k, source in enumerate(sources) if k not in shown]
-    return f' Without effect here: {", ".join(silent)}.' if silent else ''
+    return f' No effect on the position here: {", ".join(silent)}.' if silent else ''
 
 
 def _value_text(source):
@@ -192,8 +193,8 @@ def _sensitivity_table(linear):
     return PageTable('Sensitivities of the horizontal rms at the end',
                      ('parameter', 'value', 'unit', 'alone [m per unit]', 'd rms [m per unit]',
                       'd rms for + 1 % [m]'), rows,
-                     '"alone": what a unit of the parameter makes by itself; "d rms": the change '
-                     'of the whole with the parameter.')
+                     '"alone": error caused by one unit of the parameter by itself; "d rms": '
+                     'change of the total rms with the parameter.')
 
 
 def _answer_table(answer):
@@ -204,11 +205,11 @@ def _answer_table(answer):
              i.source.unit, float(i.without / si)) for i in answer.alone
             if i.without < LITTLE * answer.found]
     rows += [('all random errors', '-' if answer.random is None else float(answer.random), '-',
-              '', '-'), ('everything', float(answer.everything), '-', '', '-')]
+              '', '-'), ('all errors', float(answer.everything), '-', '', '-')]
     return PageTable(f'What must improve: {r.text}',
-                     ('source', 'factor', 'parameter then', 'unit', f'without it [{name}]'),
-                     tuple(rows), 'A dash: this alone does not suffice. Sources without which the '
-                     f'error is smaller by less than {100.0 * (1.0 - LITTLE):.1f} % are left out.')
+                     ('source', 'factor', 'required parameter', 'unit', f'without it [{name}]'),
+                     tuple(rows), 'A dash: improving this alone does not suffice. Sources that '
+                     f'contribute less than {100.0 * (1.0 - LITTLE):.1f} % are left out.')
 
 
 def _beside_table(compared):
@@ -223,10 +224,10 @@ def _beside_table(compared):
                          float(found.ratio[k]), f'{found.low[k]:.3f} to {found.high[k]:.3f}',
                          ('differs' if found.differs[k] else 'inside')
                          + ('' if found.linear[k] else ', beyond linear theory')))
-    return PageTable('The ensemble beside the budget',
+    return PageTable('Comparison of ensemble and budget',
                      ('error', 'unit', 'at', 'budget', 'ensemble', 'ratio', '99.9 % of ensembles',
                       'verdict'), tuple(rows),
-                     'Horizontal quantities: rms; of one axis: sigma.')
+                     'Horizontal quantities: rms; single axes: standard deviation.')
 
 
 def budget_notes(linear, compared, beside):
@@ -235,12 +236,12 @@ def budget_notes(linear, compared, beside):
     until = linear_until(linear)
     if until is not None:
         notes.append(f'Linear theory holds until {until:.6g} s: from then on the larger of the '
-                     f'azimuth error and of the turn of the axes over the Earth is above '
+                     f'azimuth error and the rotation of the axes over the Earth is above '
                      f'{LINEAR_UP_TO:g} rad, and the curves are dashed.')
     for part, name in zip(linear.beyond, ('accelerometers', 'gyros')):
         if part > 0.0:
-            notes.append(f'In {100.0 * part:.2g} % of the time the input of the {name} is beyond '
-                         'their range, which the budget leaves out.')
+            notes.append(f'In {100.0 * part:.2g} % of the time the input of the {name} exceeds '
+                         'their range, which the budget neglects.')
     if beside is not None:
         notes.append(_ensemble_note(compared, beside))
         left_out = not_compared(linear, beside)
@@ -249,23 +250,23 @@ def budget_notes(linear, compared, beside):
                          f'out: the budget, which divides the run by {INTERVALS}, has none then, '
                          'or fewer than 2 runs count.')
         if any(source.triad is None for source in linear.random):
-            notes.append('No run draws errors of the start: for the comparison the budget is '
-                         'taken without the standard deviations of initial.*.')
+            notes.append('The runs have no random initial errors: the comparison leaves the '
+                         'standard deviations of initial.* out of the budget.')
     return tuple(notes)
 
 
 def _ensemble_note(compared, beside):
     lost = ''
     if beside.diverged:
-        lost = (f' {len(beside.diverged)} of them diverged and count no further: '
+        lost = (f' {len(beside.diverged)} of them diverged and are excluded from then on: '
                 f'{", ".join(map(str, beside.diverged[:MOST_NAMED]))}'
                 + (' and others.' if len(beside.diverged) > MOST_NAMED else '.'))
     if not compared:
         return (f'The ensemble of {beside.runs} runs is not compared: no random error of the '
                 f'budget moves a quantity.{lost}')
     off = [found.name for found in compared if found.differs.any()]
-    told = ('is inside its 99.9 % interval everywhere' if not off else
-            f'leaves its 99.9 % interval in {", ".join(off)}')
+    told = ('agrees with the budget: all ratios are inside their 99.9 % interval' if not off else
+            f'is outside of the 99.9 % interval of the budget in {", ".join(off)}')
     return f'The ensemble of {beside.runs} runs {told}.{lost}'
 
 

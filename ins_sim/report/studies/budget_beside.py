@@ -1,4 +1,4 @@
-"""The study of ``monte-carlo`` that stands beside a budget."""
+"""Read the study of ``monte-carlo`` with which a budget is compared."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,8 +21,8 @@ def read_study(folder, settings):
     """
     Return the BesideRuns in the folder of a study.
 
-    Raises ValueError, or OSError, in one sentence, where the folder holds no study or one of other
-    settings than these SimulationSettings; the seed may differ.
+    Raises ValueError or OSError if the folder holds no study, or one with other settings than
+    these SimulationSettings; the seed may differ.
     """
     folder = Path(folder)
     path = folder / ARRAYS
@@ -33,9 +33,9 @@ def read_study(folder, settings):
     other = [node for node in ('motion_generator', 'imu_sensor', 'strapdown')
              if getattr(_drawn_alike(theirs), node) != getattr(_drawn_alike(settings), node)]
     if other:
-        raise ValueError(f'{folder} is a study of other settings of {", ".join(other)}; expected '
-                         'those of the budget, which are compared value by value (a budget of '
-                         f'{folder / PARAMETERS} has them)')
+        raise ValueError(f'{folder} has other settings of {", ".join(other)} than the budget; '
+                         'expected the same values, except for the seed: use --params-file '
+                         f'{folder / PARAMETERS}')
     try:
         arrays = read_arrays(path, BY_INSTANT)
         runs = read_arrays(path, {'runs': ('i', (None,))})['runs']

@@ -66,8 +66,8 @@ def judged(mean, low, high):
     if mean is None or not np.isfinite(mean):
         return ''
     if mean > high:
-        return 'too sure of itself'
-    return 'more cautious than it need be' if mean < low else 'consistent'
+        return 'too optimistic'
+    return 'too pessimistic' if mean < low else 'consistent'
 
 
 def inside_share(sums):

@@ -12,8 +12,8 @@ from ins_sim.core.numerics.units import DEG_PER_HOUR
 from .. import manifest, storage
 
 MARK = 'estimate.json'
-OWN_MOTION = ('was made of a motion that was given as an object; expected a run whose motion is '
-              'in its parameters, or ins_sim.estimate_delays with the run itself')
+OWN_MOTION = ('was simulated with a motion that was given as an object; expected a run whose '
+              'motion is in its parameters, or ins_sim.estimate_delays with the run itself')
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class FoundValue:
     """
     One value of one channel with its standard deviation, in a unit.
 
-    known: what the settings of a run say it is, or None; told: whether the record tells more of
-    it than what is known beforehand.
+    known: the value in the settings of a simulated run, or None; told: whether the record
+    determines the value better than the a-priori standard deviation.
     """
 
     axis: str
@@ -87,26 +87,27 @@ def differences(triad):
 
 
 def sentences(triad):
-    """Return what is to be said of a TriadEstimate, one sentence each."""
-    told = ['"delay" is the delay of the channel and the lag of the instrument together, against '
-            'the stamps of readings that are means over the sampling interval before']
+    """Return the notes on a TriadEstimate, one sentence each."""
+    told = ['"delay and lag" is the sum of the delay of the channel and the lag of the '
+            'instrument, relative to the stamps; a reading is the mean over the sampling interval '
+            'before its stamp']
     for channel in triad.channels:
         if channel.refused:
             told.append(f'{channel.axis}: the delay is not observable: {channel.refused}')
     by_walk = [c.axis for c in triad.channels if c.weights == BY_WALK]
     others = [c.axis for c in triad.channels if c.weights != BY_WALK]
     if by_walk:
-        told.append(f'standard deviations of {", ".join(by_walk)} are those of the angle random '
-                    'walk of the settings, with which the residuals agree')
+        told.append(f'the standard deviations of {", ".join(by_walk)} are computed from the angle '
+                    'random walk in the settings; the residuals agree with it')
     if others:
-        told.append(f'standard deviations of {", ".join(others)} are those of the scatter of the '
-                    'residuals')
+        told.append(f'the standard deviations of {", ".join(others)} are computed from the '
+                    'scatter of the residuals')
     told += [alike for channel in triad.channels for alike in _alike(channel)]
     return [*told, *triad.notes]
 
 
 def _alike(channel):
-    """Return sentences on the directions that the readings do not tell."""
+    """Yield sentences on the combinations of values that the readings do not determine."""
     names = value_names(channel)
     for direction in channel.weak:
         parts = [(k, float(v)) for k, v in enumerate(direction) if v]
@@ -116,24 +117,25 @@ def _alike(channel):
         factor = amount / abs(value * names[first][1])
         if len(parts) == 1:
             if not (first == DELAY and channel.refused):
-                yield f'{channel.axis}: the {names[first][0]} does not show in this motion'
+                yield f'{channel.axis}: this motion does not show the {names[first][0]}'
             continue
         amounts = ' with '.join(f'{names[k][0]} {v * names[k][1] * factor:.3g} {names[k][2]}'
                                 for k, v in parts)
-        yield f'{channel.axis}: cannot be told apart: {amounts} changes no reading'
+        yield (f'{channel.axis}: cannot be told apart: {amounts} together leave the readings '
+               'unchanged')
 
 
 def answer(triad, known_us=None):
-    """Return what came out, in a sentence or two."""
+    """Return the result in a few sentences."""
     shown = [c for c in triad.channels if not c.refused]
-    text = 'The channels are late by ' + ', '.join(
+    text = 'The delays of the channels, lag included, are ' + ', '.join(
         f'{c.axis} {number(1e6 * c.delay, 1e6 * c.delay_sigma)}' for c in shown) + ' us.'
     if triad.lags is not None:
         lags = {c.axis: 1e6 * lag for c, lag in zip(triad.channels, triad.lags)}
         made = ', '.join(f'{c.axis} {lags[c.axis]:.1f}' for c in shown)
         left = ', '.join(f'{c.axis} {number(1e6 * c.delay - lags[c.axis], 1e6 * c.delay_sigma)}'
                          for c in shown)
-        text += (f' The bandwidth makes {made} us of it, which leaves {left} us of delay.')
+        text += (f' The bandwidth causes {made} us of this; {left} us of delay remain.')
     if known_us is not None:
         text += ' Set in the run: ' + ', '.join(
             f'{c.axis} {d:g}' for c, d in zip(triad.channels, known_us)) + ' us.'
@@ -193,7 +195,7 @@ def error_rows(triad):
 
 
 def show_estimate(title, triad, known_us, console):
-    """Print both tables, and below them what is to be said."""
+    """Print both tables and the notes."""
     for name, (heads, rows) in ((title, delay_rows(triad, known_us)),
                                 ('other errors of the channels', error_rows(triad))):
         table = Table(title=name)

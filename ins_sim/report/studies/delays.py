@@ -17,8 +17,8 @@ ROUNDING = 1e-9
 # What a run without delays may err by where the IMU samples the motion often enough, m.
 CLOSED = 0.01
 TITLE = 'Delays of gyro channels: the study of Bogdanov and Fomichev (2018)'
-NO_CURVES = ('The paper prints its figures without data, so no published curve stands beside '
-             'these; its numbers stand in the tables.')
+NO_CURVES = ('The paper gives no data for its curves, so they are not drawn; '
+             'the numbers that it states are in the tables.')
 
 
 def study_tables(results):
@@ -129,7 +129,7 @@ def _numbers(per_s):
 
 
 def answer(results):
-    """Return what came out, in a few sentences."""
+    """Return the result in a few sentences."""
     runs = all_runs(results)
     bench = [run for run in runs if run.settings.motion_generator.motion.kind == 'two_axis']
     flights = [run for result in results if result.figure.shows.figure == 'flight'
@@ -138,14 +138,15 @@ def answer(results):
     if bench:
         worst, best = (pick(bench, key=_far) for pick in (max, min))
         said.append(f'On {names.run_name(worst.settings)}, {names.late_gyros(worst.settings)}, '
-                    f'the attitude drifts by {_drift(worst):.3g} deg/h and the position errs by '
-                    f'up to {_far(worst):.4g} m in {_hours(worst)}')
+                    f'the attitude drifts by {_drift(worst):.3g} deg/h and the position error '
+                    f'reaches {_far(worst):.4g} m in {_hours(worst)}')
         if best is not worst:
-            said[-1] += f'; with {names.short_run_name(best.settings)} by {_far(best):.3g} m'
+            said[-1] += (f'; with {names.short_run_name(best.settings)} it reaches '
+                         f'{_far(best):.3g} m')
     if flights:
         worst = max(flights, key=_far)
-        said.append(f'Of {len(flights)} flights the {names.motion_name(worst.settings)} errs '
-                    f'most, by up to {_far(worst):.3g} m in {_hours(worst)} with '
+        said.append(f'Of {len(flights)} flights the {names.motion_name(worst.settings)} has the '
+                    f'largest position error, {_far(worst):.3g} m in {_hours(worst)} with '
                     f'{names.late_gyros(worst.settings)}')
     if not said:
         worst = max(runs, key=_drift)
@@ -170,7 +171,7 @@ def _hours(run):
 def study_notes(results):
     """Return the sentences on what was assumed."""
     notes = [note for result in results for note in result.figure.notes]
-    notes += [f'{names.run_name(run.settings)}: without delays the run is off by '
+    notes += [f'{names.run_name(run.settings)}: without delays the position error is '
               f'{run.twin.largest[:2].max():.3g} m, because its motion changes faster than the '
               'IMU samples it; expected a higher rate_hz, or motion.recording.smoothing_s.'
               for run in all_runs(results) if run.twin.largest[:2].max() > CLOSED]
@@ -178,7 +179,7 @@ def study_notes(results):
         notes.append(NO_CURVES)
     if any(result.map is not None for result in results):
         notes.append('The maps neglect the rotation of the Earth, which changes the largest '
-                     'drift by a ten-thousandth.')
+                     'drift by 1e-4 of itself.')
     return notes
 
 

@@ -75,26 +75,26 @@ def ensemble_title(settings, runs):
 
 
 def flight_command(report, parameters=PARAMETERS):
-    """Return the command that flies the worst run alone, to the bit."""
+    """Return the command that simulates the worst run alone, with the same bits."""
     number, aided = report.worst[0], '' if report.aided is None else ' --aided'
     return (f'ins_sim simulate{aided} --params-file {quote(parameters)} -p run:={number} '
             f'-o run_{number}')
 
 
 def notes(report):
-    """Return a sentence for each kind of run that was left out, or that started anew."""
+    """Return sentences on the runs that were excluded, and on those that were restarted."""
     result, said = report.result, []
     if result.diverged:
-        words, why = 'have diverged and count no further', ''
+        words, why = 'diverged and are excluded from then on', ''
         if report.aided is not None:
             number, reason = report.aided.refused[0]
-            words = 'were refused or have diverged and do not count'
+            words = 'were refused or diverged and are excluded'
             why = f'; run {number}: {reason}'
         said.append(f'{len(result.diverged)} of {len(result.runs)} runs {words}: '
                     f'{_named(result.diverged)}{why}')
     if result.restarted:
         total = sum(count for _, count in result.restarted)
-        said.append(f'the solution started anew from the truth {total} times, after gaps, in '
+        said.append(f'the solution was restarted from the truth {total} times, after gaps, in '
                     f'{len(result.restarted)} of {len(result.runs)} runs')
     if len(result.runs) - len(result.diverged) < 2:
         said.append('sigma and CEP need two runs or more')
@@ -109,17 +109,17 @@ def _named(runs):
 
 
 def answer(report):
-    """Return what came out, in a sentence or two."""
+    """Return the result in a few sentences."""
     errors = report.errors
     if report.worst is None:
         refused = '' if report.aided is None else 'were refused or '
-        return f'All {len(report.result.runs)} runs {refused}have diverged.'
+        return f'All {len(report.result.runs)} runs {refused}diverged.'
     number, metres = report.worst
     rms = errors.horizontal_rms['position'][-1]
     said = f'After {errors.t_ns[-1] * 1e-9:g} s the horizontal position error is {rms:.4g} m rms'
     if np.isfinite(errors.cep[50][-1]):
         said += f', CEP50 {errors.cep[50][-1]:.4g} m, CEP95 {errors.cep[95][-1]:.4g} m'
-    said += f' over {errors.count[-1]} runs. The worst is run {number}, {metres:.4g} m off.'
+    said += f' over {errors.count[-1]} runs. The worst is run {number} with {metres:.4g} m.'
     if report.aided is None:
         return said
     return f'{said} {consistency_answer(report.aided.consistency)}'
@@ -139,7 +139,7 @@ def tables(report):
                   *errors.horizontal_percentiles[name][:, -1])
         rows.append((f'{name} horizontal', unit, '-', '-', *_cells(factor * np.array(values))))
     end = PageTable(f'errors at {errors.t_ns[-1] * 1e-9:g} s', ('error', 'unit', *heads),
-                    tuple(rows), 'percentiles: so many runs lie below')
+                    tuple(rows), 'percentiles: this part of the runs lies below the value')
     chosen = np.unique(np.linspace(0, len(errors.t_ns) - 1, MOST_ROWS).round().astype(int))
     against = PageTable(
         'horizontal position error against time',
@@ -149,8 +149,8 @@ def tables(report):
                *_cells([*errors.sigma['position'][k, :2], errors.horizontal_rms['position'][k],
                         errors.cep[50][k], errors.cep[95][k],
                         errors.horizontal_percentiles['position'][-1, k]])) for k in chosen),
-        'CEP: radius about the true place by mean and covariance; 95 %: below which so many runs '
-        'lie')
+        'CEP: radius around the true position, from mean and covariance; 95 %: radius that '
+        'contains this part of the runs')
     filter_ = None if report.aided is None else consistency_table(report.aided.consistency)
     return (end, against) if filter_ is None else (end, against, filter_)
 
@@ -210,11 +210,11 @@ def write_ensemble(folder, report):
         save_chart(folder, chart)
     told = notes(report)
     if report.worst is not None:
-        told += (f'the worst run alone: {flight_command(report)}',)
+        told += (f'command that simulates the worst run alone: {flight_command(report)}',)
     write_page(folder, Page(
         report.title, answer(report), charts, tables(report), told, report.settings,
-        {'statistics and ends of all runs': report.digest},
-        {ARRAYS: 'statistics by instant, and the end of every run',
+        {'statistics, and errors of all runs at the end': report.digest},
+        {ARRAYS: 'statistics by instant, and solution and errors of every run at the end',
          SUMMARY: 'the tables as JSON', PARAMETERS: 'every parameter',
          MANIFEST: 'noise and bits'}))
     (folder / SUMMARY).write_text(json.dumps(_summary(report), indent=1) + '\n',

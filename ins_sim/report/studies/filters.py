@@ -49,8 +49,8 @@ class FilterRow:
         """Return in words whether it knows how far it is off; '' where it says nothing."""
         by = [judged(self.nis, self.nis_low, self.nis_high)] if self.nis is not None else []
         by += [judged(*self.nees['position'][:3])] if 'position' in self.nees else []
-        if 'too sure of itself' in by:
-            return 'too sure of itself'
+        if 'too optimistic' in by:
+            return 'too optimistic'
         return next((words for words in by if words != 'consistent'), 'consistent') if by else ''
 
 

@@ -38,7 +38,7 @@ def test_the_answer():
     rows, _ = study()
     assert answer(rows, 3000.0) == (
         'Of 5 filters over 12 flights of 50 min, eskf, N 1000, was best: rms horizontal error at '
-        'the end 300 m, 3 times less than window_kf, N 1000 (900 m). Too sure of itself by NIS '
+        'the end 300 m, 3 times less than window_kf, N 1000 (900 m). Too optimistic by NIS '
         'and by NEES of the position at the end: window_kf, N 1000. Consistent by NIS and by NEES '
         'of the position at the end: eskf, N 1000; eskf, N 100. Without a covariance, so that '
         'nothing can be said: free, N 1000; paper, N 1000.')
@@ -69,12 +69,12 @@ def test_equal_curves_are_one_with_both_names():
     assert shown.title == 'Position error of each flight, filter eskf, N 1000'
     nees = [mark for mark in consistency.panels[0].marks if isinstance(mark, Curve)]
     assert {c.label: c.colour for c in nees}.items() <= {c.label: c.colour for c in curves}.items()
-    # the filter that is 20 times too sure of itself is within what is shown
+    # the filter that is 20 times too optimistic is within what is shown
     assert consistency.panels[0].y_range[1] > 20.0
 
 
 @pytest.mark.parametrize('mean, words', [
-    (2.0, 'consistent'), (4.0, 'too sure of itself'), (0.5, 'more cautious than it need be'),
+    (2.0, 'consistent'), (4.0, 'too optimistic'), (0.5, 'too pessimistic'),
     (np.nan, ''), (None, '')])
 def test_where_a_mean_lies(mean, words):
     """In words."""

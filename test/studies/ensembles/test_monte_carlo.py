@@ -96,8 +96,8 @@ def test_runs_that_diverge_are_counted_named_and_left_out():
     result = tally.result(range(3), [3_000_000_000], [final], [errors[0]], [1], [(2, 4)])
     report = ensemble.ensemble_report('three runs', settings, result)
     assert report.errors.count.tolist() == [2] and report.worst[0] == 2
-    assert ensemble.notes(report)[0] == ('1 of 3 runs have diverged and count no further: 1')
-    assert 'started anew from the truth 4 times, after gaps, in 1 of 3 runs' in (
+    assert ensemble.notes(report)[0] == ('1 of 3 runs diverged and are excluded from then on: 1')
+    assert 'restarted from the truth 4 times, after gaps, in 1 of 3 runs' in (
         ensemble.notes(report)[1])
     assert 'over 2 runs' in ensemble.answer(report)
 

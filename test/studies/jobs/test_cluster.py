@@ -40,7 +40,7 @@ def test_a_cluster_that_goes_away_is_named(processes):
     """The study ends with a sentence when the scheduler ends."""
     processes.worker()
     with open_executor(scheduler=processes.address) as executor:
-        with pytest.raises(ValueError, match=f'{processes.address} has gone away'):
+        with pytest.raises(ValueError, match=f'{processes.address} is lost'):
             for number, _ in run_blocks(slow_block, range(50), executor):
                 if number == 1:
                     processes.all[0].kill()
