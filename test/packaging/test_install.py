@@ -36,7 +36,7 @@ def source(tmp_path):
     """Return a copy of the source tree, for a build leaves files beside the sources."""
     copy = tmp_path / 'src' / 'ins_sim'
     shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(
-        '.git', '.venv*', 'build', 'install', 'log', '*.egg-info', '__pycache__', 'runs'))
+        '.git', '.venv*', 'build', 'install', 'log', '*.egg-info', '__pycache__'))
     return copy
 
 

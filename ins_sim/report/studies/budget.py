@@ -106,10 +106,10 @@ def requirement_sentence(answer):
         told = (f'no single source suffices ({_text(unit, best.without)} remains without the '
                 f'{best.source.label})')
     if answer.random is None:
-        every = 'all random errors together do not suffice, as the fixed ones exceed it'
+        every = 'improving all random errors does not suffice, as the fixed ones exceed it'
     else:
-        every = f'or multiply all random errors by {answer.random:.4g}'
-    return f'{found}; {told}; {every}; or all errors by {answer.everything:.4g}.'
+        every = f'all random errors x {answer.random:.4g} meet it'
+    return f'{found}; {told}; {every}; all errors x {answer.everything:.4g} meet it.'
 
 
 def _way(improvement):

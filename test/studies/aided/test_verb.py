@@ -52,7 +52,7 @@ def test_a_filter_without_a_covariance(tmp_path, capsys):
     summary, arrays = ensemble(tmp_path / 'a', '-p', 'filter:=conventional', '--jobs', '1',
                                runs=2)
     told = ' '.join(capsys.readouterr().out.split())
-    assert 'The filter has no covariance, so that there is neither NEES nor NIS.' in told
+    assert 'The filter has no covariance, hence neither NEES nor NIS.' in told
     assert [table['title'] for table in summary['tables']] == [
         'errors at 20 s', 'horizontal position error against time']
     assert not arrays['nees_count'].any() and arrays['count'].tolist() == [2] * 5
@@ -69,7 +69,7 @@ def test_a_run_that_is_refused_is_named(tmp_path, capsys):
     assert 0 < len(summary['diverged']) < 4
     first = summary['diverged'][0]
     lost = len(summary['diverged'])
-    assert f'{lost} of 4 runs were refused or have diverged and do not count' in told
+    assert f'{lost} of 4 runs were refused or diverged and are excluded' in told
     assert f'run {first}: imu has a gap' in told
     assert np.isnan(arrays['final_position_error'][first]).all()
     assert arrays['count'].tolist() == [4 - lost] * 5

@@ -41,9 +41,9 @@ def test_what_is_written(written):
     page = (written / 'report.html').read_text(encoding='utf-8')
     assert len(page) < 5_000_000 and 'no single source suffices' in page
     found = json.loads((written / report.MARK).read_text())
-    assert found['answer'].startswith('After 1 min the position is ')
+    assert found['answer'].startswith('After 1 min the horizontal position error is ')
     assert [r['met'] for r in found['requirements']] == [False, False]
-    assert 'inside its 99.9 % interval' in found['notes'][-1]
+    assert 'inside their 99.9 % interval' in found['notes'][-1]
     with np.load(written / report.ARRAYS) as arrays:
         assert arrays['covariance'].shape[1:] == (361, 9, 9)
         assert len(arrays['random']) == len(arrays['covariance'])
@@ -134,7 +134,7 @@ def test_a_requirement_that_is_met_is_said(capsys, tmp_path):
     assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--require',
                  'horizontal cep50 1 m at 10 s', '-o', str(tmp_path / 'b')]) == 0
     said = capsys.readouterr().out
-    assert 'which meets it' in said and 'no errors that move the position' in said
+    assert 'which meets it' in said and 'no error that affects the position' in said
 
 
 @pytest.mark.slow
@@ -158,7 +158,7 @@ def test_two_errors_that_cancel_need_both():
         'gyro.errors.turn_on_bias_sigma_deg_h': 1.0})
     answer = ins_sim.budget(settings).requirement('horizontal rms 1 m at 60 s')
     assert answer.random is None and answer.everything == pytest.approx(1.0 / answer.found)
-    assert 'for the fixed ones exceed it' in report.requirement_sentence(answer)
+    assert 'as the fixed ones exceed it' in report.requirement_sentence(answer)
 
 
 def test_sensitivities_are_derivatives():
@@ -218,4 +218,4 @@ def test_a_factor_is_never_shown_as_zero(capsys, tmp_path):
     """A requirement that asks for a billionth."""
     assert main(['budget', *FILES, '--require', 'horizontal rms 1e-9 m at 60 s', '-o',
                  str(tmp_path / 'b')]) == 0
-    assert 'everything x 1.2' in ' '.join(capsys.readouterr().out.split())
+    assert 'all errors x 1.2' in ' '.join(capsys.readouterr().out.split())

@@ -111,7 +111,7 @@ def test_an_ensemble_of_which_all_have_diverged(tmp_path):
                           [np.full((2, 9), np.nan)], [0, 1])
     report = ensemble.ensemble_report('two runs', settings, result)
     ensemble.write_ensemble(tmp_path, report)
-    assert ensemble.answer(report) == 'All 2 runs have diverged.'
+    assert ensemble.answer(report) == 'All 2 runs diverged.'
     assert 'NaN' not in (tmp_path / 'summary.json').read_text()
 
 
@@ -122,7 +122,7 @@ def test_an_ensemble_of_which_all_have_diverged(tmp_path):
     (['-p', 'run:=2147483647', '--runs', '2'], 'run is 2147483647 with 2 runs'),
     (['-p', 'run:=-1'], 'run is -1'), (['-p', 'duration_s:=0'], 'duration_s is 0, endless'),
     (['-p', 'initial.after_s:=9.0'], 'no navigation output'),
-    (['--scheduler', 'tcp://host:1'], 'a scheduler is given; expected one of them'),
+    (['--scheduler', 'tcp://host:1'], 'a scheduler is given; expected only one of them'),
     (['-o', '/dev/null/study'], '/dev/null/study cannot be made')])
 def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, capsys):
     """With one sentence, and nothing is left."""
