@@ -42,7 +42,8 @@ def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
     said = capsys.readouterr().out
     for text in ('delay set', 'lag of the bandwidth', '361.50',
                  'are computed from the angle',
-                 '"delay" is the delay of the channel and the lag of the instrument together'):
+                 '"delay and lag" is the sum of the delay of the channel and the lag of the '
+                 'instrument'):
         assert text in said
     run = {row['axis']: row for row in json.loads((out / 'estimate.json').read_text())['values']
            if row['name'] == 'delay and lag'}

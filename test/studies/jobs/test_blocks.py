@@ -124,5 +124,5 @@ def test_blocks_of_another_study_are_never_mixed(tmp_path):
     other = tmp_path / 'other'
     other.mkdir()
     (other / 'mine.txt').touch()
-    with pytest.raises(ValueError, match='it holds no blocks of a study'):
+    with pytest.raises(ValueError, match='holds no blocks of a study'):
         BlockStore(other, {}, replace=True)
