@@ -129,7 +129,7 @@ def test_without_a_name_the_groups_are_described(capsys):
     ('imu_sensr', "the nearest known one is 'imu_sensor'"),
     ('delay_us.y', 'there are accelerometer.delay_us.y, gyro.delay_us.y'),
     ('bias_deg_h', 'there are gyro.dtg.fault.bias_deg_h, gyro.errors.bias_deg_h'),
-    ('x' * 5000, '(5000 characters) is not a parameter'), ('', "'' is no parameter"),
+    ('x' * 5000, '(5000 characters) is not a parameter'), ('', "'' is not a parameter"),
     ('gyro.', "the nearest known one is 'gyro'"), ('\x1b[2J', 'is not a parameter')])
 def test_unknown_names(name, sentence, capsys):
     """One sentence, exit code 2."""
