@@ -147,8 +147,8 @@ def test_what_linear_theory_does_not_cover_is_said(capsys, tmp_path):
                  str(tmp_path / 'b')]) == 0
     said = capsys.readouterr().out
     assert 'Linear theory holds until 0 s' in said
-    assert 'the input of the gyros is beyond their range' in said
-    assert 'No run draws errors of the start' in said
+    assert 'the input of the gyros exceeds their range' in said
+    assert 'The runs have no random initial errors' in said
 
 
 def test_two_errors_that_cancel_need_both():
