@@ -52,7 +52,7 @@ class DelayStudy:
         return tuple(result.figure.name for result in self.results)
 
     def result(self, name: str) -> FigureResult:
-        """Return the FigureResult of a name; ValueError if there is none."""
+        """Return the FigureResult with a name; ValueError if no figure has it."""
         for result in self.results:
             if result.figure.name == name:
                 return result
@@ -158,7 +158,7 @@ def delay_study(names: Names = SHIPPED, values: Values | None = None,
     values : mapping, optional
         Values of parameters by name, for all figures; they override the files.
     recordings : str, path, or a list of these, optional
-        Recorded flights (CSV files or bags), each of which adds a figure.
+        Recorded flights (CSV files or bags). Each adds a figure.
     jobs : int, optional
         Number of processes; 0: one for each core; 1: this process alone.
 

@@ -63,7 +63,7 @@ class ShippedFile:
 
 
 def shipped_file(name):
-    """Return a ShippedFile by its name; FileNotFoundError where there is none."""
+    """Return the ShippedFile with a name; FileNotFoundError if no file has it."""
     path = resources.config(name)
     content, parameters = read_bytes(path), Parameters()
     parameters.add_file(content, str(path))

@@ -122,10 +122,7 @@ class AidedPlan(EnsemblePlan):
 
     def blocks(self):
         """Return the blocks, ranges of runs, the same whatever computes them."""
-        size = min(MOST_RUNS, -(-self.runs // ENOUGH_BLOCKS))
-        first = self.settings.run
-        return [range(first + k, first + min(k + size, self.runs))
-                for k in range(0, self.runs, size)]
+        return self.cut_into(min(MOST_RUNS, -(-self.runs // ENOUGH_BLOCKS)))
 
     def identity(self):
         """Return what decides the numbers, for ``jobs.store.BlockStore``."""

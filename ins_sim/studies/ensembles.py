@@ -64,6 +64,10 @@ class EnsemblePlan:
         """
         unit = LANES if in_lanes(self.settings) else 1
         size = unit * min(MOST_GROUPS, -(-self.runs // (unit * ENOUGH_BLOCKS)))
+        return self.cut_into(size)
+
+    def cut_into(self, size):
+        """Return the runs as ranges of so many."""
         first = self.settings.run
         return [range(first + k, first + min(k + size, self.runs))
                 for k in range(0, self.runs, size)]

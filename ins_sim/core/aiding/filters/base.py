@@ -88,7 +88,7 @@ class AidingFilter:
         Of the errors ``states``; None for a filter without one. A filter replaces it and never
         changes it in place.
     given : tuple of str
-        The states of which the filter is given the value and estimates none.
+        The states whose values are given to the filter, so that it does not estimate them.
     observed_at : str
         'end' or 'start' of the window: the instant of the errors which the matrix of
         ``velocity_model`` multiplies.
