@@ -7,6 +7,7 @@ import numpy as np
 
 from ins_sim import __version__
 from ins_sim.core.numerics.noise import NOISE
+from ins_sim.core.timeseries.histories import BLOCK
 from ins_sim.settings.catalogue import values_of
 
 
@@ -27,10 +28,16 @@ def fingerprint(settings, **inputs):
 
 
 def array_digest(arrays):
-    """Return the SHA-256, hexadecimal, of {name: array}: of names, types, shapes and bytes."""
+    """
+    Return the SHA-256, hexadecimal, of {name: array}: of names, types, shapes and bytes.
+
+    A column on disk, which may be longer than memory, is read block by block.
+    """
     total = sha256()
-    for name in sorted(arrays):
-        array = np.ascontiguousarray(arrays[name])
+    for name, array in sorted(arrays.items()):
+        if isinstance(array, np.ndarray):
+            array = np.ascontiguousarray(array)
         total.update(f'{name} {array.dtype.str} {array.shape}\n'.encode())
-        total.update(array.tobytes())
+        for first in range(0, len(array), BLOCK):
+            total.update(np.ascontiguousarray(array[first:first + BLOCK]).data)
     return total.hexdigest()

@@ -87,7 +87,7 @@ MAY_IMPORT = {
                                 'core.aiding', 'core.simulation'},
     'studies': CORE | {'settings', 'jobs'},
     'messages': {'core.attitude', 'core.timeseries'},
-    'jobs': {'settings', 'core.numerics', '__version__'},
+    'jobs': {'settings', 'core.numerics', 'core.timeseries', '__version__'},
     'bags': {'messages', 'settings.suggest', 'settings.shown', 'own_folders', 'regular_file',
              'visible_text', 'yaml_text'},
     'own_folders': set(),

@@ -1,11 +1,10 @@
 """The report of a run: its figures, its track and its page, written beside its data."""
 
-import hashlib
 import math
 
 import numpy as np
 
-from ins_sim.core.timeseries.histories import BLOCK
+from ins_sim.jobs.fingerprint import array_digest
 from .. import coverage
 from ..charts.png import save_chart
 from ..charts.scales import distance
@@ -78,7 +77,7 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
     write_page(work, Page(
         title, answer, tuple(charts), tuple(tables),
         tuple([*notes, OBJECT] if own_motion else notes),
-        aided.settings if aided else settings, {'the errors': history_digest(run.errors)},
+        aided.settings if aided else settings, {'the errors': array_digest(run.errors.arrays())},
         {**files, **requested(work)}))
 
 
@@ -100,7 +99,7 @@ def write_error_report(work, settings, errors, rows, prediction, title):
     write_page(work, Page(
         title, _answer(errors), (chart,), (_table(rows),),
         tuple(coverage.coverage_lines(settings, prediction)), settings,
-        {'the errors': history_digest(errors)},
+        {'the errors': array_digest(errors.arrays())},
         {name: what for name, what in FILES.items() if name in found}))
 
 
@@ -124,13 +123,3 @@ def _answer(errors):
             f'horizontally ({distance(abs(north))} {"north" if north >= 0.0 else "south"}, '
             f'{distance(abs(east))} {"east" if east >= 0.0 else "west"}){vertical}; the mean '
             f'drift is largest about {("east", "north", "up")[axis]}, {drift[axis]:.3g} deg/h.')
-
-
-def history_digest(history):
-    """Return the SHA-256 of the columns of a History, which may be longer than memory."""
-    digest = hashlib.sha256()
-    for name, values in sorted(history.arrays().items()):
-        digest.update(f'{name} {values.dtype} {values.shape}'.encode())
-        for first in range(0, len(history), BLOCK):
-            digest.update(np.ascontiguousarray(values[first:first + BLOCK]).data)
-    return digest.hexdigest()
