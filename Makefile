@@ -4,7 +4,7 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow test-kilted figures bench bits fuzz soak lint lock clean
+.PHONY: help setup demo test test-slow test-kilted docs figures bench bits fuzz soak lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
@@ -12,7 +12,8 @@ help:
 	@echo 'make test       run the tests'
 	@echo 'make test-slow  run the slow tests'
 	@echo 'make test-kilted  run the live tests on the wheels of ROS 2 Kilted'
-	@echo 'make figures    compute the long studies and render docs/validation.md'
+	@echo 'make figures    compute the long studies and render docs/explanation/validation.md'
+	@echo 'make docs       build the site into build/docs; warnings are errors'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
 	@echo 'make bits       compare the bits of runs between processors and versions of NumPy'
 	@echo 'make fuzz       try 50000 hostile files and two million hostile messages; takes hours'
@@ -33,7 +34,7 @@ test:
 test-slow:
 	$(RUN) python tools/run_tests.py slow
 
-# The newest wheels, in an environment beside; docs/distributions.md.
+# The newest wheels, in an environment beside; docs/how_to/distributions.md.
 KILTED = build/kilted/bin/python
 SMOKE = $(addprefix test/ros/, test_graph.py test_repairs.py test_services.py test_bag.py one_process \
 	stack adapter recording/test_recorder.py recording/test_player.py aiding/test_aided.py)
@@ -44,6 +45,10 @@ $(KILTED):
 	$(PYTHON) -m venv build/kilted
 	$(KILTED) -m pip install --quiet 'ros-kilted-rclpy[fastrtps]' ros-kilted-common-interfaces \
 		--editable '.[test]'
+
+docs:
+	$(RUN) python -m sphinx -W --keep-going -q -b html docs build/docs
+	@echo 'open build/docs/index.html'
 
 figures:
 	$(RUN) python tools/run_tests.py figures

@@ -21,6 +21,8 @@ MAGNETIC = ['pygeomag>=1.1,<2']
 # Figures in report.html that can be zoomed.
 REPORT = ['bokeh>=3.4,<4']
 XARRAY = ['xarray']
+# The site of docs/, built by make docs; its theme and parser are those of the ROS build farm.
+DOCS = ['sphinx>=7.2,<10', 'myst-parser>=2,<6', 'sphinx-rtd-theme>=2,<4']
 
 # Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
@@ -49,7 +51,8 @@ setup(
         'report': REPORT,
         'xarray': XARRAY,
         # pytest 9 cannot start beside the launch_testing plugin of Jazzy.
-        'test': [*CLUSTER, *COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, *REPORT, *XARRAY,
+        'docs': DOCS,
+        'test': [*DOCS, *CLUSTER, *COMPRESSION, *DATAFRAME, *FAST, *MAGNETIC, *REPORT, *XARRAY,
                  'pytest<9', 'pytest-xdist<4', 'hypothesis<7', 'flake8<8', 'mypy<3',
                  'colcon-ros>=0.5,<0.6',
                  # what results are compared with

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from ins_sim.core.prediction.predict import Prediction
     from ins_sim.settings.simulation import AidedSimulationSettings, SimulationSettings
 
-__version__ = '0.1.0'
+__version__ = '0.2.0'
 
 __all__ = ['AidedRun', 'AidedSimulationSettings', 'BagReader', 'DelayEstimate', 'DelayStudy',
            'ErrorBudget', 'FilterComparison', 'ImuRecord', 'MonteCarlo', 'Motion', 'Navigation',

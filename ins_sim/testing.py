@@ -1,5 +1,6 @@
 """
-A simulation for the tests of other filters: an IMU with truth, step by step (docs/testing.md).
+A simulation for the tests of other filters: an IMU with truth, step by step
+(docs/how_to/test_your_filter.md).
 
 It runs in the process of the test and in a ROS domain of its own.  A filter may be a function, a
 node of the same process, or a process of its own that hears the topics.

@@ -1,5 +1,6 @@
 """
-Render docs/validation.md from docs/figures/validation.md.in and docs/figures/validation.json.
+Render docs/explanation/validation.md from docs/figures/validation.md.in and
+docs/figures/validation.json.
 
 Usage: python tools/render_validation.py [--take build/figures.json] [--check]
 
@@ -17,7 +18,7 @@ import sys
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / 'docs' / 'figures' / 'validation.md.in'
 VALUES = TEMPLATE.with_suffix('').with_suffix('.json')
-PAGE = ROOT / 'docs' / 'validation.md'
+PAGE = ROOT / 'docs' / 'explanation' / 'validation.md'
 FIELD = re.compile(r'\{\{([^{}:\[\]]+)(?:\[(\d+)\])?:([^{}]*)\}\}')
 
 
@@ -58,8 +59,9 @@ def main(words=None):
     page = render(template, figures)
     if arguments.check:
         same = PAGE.read_text(encoding='utf-8') == page
-        print('docs/validation.md is its rendering' if same else
-              'docs/validation.md is not its rendering: python tools/render_validation.py')
+        print('docs/explanation/validation.md is its rendering' if same else
+              'docs/explanation/validation.md is out of date: run python '
+              'tools/render_validation.py')
         return 0 if same else 1
     VALUES.write_text(json.dumps({'figures': figures}, indent=1) + '\n', encoding='utf-8')
     PAGE.write_text(page, encoding='utf-8')

@@ -1,4 +1,4 @@
-"""Our IMU and INS on a vehicle of Gazebo; docs/recipes/gazebo.md."""
+"""Our IMU and INS on a vehicle of Gazebo; docs/how_to/recipes/gazebo.md."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The attitude filters of imu_tools on a simulated IMU; docs/recipes/imu_tools.md."""
+"""The attitude filters of imu_tools on a simulated IMU; docs/how_to/recipes/imu_tools.md."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""robot_localization on a simulated vehicle; docs/recipes/robot_localization.md."""
+"""robot_localization on a simulated vehicle; docs/how_to/recipes/robot_localization.md."""
 
 from pathlib import Path
 

@@ -39,8 +39,8 @@ def budget(settings: SimulationSettings, times_s: Iterable[float] = (), runs: in
     Return the error budget of a strapdown: the contribution of each error source.
 
     Propagates each error of the settings by linear covariance along the motion of an unaided
-    strapdown; nothing is simulated unless ``runs`` are asked for (docs/budget.md; docs/theory.md,
-    "Error budget").
+    strapdown; nothing is simulated unless ``runs`` are asked for (docs/how_to/error_budget.md;
+    docs/theory/error_budget.md).
 
     Parameters
     ----------
@@ -185,8 +185,8 @@ class ErrorBudget:
         Parameters
         ----------
         text : str
-            Such as ``'horizontal rms 1852 m at 3600 s'`` (docs/budget.md). For a time that is not
-            in ``t_s`` the errors are propagated again.
+            Such as ``'horizontal rms 1852 m at 3600 s'`` (docs/how_to/error_budget.md). For a time
+            that is not in ``t_s`` the errors are propagated again.
 
         Raises
         ------

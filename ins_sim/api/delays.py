@@ -148,7 +148,7 @@ def delay_study(names: Names = SHIPPED, values: Values | None = None,
     """
     Repeat the study of gyro channel delays of Bogdanov and Fomichev (2018).
 
-    See docs/delay_study.md. All default figures take half a minute on two cores.
+    See docs/how_to/delay_study.md. All default figures take half a minute on two cores.
 
     Parameters
     ----------

@@ -2,7 +2,8 @@
 The imu.yaml of Kalibr, of the instrument that an IMU is simulated with.
 
 Kalibr knows two processes of a channel, white noise and a random walk of the bias, each by its
-density in SI units; it refuses zero.  docs/recipes/kalibr.md says what becomes of the others.
+density in SI units; it refuses zero.  docs/how_to/recipes/kalibr.md says what becomes of the
+others.
 """
 
 import math

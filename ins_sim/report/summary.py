@@ -11,7 +11,8 @@ from . import coverage
 DEG_PER_HOUR = 180.0 / math.pi * 3600.0
 
 # Largest |dN|, |dE| in metres after one hour at 100 Hz: the tables of the paper's two motions and
-# of the closed-form flights, re-derived (docs/validation.md).  Key: kind, theta, detuning.
+# of the closed-form flights, re-derived (docs/explanation/validation.md).  Key: kind, theta,
+# detuning.
 PUBLISHED_POSITION = {
     ('rocking', 0.0, 0.0): (111.98, 15.03),
     ('two_axis', -30.0, 0.0): (4472.1, 623.94),

@@ -1,7 +1,7 @@
 """
 Settings of the node velocity_meter, the correlation velocity meter.
 
-Axes of the antennas: X1 forward, Z1 right (docs/theory.md, "Correlation velocity meter").
+Axes of the antennas: X1 forward, Z1 right (docs/theory/velocity_meter.md).
 """
 
 from .field import group, setting, settings_class, SettingsGroup

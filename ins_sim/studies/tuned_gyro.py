@@ -4,7 +4,7 @@ The study of Sapegin, Romanov, Bugaiov (2016): error of the roll due to the lag 
 The base rocks in roll by 10 deg sin(w t). Two gyros sense its rates, and their readings are
 integrated by Poisson's equation and by that of the Euler vector; gyros and equations use RK4 with
 the same step. The amplitude is half the peak-to-peak value of the computed roll over the last
-whole period (docs/theory.md, "Dynamically tuned gyro", The study). The conditions and printed
+whole period (docs/theory/tuned_gyro.md, The study). The conditions and printed
 values of the paper's tables are in config/dtg_study_frequency.yaml and dtg_study_speed.yaml.
 """
 

@@ -1,4 +1,5 @@
-"""Motion, autopilot and sensor of docs/extending.md are complete: they run, and are right."""
+"""Motion, autopilot and sensor of docs/how_to/extending.md are complete: they run, and are
+right."""
 
 import re
 
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 from support.places import ROOT
 
-PAGE = ROOT / 'docs' / 'extending.md'
+PAGE = ROOT / 'docs' / 'how_to' / 'extending.md'
 SECTIONS = {text.partition('\n')[0]: re.findall(r'```python\n(.*?)```', text, re.DOTALL)
             for text in PAGE.read_text(encoding='utf-8').split('\n## ')[1:]}
 

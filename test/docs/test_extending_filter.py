@@ -1,4 +1,4 @@
-"""The example of docs/extending_filter.md is a whole filter: it runs, and it corrects."""
+"""The example of docs/how_to/add_filter.md is a whole filter: it runs, and it corrects."""
 
 from pathlib import Path
 import re
@@ -6,7 +6,7 @@ import re
 from ins_sim.settings.aided_navigator import FILTERS
 import pytest
 
-PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'extending_filter.md'
+PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'how_to' / 'add_filter.md'
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from support.places import ROOT
 import yaml
 
 RECIPES = ROOT / 'config' / 'recipes'
-PAGES = ROOT / 'docs' / 'recipes'
+PAGES = ROOT / 'docs' / 'how_to' / 'recipes'
 LAUNCHES = sorted(RECIPES.glob('*.launch.py'))
 TOPICS = {topic.name: topic.type_name for topic in (
     *topics.DATA, *topics.AIDING, *topics.BESIDE, topics.OTHER_ODOMETRY, topics.CLOCK_TOPIC)}

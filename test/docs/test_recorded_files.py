@@ -10,7 +10,7 @@ from ins_sim.cli.main import main
 from ins_sim.settings.catalogue import flatten
 from ins_sim.settings.navigate import NavigateSettings
 
-PAGE = (ROOT / 'docs' / 'recorded_files.md').read_text(encoding='utf-8')
+PAGE = (ROOT / 'docs' / 'how_to' / 'recorded_files.md').read_text(encoding='utf-8')
 HEADER = ('Time (s),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),'
           'Accelerometer X (g),Accelerometer Y (g),Accelerometer Z (g)')
 

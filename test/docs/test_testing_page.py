@@ -1,4 +1,4 @@
-"""The examples of docs/testing.md run as they stand."""
+"""The examples of docs/how_to/test_your_filter.md run as they stand."""
 
 import importlib.util
 import os
@@ -9,7 +9,8 @@ import sys
 import pytest
 from support.places import ROOT
 
-BLOCKS = re.findall(r'```python\n(.*?)```', (ROOT / 'docs' / 'testing.md').read_text(), re.DOTALL)
+PAGE = (ROOT / 'docs' / 'how_to' / 'test_your_filter.md').read_text()
+BLOCKS = re.findall(r'```python\n(.*?)```', PAGE, re.DOTALL)
 COMPLEMENTARY, NODE, LAUNCHED = BLOCKS
 
 

@@ -1,4 +1,5 @@
-"""docs/validation.md is rendered from a template and figures, and from nothing else."""
+"""docs/explanation/validation.md is rendered from a template and figures, and from nothing
+else."""
 
 import importlib.util
 import json
@@ -33,7 +34,7 @@ def test_the_page_is_its_rendering(tool):
     template = real('figures/validation.md.in')
     figures = json.loads(real('figures/validation.json'))['figures']
     assert tool.names(template) == set(figures)
-    assert tool.render(template, figures) == real('validation.md')
+    assert tool.render(template, figures) == real('explanation/validation.md')
     assert all(figure['made_with']['version'] for figure in figures.values())
 
 

@@ -182,6 +182,6 @@ def test_urdf():
 @pytest.mark.parametrize('name', ['ins_sim.rviz', 'foxglove.json', 'plotjuggler.xml',
                                   'vehicle.urdf'])
 def test_the_page_says_how_to_open_it(name):
-    """docs/viewing.md names each file, and there are no others."""
-    assert name in (ROOT / 'docs' / 'viewing.md').read_text()
+    """docs/how_to/viewing.md names each file, and there are no others."""
+    assert name in (ROOT / 'docs' / 'how_to' / 'viewing.md').read_text()
     assert len([*VIEW.iterdir()]) == 4

@@ -1,5 +1,5 @@
 """
-The reference figures of runs with delays (docs/validation.md), printed and held.
+The reference figures of runs with delays (docs/explanation/validation.md), printed and held.
 
 Tolerances: half a unit of the last digit that the published table gives, unless said otherwise.
 """

@@ -3,7 +3,7 @@ The mounting error of the velocity meter and the azimuth error of the INS, while
 
 Two estimates that are independent of the filter's own: the azimuth error from the velocity error
 of a free INS in a turn, and the sum of both from the lateral velocity (Ivanov 2015, equation 27;
-docs/theory.md, "Aided navigation"). Signs: mu > 0 for antennas turned left, dpsi > 0 for a
+docs/theory/aided_navigation.md). Signs: mu > 0 for antennas turned left, dpsi > 0 for a
 computed heading too far clockwise.
 """
 
@@ -133,7 +133,7 @@ def least_squares(read, computed):
     """
     Return mu + dpsi (rad), its sigma, k_z and its sigma, unaffected by cross-wind.
 
-    Least squares of V_z - V_z1N on [V_x, V_z1N] (docs/theory.md, "Aided navigation"); parameters
+    Least squares of V_z - V_z1N on [V_x, V_z1N] (docs/theory/aided_navigation.md); parameters
     as in ``mounting_sum``. The fix is first rotated by the mounting error and then scaled, so
     that the first coefficient is (1 + k_z)(mu + dpsi).
     """

@@ -36,10 +36,11 @@ class Integrals(NamedTuple):
     """
     The matrices of the window, of the level axes (East, North) and the body's (forward, left).
 
-    a1 = sum C T_c, a2 = sum A1 T_c, b1 = sum C^T T_c / T, b2 = sum C^T A1 T_c / T (docs/theory.md,
-    "Aided navigation"). They map a constant error of the acceleration in b (a1, a2, b2) or of the
-    velocity in n (b1) to the errors at the end of the window: a1 to velocity, a2 to position, b1
-    and b2 to the mean velocity in b. Here each is four floats, row by row, b1 and b2 times T.
+    a1 = sum C T_c, a2 = sum A1 T_c, b1 = sum C^T T_c / T, b2 = sum C^T A1 T_c / T
+    (docs/theory/aided_navigation.md). They map a constant error of the acceleration in b (a1, a2,
+    b2) or of the velocity in n (b1) to the errors at the end of the window: a1 to velocity, a2 to
+    position, b1 and b2 to the mean velocity in b. Here each is four floats, row by row, b1 and b2
+    times T.
     """
 
     a1: tuple = (0.0, 0.0, 0.0, 0.0)

@@ -3,7 +3,7 @@ Orientation from body rates by three algorithms: Poisson's equation, Euler vecto
 
 Each algorithm advances the orientation by one rotation vector. The quaternion algorithm is exact
 for a rotation about a fixed axis; the other two integrate their differential equation by one step
-of RK4 (docs/theory.md, "Dynamically tuned gyro", Orientation).
+of RK4 (docs/theory/tuned_gyro.md, Orientation).
 """
 
 import math
@@ -47,8 +47,8 @@ def bortz_rate(theta, w):
     """
     Return the derivative of the rotation vector theta, rad/s.
 
-    theta' = w + theta x w / 2 + bortz_factor theta x (theta x w) (Bortz 1971; docs/theory.md,
-    "Dynamically tuned gyro", Orientation). Singular at |theta| = 2 pi.
+    theta' = w + theta x w / 2 + bortz_factor theta x (theta x w) (Bortz 1971;
+    docs/theory/tuned_gyro.md, Orientation). Singular at |theta| = 2 pi.
     """
     r = quaternion.cross(theta, w)
     x, y, z = quaternion.cross(theta, r)

@@ -2,7 +2,7 @@
 Interpolation of sampled motion: Hermite and Newton polynomials, and quaternions between samples.
 
 ``hermite_coefficients`` and ``newton_differences`` reconstruct a continuous motion from streamed
-truth without looking ahead (docs/theory.md, "Streamed truth").
+truth without looking ahead (docs/theory/streamed_truth.md).
 """
 
 import numpy as np

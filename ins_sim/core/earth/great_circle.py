@@ -6,9 +6,9 @@ tan(phi_c) = (1 - e^2) tan(phi), and its longitude.  On the leg from u1 to u2, u
 
     n = u1 x u2 / |u1 x u2|,  e2 = n x u1,  X = R0 atan2(u.e2, u.u1),  Z = -R0 asin(u.n)
 
-X runs along the leg from its first point, Z to its right (Ivanov 2015; docs/theory.md,
-"Orthodromic coordinates"). Lengths on the sphere differ from those on the ellipsoid by up to
-0.6 %.
+X runs along the leg from its first point, Z to its right (Ivanov 2015;
+docs/theory/orthodromic.md). Lengths on the sphere differ from those on the ellipsoid by up to 0.6
+%.
 """
 
 import math

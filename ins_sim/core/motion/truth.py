@@ -62,7 +62,7 @@ def translation(lat, lon, height, earth_rotation, gravity='free_air'):
 
     lat, lon, height: Series of order >= 2 (rad, rad, m).  Velocity V_E = (R_E + h) cos(lat) lon',
     V_N = (R_N + h) lat', V_U = h'; specific force f = V' + (2 Omega + rho) x V - g (Bogdanov and
-    Fomichev 2018, equation 25; Groves 5.53; docs/theory.md, "Truth from one pose").
+    Fomichev 2018, equation 25; Groves 5.53; docs/theory/truth.md).
     """
     lat_rate, lon_rate = lat.derivative(), lon.derivative()
     # The second derivatives are in the rates.

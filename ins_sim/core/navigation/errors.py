@@ -44,9 +44,9 @@ def inertial_errors(state, truth, earth_angle):
     Return attitude, velocity and position errors of a strapdown, tuples of three.
 
     The attitude error is inertial: the rotation from the true to the computed q_ib, resolved in n
-    (A_z' A_z^T of Bogdanov and Fomichev 2018; docs/theory.md, "Errors").  state: (q_ib, lat, lon,
-    height, v); truth: (lat, lon, height, v_n, q_nb); earth_angle: rotation of e in i since they
-    coincided, rad; floats or arrays.
+    (A_z' A_z^T of Bogdanov and Fomichev 2018; docs/theory/error_definitions.md).  state: (q_ib,
+    lat, lon, height, v); truth: (lat, lon, height, v_n, q_nb); earth_angle: rotation of e in i
+    since they coincided, rad; floats or arrays.
     """
     q_ib, lat, lon, height, v = state
     lat_t, lon_t, height_t, v_t, q_nb_t = truth

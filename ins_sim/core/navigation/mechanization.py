@@ -7,7 +7,7 @@ cosines of latitude and of inertial longitude are carried from middle to middle,
 angles. The position at the middle is extrapolated with the acceleration of the interval before;
 the velocity there follows from the velocity increment of the interval itself and the Coriolis
 acceleration of the interval before, which changes slowly. So the step is straight-line arithmetic
-in + - * / (docs/theory.md, "Strapdown"; Savage, "Strapdown Inertial Navigation Integration
+in + - * / (docs/theory/strapdown.md; Savage, "Strapdown Inertial Navigation Integration
 Algorithm Design", JGCD 21, 1998).
 
 The state is a tuple of floats, PLACE: latitude, longitude, height, velocity East, North, Up; sine

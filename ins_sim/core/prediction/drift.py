@@ -1,4 +1,4 @@
-"""The drift that late channels cause, by the linear theory (docs/theory.md, "Prediction")."""
+"""The drift that late channels cause, by the linear theory (docs/theory/prediction.md)."""
 
 from dataclasses import replace
 import math
@@ -37,8 +37,8 @@ def drift_density(truth, omega_in_n, late):
     late (n, 3): the turns D that the channels x, y, z have not read yet, rad; to first order in
     the delays T they are T w, w the rate of b in i.  The reading errs by -D', so that the attitude
     error grows by nu = -R D' = -d/dt(R D) + R (w_nb x D): what turns R is the rate of b in n.
-    Bogdanov and Fomichev (2018) neglect the difference, the rotation of the Earth (docs/theory.md,
-    "Prediction").
+    Bogdanov and Fomichev (2018) neglect the difference, the rotation of the Earth
+    (docs/theory/prediction.md).
     """
     omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
     density = np.stack(quaternion.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)),
@@ -148,7 +148,7 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     responses: three functions, the complex frequency response H_i of an angular frequency array,
     rad/s; or one function that returns the response (n, 3, 3) of channels that see each other's
     axes (``sensors.tuned_gyro.pair``).  <nu> = sum_i sum_k Re(r_ik conj[sum_j (H_ij(k w0) - 1_ij)
-    w_jk]), r_i column i of R (docs/theory.md, "Prediction").
+    w_jk]), r_i column i of R (docs/theory/prediction.md).
 
     Raises ValueError for a motion without a period.
     """
@@ -198,7 +198,7 @@ def two_axis_resonances(motion, tau):
     Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
 
     The resonance psi' = 2 gamma' is equation (19) of Bogdanov and Fomichev (2018), who do not
-    mention the other one, psi' = -2 gamma' (docs/theory.md, "Prediction"). tau (3,): delays of x,
+    mention the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x,
     y, z, s; tau1 of the paper is that of y, tau3 that of z.
     """
     if motion.kind != 'two_axis':

@@ -1,7 +1,7 @@
 """
 Continuous motion from streamed truth, without looking ahead.
 
-See docs/theory.md, "Streamed truth".
+See docs/theory/streamed_truth.md.
 """
 
 from collections import deque

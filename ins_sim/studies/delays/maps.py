@@ -1,7 +1,7 @@
 """
 Mean drift of late gyros over the rates of motion 2, and over the direction of rocking.
 
-Both follow from <R (w x T w)>, T = diag(tau), R = C_nb (docs/theory.md, "Prediction"); the
+Both follow from <R (w x T w)>, T = diag(tau), R = C_nb (docs/theory/prediction.md); the
 rotation of the Earth is neglected in w, 1e-4 of the largest drift.
 """
 

@@ -24,8 +24,8 @@ def test_the_bag_of_two_vehicles(chain, tmp_path):
     """
     Without holes, each message in the frames of its vehicle; others read it and find nothing.
 
-    As in docs/recipes/two_vehicles.md.  The recorder is not one of those that lock-step waits
-    for, since it serves two masters: what was sent before it found a topic is missing.
+    As in docs/how_to/recipes/two_vehicles.md.  The recorder is not one of those that lock-step
+    waits for, since it serves two masters: what was sent before it found a topic is missing.
     """
     path = tmp_path / 'bag'
     names = [f'/{vehicle}/{topic.name}' for vehicle in VEHICLES for topic in RECORDED]

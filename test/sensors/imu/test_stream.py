@@ -1,4 +1,4 @@
-"""The IMU on streamed truth against that on the closed form (docs/theory.md, "Streamed truth")."""
+"""The IMU on streamed truth against that on the closed form (docs/theory/streamed_truth.md)."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The interface of the aiding filters, see docs/extending_filter.md, and the free solution."""
+"""The interface of the aiding filters, see docs/how_to/add_filter.md, and the free solution."""
 
 from collections import namedtuple
 import copy

@@ -25,7 +25,7 @@ TURN_S, SMOOTHING_S = 50.0, 10.0
 
 class ErrorStateFilter(AidingFilter):
     """
-    Error-state Kalman filter with twenty states (docs/theory.md, "Aided navigation").
+    Error-state Kalman filter with twenty states (docs/theory/aided_navigation.md).
 
     The strapdown is corrected after every fix, so that the estimated error state is zero between
     fixes. The measurement of the velocity meter is compared with the mean over its window of the

@@ -18,7 +18,7 @@ class ConventionalFilter(AidingFilter):
     Velocity correction with a fixed gain, as if the fix were the velocity at the window's end.
 
     It is in fact the mean over the window, so that this filter errs whenever the velocity in body
-    axes changes (docs/theory.md, "Aided navigation").  With windows that slide by T_s it is the
+    axes changes (docs/theory/aided_navigation.md).  With windows that slide by T_s it is the
     scheme of Ivanov (2015), section 1: a fix takes away the part ``gain_per_s`` T_s of the error,
     in place of ``gain``.
     """
@@ -84,8 +84,8 @@ class PaperFilter(_ChainedFilter):
     The innovation (19) is J_k + J_{k-1} - 2 (V_k - V_{k-1}) / T. J is 2 / T^2 times the double
     integral of the acceleration in b over a window of length T, and V the mean velocity that the
     velocity meter measures. With constant errors e of the acceleration the innovation is
-    e_k + e_{k-1}. Windows in which the vehicle turns are refused (docs/theory.md, "Aided
-    navigation").
+    e_k + e_{k-1}. Windows in which the vehicle turns are refused
+    (docs/theory/aided_navigation.md).
     """
 
     needs = ('accelerations',)
@@ -126,8 +126,8 @@ class PaperCorrectedFilter(_ChainedFilter, MatrixFilter):
     The scheme of Ivanov (2015) with a residual that is exact while the vehicle turns.
 
     nu = (z_k - z'_{k-1}) / T, dW = K nu in b, V -= A1 dW, position -= T/2 A1 dW,
-    z'_k = z_k - B2 dW, where z is the residual of the mean velocity (docs/theory.md, "Aided
-    navigation"). The acceleration stays corrected by the sum of all dW.
+    z'_k = z_k - B2 dW, where z is the residual of the mean velocity
+    (docs/theory/aided_navigation.md). The acceleration stays corrected by the sum of all dW.
     """
 
     def update_velocity(self, ins, fix):

@@ -6,7 +6,7 @@ The lateral motion of a guided vehicle: offset, its rate and the sideslip under 
 z, m, is the offset to the right of the track, v_z, m/s, its rate; the sideslip beta, rad, is
 positive where the track is to the right of the nose, so that the side force pushes to the nose's
 side.  Over a control period the command beta_c runs linearly from its last value to the new one
-(docs/theory.md, "Guided motion").
+(docs/theory/guided_motion.md).
 """
 
 import numpy as np

@@ -1,5 +1,5 @@
 """
-Recorded flight as a motion: splines through the samples (docs/theory.md, "Recorded flights").
+Recorded flight as a motion: splines through the samples (docs/theory/recorded_flights.md).
 
 Attitude relative to local ENU is a C2 rotation spline on the recorder's own times (SciPy's
 RotationSpline: the rotation vector within an interval is a cubic), positions are interpolating

@@ -1,7 +1,7 @@
 """
 The ideal inertial measurement unit whose channels are late.
 
-See docs/theory.md, "The late gyro".
+See docs/theory/late_gyro.md.
 """
 
 import numpy as np

@@ -5,7 +5,7 @@ In the order of the signal: disturbances of the rotors (moments due to specific 
 of rates, hunting, vibration at twice the speed) and of their pick-offs; the rotors; an injected
 fault; the read-out of each gyro, with the errors of a triad along (spin axis, y, z) of its case,
 where the spin axis only serves the misalignment; the combination of the four channels
-(docs/theory.md, "Dynamically tuned gyro", Errors of the rotors and of the read-out; model of IEEE
+(docs/theory/tuned_gyro.md, Errors of the rotors and of the read-out; model of IEEE
 Std 813).
 """
 

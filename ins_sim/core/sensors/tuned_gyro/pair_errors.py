@@ -1,8 +1,8 @@
 """
 Disturbances of the rotors of a pair of tuned gyros and of their pick-offs.
 
-A moment is given as the equivalent rate d, complex in the case, y + j z (docs/theory.md,
-"Dynamically tuned gyro", Errors of the rotors):
+A moment is given as the equivalent rate d, complex in the case, y + j z
+(docs/theory/tuned_gyro.md, Errors of the rotors):
 
     by specific force a    d_y = m_y a_y + q_y a_z + a_s (s_y + c_y a_y), d_z likewise
     product of rates       d = kappa (B - A)/(B Omega) u_s u

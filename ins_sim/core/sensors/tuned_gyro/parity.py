@@ -5,8 +5,8 @@ The parity has unit gain for every channel that it sees, so that its spread is t
 channel. The limit for its mean over a window is five standard deviations of noise, biases, scale
 factors, misalignment and drifts due to specific force, at the present rate and force, plus the
 effect of the motion itself: the two gyros see an axis as y and as z, and differ by the
-cross-coupling of angular acceleration and by the product of rates (docs/theory.md, "Dynamically
-tuned gyro", Parity test).
+cross-coupling of angular acceleration and by the product of rates (docs/theory/tuned_gyro.md,
+Parity test).
 """
 
 import math

@@ -4,7 +4,7 @@ The dynamically tuned gyro: its parameters and equations of motion.
 Case axes, right-handed: x_c is the spin axis, y_c and z_c are sensitive.  Vectors of the
 sensitive plane are complex, u = u_y + j u_z.  With theta the tilt of the rotor in the case, u
 the inertial rate of the case, M the moment of the torquer and v = theta' + u, so that u' never
-appears (docs/theory.md, "Dynamically tuned gyro"):
+appears (docs/theory/tuned_gyro.md):
 
     theta' = v - u,   A v' = -(f - j H) v - (k2 - j c) theta + (f - j (H - B Omega)) u + M
 

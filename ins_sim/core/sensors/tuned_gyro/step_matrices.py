@@ -4,8 +4,7 @@ Matrices of one step of a tuned gyro.
 At constant speed the gyro is linear, so that a step, exact or RK4, is one set of matrices: the
 state at the end and the mean reading of the interval are linear in the state at its start and in
 the rates at its start, middle and end.  Exact steps take the rate between these as the parabola
-(``quadratic``) or the straight line (``linear``) through them (docs/theory.md, "Dynamically tuned
-gyro").
+(``quadratic``) or the straight line (``linear``) through them (docs/theory/tuned_gyro.md).
 """
 
 from dataclasses import replace

@@ -10,7 +10,7 @@ sigma_theta), and a decay of the field itself over T_d, signals i and j at times
     G_ij = exp(-(p_i - p_j)^2/2 - (t_i - t_j)^2 w^2/(2 |v|^2 T_d^2)),  p_i the part across v
 
 so that signal i is a mixture, by a constant factor of G, of three independent processes of one
-spectrum, ahead by t_i (docs/theory.md, "Correlation velocity meter", Signals).
+spectrum, ahead by t_i (docs/theory/velocity_meter.md, Signals).
 
 Fourier transforms and products of complex arrays have their last bits from the processor: fixes
 of this mode are the same on one machine only.

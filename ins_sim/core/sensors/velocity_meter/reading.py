@@ -1,8 +1,8 @@
 """
 From correlation functions to velocity: the fits and equations (2) to (5).
 
-Source: Ivanov, Vestnik Koncerna PVO Almaz-Antey 2, 2015, with the corrections of docs/theory.md,
-"Correlation velocity meter". Axes of the antennas: X1 forward, Z1 right. Lags are whole numbers.
+Source: Ivanov, Vestnik Koncerna PVO Almaz-Antey 2, 2015, with the corrections of
+docs/theory/velocity_meter.md. Axes of the antennas: X1 forward, Z1 right. Lags are whole numbers.
 """
 
 import math

@@ -1,8 +1,8 @@
 """
 Mode surrogate of the velocity meter: the window mean with the errors of the real instrument.
 
-Its coefficients are those of the simulated signals at 250 m/s (docs/theory.md, "Correlation
-velocity meter", Surrogate).
+Its coefficients are those of the simulated signals at 250 m/s (docs/theory/velocity_meter.md,
+Surrogate).
 """
 
 import math

@@ -21,7 +21,7 @@ NEIGHBOURS = 7
 DIFFERENT_M_S, DIFFERENT_RAD_S = 1e-3, 2e-4
 CORRELATED, SURELY = 0.5, 0.7
 # Rms of the vector of the force by the noise of an axis of the input: of velocities times the
-# rate, of positions times its square (docs/theory.md, "Truth from another simulator").
+# rate, of positions times its square (docs/theory/external_truth.md).
 BY_TWIST, BY_POSE = 2.7, 6.5
 # A twist that is so much noisier than the poses is left, from this noise of the force on, m/s^2.
 NOISIER, NOISY = 2.0, 0.01

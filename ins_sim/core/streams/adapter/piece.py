@@ -51,7 +51,7 @@ def rate_of(phi, phi_rate):
     Return the rate of a body turned by a rotation vector, in the body, from its derivative.
 
     w = phi' - (1 - cos a) / a^2 phi x phi' + (a - sin a) / a^3 phi x (phi x phi'), a = |phi|
-    (the right Jacobian; docs/theory.md, "Truth from another simulator").
+    (the right Jacobian; docs/theory/external_truth.md).
     """
     a2 = phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2]
     if a2 < SMALL2:

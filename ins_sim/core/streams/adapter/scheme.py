@@ -64,8 +64,8 @@ def position_hold(judgement):
     Return the bandwidth of the loop that holds the path to the positions, rad/s.
 
     Noise of the twist and of the attitudes lets the path wander by one over the square root of the
-    bandwidth; noise of the positions becomes a force by its square (docs/theory.md, "Truth from
-    another simulator").
+    bandwidth; noise of the positions becomes a force by its square
+    (docs/theory/external_truth.md).
     """
     allowed = SHARE * judgement.force_noise(True) / math.sqrt(3.0)
     if allowed >= TIGHT * TIGHT * judgement.sigma_m:
