@@ -1,4 +1,4 @@
-"""The latency that a loop bears whose navigator is corrected by windows that slide."""
+"""Phase margin of a loop whose navigator is corrected by sliding windows (latency budget)."""
 
 import math
 from typing import NamedTuple
@@ -9,15 +9,17 @@ from ins_sim.core.numerics.units import DEG
 from .linear_loop import Aiding, window_mean
 from .linear_plant import after_period, lateral_loop
 
-# frequencies at which the gain is looked at
+# Number of frequencies at which the gain is evaluated.
 POINTS = 20001
 
 
 class PhaseMargin(NamedTuple):
     """
-    Crossover, rad/s, margin there, rad, and the further latency that uses it up, s.
+    Phase margin of a loop.
 
-    Negative in a loop that is unstable as it is.
+    crossover: frequency at which the gain is one, rad/s; margin: phase margin there, rad; delay_s:
+    additional latency that reduces the margin to zero, s. Margin and delay are negative if the
+    loop is unstable without additional latency.
     """
 
     crossover: float
@@ -27,18 +29,30 @@ class PhaseMargin(NamedTuple):
 
 def aided_margin(loop, aiding, k_z=0.0):
     """
-    Return the PhaseMargin of a LateralLoop, the loop being opened at the command.
+    Return the phase margin of a lateral loop, opened at the command.
 
-    aiding: an Aiding of kind conventional with windows that slide; a correction every period is
-    assumed.  Navigators with contiguous windows are slower than the loop, so that the margin with
-    exact navigation, ``margin.phase_margin``, is a good approximation for them.  k_z: lateral
-    scale error of the meter.  Where the gain is one at several frequencies, the one that bears the
-    least latency is returned; None where it never is.
+    A correction in every control period is assumed. Navigators with contiguous windows are slower
+    than the loop; for them ``margin.phase_margin``, with exact navigation, is a good approximation
+    (docs/theory/closed_loop.md).
+
+    Parameters
+    ----------
+    loop : LateralLoop
+    aiding : linear_loop.Aiding
+        Of kind ``conventional`` with sliding windows.
+    k_z : float
+        Lateral scale factor error of the meter.
+
+    Returns
+    -------
+    PhaseMargin or None
+        If the gain is one at several frequencies, the margin with the smallest ``delay_s``; None
+        if it is one nowhere.
     """
     omega = np.geomspace(1e-4, 1.0, POINTS) * math.pi / loop.period_s
     found = _returned(loop, aiding, k_z, np.exp(1j * omega * loop.period_s))
     angle = np.unwrap(np.angle(found))
-    # at low frequencies a double integration, -180 deg
+    # At low frequencies the loop is a double integrator with a phase of -180 deg.
     angle -= 2.0 * math.pi * round((angle[0] + math.pi) / (2.0 * math.pi))
     size = np.log(np.abs(found))
     margins = []
@@ -54,8 +68,13 @@ def aided_margin_sentence(generator, navigator):
     """
     Return the warning that the latency makes the loop unstable, or None.
 
-    generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.  Of filters other than
-    conventional on sliding windows, and where control instants are no cycles of the meter, None.
+    None also for filters other than ``conventional`` on sliding windows, and if the control
+    period differs from the cycle of the meter.
+
+    Parameters
+    ----------
+    generator : MotionGeneratorSettings
+    navigator : AidedNavigatorSettings
     """
     window, rate_hz = navigator.window, navigator.rate_hz
     if navigator.filter != 'conventional' or not (window.slides and navigator.meter_model.use):
@@ -75,7 +94,7 @@ def aided_margin_sentence(generator, navigator):
 
 
 def _returned(loop, aiding, k_z, q):
-    """Return what comes back of a command at q, with the sign of the feedback reversed."""
+    """Return the open-loop response to a command at q, with the sign of the feedback reversed."""
     step = after_period(loop)
     a, b = np.zeros((4, 4)), np.zeros(4)
     a[:3], b[:3], b[3] = step[:, :4], step[:, 4], 1.0

@@ -1,4 +1,4 @@
-"""The interface of the autopilots, a public point of extension, and the table's classes."""
+"""The interface of the autopilots, which users can extend, and the lookup of their classes."""
 
 from ins_sim.core.numerics.located import located
 from ins_sim.settings.guidance import AUTOPILOTS
@@ -9,9 +9,9 @@ class Autopilot:
     Base class of the autopilots: estimated offset in, commanded sideslip out.
 
     ``Steering`` makes one object for a run. It calls ``reset`` when the autopilot is engaged and
-    behind every turn, and then ``command`` once for each control period. It limits the command,
-    and it does not call the autopilot in turns or without a solution. An autopilot may keep what
-    it likes between the calls; the calls follow each other at the control period.
+    after every turn, and then ``command`` once for each control period. It limits the command,
+    and it does not call the autopilot in turns or without a solution. An autopilot may keep any
+    state between calls; successive calls are one control period apart.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Autopilot:
         self.settings = settings
 
     def reset(self):
-        """Begin anew: the next command is the first."""
+        """Restart: the next call of ``command`` is the first."""
 
     def command(self, t_ns, z, v_z):
         """
@@ -45,7 +45,7 @@ class Autopilot:
         raise NotImplementedError
 
     def gains(self):
-        """Return the gains of z, rad/m, and v_z, rad s/m, of a linear autopilot, or None."""
+        """Return the gains of z, rad/m, and v_z, rad s/m, or None if the autopilot is not linear."""
         return None
 
 

@@ -1,7 +1,7 @@
 """
-Vehicle and autopilot of a lateral loop, linear, from one control instant to the next.
+Linear model of vehicle and autopilot, from one control instant to the next.
 
-z to the right of the leg, its rate v and the sideslip beta under a command u:
+Offset z to the right of the leg, its rate v, and the sideslip beta under a command u:
 
     z' = v,  v' = -Z_b beta,  beta' = (u - beta)/tau_b,  u = k1 z_est + k2 v_est
 """
@@ -18,9 +18,9 @@ class LateralLoop(NamedTuple):
     """
     A vehicle that an autopilot holds on its leg.
 
-    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b; k1: rad/m; k2: rad/(m/s);
-    period_s: between control instants; latency: in whole periods; ramps: the command runs from
-    its last value to the new one over a period, and does not jump.
+    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b, s; k1: rad/m; k2: rad/(m/s);
+    period_s: control period, s; latency: in whole periods; ramps: whether the command changes
+    linearly over a period (otherwise it jumps).
     """
 
     speed: float
@@ -35,9 +35,9 @@ class LateralLoop(NamedTuple):
 
 def lateral_loop(generator):
     """
-    Return the LateralLoop of MotionGeneratorSettings, in still air.
+    Return the LateralLoop of MotionGeneratorSettings in still air.
 
-    None for an autopilot without gains.
+    Return None if the autopilot is not linear.
     """
     guided, guidance = generator.motion.guided, generator.guidance
     gains = make_autopilot(guidance).gains()
@@ -50,9 +50,9 @@ def lateral_loop(generator):
 
 def after_period(loop):
     """
-    Return the matrix (3, 5) that gives z, v and beta at the end of a period.
+    Return the matrix (3, 5) from the start to the end of a control period.
 
-    From z, v, beta, the old and the new command at its start.
+    It maps (z, v, beta, old command, new command) at the start to (z, v, beta) at the end.
     """
     h = loop.period_s
 

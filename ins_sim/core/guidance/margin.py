@@ -1,19 +1,29 @@
-"""Stability of an autopilot by itself, with exact navigation."""
+"""Stability of an autopilot with exact navigation."""
 
 import math
 
 from ins_sim.core.numerics.elementary import atan2
 
-# Halvings of the interval in which the crossover lies.
+# Number of bisections of the interval that contains the crossover.
 HALVINGS = 60
 
 
 def phase_margin(gains, force, lag_s, delay_s):
     """
-    Return the phase margin, rad, of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)).
+    Return the phase margin of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)), rad.
 
-    gains: k1, rad/m, and k2, rad s/m; force: m/s^2 per rad; delay_s: latency and control period,
-    for the command is reached at the end of a period.  None: no gain at all.
+    Return None if both gains are zero.
+
+    Parameters
+    ----------
+    gains : (float, float)
+        k1, rad/m, and k2, rad s/m.
+    force : float
+        Side force, m/s^2 per rad of sideslip.
+    lag_s : float
+        Time constant of the sideslip, s.
+    delay_s : float
+        Latency plus one control period (a command is reached at the end of its period), s.
     """
     k1, k2 = gains
     if k1 == k2 == 0.0:

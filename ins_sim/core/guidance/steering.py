@@ -1,4 +1,4 @@
-"""Steering: which solution an autopilot sees when, and when the vehicle flies straight."""
+"""Select the solution by which an autopilot steers, and decide when to fly straight."""
 
 from bisect import bisect_right
 from collections import deque
@@ -10,19 +10,20 @@ from ins_sim.core.numerics.instants import seconds
 from .autopilot import make_autopilot
 from .margin import phase_margin
 
-# Why an autopilot does not steer.
+# Reasons for which an autopilot does not steer.
 NOT_ENGAGED, TURN, NO_SOLUTION = 'not engaged', 'in a turn', 'no solution'
 NO_NUMBER, JUMP, OLD, NO_COMMAND = 'no number', 'jump', 'old', 'no command'
-# It steers, at the limit of the command.
+# The autopilot steers, at the limit of the command.
 LIMITED = 'limited'
 
 
 class SteeringCommand(NamedTuple):
     """
-    What is commanded at a control instant, and by what.
+    The command at a control instant, and the estimate on which it is based.
 
-    t_ns: the instant; beta: sideslip, rad; z, v_z: the estimate, m and m/s, zero without one; why:
-    '' where the autopilot steers, else why the vehicle flies straight.
+    t_ns: motion time, ns; beta: commanded sideslip, rad; z, v_z: estimated offset, m, and its
+    rate, m/s, zero without a solution; why: '' if the autopilot steers, otherwise the reason for
+    which the vehicle flies straight.
     """
 
     t_ns: int
@@ -34,12 +35,13 @@ class SteeringCommand(NamedTuple):
 
 class Steering:
     """
-    An autopilot with the solutions that it steers by.
+    An autopilot and the navigation solutions by which it steers.
 
-    Solutions are given by ``take``; ``command`` answers a control instant from the newest one that
-    is ``latency_s`` old.  The vehicle flies straight (command zero) until the autopilot is
-    engaged, in turns, and where the solution is missing, no number or too old.  After a jump of
-    the solution it flies straight until ``timeout_s`` has passed without another jump.
+    ``take`` receives solutions; ``command`` computes the command of a control instant from the
+    newest solution that is at least ``latency_s`` old. The vehicle flies straight (command zero)
+    until the autopilot is engaged, in turns, and if the solution is missing, not finite or too
+    old. After a jump of the solution it flies straight until ``timeout_s`` has passed without
+    another jump.
 
     Parameters
     ----------
@@ -52,9 +54,9 @@ class Steering:
     ----------
     engaged : bool
     notes : list of str
-        Sentences about what was met for the first time; the owner empties it.
+        Messages about events that occurred for the first time; the owner empties the list.
     counts : dict
-        {why: number of control instants} at which the vehicle flew straight, and LIMITED.
+        {why: number of control instants} for each reason to fly straight, and for LIMITED.
     """
 
     def __init__(self, settings, legs, turns=()):
@@ -68,14 +70,14 @@ class Steering:
         self.reset()
 
     def reset(self):
-        """Forget everything; the next control instant is the first of a run."""
+        """Clear all state; the next control instant is the first of a run."""
         self._solutions, self._used, self._jumped_ns = deque(), None, None
         self._engage_ns, self.engaged, self._steers = None, False, False
         self._scheduled = True
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it takes over at the end of the turn, and says so."""
+        """Engage the autopilot; in a turn it steers from the end of the turn on, which is noted."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '
@@ -95,10 +97,17 @@ class Steering:
 
     def take(self, t_ns, solution):
         """
-        Take a solution of motion time t_ns, ns.
+        Receive a solution.
 
-        solution: (lat, lon, height, v_n, ...), rad, m and m/s.  A stamp that is not later than the
-        last one takes the place of those from there on.
+        A solution that is not later than earlier ones replaces those with the same or a later
+        stamp.
+
+        Parameters
+        ----------
+        t_ns : int
+            Motion time, ns.
+        solution : tuple
+            (lat, lon, height, v_n, ...): rad, rad, m, and East, North, Up m/s.
         """
         solutions = self._solutions
         while solutions and solutions[-1][0] >= t_ns:
@@ -143,7 +152,7 @@ class Steering:
         self._count(why)
 
     def _estimate(self, t_ns):
-        """Return z, v_z and why they are not to be steered by, or ''."""
+        """Return z, v_z and the reason for which they cannot be used, or ''."""
         wanted_ns, solutions = t_ns - self._latency_ns, self._solutions
         while len(solutions) > 1 and solutions[1][0] <= wanted_ns:
             solutions.popleft()
@@ -162,7 +171,7 @@ class Steering:
         return z, v_z, why
 
     def _use(self, t_ns, stamp_ns, solution):
-        """Make a solution the one to steer by."""
+        """Convert a solution to offset and rate, and check it for numbers and jumps."""
         lat, lon, height, v_n = solution[:4]
         index = self._leg_index(t_ns)
         last, why = self._used, ''
@@ -196,7 +205,7 @@ class Steering:
 
 
 def _number(value):
-    """Return what an autopilot commands as a finite float, or None."""
+    """Return the command of an autopilot as a finite float, or None."""
     try:
         value = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -206,9 +215,12 @@ def _number(value):
 
 def margin_sentence(settings, guided):
     """
-    Return the warning that the latency makes the loop unstable, or None.
+    Return the warning that the latency makes the loop unstable with exact navigation, or None.
 
-    settings: GuidanceSettings; guided: GuidedSettings.  The navigation is taken to be exact.
+    Parameters
+    ----------
+    settings : GuidanceSettings
+    guided : GuidedSettings
     """
     gains = make_autopilot(settings).gains()
     if gains is None:
