@@ -45,7 +45,7 @@ class Autopilot:
         raise NotImplementedError
 
     def gains(self):
-        """Return the gains of z, rad/m, and v_z, rad s/m, or None if the autopilot is not linear."""
+        """Return the gains of z, rad/m, and v_z, rad s/m; None if the autopilot is not linear."""
         return None
 
 

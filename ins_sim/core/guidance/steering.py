@@ -77,7 +77,7 @@ class Steering:
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it steers from the end of the turn on, which is noted."""
+        """Engage the autopilot; in a turn it starts to steer at the end of the turn (noted)."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '

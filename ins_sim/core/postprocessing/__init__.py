@@ -1,5 +1,6 @@
 """
-Navigation over a recorded IMU: clean the record, mount, find a start, navigate, compare.
+Navigation with a recorded IMU: clean the record, rotate it into the vehicle, find a start,
+navigate, compare with references.
 
 Start with ``navigate``.
 """

@@ -9,16 +9,23 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.navigation.errors import position_error
 from .reference import SampledTrack
 
+# Times after the start at which errors are reported, s.
 AFTER_S = (10.0, 30.0, 60.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """
-    Solution less reference, resolved in East, North, Up: Tracks of (n, 3), or None.
+    Solution minus reference in East, North, Up.
 
-    name: of the reference; position m; velocity m/s; attitude: rotation vector from the
-    reference to the solution, rad (Up: counter-clockwise).
+    Attributes
+    ----------
+    name : str
+        Name of the reference.
+    position, velocity : SampledTrack or None
+        Differences (n, 3), m and m/s.
+    attitude : SampledTrack or None
+        Rotation vector from the reference to the solution (n, 3), rad (Up: counter-clockwise).
     """
 
     name: str
@@ -30,10 +37,10 @@ class Comparison:
 @dataclass(frozen=True)
 class ErrorRow:
     """
-    Errors a time after the start, None where unknown.
+    Errors at the time ``after_s`` after the start; None if unknown.
 
-    after_s; horizontal_m, vertical_m (up), speed_m_s (length of the horizontal velocity error),
-    tilt_deg, heading_deg (clockwise).
+    vertical_m: positive up; speed_m_s: length of the horizontal velocity error; heading_deg:
+    positive clockwise.
     """
 
     after_s: float
@@ -46,10 +53,20 @@ class ErrorRow:
 
 def compare_with_reference(states, reference):
     """
-    Return the Comparison of a list of NavStates, one a segment, with a Reference, or None.
+    Compare a solution with a reference at the stamps of the reference.
 
-    Between its samples the solution is a straight line, its attitude a constant turn.  None
-    where the reference has no stamp within a segment.
+    Between its samples the solution is interpolated linearly, its attitude by a constant rate.
+
+    Parameters
+    ----------
+    states : list of NavStates
+        One for each segment of the solution.
+    reference : Reference
+
+    Returns
+    -------
+    Comparison or None
+        None if the reference has no stamp within a segment.
     """
     tracks = []
     for kind, errors in (('position', _position), ('velocity', _velocity),
@@ -95,20 +112,20 @@ def _attitude(states, t_ns, values):
 
 
 def _drawn(track, t_ns):
-    """Return the values at stamps within the track, whatever the steps."""
+    """Interpolate linearly at stamps within the track, without a limit on the step."""
     start = track.t_ns[0]
     return np.stack([np.interp(t_ns - start, track.t_ns - start, v) for v in track.values.T], -1)
 
 
 def error_rows(comparison, start_ns, end_ns):
-    """Return the ErrorRows AFTER_S the start, as far as the solution goes, and at its end."""
+    """Return the ErrorRows at AFTER_S, if the solution is long enough, and at its end."""
     length_s = (end_ns - start_ns) * 1e-9
     return [_row(comparison, start_ns, after) for after in
             (*(a for a in AFTER_S if a < length_s), length_s)]
 
 
 def _row(comparison, start_ns, after_s):
-    """Return the errors at the stamps next to an instant, within a second of it."""
+    """Return the errors at the stamps nearest to an instant, at most one second from it."""
     def at(track):
         if track is None:
             return None

@@ -1,11 +1,11 @@
-"""Whether a specific force at rest is that of gravity: an accelerometer in g, or without it."""
+"""Check that the specific force at rest is gravity: not in g, and gravity not removed."""
 
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.units import STANDARD_GRAVITY
 
-# A mean that is shorter shows no direction, m/s^2.
+# A shorter mean specific force has no usable direction, m/s^2.
 LEAST_FORCE = 1e-3
-# What was done to a force of this size, as a part of it, and how one goes on.
+# (size of the mean, m/s^2; probable cause; parameter that corrects it), and the tolerance.
 _GUESSES = ((1.0, 'is it in g?', 'units.force:=g reads it so; '),
             (1000.0, 'is it in mg?', 'units.force:=mg reads it so; '),
             (STANDARD_GRAVITY * STANDARD_GRAVITY, 'was it multiplied by g twice?', ''))
@@ -14,9 +14,9 @@ _PART = 0.15
 
 def check_gravity(force, limit):
     """
-    Raise ValueError where the mean specific force at rest, (3,), is not that of gravity.
+    Raise ValueError if the mean specific force at rest, (3,), is not that of gravity.
 
-    limit: what its length may differ from 9.8 m/s^2 by.
+    limit: tolerance of its length, m/s^2.
     """
     force = length(force)
     if abs(force - STANDARD_GRAVITY) <= limit:

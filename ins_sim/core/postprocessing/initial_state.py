@@ -1,4 +1,4 @@
-"""The start of a navigation over a recording: first sample, initial state, gyro bias, and why."""
+"""Choose the first sample, the initial state and the gyro bias of a recorded run."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,10 +21,10 @@ from .gravity_check import check_gravity, LEAST_FORCE
 @dataclass(frozen=True, eq=False)
 class InitialState:
     """
-    The sample to start at, the state there, and how it was found.
+    The first sample, the state at it, and how both were found.
 
-    index: into the record; state: (lat, lon, height, v_n, q_nb); bias (3,): rad/s, to be taken
-    off the gyros, or None; still: Standstill or None; notes: sentences; figures: {name: value}.
+    index: of the sample; state: (lat, lon, height, v_n, q_nb); bias: to be subtracted from the
+    gyros (3,), rad/s, or None; still: Standstill or None; notes: messages; figures: {name: value}.
     """
 
     index: int
@@ -37,11 +37,28 @@ class InitialState:
 
 def choose_start(settings, sources, imu, broken, first, last, again=False):
     """
-    Return the InitialState in the samples first to last (not included).
+    Choose the start within the samples first to last (exclusive).
 
-    settings: NavigateSettings; sources: Sources; imu: RecordedImu in the body frame; broken:
-    indices of the samples before a gap; again: after a gap, where given values no longer hold.
-    Raises ValueError in one sentence where no sample can be the start.
+    Parameters
+    ----------
+    settings : NavigateSettings
+    sources : Sources
+    imu : RecordedImu
+        In the body frame.
+    broken : ndarray of int
+        Indices of the samples before a gap.
+    first, last : int
+    again : bool
+        Restart after a gap: values given by the user no longer apply.
+
+    Returns
+    -------
+    InitialState
+
+    Raises
+    ------
+    ValueError
+        If no sample can be the start.
     """
     return _Search(settings, sources, imu, broken).start(first, last, again)
 
@@ -78,7 +95,7 @@ class _Search:
         return np.full(len(t_ns), np.nan)
 
     def _moving(self, first, last, source, again):
-        """Begin at the first sample where all that is to come from the reference is known."""
+        """Start at the first sample at which the reference provides everything that is needed."""
         reason = None
         for k in range(first, last):
             try:
@@ -105,7 +122,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _judge_gravity(self, first, last):
-        """Refuse a specific force that is not that of rest, where the IMU is at rest at all."""
+        """Refuse a specific force that is not gravity, if the IMU is ever at rest."""
         try:
             still = standstill.find_standstill(self._imu[first:last], self._s.alignment,
                                                self._speed_at)
@@ -209,7 +226,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):
-        """Return q_nb of a standstill and whether its heading is gyrocompassed."""
+        """Return q_nb at a standstill, and whether its heading comes from gyrocompassing."""
         wanted = self._s.initial.heading
         if wanted == 'given' and not again:
             return alignment.level_attitude(
@@ -231,7 +248,7 @@ class _Search:
         return alignment.level_attitude(still.force, heading), False
 
     def _reference_heading(self, still, k, where, wanted, refused):
-        """Return a heading and the text of its source; ValueError where there is none."""
+        """Return a heading and a text on its source; raise ValueError if there is none."""
         t_ns = int(self._imu.t_ns[k])
         if wanted != 'course' and self._reference is not None:
             q = self._reference.attitude_at(t_ns)

@@ -1,4 +1,4 @@
-"""Mounting of a sensor in the vehicle: the quaternion q_bs from the sensor's frame to b."""
+"""Mounting of a sensor in the vehicle: the quaternion q_bs from the sensor frame to b."""
 
 import math
 
@@ -6,15 +6,16 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.settings.suggest import nearest_name
 
-# Shorter quaternions show no rotation; longer ones than the rounding of seven digits are said.
+# Quaternions shorter than _LEAST are refused; a length that differs from 1 by more than _UNIT (the
+# rounding of seven digits) is normalised and noted.
 _LEAST, _UNIT = 1e-3, 1e-6
 
 
 def levelled_mounting(force, yaw):
-    """Return q_bs: the shortest turn that brings a force (3,) up, then one by yaw about up."""
+    """Return q_bs: the shortest rotation of a force (3,) to up, then one by yaw about up, rad."""
     x, y, z = force.tolist()
     size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
-    # upside down any level axis will do
+    # If the sensor is upside down, any level axis will do.
     axis, length = ((y, -x, 0.0), level) if level > 1e-12 * size else ((1.0, 0.0, 0.0), 1.0)
     scale = elementary.atan2(level, z) / length
     return quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
@@ -23,12 +24,22 @@ def levelled_mounting(force, yaw):
 
 def chained_mounting(transforms, base, frame, notes=None):
     """
-    Return q_bs from static transforms, or None where there are none at all.
+    Return q_bs from static transforms, or None if there are none.
 
-    transforms: {(parent, child): q} where q maps child to parent, as TF has it, of any length;
-    base, frame: names; notes: list that takes what was done to the transforms.  Raises
-    ValueError, naming the nearest known frame, where one of both is not among them or they hang
-    on different trees, and where a transform between them is no rotation.
+    Parameters
+    ----------
+    transforms : dict
+        {(parent, child): q}, where q maps child to parent, as in TF; of any length.
+    base, frame : str
+        Names of the frames of the vehicle and of the sensor.
+    notes : list of str, optional
+        Receives a note for each quaternion that was normalised.
+
+    Raises
+    ------
+    ValueError
+        If a frame is unknown (the nearest known one is named), if the two are not connected, or
+        if a transform between them is not a rotation.
     """
     if not transforms:
         return None
@@ -60,12 +71,12 @@ def chained_mounting(transforms, base, frame, notes=None):
 
 
 def _rotation(q, name, notes):
-    """Return the unit quaternion of a transform; note what it was, or refuse it by name."""
+    """Return the unit quaternion of a transform; note a normalisation, refuse a zero rotation."""
     x, y, z, w = q
     size = math.sqrt(x * x + y * y + z * z + w * w)
     if not (math.isfinite(size) and size > _LEAST):
         raise ValueError(f'/tf_static from {name} has the rotation '
-                         f'({x:g}, {y:g}, {z:g}, {w:g}), which is none; expected a unit '
+                         f'({x:g}, {y:g}, {z:g}, {w:g}), which is not a rotation; expected a unit '
                          'quaternion, or mounting.source given with mounting.rpy_deg')
     if abs(size - 1.0) <= _UNIT:
         return q

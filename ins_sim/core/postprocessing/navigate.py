@@ -1,4 +1,4 @@
-"""Navigate on a recording: clean, mount, begin, step, compare; every departure is a note."""
+"""Navigate with a recorded IMU: clean, mount, start, step, compare; note every repair."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -19,16 +19,18 @@ from .imu_record import find_gaps, gap_limit_ns, ordered_samples
 from .initial_state import choose_start
 from .sample_checks import checked_samples
 
-# A solution of one step shows nothing.
+# A solution with fewer samples is not useful.
 FEWEST = 10
 
 
 @dataclass(frozen=True, eq=False)
 class NavigationResult:
     """
-    The result: states: NavStates of each segment; references: what it was compared with;
-    comparisons: one a reference; notes: what was found and done, in sentences; figures: the same
-    as numbers, {name: value}.
+    The result of a navigation with a recorded IMU.
+
+    states: NavStates of each segment; references, comparisons: the references with which the
+    solution was compared, and one Comparison for each; notes: messages on what was found and
+    done; figures: the same as numbers, {name: value}.
     """
 
     states: list
@@ -40,10 +42,19 @@ class NavigationResult:
 
 def navigate(settings, sources, progress=None):
     """
-    Return the Navigation of NavigateSettings over Sources.
+    Navigate with a recorded IMU and return the NavigationResult.
 
-    progress: called with the fraction done.  Raises ValueError in one sentence where there is
-    nothing to begin with.
+    Parameters
+    ----------
+    settings : NavigateSettings
+    sources : Sources
+    progress : callable, optional
+        Called with the fraction done.
+
+    Raises
+    ------
+    ValueError
+        If no start can be found; the message also contains the notes so far.
     """
     notes = []
     try:
@@ -55,7 +66,7 @@ def navigate(settings, sources, progress=None):
 
 
 def _navigate(settings, sources, progress, notes):
-    """Do what ``navigate`` does; what is found is put into notes as it is found."""
+    """Do the work of ``navigate``; append to notes what is found."""
     imu, remarks = checked_samples(sources.imu, settings.stamps, settings.accept.zero_readings)
     notes += [*sources.notes, *remarks]
     imu, losses = ordered_samples(imu)
@@ -114,7 +125,7 @@ def _span(settings, imu):
 
 
 def _mounting(settings, sources, imu, first, notes):
-    """Return q_bs and note where it comes from."""
+    """Return q_bs, and note its source."""
     wanted = settings.mounting
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
@@ -139,7 +150,7 @@ def _mounting(settings, sources, imu, first, notes):
 
 
 class _Replay:
-    """Steps through the samples, from gap to gap."""
+    """Step through the samples, from gap to gap."""
 
     def __init__(self, settings, sources, imu, notes, progress):
         self._s, self._imu, self._step_ns, self._notes = settings, imu, imu.step_ns, notes
@@ -197,7 +208,7 @@ class _Replay:
                        ellipsoid.GRAVITY_TERMS[self._s.earth.gravity])
 
     def _segment(self, loop, begin, last):
-        """Return the NavStates from an InitialState to a gap or to last, which is left out."""
+        """Return the NavStates from an InitialState to a gap or to last (exclusive)."""
         stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
         for j, solution, _ in loop.run(self._samples(begin, last)):
             if solutions and runs_away(solution):
@@ -216,6 +227,6 @@ class _Replay:
         imu = self._imu[part]
         for t_ns, omega, f, height in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),
                                           self._heights[part].tolist()):
-            # Without a newer height of the reference the last one holds.
+            # Without a newer height of the reference the last one is used.
             held = held if math.isnan(height) else height
             yield t_ns, omega, f, held

@@ -1,19 +1,19 @@
-"""What was recorded, as it is handed to ``navigate``."""
+"""The recorded data that ``navigate`` receives."""
 
 from dataclasses import dataclass
 
-# Why there is no position, where nobody says more.
+# Default reason for a missing position.
 NO_FIXES = 'there is no NavSatFix and no reference.path'
 
 
 @dataclass(frozen=True)
 class Sources:
     """
-    What was recorded.
+    A recording.
 
-    name; imu: RecordedImu in the frame of the sensor; frame: its name; reference: Reference or
-    None; odometry: Odometry or None; transforms: {(parent, child): q} of /tf_static; notes: what
-    the reading found, in sentences; without_position: why the reference has no position.
+    imu: RecordedImu in the frame of the sensor; frame: name of this frame; reference: Reference or
+    None; odometry: OdometryReference or None; transforms: {(parent, child): q} of /tf_static, or
+    None; notes: messages of the readers; without_position: why the reference has no position.
     """
 
     name: str
