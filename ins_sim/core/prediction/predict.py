@@ -1,4 +1,4 @@
-"""Predicted drift and position error of a run, by the linear theory."""
+"""Prediction of drift and position error of a run by the linear theory."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,11 @@ from .late_turns import is_long, late_force, late_turns, LateTurns
 
 @dataclass(frozen=True, eq=False)
 class PredictedErrors(History):
-    """Predicted errors: t_s (n,) since the start; attitude (n, 3), rad; position (n, 3), m."""
+    """
+    Predicted errors.
+
+    t_s: time since the start (n,), s; attitude (n, 3), rad; position (n, 3), m.
+    """
 
     t_s: np.ndarray
     attitude: np.ndarray
@@ -34,13 +38,16 @@ class PredictedErrors(History):
 @dataclass(frozen=True)
 class Prediction:
     """
-    What the linear theory expects of a run.
+    The errors that the linear theory predicts for a run (docs/theory/prediction.md).
 
-    drift (3,) rad/s, East, North, Up; t_s (n,) since the start; position (n, 3) and attitude
-    (n, 3): error histories, m and rad; largest (3,): the largest |position|, m; resonances: list
-    of (name, rate of psi rad/s, drift there (3,) rad/s); turned: the largest attitude error, rad;
-    drift_bound, position_bound: what the theory, linear in the errors, may leave out of the drift,
-    rad/s, and of the position error, m.
+    Attributes
+    ----------
+    drift : mean drift in East, North, Up (3,), rad/s
+    t_s, position, attitude : time since the start (n,), s; errors (n, 3), m and rad
+    largest : largest absolute position error of each axis (3,), m
+    resonances : list of (name, rate of psi, rad/s, drift there (3,), rad/s)
+    turned : largest attitude error, rad
+    drift_bound, position_bound : bounds of the terms that the linear theory neglects, rad/s and m
     """
 
     drift: np.ndarray
@@ -56,11 +63,28 @@ class Prediction:
 
 def predict(settings, motion, collect=Collected) -> Prediction:
     """
-    Return the Prediction of SimulationSettings.
+    Predict the errors of a run by the linear theory.
 
-    motion: that of settings.motion_generator; collect: as of ``core.simulation.inertial``, or None
-    to do without t_s, attitude and position, which then are None.  Raises ValueError where the
-    settings name no run of finite length, NoPrediction for rotors that only RK4 damps.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+        The motion of settings.motion_generator.
+    collect : callable or None
+        See ``core.simulation.inertial``. With None the histories are not computed, and t_s,
+        attitude
+        and position of the result are None.
+
+    Returns
+    -------
+    Prediction
+
+    Raises
+    ------
+    ValueError
+        If the settings do not define a run of finite length.
+    NoPrediction
+        For rotors that only RK4 damps.
     """
     check_length(settings.motion_generator, motion)
     run = _FineRun(settings, motion)
@@ -81,10 +105,12 @@ def predict(settings, motion, collect=Collected) -> Prediction:
 
 def _along_parallels(position, lat):
     """
-    Return position errors (n, 3) in the plane tangent at latitudes (n,) as they are measured.
+    Convert position errors (n, 3) in the tangent plane at latitudes (n,) to those that are
+    reported.
 
-    East along the parallel and North along the meridian (``navigation.errors.position_error``),
-    to second order: a great circle that begins eastwards leaves the parallel by d^2 tan(lat) / 2R.
+    Reported errors are East along the parallel and North along the meridian
+    (``navigation.errors.position_error``). To second order, a great circle that starts eastwards
+    leaves the parallel by d^2 tan(lat) / 2R.
     """
     s, c = elementary.sincos(lat)
     per_r = s / c / ellipsoid.MEAN_RADIUS
@@ -124,7 +150,7 @@ class _FineRun:
             late = LateAttitudeError(self._turns.at, self._fine_s)
             self._beta = lambda truth, omega_in, first: late.advance(truth, omega_in)
         else:
-            # The interval as the difference of the instants has it.
+            # The interval is the difference of the instants, which are rounded to ns.
             count = self._steps * SUBSAMPLES
             step_s = (self._instant_s(count) - self._instant_s(0)) / count
             pair = PairAttitudeError(motion, self._gyro, self.tau, self._start_s, step_s,
@@ -136,14 +162,14 @@ class _FineRun:
 
     @paused_in_blocks
     def blocks(self):
-        """Yield PredictedErrors at the steps of STEP_S."""
+        """Yield PredictedErrors at steps of STEP_S."""
         initial, last = self._initial, self._steps * SUBSAMPLES
         turned = np.radians(initial.attitude_error_deg)
         model = ErrorModel(self._fine_s, SUBSAMPLES, self._rotation, initial.position_error_m,
                            initial.velocity_error_m_s, self._gravity)
         for first in range(0, last, BLOCK):
             stop = min(first + BLOCK, last)
-            # The slope of the specific force needs an instant on either side.
+            # The derivative of the specific force needs an instant on either side.
             before, behind = min(1, first), min(1, last - stop)
             k = np.arange(first - before, stop + behind + 1)
             truth = self._motion.at(_nanoseconds(self._instant_s(k)))
@@ -153,7 +179,7 @@ class _FineRun:
             s, c = elementary.sincos(truth.lat)
             self._steepest = max(self._steepest, float(abs(s / c).max()))
             omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, self._rotation)
-            # Attitude error in n without the turning of n.
+            # Attitude error in n without the effect of the rotation of n.
             beta = self._beta(truth, omega_in, first)
             self._last_beta = beta[-1]
             self._swept += np.add.reduce(
@@ -164,35 +190,39 @@ class _FineRun:
                                                self._held_ns))
             attitude, position = model.advance(truth, omega_in, _to_n(truth, truth.f_ib_b),
                                                beta + turned, df_n)
-            # The figures of short delays keep their bits; their bound has room for it.
+            # Results for short delays keep their bits; the bound contains the difference.
             if self._turns.long:
                 position = _along_parallels(position, truth.lat[::SUBSAMPLES])
-            # The first step of a block is the last of the one before.
+            # The first step of a block is the last one of the previous block.
             kept = slice(before, None)
             steps = np.arange(first // SUBSAMPLES, stop // SUBSAMPLES + 1)
             yield PredictedErrors(STEP_S * steps[kept], attitude[kept], position[kept])
 
     def second_order(self, turned, far):
         """
-        Return a bound, m, of what is of second order in the largest errors, rad and m.
+        Return a bound of the second-order position error, m.
 
-        Half the square of a rotation is half of it times the position error that it makes; and a
-        position error is measured along parallels and meridians (``_along_parallels``).
+        turned, far: largest attitude error, rad, and position error, m. The second-order part of a
+        rotation is half of it times the position error that it causes; in addition, position
+        errors are
+        measured along parallels and meridians (``_along_parallels``).
         """
         angle = far / ellipsoid.MEAN_RADIUS
         return 0.5 * far * (turned + angle * (1.0 + 2.0 * self._steepest))
 
     def drift_bound(self, turned):
         """
-        Return a bound, rad/s, of what is of second order in the drift.
+        Return a bound of the second-order drift, rad/s.
 
-        The rotation vector of an attitude error that grows by e grows by e + error x e / 2: twice
-        the area that it sweeps.  turned: the largest one, rad, for the next order.
+        The rotation vector of an attitude error that grows by e grows by e + error x e / 2; the
+        second
+        term is the area that the error sweeps. turned: largest attitude error, rad, for the next
+        order.
         """
         return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)
 
     def drift(self):
-        """Return the mean drift (3,), rad/s, once the blocks have been made."""
+        """Return the mean drift (3,), rad/s; call it after all blocks have been made."""
         motion, tau = self._motion, self.tau
         if self._gyro.model == 'ideal':
             if self._turns.long and motion.period_s:

@@ -1,4 +1,4 @@
-"""The whole aided chain offline: six stages, the numbers of the six nodes in lock-step."""
+"""The complete aided chain offline: six stages, with the numbers of the six nodes in lock-step."""
 
 from dataclasses import replace
 
@@ -12,22 +12,45 @@ from .inertial import truth_blocks
 
 def make_instruments(settings):
     """
-    Return velocity meter and GNSS of AidedSimulationSettings, on the truth, before the first fix.
+    Return velocity meter and GNSS of AidedSimulationSettings, before their first fix.
 
-    Raises ValueError where an instrument cannot be made; make them before the run they serve.
+    Make them before the run that they serve.
+
+    Raises
+    ------
+    ValueError
+        If the settings of an instrument are invalid.
     """
     return MeterOnTruth(VelocityMeter(settings.velocity_meter)), Gnss(settings.gnss)
 
 
 def simulate_aided(settings, instruments, motion, run, progress=None):
     """
-    Return the AidedResult on a SimulationResult of the first three stages.
+    Run velocity meter, GNSS and aided navigator on the result of the first three stages.
 
-    settings: AidedSimulationSettings; instruments: those of ``make_instruments``, used up here;
-    motion: that of the run; run: SimulationResult, whose solution, as often as it is put out,
-    gives the velocity meter the angle of attack, as it does on ins/odometry; progress: called
-    with the fraction done.  The instruments see the truth of the generator, even where the IMU
-    loses samples.  Raises ValueError as the stages do.
+    The instruments see the truth of the generator even where the IMU loses samples.
+
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+    instruments
+        Result of ``make_instruments``; they can be used for one run only.
+    motion : Motion
+        The motion of the run.
+    run : SimulationResult
+        Its solution, at its output rate, gives the velocity meter the angle of attack, as
+        ins/odometry does for the nodes.
+    progress : callable, optional
+        Called with the fraction done.
+
+    Returns
+    -------
+    AidedResult
+
+    Raises
+    ------
+    ValueError
+        As the stages do.
     """
     meter, gnss = instruments
     meter.follow_ins(run.states.t_ns, body_velocity(run.states))

@@ -16,10 +16,10 @@ class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
-    velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them;
-    notes: what was asked for at each output instant, or None; diverged: whether a fault was that a
-    solution had diverged.
+    judged: a JudgedFix for every fix, in the order of arrival; faults: a message for each fault;
+    velocity_fixes, gnss_fixes: output of the instruments, if ``simulate_aided`` ran them; notes:
+    the
+    result of ``note`` at each output instant, or None; diverged: whether a solution has diverged.
     """
 
     truth: Truth
@@ -34,7 +34,7 @@ class AidedResult:
 
 
 class Reported:
-    """Known fixes in the order of their instants, an instrument of ``navigate_aided``."""
+    """Known fixes in the order of their instants, used as an instrument of ``navigate_aided``."""
 
     def __init__(self, fixes):
         self._fixes, self._next = fixes, 0
@@ -54,12 +54,29 @@ def with_truth(motion, blocks):
 
 def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     """
-    Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
+    Run the aided navigator over the blocks of ``with_truth``.
 
-    meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
-    arrival, or None; note: function of the AidedNavigator whose result is kept at each output
-    instant.  Faults are handled as on_fault says: the solution starts anew from the truth, or
-    ValueError is raised.  Raises ValueError where there is no output.
+    Faults are handled according to on_fault: the solution starts anew from the truth, or
+    ValueError
+    is raised.
+
+    Parameters
+    ----------
+    settings : AidedNavigatorSettings
+    blocks : iterable of (ImuSamples, Truth)
+    meter, gnss : optional
+        The instruments: objects with advance(Truth) -> list of fixes in the order of arrival.
+    note : callable, optional
+        Function of the AidedNavigator whose result is stored at each output instant.
+
+    Returns
+    -------
+    AidedResult
+
+    Raises
+    ------
+    ValueError
+        If there is no output instant.
     """
     flown = AidedChain(settings, note)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
@@ -72,9 +89,9 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
 
 class AidedChain:
     """
-    The aided navigator of one run, which takes block after block.
+    The aided navigator of one run, which processes block after block.
 
-    settings, note: as of ``navigate_aided``; outputs: a Decimation, in place of output_every.
+    settings, note: see ``navigate_aided``; outputs: a Decimation that replaces output_every.
     """
 
     def __init__(self, settings, note=None, outputs=None):
@@ -87,8 +104,8 @@ class AidedChain:
         self._parts, self._judged = [], []
 
     def block(self, imu, truth, fixes):
-        """Step through a block; fixes: (arrival_ns, source, fix)."""
-        # A fix that is on its way from an earlier block may arrive after one of this block.
+        """Process a block; fixes: (arrival_ns, source, fix)."""
+        # A fix on its way from an earlier block may arrive after a fix of this block.
         self._loop.waiting = sorted([*self._loop.waiting, *fixes], key=lambda entry: entry[:2])
         block = AidedBlock(imu, truth, self._loop)
         self._judged += self._loop.run_block(block)

@@ -1,4 +1,9 @@
-"""The whole chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
+"""
+Offline simulation: fly a motion, sense it, navigate on the readings, compare with the truth.
+
+With ``twin`` the run is repeated with all channel delays set to zero; the difference shows what
+the delays alone cause.
+"""
 
 from dataclasses import dataclass
 from functools import partial
@@ -25,10 +30,11 @@ BLOCK = 4096
 @dataclass(frozen=True)
 class SimulationResult:
     """
-    One offline run: the truth, the solution and its errors at the output instants.
+    One offline run: truth, solution and errors at the output instants.
 
-    imu holds every reading; twin the errors of the same run with all delays zero (or None);
-    faults a sentence for each gap at which the strapdown started anew.
+    imu: all readings; twin: errors of the same run with all delays zero, or None; faults: a
+    message
+    for each gap at which the strapdown started anew.
     """
 
     truth: Truth
@@ -40,13 +46,15 @@ class SimulationResult:
 
 
 def imu_blocks(settings, motion):
-    """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
+    """
+    Yield blocks of ImuSamples of a whole run, from the motion or through the stream of truth.
+    """
     return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion))
 
 
 @paused_in_blocks
 def sensed_blocks(sensor, ideal):
-    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
+    """Pass blocks of the ideal IMU through the instrument of ImuSensorSettings."""
     sensed = SensedRun(sensor)
     for block in ideal:
         block = sensed.take(block)
@@ -56,9 +64,9 @@ def sensed_blocks(sensor, ideal):
 
 class SensedRun:
     """
-    The instrument of ImuSensorSettings in one run, without its ideal part.
+    The errors and the sampling of the instrument of ImuSensorSettings in one run.
 
-    errors: its InstrumentErrors, or None of a perfect one.  Raises ValueError as ``with_errors``
+    errors: its InstrumentErrors, or None for a perfect one. Raises ValueError as ``with_errors``
     does.
     """
 
@@ -68,12 +76,12 @@ class SensedRun:
                                 period_ns(sensor.rate_hz))
 
     def take(self, ideal):
-        """Return the ImuSamples that it makes of those of the ideal one, or of part of them."""
+        """Return the ImuSamples that the instrument makes of ideal ones; some may be dropped."""
         return self._sampler.take(ideal if self.errors is None else self.errors.advance(ideal))
 
 
 def reading_count(generator, dt_ns):
-    """Return how many readings an IMU with a sampling period of dt_ns takes on the motion."""
+    """Return the number of readings of an IMU with the sampling period dt_ns on the motion."""
     return _steps(generator) * period_ns(generator.rate_hz) // dt_ns + 1
 
 
@@ -107,11 +115,13 @@ def ideal_blocks(settings, motion):
 @paused_in_blocks
 def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     """
-    Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
+    Run the strapdown over blocks of ImuSamples, with the truth of the motion.
 
-    Yield (truth, states, errors) records of the output instants of each block.  A gap is handled
-    as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
-    the list faults, or ValueError is raised.  covariance: a FreeCovariance kept beside it.
+    Yield (truth, states, errors) records of the output instants of each block. A gap is handled
+    according to on_fault: the strapdown starts anew from the truth and a message is appended to
+    the
+    list faults, or ValueError is raised. covariance: a FreeCovariance that is propagated beside
+    it.
     """
     strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:
@@ -119,7 +129,7 @@ def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
 
 
 class StrapdownRun:
-    """The strapdown of one run; the arguments are those of ``navigate_blocks``."""
+    """The strapdown of one run; for the arguments see ``navigate_blocks``."""
 
     def __init__(self, settings, motion, faults=None, covariance=None):
         dt_ns = period_ns(settings.rate_hz)
@@ -128,7 +138,7 @@ class StrapdownRun:
                                     settings.output_every, settings.on_fault, faults)
 
     def take(self, imu):
-        """Yield (truth, states, errors) of the output instants of ImuSamples."""
+        """Process ImuSamples and yield (truth, states, errors) of their output instants."""
         t_ns = self._clock.instant(imu.t_ns)
         truth = self._motion.at(t_ns)
         for first, (states, errors), due in self._loop.run_block(t_ns, imu.omega, imu.f, truth):
@@ -136,7 +146,7 @@ class StrapdownRun:
 
 
 class RecentTruth:
-    """The truth of a motion; what was asked for last is not computed again."""
+    """The truth of a motion, with a cache for the last request."""
 
     def __init__(self, motion):
         self._motion, self._last = motion, None
@@ -155,12 +165,30 @@ class RecentTruth:
 
 def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
-    Return the SimulationResult of SimulationSettings.
+    Simulate a run offline.
 
-    motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
-    called with the fraction done; collect: called once for each history, it returns what takes
-    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
-    where the settings name no run of finite length.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+        The motion of settings.motion_generator.
+    twin : bool
+        Also run with all delays zero.
+    progress : callable, optional
+        Called with the fraction done.
+    collect : callable
+        Called once for each history; returns an object that takes the blocks and gives the whole,
+        such
+        as Collected, which keeps it in memory.
+
+    Returns
+    -------
+    SimulationResult
+
+    Raises
+    ------
+    ValueError
+        If the settings do not define a run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -178,7 +206,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
     if settings.imu_sensor.source == 'stream':
-        # The IMU and the navigation ask for the truth at the same instants.
+        # The IMU and the navigation request the truth at the same instants.
         motion = RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
     blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
@@ -202,22 +230,25 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
 
 def withheld_readings(settings):
     """
-    Return how many readings at the end of a run wait for truth that does not come.
+    Return the number of readings at the end of a run that wait for truth that never arrives.
 
-    A channel of negative delay reads what is still to come; on a stream of truth its last
-    readings would need truth from beyond the end.
+    A channel with negative delay reads the future; on a stream of truth its last readings would
+    need
+    truth from after the end.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     if sensor.source != 'stream':
         return 0
     lead_ns = -min(0, *sensor.gyro.delay_us.in_ns(), *sensor.accelerometer.delay_us.in_ns())
     dt_ns, span_ns = period_ns(sensor.rate_hz), _steps(generator) * period_ns(generator.rate_hz)
-    # The first one carries the first instant alone.
+    # The first block contains only the first instant.
     return span_ns // dt_ns - max(0, (span_ns - lead_ns) // dt_ns)
 
 
 def _until(last_ns, blocks):
-    """Yield the readings up to an instant: a twin has no others than the run itself."""
+    """
+    Yield the readings up to an instant, so that a twin has the same readings as the run itself.
+    """
     for block in blocks:
         if block.t_ns[-1] > last_ns:
             block = block[:int(np.searchsorted(block.t_ns, last_ns, side='right'))]
@@ -232,7 +263,7 @@ def _kept(blocks, store):
 
 
 def check_start(settings):
-    """Raise ValueError where nominal instants, multiples of the period, would miss the start."""
+    """Raise ValueError if nominal instants, multiples of the period, would miss the start."""
     start_s, dt_ns = settings.motion_generator.start_s, period_ns(settings.imu_sensor.rate_hz)
     if settings.strapdown.imu_time == 'nominal' and round(1e9 * start_s) % dt_ns:
         raise ValueError(f'motion_generator: start_s is {start_s:.9g} s with imu_time nominal; '

@@ -1,4 +1,6 @@
-"""The NEES of an aided run: its errors, and those of what the filter estimates beside it."""
+"""
+NEES of an aided run, from its errors and those of the other quantities that the filter estimates.
+"""
 
 import numpy as np
 
@@ -10,9 +12,9 @@ UNBIASED = (0.0, 0.0, 0.0)
 
 class ErrorNormaliser:
     """
-    Normalises the errors of the runs of AidedSimulationSettings by the filter's covariance.
+    Normalise the errors of the runs of AidedSimulationSettings by the covariance of the filter.
 
-    errors: InstrumentErrors of the run, None of a perfect instrument.
+    errors: InstrumentErrors of the run, None for a perfect instrument.
     """
 
     def __init__(self, settings, errors):
@@ -34,8 +36,9 @@ class ErrorNormaliser:
         """
         Return NEES and degrees of freedom, (n, BLOCKS), at the output instants of an AidedResult.
 
-        Its notes are FilterNotes.  At the first instant, the start, the errors are those that were
-        drawn: there is none (NaN, 0).
+        Its notes are FilterNotes. At the first instant the errors are the drawn ones; NEES is NaN
+        and the
+        degrees of freedom are 0 there.
         """
         errors = result.errors
         columns = (errors.attitude.tolist(), errors.velocity.tolist(), errors.position.tolist())

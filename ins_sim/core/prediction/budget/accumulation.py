@@ -1,4 +1,4 @@
-"""The responses of intervals, one after the other: covariances and means of a whole run."""
+"""Compose the responses of successive intervals to covariances and means of a whole run."""
 
 import numpy as np
 
@@ -6,17 +6,17 @@ from ins_sim.core.navigation.error_dynamics import GROWING, turn_by_position
 from ins_sim.core.numerics.fixed_order import product
 from .sources import sources_of
 
-# The axes that a standard deviation or an error of the start acts on: errors of position, velocity
-# and attitude.
+# The axes on which an initial standard deviation or error acts: those of position, velocity and
+# attitude.
 START_AXES = {'position': (0, 1, 2), 'velocity': (3, 4, 5), 'attitude': (6, 7, 8),
               'tilt': (6, 7), 'azimuth': (8,)}
 
 
 def level_turn(lat, height):
     """
-    Return the matrix (9, 9) that makes the inertial attitude error of that of the level frame.
+    Return the matrix (9, 9) from the attitude error of the level frame to the inertial one.
 
-    The computed level frame turns with the position error (``turn_by_position``).
+    The computed level frame rotates with the position error (``turn_by_position``).
     """
     turn = np.eye(GROWING)
     turn[6, 1], turn[7, 0], turn[8, 0] = turn_by_position(lat, height)
@@ -24,7 +24,7 @@ def level_turn(lat, height):
 
 
 def start_columns(lat, height, held):
-    """Return the errors (9, 9) that units of the inertial errors make at the start."""
+    """Return the initial errors (9, 9) due to units of the inertial errors at the start."""
     back = 2.0 * np.eye(GROWING) - level_turn(lat, height)
     if held:
         back[:, [2, 5]] = 0.0
@@ -35,15 +35,16 @@ class NoiseErrors:
     """
     Covariances of the noises of one triad, by source and axis.
 
+    Parameters
+    ----------
     markov : MarkovProcesses
-    walk_s : for how long the walks have run at the start, s
+    walk_s : time for which the random walks have run at the start, s
 
     Attributes
     ----------
     sources : the ErrorSources of the processes
     white, walk : (9, 9, 3) for a density of one
     markov : (sources, 9, 9, 3) for units of the sources
-
     """
 
     def __init__(self, markov, walk_s):
@@ -58,10 +59,11 @@ class NoiseErrors:
 
     def advance(self, transition, noise, bias, length_s, lane):
         """
-        Take an interval.
+        Advance by one interval.
 
-        transition (9, 9); noise: TriadNoise; bias (9, 3): response to constant errors; length_s:
-        of the interval; lane: its number in the noise.
+        transition: (9, 9); noise: TriadNoise; bias: response to constant errors (9, 3); length_s:
+        length
+        of the interval, s; lane: its number in the noise.
         """
         ahead = moved(transition, self._with)
         cross = ahead[:, :, np.newaxis] * noise.start[:, np.newaxis, :, :, lane]
@@ -80,11 +82,11 @@ class NoiseErrors:
 
 
 def moved(transition, columns):
-    """Return the transition times columns (m, 9, ...)."""
+    """Return the transition matrix times columns (m, 9, ...)."""
     rows = np.moveaxis(columns, 1, 0)
     return np.moveaxis(product(transition, rows.reshape(GROWING, -1)).reshape(rows.shape), 0, 1)
 
 
 def _carried(transition, p):
-    """Return F P F' of covariances (m, 9, 9, 3)."""
+    """Return F P F' for covariances (m, 9, 9, 3)."""
     return moved(transition, np.swapaxes(moved(transition, p), 1, 2))

@@ -1,4 +1,4 @@
-"""What errs in the same way in every run, source by source: its means over the steps."""
+"""Errors that are the same in every run, by source: their means over the steps."""
 
 from dataclasses import replace
 import math
@@ -16,7 +16,7 @@ LAG = 'bandwidth_hz'
 
 
 class FixedSource:
-    """A source and, by TimeLanes, its means (steps, 3, n) in n."""
+    """A source, and a function of TimeLanes that returns its means (steps, 3, n) in n."""
 
     def __init__(self, source, means):
         self.source, self.means = source, means
@@ -46,7 +46,7 @@ def fixed_sources(settings, motion):
 
 
 class _Immediate:
-    """Errors that follow the input at once, those of one parameter."""
+    """Errors that follow the input without a lag, due to one parameter."""
 
     def __init__(self, errors, key, triad, temperature):
         alone = replace(type(errors)(), **{key: getattr(errors, key)})
@@ -64,11 +64,14 @@ class _Lag:
     """
     Errors of lags, to second order in their time constants.
 
-    What the output lacks of the integral of the input u is x/w of first order, and sqrt(2) x/w +
-    x'/w^2 of a Butterworth lag (``discrete_lag``), w = 2 pi f.  The lag is driven by the mean of
-    the input over each sampling period, so that after a steady rise of u its state x is
-    u - L u', where L is longer than 1/w by about half a period, and x' = v u'.  At the first
-    sample it is settled: x is the first reading, and x' = 0.
+    The output lacks x/w of the integral of the input u for a first-order lag, and sqrt(2) x/w +
+    x'/w^2 for a Butterworth lag (``discrete_lag``), w = 2 pi f. The lag is driven by the mean of
+    the
+    input over each sampling period. After a steady rise of u its state x is therefore u - L u',
+    where
+    L exceeds 1/w by about half a period, and x' = v u'. At the first sample the lag is settled: x
+    is
+    the first reading, and x' = 0.
     """
 
     def __init__(self, errors, triad, settings, motion):
@@ -96,7 +99,9 @@ class _Lag:
 
 
 def _first_reading(sensor, motion, first_ns):
-    """Return the first mean specific force and rate, (3,) each: of a stream, those of then."""
+    """
+    Return the first mean specific force and rate, (3,) each; on a stream, those at the instant.
+    """
     if sensor.source == 'motion':
         imu = MotionImu(sensor, motion, first_ns).advance(1)
         return imu.f[0], imu.omega[0]
@@ -105,7 +110,7 @@ def _first_reading(sensor, motion, first_ns):
 
 
 class _Delay:
-    """Errors of late channels, as ``core.prediction`` has them."""
+    """Errors of late channels, computed as in ``core.prediction``."""
 
     def __init__(self, settings, motion, triad):
         sensor = settings.imu_sensor

@@ -1,4 +1,4 @@
-"""The error budget of a simulation: the share of every source, from settings and motion."""
+"""The error budget of a simulation: the contribution of every source, from settings and motion."""
 
 from dataclasses import dataclass
 
@@ -8,9 +8,9 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from .propagation import navigation_span_s, Propagation
 
-# The instants of a budget divide the run by this; others are added to them.
+# A run is divided by this number to give the instants of a budget; others can be added.
 INTERVALS = 360
-# Times that are nearer to each other are the same, s.
+# Times that differ by less are equal, s.
 SAME_S = 1e-6
 
 
@@ -27,13 +27,13 @@ class LinearBudget:
     lat : (n,) true latitude, rad
     random : ErrorSources that differ from run to run
     covariance : (random, n, 9, 9) m, m/s, rad
-    by_axis : (random, n, 3, 9) variances that the axes of the source make; of a source without
-        axes, all in the first
+    by_axis : (random, n, 3, 9) variances due to the axes of the source; for a source without axes,
+    all
+        in the first
     fixed : ErrorSources that are the same in every run
     mean : (fixed, n, 9) errors, m, m/s, rad
-    beyond : (2,) of accelerometers and gyros, the part of the time in which an input is greater
-        than the instrument reads, which is left out of the budget
-
+    beyond : (2,) for accelerometers and gyros, the fraction of time in which the input exceeds the
+        range of the instrument, which the budget neglects
     """
 
     t_s: np.ndarray
@@ -55,7 +55,9 @@ class LinearBudget:
         return np.add.reduce(np.concatenate([np.zeros((1, len(self.t_s), 9)), self.mean]))
 
     def at(self, t_s):
-        """Return the number of the instant t_s, s; ValueError where the budget has none then."""
+        """
+        Return the index of the instant t_s, s; raise ValueError if the budget does not contain it.
+        """
         k = int(np.argmin(np.abs(self.t_s - t_s)))
         if abs(self.t_s[k] - t_s) > SAME_S:
             raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget, '
@@ -65,17 +67,31 @@ class LinearBudget:
 
 @paused_in_blocks
 def _propagated(run):
-    """Yield nothing; propagate with the garbage collector at rest."""
+    """Propagate with the garbage collector off; yields nothing."""
     yield from run.blocks()
 
 
 def error_budget(settings, motion, instants_s=()):
     """
-    Return the LinearBudget of SimulationSettings.
+    Compute the error budget of a simulation.
 
-    motion: that of settings.motion_generator; instants_s: times since the start of the navigation,
-    s, that are wanted beside the even ones.  Raises ValueError where the settings name no run of
-    finite length, an instant lies outside of it, or no linear budget covers the errors.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+        The motion of settings.motion_generator.
+    instants_s : sequence of float
+        Times since the start of the navigation, s, in addition to the even ones.
+
+    Returns
+    -------
+    LinearBudget
+
+    Raises
+    ------
+    ValueError
+        If the settings do not define a run of finite length, an instant is outside of it, or the
+        errors have no linear budget.
     """
     check_length(settings.motion_generator, motion)
     model = settings.imu_sensor.gyro.model
@@ -99,6 +115,6 @@ def instants_of(settings, wanted_s):
             raise ValueError(f'the time is {t_s:g} s; expected a time of the navigation, 0 to '
                              f'{span_s:g} s')
     even = span_s * np.arange(INTERVALS + 1) / INTERVALS
-    # an instant that is even but for rounding is not taken twice
+    # An instant that equals an even one except for rounding is not added.
     others = [t_s for t_s in wanted.tolist() if np.abs(even - t_s).min() > SAME_S]
     return np.unique(np.concatenate([even, others]))

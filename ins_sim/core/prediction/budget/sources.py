@@ -1,4 +1,4 @@
-"""What the settings have of errors: one source for each parameter that is not zero."""
+"""The error sources of the settings: one for each parameter that is not zero."""
 
 from dataclasses import dataclass
 import math
@@ -12,7 +12,7 @@ from ins_sim.core.sensors.imu.triad_model import KEYS
 ACCELEROMETER, GYRO = 0, 1
 # Coefficients of TriadModel that are drawn once a run, in the order of ``TimeLanes.by_error``.
 CONSTANTS = ('turn_on_sigma', 'scale_sigma', 'misalignment_sigma')
-# The words for a coefficient that is random, of accelerometers and of gyros.
+# Names of the random coefficients, of accelerometers and of gyros.
 RANDOM_WORDS = {
     'turn_on_sigma': ('turn-on bias',) * 2, 'scale_sigma': ('scale factor',) * 2,
     'misalignment_sigma': ('misalignment',) * 2,
@@ -33,11 +33,14 @@ class ErrorSource:
     """
     One source of errors.
 
-    key: name of the parameter; label: in words; unit: of the parameter; values: of the three axes
-    in this unit, or (value,) of all; si: the same in SI; fixed: whether it is the same in every
-    run; triad: ACCELEROMETER, GYRO or None of the start; kind: the coefficient of TriadModel, or
-    that of the start; inverse: whether the error falls with the parameter, as that of a lag does
-    with its bandwidth, and else is proportional to it.
+    key: name of the parameter; label: description; unit: unit of the parameter; values: values of
+    the
+    three axes in this unit, or (value,) for all; si: the same in SI; fixed: whether the error is
+    the
+    same in every run; triad: ACCELEROMETER, GYRO, or None for the start; kind: name of the
+    coefficient
+    in TriadModel, or of the initial error; inverse: whether the error decreases when the parameter
+    grows, as that of a lag with its bandwidth (otherwise it is proportional to the parameter).
     """
 
     key: str
@@ -98,7 +101,7 @@ def start_sources(initial):
 
 
 def start_errors(initial):
-    """Return the ErrorSources of the errors of settings.strapdown.Initial that are given."""
+    """Return the ErrorSources of the given errors of settings.strapdown.Initial."""
     return [ErrorSource(f'initial.{key}', words, unit, values, tuple(si * v for v in values), True,
                         None, kind)
             for key, words, unit, si, kind in (
@@ -110,11 +113,11 @@ def start_errors(initial):
 
 def processes(sources, triad, settings):
     """
-    Return the MarkovProcesses and the walks of a triad.
+    Return the MarkovProcesses and the random walks of a triad.
 
-    sources: ErrorSources; settings: GyroErrors or AccelerometerErrors.  A walk is (source, density
-    of the walk for a unit of the source, 1/s); a Gauss-Markov process of infinite time constant is
-    one that has reached its standard deviation after an hour.
+    A random walk is (source, density of the walk for a unit of the source, 1/s); a Gauss-Markov
+    process of infinite time constant is a random walk that reaches its standard deviation after an
+    hour. sources: ErrorSources; settings: GyroErrors or AccelerometerErrors.
     """
     markov, walks = [], []
     for source in sources:
