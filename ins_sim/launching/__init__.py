@@ -1,5 +1,5 @@
 """
-What the launch files start: their arguments, checked, and what these mean for each node.
+Meaning of the launch files: their arguments, the checks of these, and their effect on each node.
 
-Read ``arguments`` first, then ``plan``; ``actions`` alone imports launch.
+Read ``arguments`` first, then ``plan``; only ``actions`` imports launch.
 """

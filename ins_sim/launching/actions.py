@@ -1,4 +1,4 @@
-"""The actions of the launch files.  Imports launch, and is imported by the launch files alone."""
+"""Actions of the launch files. Imports launch, and is imported only by the launch files."""
 
 import atexit
 from pathlib import Path
@@ -20,12 +20,12 @@ from . import arguments, plan
 
 
 def simulation(path):
-    """Return the description of the launch file simulation; path: where it is."""
+    """Return the description of the launch file ``simulation``; path: of that file."""
     return _description(path, arguments.SIMULATION, _simulation)
 
 
 def replay(path):
-    """Return the description of the launch file replay; path: where it is."""
+    """Return the description of the launch file ``replay``; path: of that file."""
     return _description(path, arguments.REPLAY, _replay)
 
 
@@ -59,31 +59,31 @@ def _replay(context, texts):
 
 
 def _full(context, namespace):
-    """Return the namespace of the nodes with those that the including files have pushed."""
+    """Return the namespace of the nodes, including those pushed by the including files."""
     before = context.launch_configurations.get('ros_namespace', '')
     return '/'.join(part for part in (before.strip('/'), namespace.strip('/')) if part)
 
 
 def _nodes(made):
-    """Return {name: Node} of a Plan."""
+    """Return {name: Node} for a Plan."""
     last = []
     if made.overrides_text:
         with NamedTemporaryFile('w', prefix='ins_sim_launch_', suffix='.yaml', delete=False,
                                 encoding='utf-8') as stream:
             stream.write(made.overrides_text)
-        # the nodes have ended by then
+        # The nodes have ended by then.
         atexit.register(Path(stream.name).unlink, missing_ok=True)
         last.append(stream.name)
     return {process.name: Node(
         package='ins_sim', executable=process.executable, output='screen',
-        # the nodes of one process keep their names
+        # The nodes in one process keep their names.
         name=process.name if process.name in made.named else None,
         ros_arguments=made.default_words, parameters=[*made.files, *last])
         for process in made.processes}
 
 
 def _ends(actions, texts):
-    """Return the handlers of the end of each process."""
+    """Return the event handlers for the end of each process."""
     return [RegisterEventHandler(OnProcessExit(
         target_action=action, on_exit=_on_end(name, actions, texts)))
         for name, action in actions.items()]
@@ -95,7 +95,7 @@ def _on_end(name, actions, texts):
         if context.is_shutdown:
             return None
         if event.returncode:
-            # launch ends everything then, and its exit code is not 0
+            # launch then ends everything with an exit code other than 0.
             raise RuntimeError(f'{name} ended with exit code {event.returncode}')
         if arguments.BOOLEANS[texts['shutdown'].lower()]:
             return [Shutdown(reason=f'{name} has ended')]
@@ -107,9 +107,9 @@ def _on_end(name, actions, texts):
 
 def _given(context, path):
     """
-    Yield the names of the arguments that were given to a launch file, path, itself.
+    Yield the names of the arguments that were given to this launch file.
 
-    Not those that are set for the file that includes it: they are visible here, too.
+    Arguments of the including file are visible here too, but are not yielded.
     """
     event = context.get_locals_as_dict().get('event')
     waiting, seen = [getattr(event, 'launch_description', None)], []

@@ -1,4 +1,4 @@
-"""The arguments of the launch files, and their values with every check that needs no ROS."""
+"""The arguments of the launch files, and all checks of their values that need no ROS."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,11 +8,11 @@ from ins_sim import resources
 from ins_sim.settings.shown import shown
 from ins_sim.settings.suggest import nearest_name
 
-# Shipped parameter files that hold a motion and nothing else; a test compares with the files.
+# Shipped parameter files that contain only a motion; a test compares them with the files.
 MOTIONS = ('aggressive', 'cruise', 'gnss_outage_flight', 'guided_flight', 'motion_1', 'motion_2',
            'motion_2_detuned', 'racetrack', 'recorded_flight', 'route_flight')
 INSTRUMENTS = ('imu_navigation_rlg', 'imu_tactical_dtg', 'imu_tactical_fog', 'imu_tactical_mems')
-# what launch itself makes of arguments, for every launch file
+# Arguments that launch itself adds to every launch file.
 OF_LAUNCH = ('launch-prefix', 'launch-prefix-filter', 'emulate_tty', 'sigterm_timeout',
              'sigkill_timeout')
 BOOLEANS = {'true': True, 'false': False}
@@ -23,8 +23,9 @@ class Argument:
     """
     An argument of a launch file.
 
-    kind: str, float or bool; of the last two '' is None, not given.  choices: its values, where
-    there are few.  default: None where one has to be given.
+    kind: str, float or bool; for the last two '' means None (not given). choices: allowed values,
+    if
+    there are few. default: None if the argument is required.
     """
 
     name: str
@@ -87,7 +88,7 @@ REPLAY = (
 
 
 def check_names(given, arguments):
-    """Raise ValueError for a name that none of the arguments has."""
+    """Raise ValueError for a name that is not one of the arguments."""
     known = {argument.name for argument in arguments}
     for name in given:
         if name not in known and name not in OF_LAUNCH:
@@ -97,9 +98,9 @@ def check_names(given, arguments):
 
 def read_values(texts, arguments):
     """
-    Return {name: value} of {name: text}; values that were not given are None or ''.
+    Convert {name: text} to {name: value}; values that were not given are None or ''.
 
-    Raises ValueError in one sentence that names argument, value and expectation.
+    Raises ValueError with a message that names argument, value and expectation.
     """
     return {argument.name: _value(argument, texts[argument.name]) for argument in arguments}
 
@@ -126,9 +127,9 @@ def _value(argument, text):
 
 def preset_file(argument, name, presets):
     """
-    Return the path of a preset given by its name, one of presets, or by its path.
+    Return the path of a preset, given by its name or by its path.
 
-    Raises ValueError, with the nearest name, or FileNotFoundError.
+    presets: the known names. Raises ValueError with the nearest name, or FileNotFoundError.
     """
     if name in presets or _is_path(name):
         return str(resources.parameter_file(name))
@@ -140,7 +141,8 @@ def parameter_files(text):
     """
     Return the paths of the parameter files in the text of params_file.
 
-    The text is one path where a file has that name, whatever commas and spaces it holds.
+    If a file with the complete text as its name exists, the text is one path, even with commas and
+    spaces.
     """
     names = [text] if Path(text).is_file() else re.split(r'[,\s]+', text)
     return [str(resources.parameter_file(name)) for name in names if name]

@@ -1,10 +1,11 @@
 """
-What a launch file starts: the processes, their parameter files, and what its arguments override.
+What a launch file starts: processes, their parameter files, and the overrides by its arguments.
 
-Parameters come from, a later one wins: the defaults of the nodes, the preset of the motion, that
-of the instrument, the parameter files in their order, the launch arguments.  As in every ROS the
-section of one node in any of the files wins over ``/**`` in all of them; the presets have nothing
-but ``/**``, and the launch arguments stand in a last file, by the full name of each node.
+Precedence of parameters, later ones override earlier ones: defaults of the nodes, preset of the
+motion, preset of the instrument, parameter files in their order, launch arguments. As in every ROS
+system the section of one node in any file overrides ``/**`` in all files. The presets therefore
+contain only ``/**``, and the launch arguments are in a last file under the full name of each
+node.
 """
 
 from dataclasses import dataclass
@@ -30,11 +31,13 @@ NO_TRANSFORMS = ('tf2_msgs is not installed (apt: ros-jazzy-tf2-msgs): the nodes
 @dataclass(frozen=True)
 class Plan:
     """
-    What is started, and with what.
+    The processes that are started, and their parameters.
 
-    processes: of ``graph``; files: paths of parameter files, in order; defaults: {parameter:
-    value} below these; overrides: {node name: {parameter: value}} above these; namespace: of the
-    nodes; said: sentences for the user.
+    processes: see ``graph``; files: paths of parameter files, in order; defaults: {parameter:
+    value}
+    below these; overrides: {node name: {parameter: value}} above these; namespace: of the nodes;
+    said:
+    messages for the user.
     """
 
     processes: tuple
@@ -46,29 +49,28 @@ class Plan:
 
     @property
     def overrides_text(self):
-        """Return the text of a parameter file with the overrides, '' where there are none."""
+        """Return the text of a parameter file with the overrides, '' without any."""
         sections = {_full(self.namespace, node): {'ros__parameters': values}
                     for node, values in self.overrides.items() if values}
         return yaml.dump(sections, Dumper=Dumper, sort_keys=False) if sections else ''
 
     @property
     def named(self):
-        """Return the names that processes are given: not that of one process with many nodes."""
+        """Return the node names to be set; a process with several nodes gets none."""
         return {process.name for process in self.processes} - {graph.ONE_PROCESS.name}
 
     @property
     def default_words(self):
-        """Return the ROS arguments with the defaults, which stand before the files."""
+        """Return the ROS arguments with the defaults, which precede the files."""
         return [word for name, value in self.defaults.items() for word in ('-p',
                                                                            f'{name}:={value}')]
 
 
 def simulation(texts, namespace=''):
     """
-    Return the Plan of the launch file simulation for {argument: text}.
+    Return the Plan of the launch file ``simulation`` for {argument: text}.
 
-    namespace: of the nodes, with those that the including files have given.  Raises ValueError or
-    OSError in one sentence.
+    namespace: of the nodes, including those of the including files. Raises ValueError or OSError.
     """
     value = arguments.read_values(texts, arguments.SIMULATION)
     if value['tf'] == 'aided' and not value['aided']:
@@ -94,16 +96,16 @@ def simulation(texts, namespace=''):
         said = (*said, LOSSES)
     processes = nodes
     if value['one_process']:
-        # the recorder first: it has to be there for the first sample
+        # The recorder is first, because it must exist before the first sample.
         processes = (*(p for p in added if p is graph.RECORDER), graph.ONE_PROCESS)
     return _checked(Plan(processes, files, defaults, overrides, namespace, said))
 
 
 def replay(texts, namespace=''):
     """
-    Return (Plan, graph.Replay, values) of the launch file replay for {argument: text}.
+    Return (Plan, graph.Replay, values) of the launch file ``replay`` for {argument: text}.
 
-    namespace: as for ``simulation``.  Raises ValueError or OSError in one sentence.
+    namespace: see ``simulation``. Raises ValueError or OSError.
     """
     value = arguments.read_values(texts, arguments.REPLAY)
     played = graph.REPLAYS[value['source']]
@@ -118,7 +120,7 @@ def replay(texts, namespace=''):
 
 
 def play_options(value):
-    """Return the options of ``ins_sim play`` for the values of the launch file replay."""
+    """Return the options of ``ins_sim play`` for the values of the launch file ``replay``."""
     words = [] if value['rate'] is None else ['--rate', repr(value['rate'])]
     if value['lock_step']:
         words += ['--lock-step', 'strapdown']
@@ -130,7 +132,7 @@ def play_options(value):
 
 
 def _transforms(source):
-    """Return the default of tf.source, where transforms can be published, and what is said."""
+    """Return the default of tf.source if transforms can be published, and a message otherwise."""
     if find_spec('tf2_msgs') is None:
         return {}, (NO_TRANSFORMS,)
     return {'tf.source': source}, ()
@@ -158,7 +160,7 @@ def _common(processes, value):
 
 
 def _pace(parameters, value, added):
-    """Add what the generator needs to know of the others."""
+    """Add the parameters by which the generator waits for the other nodes."""
     if value['use_sim_time']:
         parameters['publish_clock'] = True
     waits = value['lock_step']
@@ -176,7 +178,7 @@ def _full(namespace, node):
 
 
 def _read(files, defaults, namespace):
-    """Return {name: value} of the generator as ROS reads the files; refuse what is none."""
+    """Return {name: value} of the generator as ROS reads the files; refuse invalid files."""
     parameters = Parameters()
     for name, value in defaults.items():
         parameters.add_value('/**', name, value, 'the launch file')
@@ -187,7 +189,7 @@ def _read(files, defaults, namespace):
 
 
 def _recorded(value, read):
-    """Return the names of the topics that the recorder is to record, and that are published."""
+    """Return the names of the topics to be recorded, as far as they are published."""
     recorded = [topics.RUN, *topics.DATA, *(topics.AIDING if value['aided'] else ())]
     if read.get('motion.kind') == 'guided':
         recorded += topics.GUIDANCE
@@ -197,7 +199,7 @@ def _recorded(value, read):
 
 
 def _checked(plan):
-    """Return a Plan; refuse values that a node would refuse, before any of them starts."""
+    """Return a Plan; refuse values that a node would refuse, before any node starts."""
     for node, values in plan.overrides.items():
         known = flatten(ALL_NODES[node])
         for name, value in values.items():

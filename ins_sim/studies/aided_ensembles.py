@@ -1,4 +1,4 @@
-"""Ensembles of the whole aided chain: statistics of errors, NEES and NIS of blocks of runs."""
+"""Ensembles of the complete aided chain: statistics of errors, NEES and NIS over many runs."""
 
 from dataclasses import dataclass
 from typing import Callable, NamedTuple
@@ -22,7 +22,7 @@ from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 from .ensembles import ENOUGH_BLOCKS, EnsemblePlan, motion_of
 
-# Runs of a block, which share the truth and the ideal readings.
+# Number of runs in a block; they share the truth and the ideal readings.
 MOST_RUNS = 8
 SOURCES = (METER, GNSS)
 
@@ -32,14 +32,17 @@ class Consistency(NamedTuple):
     NEES and NIS over runs.
 
     nees: ChiSquareSums (m, core.aiding.consistency.BLOCKS) at the instants of the statistics;
-    fixes: {source: FixSums} of the instruments that aid.
+    fixes:
+    {source: FixSums} of the aiding instruments.
     """
 
     nees: ChiSquareSums
     fixes: dict
 
     def arrays(self):
-        """Return {name: array}: of nees_, and of each source its fixes and their _nis_."""
+        """
+        Return {name: array}: NEES (nees_*), and for each source its fixes and their NIS (*_nis_*).
+        """
         found = {f'nees_{name}': a for name, a in self.nees._asdict().items()}
         for source, one in self.fixes.items():
             found.update({f'{source}_t_ns': one.t_ns, f'{source}_taken': one.taken,
@@ -51,10 +54,11 @@ class Consistency(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class AidedEnsembleResult:
     """
-    What is kept of many runs of the aided chain.
+    Statistics of many runs of the aided chain.
 
-    errors: EnsembleResult of the aided solution, the attitude error being that of q_nb, each in
-    its own n; consistency: Consistency; refused: pairs of a run that does not count and why.
+    errors: EnsembleResult of the aided solution, whose attitude error is that of q_nb, each in its
+    own
+    n; consistency: Consistency; refused: pairs of an excluded run and the reason.
     """
 
     errors: EnsembleResult
@@ -62,7 +66,7 @@ class AidedEnsembleResult:
     refused: tuple
 
     def arrays(self):
-        """Return {name: array} of the whole result."""
+        """Return {name: array} of the complete result."""
         return {**self.errors.arrays(), **self.consistency.arrays(),
                 'refused': np.array([why for _, why in self.refused], dtype=str)}
 
@@ -80,7 +84,7 @@ def of_aided_arrays(arrays):
 
 
 def joined_aided(results):
-    """Return the AidedEnsembleResult of the runs of some, as ``core.ensemble.result.joined``."""
+    """Merge AidedEnsembleResults of different runs, as ``core.ensemble.result.joined`` does."""
     consistency, refused = None, ()
 
     def errors():
@@ -103,7 +107,7 @@ def _merged(a, b):
 
 @dataclass(frozen=True)
 class AidedPlan(EnsemblePlan):
-    """An EnsemblePlan of AidedSimulationSettings; its instants begin with the aided solution."""
+    """An EnsemblePlan of AidedSimulationSettings; its instants start with the aided solution."""
 
     @property
     def wanted_ns(self):
@@ -121,11 +125,11 @@ class AidedPlan(EnsemblePlan):
         return np.unique(first_ns + np.rint((last_ns - first_ns) * parts).astype(np.int64))
 
     def blocks(self):
-        """Return the blocks, ranges of runs, the same whatever computes them."""
+        """Return the blocks, ranges of runs; they do not depend on the executor."""
         return self.cut_into(min(MOST_RUNS, -(-self.runs // ENOUGH_BLOCKS)))
 
     def identity(self):
-        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        """Return the data that determine the numbers, for ``jobs.store.BlockStore``."""
         return fingerprint(self.settings.by_node(), study='monte-carlo --aided', runs=self.runs,
                            instants=self.instants)
 
@@ -155,7 +159,7 @@ class AidedWork:
 
 
 def _steered(settings, motion, run, wanted_ns):
-    """Return the AidedFlight of a run that steers the motion, in a list."""
+    """Return a list with the AidedFlight of a run that steers the motion."""
     chosen = settings.with_run(run)
     fly(chosen.simulation, motion, chosen)
     return simulate_aided_runs(settings, motion, [run], wanted_ns)
@@ -193,7 +197,7 @@ def result_of(settings, runs, wanted_ns, flights):
 
 
 def why_not(flight):
-    """Return why the run of an AidedFlight does not count, in a sentence, or ''."""
+    """Return the reason for which an AidedFlight is excluded, or ''."""
     if flight.refused:
         return flight.refused
     if flight.result.diverged:
@@ -206,9 +210,10 @@ def why_not(flight):
 
 def fly_aided_ensemble(plan, read_motion, executor, store=None, progress=None):
     """
-    Return the AidedEnsembleResult of an AidedPlan; arguments as of ``fly_ensemble``.
+    Run the ensemble of an AidedPlan and return the AidedEnsembleResult.
 
-    The result has the same bits whatever the executor.  Raises ValueError as the stages do.
+    The bits of the result do not depend on the executor. For the arguments see ``fly_ensemble``.
+    Raises ValueError as the stages do.
     """
     work = AidedWork(plan, read_motion)
     return joined_aided(of_aided_arrays(arrays) for _, arrays in run_blocks(
@@ -216,7 +221,7 @@ def fly_aided_ensemble(plan, read_motion, executor, store=None, progress=None):
 
 
 def check_aided_flight(plan, motion):
-    """Raise ValueError, before any worker does, where the settings name no run."""
+    """Raise ValueError, before any worker starts, if the settings do not define a run."""
     check_length(plan.settings.simulation.motion_generator, motion)
     check_start(plan.settings.simulation)
     make_instruments(plan.settings)

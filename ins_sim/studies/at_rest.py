@@ -1,4 +1,4 @@
-"""The record of an instrument that rests on a level table, straight from its settings."""
+"""The record of an instrument at rest on a level table, computed from its settings."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from ins_sim.settings.motion import MotionSettings
 
 
 def at_rest(settings, duration_s):
-    """Return SimulationSettings of the same instrument, level, at rest, every sample in time."""
+    """Return SimulationSettings of the same instrument, level, at rest, with even stamps."""
     generator = replace(settings.motion_generator, duration_s=duration_s, motion=MotionSettings(
         kind='static', psi_deg=0.0, theta_deg=0.0, gamma_deg=0.0))
     sensor = replace(settings.imu_sensor, source='motion', motion=generator.motion,
@@ -21,18 +21,18 @@ def at_rest(settings, duration_s):
 
 
 def resting_record(settings, duration_s):
-    """Return blocks of ImuSamples of the instrument at rest (see ``at_rest``), one by one."""
+    """Yield blocks of ImuSamples of the instrument at rest (see ``at_rest``)."""
     settings = at_rest(settings, duration_s)
     generator = settings.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     if settings.imu_sensor.gyro.model != 'ideal':
-        # The rotors of tuned gyros do not come to rest within the run.
+        # The rotors of tuned gyros do not settle within the run.
         return inertial.imu_blocks(settings, motion)
     return inertial.sensed_blocks(settings.imu_sensor, _ideal_readings(settings, motion))
 
 
 def _ideal_readings(settings, motion):
-    """Yield blocks of the ideal readings, all of which equal the second one but for the first."""
+    """Yield blocks of the ideal readings; all but the first equal the second."""
     generator = settings.motion_generator
     imu = MotionImu(settings.imu_sensor, motion, round(generator.start_s * 1e9))
     count = inertial.reading_count(generator, imu.dt_ns)

@@ -1,4 +1,6 @@
-"""Which motion of a bench shows the delays of gyro channels best, by their standard deviations."""
+"""
+Compare bench motions by the standard deviations of the gyro delays that they allow to estimate.
+"""
 
 from dataclasses import dataclass, replace
 import math
@@ -9,18 +11,19 @@ from ins_sim.core.calibration.foreseen import foresee, ForeseenDelays, planned_r
 from ins_sim.core.motion.factory import make_motion
 from ins_sim.settings.motion import Coning, MotionSettings, Rocking, TwoAxis
 
-# Psi and theta of a level rocking about north that is one about the body's diagonal: all three
-# axes turn alike.
+# Psi and theta of a level rocking about north for which the axis is the diagonal of the body: all
+# three axes rotate alike.
 DIAGONAL = {'psi_deg': math.degrees(math.atan(math.sqrt(0.5))), 'theta_deg': -45.0,
             'gamma_deg': 0.0}
 AMPLITUDES_DEG = (1.0, 5.0, 20.0)
-# Periods of a rocking over which its standard deviation is computed, to be scaled to the length.
+# Number of rocking periods over which the standard deviation is computed before it is scaled to
+# the length.
 PERIODS, SHORTEST_S = 4.0, 10.0
 
 
 @dataclass(frozen=True)
 class BenchCase:
-    """A motion on a bench: name in words, MotionSettings of its parts, each as long."""
+    """A bench motion: name, and MotionSettings of its parts, which have equal lengths."""
 
     name: str
     parts: tuple
@@ -31,7 +34,7 @@ class RockingSweep:
     """
     Rocking about the diagonal: frequencies (n,), Hz, and sigmas (n, amplitudes), s.
 
-    Not a number where the rocking is beyond the range of the gyros.
+    NaN if the rocking exceeds the range of the gyros.
     """
 
     frequencies_hz: np.ndarray
@@ -71,8 +74,9 @@ def foresee_case(case, settings, white, duration_s):
     """
     Return the ForeseenDelays of a BenchCase.
 
-    settings: SimulationSettings, of which the place, the rate and the start are used; white (3,):
-    angle random walk, rad/sqrt(s); duration_s: length of all parts together, s.
+    settings: SimulationSettings, of which position, rate and start are used; white: angle random
+    walk
+    (3,), rad/sqrt(s); duration_s: length of all parts together, s.
     """
     generator, part_s = settings.motion_generator, duration_s / len(case.parts)
     records = [planned_record(
@@ -83,7 +87,7 @@ def foresee_case(case, settings, white, duration_s):
 
 
 def sweep_rocking(settings, white, duration_s, frequencies_hz):
-    """Return the RockingSweep of a length in s; settings and white as of ``foresee_case``."""
+    """Return the RockingSweep for a length in s; settings and white: see ``foresee_case``."""
     sigmas = np.full((len(frequencies_hz), len(AMPLITUDES_DEG)), np.nan)
     ranges = [r for r in settings.imu_sensor.gyro.errors.saturation_deg_s if r]
     most_deg_s = math.sqrt(3.0) * min(ranges, default=math.inf)
@@ -100,11 +104,14 @@ def sweep_rocking(settings, white, duration_s, frequencies_hz):
 
 def direction_map(single_sigma, azimuth_deg, elevation_deg):
     """
-    Return the largest sigma of the three delays by the direction of the axis of a rocking.
+    Return the largest sigma of the three delays for each direction of the rocking axis.
 
-    single_sigma: sigma of a channel that is rocked about its own axis, s; azimuth_deg (n,): of the
-    axis in the body, from forward to the left; elevation_deg (m,): upwards; result (m, n), s.
-    A channel turns by the part of the rocking along its axis, and sigma is inverse to it.
+    single_sigma: sigma of a channel that is rocked about its own axis, s; azimuth_deg (n,):
+    direction
+    of the axis in the body, from forward to the left; elevation_deg (m,): upwards. The result is
+    (m, n), s. A channel rotates by the component of the rocking along its axis, and sigma is
+    inversely
+    proportional to it.
     """
     azimuth, elevation = np.radians(azimuth_deg), np.radians(elevation_deg)[:, None]
     level = np.cos(elevation)

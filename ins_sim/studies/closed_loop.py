@@ -1,9 +1,9 @@
 """
-The closed loop of the velocity meter's paper, on the whole chain: which filters disturb it.
+Study of the closed loop of Ivanov (2015) on the complete chain: which filters disturb it.
 
-Motion, IMU, meter, navigator and autopilot are those of ``simulate``; what each case is expected
-to give is what the specification's own simulation gave, in which the command was held over a
-control period where ours runs linearly.
+Motion, IMU, meter, navigator and autopilot are those of ``simulate``. The expected results come
+from an independent simulation, in which the command was held over a control period; here it
+changes linearly.
 """
 
 from dataclasses import dataclass, replace
@@ -18,9 +18,9 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.guided_flight import fly
 from .oscillations import frequency, growth_rate, half_range
 
-# The growth of flights is looked at with these parts of the linear limits of k_z.
+# Growth of flights is evaluated at these fractions of the linear limits of k_z.
 NEAR = (0.98, 1.02)
-# Histories are kept at this step.
+# Histories are stored at this step.
 KEPT_S = 0.1
 QUIET_DEG = 0.05
 
@@ -28,10 +28,11 @@ QUIET_DEG = 0.05
 @dataclass(frozen=True)
 class Published:
     """
-    What a case gives: None is not stated.
+    Expected results of a case; None if not stated.
 
     beta_deg: half the range of the sideslip over the last 30 %, 0 for less than QUIET_DEG;
-    frequency: rad/s; swing_m: half the range of z; end_m: z at the end.
+    frequency:
+    rad/s; swing_m: half the range of z; end_m: z at the end.
     """
 
     beta_deg: float
@@ -45,9 +46,9 @@ class LoopCase:
     """
     A flight of the study.
 
-    k_z: lateral scale error of the meter; filter; cycles: N; gain: K_v, 1/s, where windows slide,
-    else the filter's own gain; slides: whether a window ends every cycle; offset_m: z at the
-    start; engage_s: when the autopilot is engaged.
+    k_z: lateral scale factor error of the meter; cycles: N; gain: K_v, 1/s, for sliding windows,
+    otherwise the gain of the filter; slides: whether a window ends every cycle; offset_m: z at the
+    start; engage_s: time at which the autopilot is engaged.
     """
 
     k_z: float
@@ -62,7 +63,7 @@ class LoopCase:
 
     @property
     def label(self):
-        """Return filter, N and gain."""
+        """Return a label with filter, N and gain."""
         if self.filter in ('window_kf', 'eskf'):
             return f'{self.filter}, N {self.cycles}'
         name = 'sliding' if self.slides else self.filter
@@ -120,7 +121,7 @@ TABLE = (
     _paper(0.30, 1000, 1.0, QUIET, offset_m=10.0),
     LoopCase(0.15, 'window_kf', 1000, published=QUIET),
     LoopCase(0.15, 'eskf', 1000, published=QUIET))
-# Parameters beside those of the study, by the name of what they add.
+# Parameters in addition to those of the study, by the name of what they add.
 CONDITIONS = {
     'perfect meter': (),
     'noise of the meter': (
@@ -130,19 +131,21 @@ CONDITIONS = {
     'gusts 0.5 m/s': ('motion.route.gust_m_s:=0.5',),
     'signals of the meter': ('velocity_meter:mode:=signal',
                              'aided_navigator:meter_model.bias_x_m_s:=-16.0')}
-# What is flown under all CONDITIONS.
+# Cases that are flown under all CONDITIONS.
 VARIED = (_slid(0.15, 100, 1.0, None), _slid(0.15, 100, 0.2, None),
           _paper(0.15, 1000, 0.344, None), LoopCase(0.15, 'eskf', 1000))
-# Their limits are looked for on the whole chain.
+# Cases whose limits are determined on the complete chain.
 AT_THE_LIMIT = (_slid(0.0, 10, 1.0, None), _slid(0.0, 100, 1.0, None),
                 _paper(0.0, 100, 0.344, None))
 
 
 def case_settings(settings, case):
     """
-    Return the AidedSimulationSettings of a LoopCase; settings: all that is not of the case.
+    Return the AidedSimulationSettings of a LoopCase.
 
-    k_z is that of an elliptical beam, which the meter has in both modes.
+    settings: all settings that do not depend on the case. k_z is realised by an elliptical beam,
+    which
+    the meter supports in both modes.
     """
     base, meter, navigator = settings.simulation, settings.velocity_meter, settings.aided_navigator
     generator = base.motion_generator
@@ -163,7 +166,7 @@ def case_settings(settings, case):
 
 
 def fly_case(settings, case):
-    """Return the LoopFlight of a LoopCase; ValueError as the stages."""
+    """Fly a LoopCase and return the LoopFlight; raises ValueError as the stages do."""
     settings = case_settings(settings, case)
     generator = settings.simulation.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -176,7 +179,7 @@ def fly_case(settings, case):
 
 def lateral_flight(settings, loop, case):
     """
-    Return the LoopFlight of the lateral channel alone of a LoopCase; None for a Kalman filter.
+    Return the LoopFlight of the lateral channel alone for a LoopCase; None for a Kalman filter.
 
     settings: AidedSimulationSettings; loop: their LateralLoop.
     """
@@ -194,8 +197,9 @@ def study_loop(settings):
     """
     Return the LateralLoop of AidedSimulationSettings.
 
-    Raises ValueError where the study can say nothing of it: an autopilot that does not lead back
-    to the leg, no command allowed, control instants that are not the meter's cycles.
+    Raises ValueError for loops that the study does not cover: an autopilot that does not return to
+    the
+    leg, a command limit of zero, or a control period that differs from the meter's cycle.
     """
     generator = settings.simulation.motion_generator
     loop, rate_hz = lateral_loop(generator), settings.velocity_meter.rate_hz
@@ -212,7 +216,7 @@ def study_loop(settings):
 
 
 def aiding_of(case, rate_hz):
-    """Return the Aiding of a LoopCase; rate_hz: of the cycles."""
+    """Return the Aiding of a LoopCase; rate_hz: rate of the cycles."""
     step = 1 if case.slides else case.cycles
     gain = case.gain / rate_hz if case.slides else case.gain
     return Aiding(case.filter, case.cycles, step, gain)
@@ -224,7 +228,7 @@ def linear_limits(loop):
 
 
 def cases_near(linear):
-    """Return the LoopCases, two of each of AT_THE_LIMIT, whose growths enclose the limit."""
+    """Return LoopCases, two for each of AT_THE_LIMIT, whose growth rates bracket the limit."""
     return [replace(case, k_z=part * limit.k_z, offset_m=1.0)
             for case, limit in zip(AT_THE_LIMIT, linear) for part in NEAR]
 
@@ -237,6 +241,6 @@ def flown_limits(linear, growths):
 
 
 def growth_of_flight(settings, case):
-    """Return the growth of beta, 1/s, of a LoopCase, a flight in which nothing saturates."""
+    """Return the growth rate of beta, 1/s, in a flight of a LoopCase without saturation."""
     flight = fly_case(settings, case)
     return growth_rate(flight.t_s, flight.beta)

@@ -1,4 +1,4 @@
-"""What an ensemble says of the errors: sigma, rms, percentiles, circles, and the worst run."""
+"""Errors of an ensemble: sigma, rms, percentiles, circles, and the worst run."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,14 @@ CEP_PARTS = {50: 0.5, 95: 0.95}
 @dataclass(frozen=True, eq=False)
 class EnsembleErrors:
     """
-    The errors of an EnsembleResult at its m instants, solution less truth, East, North, Up.
+    The errors of an EnsembleResult at its m instants, solution minus truth, East, North, Up.
 
-    t_ns (m,); count (m,): of runs that have not diverged; mean, sigma, rms: {name of a quantity:
-    (m, 3)}, attitude rad, velocity m/s, position m; percentiles: (p, m, 3) each, for PERCENTS;
-    horizontal_rms (m,) and horizontal_percentiles (p, m): of the size of the horizontal part; cep:
-    {percent: (m,)} radii about the true place inside which that part of the runs is, by mean and
+    t_ns (m,); count (m,): number of runs that have not diverged; mean, sigma, rms: {name of a
+    quantity: (m, 3)}, attitude rad, velocity m/s, position m; percentiles: (p, m, 3) each, for
+    PERCENTS; horizontal_rms (m,) and horizontal_percentiles (p, m): of the horizontal magnitude;
+    cep:
+    {percent: (m,)} radii about the true position that contain this fraction of the runs, from mean
+    and
     covariance, m.
     """
 
@@ -56,12 +58,12 @@ def ensemble_errors(result: EnsembleResult) -> EnsembleErrors:
 
 
 def ensemble_digest(result) -> str:
-    """Return the SHA-256 of statistics and ends, the same whatever computed them."""
+    """Return the SHA-256 of statistics and final errors; it does not depend on the executor."""
     return array_digest(result.arrays())
 
 
 def worst_run(result):
-    """Return number and horizontal error, m, of the run that ends farthest off, or None."""
+    """Return number and horizontal error, m, of the run with the largest final error, or None."""
     ends = horizontal_of(result.final_errors)[:, 2]
     if not np.isfinite(ends).any():
         return None

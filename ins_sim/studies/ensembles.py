@@ -14,21 +14,21 @@ from ins_sim.jobs.blocks import run_blocks
 from ins_sim.jobs.fingerprint import fingerprint
 
 MOST_RUNS, MOST_INSTANTS, INSTANTS = 10 ** 7, 10 ** 4, 61
-# Of the parameter run.
+# Upper limit of the parameter run.
 LAST_RUN = 2 ** 31 - 1
-# Runs of a block: those side by side share truth and ideal readings, and a study shall have
-# blocks enough to be shared out evenly, so that little is lost with a worker.
+# Number of runs in a block. Runs side by side share truth and ideal readings; a study should have
+# enough blocks to be distributed evenly and to lose little with a worker.
 MOST_GROUPS, ENOUGH_BLOCKS = 16, 16
 
 
 @dataclass(frozen=True)
 class EnsemblePlan:
     """
-    What is flown: runs of SimulationSettings, and the instants of the statistics.
+    Definition of an ensemble: runs of SimulationSettings, and the instants of the statistics.
 
-    settings: their run is the first one; runs: how many; instants: how many, evenly from the
-    start of the strapdown to the end, both among them.  Raises ValueError where there is nothing
-    to fly.
+    settings: their run is the first one; runs: their number; instants: number of instants, evenly
+    from
+    the start of the strapdown to the end, both included. Raises ValueError for invalid numbers.
     """
 
     settings: Any
@@ -59,21 +59,20 @@ class EnsemblePlan:
         """
         Return the blocks, ranges of runs.
 
-        They are the same whatever computes them, as the last bits of the statistics depend on
-        them.
+        They do not depend on the executor, because the last bits of the statistics depend on them.
         """
         unit = LANES if in_lanes(self.settings) else 1
         size = unit * min(MOST_GROUPS, -(-self.runs // (unit * ENOUGH_BLOCKS)))
         return self.cut_into(size)
 
     def cut_into(self, size):
-        """Return the runs as ranges of so many."""
+        """Return the runs as ranges of at most ``size`` runs."""
         first = self.settings.run
         return [range(first + k, first + min(k + size, self.runs))
                 for k in range(0, self.runs, size)]
 
     def identity(self):
-        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        """Return the data that determine the numbers, for ``jobs.store.BlockStore``."""
         settings = self.settings
         return fingerprint({'motion_generator': settings.motion_generator,
                             'imu_sensor': settings.imu_sensor, 'strapdown': settings.strapdown},
@@ -100,7 +99,7 @@ class EnsembleWork:
 
 @lru_cache(1)
 def motion_of(read, generator):
-    """Return the motion of settings; what is to be said of a recording the caller has said."""
+    """Return the motion of settings; warnings about a recording are suppressed (already shown)."""
     with warnings.catch_warnings():
         warnings.simplefilter('ignore')
         return read(generator)
@@ -108,10 +107,10 @@ def motion_of(read, generator):
 
 def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
     """
-    Return the EnsembleResult of an EnsemblePlan.
+    Run the ensemble of an EnsemblePlan and return the EnsembleResult.
 
-    read_motion: as of EnsembleWork; executor, store, progress: as of ``run_blocks``.  The result
-    has the same bits whatever the executor.  Raises ValueError as the stages do.
+    The bits of the result do not depend on the executor. read_motion: see EnsembleWork; executor,
+    store, progress: see ``run_blocks``. Raises ValueError as the stages do.
     """
     work = EnsembleWork(plan, read_motion)
     return joined(of_arrays(arrays) for _, arrays in run_blocks(

@@ -1,20 +1,20 @@
-"""The circle about the true place inside which a part of the runs ends: CEP50, CEP95."""
+"""Radius of the circle about the true position that contains a part of the runs: CEP50, CEP95."""
 
 import math
 
 import numpy as np
 from scipy.special import ndtr
 
-# Nodes of the quadrature, and the sigmas that count.
+# Number of nodes of the quadrature, and the range in sigmas.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(96)
 REACH = 9.0
-# Halvings of the interval in which a radius lies.
+# Number of bisections for a radius.
 HALVINGS = 50
 
 
 def error_circle(mean, covariance, part):
     """
-    Return the radius of the circle about zero inside which a part of normal errors lies.
+    Return the radius of the circle about zero that contains a part of normally distributed errors.
 
     Parameters
     ----------
@@ -28,15 +28,17 @@ def error_circle(mean, covariance, part):
     Returns
     -------
     float or (...) array
-        In m; NaN where mean or covariance is not finite.
+        In m; NaN if mean or covariance is not finite.
 
     Notes
     -----
-    The covariance is turned to its axes, and the probability of the circle is integrated across
-    the shorter one (Groves, "Principles of GNSS, Inertial, and Multisensor Integrated Navigation
-    Systems", 2nd ed., 2013, section B.2.4, has the case of equal sigmas). For zero mean and axis
+    The covariance is rotated to its principal axes, and the probability of the circle is
+    integrated
+    across the shorter one (Groves, "Principles of GNSS, Inertial, and Multisensor Integrated
+    Navigation Systems", 2nd ed., 2013, section B.2.4, covers equal sigmas). For zero mean and axis
     ratios 1, 0.5, 0.2 the radii are 1.17741, 0.87042, 0.70585 (CEP50) and 2.44775, 2.03586,
-    1.97041 (CEP95) of the longer sigma.
+    1.97041
+    (CEP95) of the longer sigma.
     """
     shape = np.shape(mean)[:-1]
     mean = np.asarray(mean, dtype=float).reshape(-1, 2)
@@ -53,7 +55,7 @@ def _radii(mean, covariance, part):
     across, along = np.abs(np.einsum('nij,ni->nj', axes, mean)).T
     centre, certain = np.hypot(along, across), large == 0.0
     large = np.where(certain, 1.0, large)
-    # an axis of no width at all is one of very little
+    # An axis of zero width is replaced by one of very small width.
     small = np.maximum(small, 1e-12 * large)
     low, high = np.zeros(len(mean)), centre + REACH * large
     for _ in range(HALVINGS):
@@ -64,9 +66,9 @@ def _radii(mean, covariance, part):
 
 
 def _inside(radius, along, across, large, small):
-    """Return the probability of circles; along, across: the mean on the axes of the errors."""
+    """Return the probability of circles; along, across: the mean in the axes of the errors."""
     low, high = (np.clip(across + side * REACH * small, -radius, radius) for side in (-1.0, 1.0))
-    # nodes crowd at both ends, where the chord is short
+    # The nodes are dense at both ends, where the chord is short.
     phase = 0.5 * math.pi * _NODES
     half = 0.5 * (high - low)
     y = (0.5 * (high + low))[:, None] + half[:, None] * np.sin(phase)

@@ -1,4 +1,4 @@
-"""All filters over the same flights and seeds: how far each is off, and whether it knows."""
+"""Compare all filters on the same flights and seeds: their errors and their consistency."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -24,7 +24,7 @@ MOST_FLIGHTS = 100000
 
 @dataclass(frozen=True)
 class FilterCase:
-    """A filter, and the cycles that its velocity meter averages over."""
+    """A filter, and the number of cycles over which its velocity meter averages."""
 
     filter: str
     cycles: int
@@ -35,11 +35,13 @@ class FilterFlight:
     """
     One filter on one flight, at instants t_s (n,) since the start.
 
-    error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN:
-    none), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
-    and its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
-    instants of the fixes of the velocity meter that were weighed; refused: how many were not
-    taken, and the last reason.
+    error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN if
+    unknown), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
+    and
+    its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
+    instants of
+    the processed fixes of the velocity meter; refused: number of rejected fixes, and the last
+    reason.
     """
 
     t_s: np.ndarray
@@ -62,7 +64,7 @@ class FilterFlight:
 
 
 def run_settings(settings, run):
-    """Return AidedSimulationSettings of a run of the study: its seeds are those given plus run."""
+    """Return AidedSimulationSettings of a run of the study: the given seeds plus run."""
     base = settings.simulation
     generator, sensor = base.motion_generator, base.imu_sensor
     route = generator.motion.route
@@ -77,11 +79,11 @@ def run_settings(settings, run):
 
 def fly_filters(settings, cases, run):
     """
-    Return the FilterFlight of each FilterCase on one flight: AidedSimulationSettings, its seeds
-    plus run.
+    Return the FilterFlight of each FilterCase on one flight.
 
-    The readings of the IMU, and the fixes of each length of window, are made once.  Raises
-    ValueError as the stages do.
+    settings: AidedSimulationSettings; run: is added to their seeds. The readings of the IMU, and
+    the
+    fixes for each length of window, are computed once. Raises ValueError as the stages do.
     """
     settings = run_settings(settings, run)
     generator = settings.simulation.motion_generator
@@ -98,8 +100,9 @@ def cases_of(filters=None, cycles=(1000,)):
     """
     Return the FilterCases of a comparison.
 
-    filters: names, None: all; cycles: of a window, the first for all filters, the others for the
-    eskf alone.
+    filters: names, None for all; cycles: of a window, the first for all filters, the others only
+    for
+    the eskf.
     """
     for n in cycles:
         if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 100000:
@@ -117,10 +120,11 @@ def cases_of(filters=None, cycles=(1000,)):
 @dataclass(frozen=True)
 class FilterPlan:
     """
-    What is flown: AidedSimulationSettings, how many flights, and the FilterCases on each.
+    Definition of a comparison: AidedSimulationSettings, number of flights, and FilterCases on
+    each.
 
-    ``plan(k)`` is the work on flight k, of ``jobs.blocks.run_blocks``.  Raises ValueError where
-    there is nothing to fly.
+    ``plan(k)`` computes flight k for ``jobs.blocks.run_blocks``. Raises ValueError for invalid
+    numbers.
     """
 
     settings: AidedSimulationSettings
@@ -135,7 +139,7 @@ class FilterPlan:
                              f'{MOST_FLIGHTS}')
 
     def __call__(self, run):
-        """Return the arrays of one flight, of ``flights_of``."""
+        """Return the arrays of one flight, see ``flights_of``."""
         found = {}
         for k, flight in enumerate(fly_filters(self.settings, self.cases, run)):
             found.update({f'{f.name}_{k}': np.asarray(getattr(flight, f.name))
@@ -143,7 +147,7 @@ class FilterPlan:
         return found
 
     def identity(self):
-        """Return what decides the numbers, for ``jobs.store.BlockStore``."""
+        """Return the data that determine the numbers, for ``jobs.store.BlockStore``."""
         return fingerprint(self.settings.by_node(), study='compare-filters',
                            runs=self.flights, cases=[f'{c.filter}, N {c.cycles}'
                                                      for c in self.cases])
@@ -151,7 +155,7 @@ class FilterPlan:
 
 @dataclass(frozen=True, eq=False)
 class ComparedFilters:
-    """What was flown: of each case the FilterFlights, one a flight, and the digest of all."""
+    """Result: for each case the FilterFlights, one for each flight, and the digest of all."""
 
     cases: tuple
     flown: list
@@ -160,9 +164,9 @@ class ComparedFilters:
 
 def compare(plan, executor, store=None, progress=None):
     """
-    Return the ComparedFilters of a FilterPlan.
+    Run a FilterPlan and return the ComparedFilters.
 
-    executor, store, progress: as of ``run_blocks``.  The same bits whatever the executor.
+    executor, store, progress: see ``run_blocks``. The bits do not depend on the executor.
     """
     flights, arrays = [], {}
     for k, found in run_blocks(plan, range(plan.flights), executor, store, progress):
@@ -180,7 +184,7 @@ def flights_of(arrays):
 
 
 def _with_cycles(settings, cycles):
-    """Return AidedSimulationSettings with windows of the velocity meter of that many cycles."""
+    """Return AidedSimulationSettings with velocity meter windows of the given number of cycles."""
     window = replace(settings.velocity_meter.window, cycles=cycles)
     return replace(settings, velocity_meter=replace(settings.velocity_meter, window=window),
                    aided_navigator=replace(settings.aided_navigator, window=window))

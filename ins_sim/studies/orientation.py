@@ -1,4 +1,4 @@
-"""One run navigated with each of the orientation algorithms, side by side."""
+"""One run navigated with each of the orientation algorithms."""
 
 from dataclasses import dataclass, replace
 import math
@@ -19,7 +19,7 @@ TIMED_STEPS = 5000
 @dataclass(frozen=True)
 class OrientationResult:
     """
-    What an algorithm makes of a run.
+    Result of one algorithm.
 
     drift (3,): of the attitude, rad/s; position (3,): largest errors East, North, Up, m; apart:
     largest angle between its attitude and that of the quaternion, rad; step_s: CPU time of a step.
@@ -36,9 +36,19 @@ def compare_orientations(settings, motion, progress=None):
     """
     Return an OrientationResult for each of orientation.KINDS, the quaternion first.
 
-    settings: SimulationSettings, whose strapdown.orientation does not matter; motion: that of
-    settings.motion_generator; progress: called with the number of algorithms done.  Raises
-    ValueError where the settings name no run of finite length.
+    Parameters
+    ----------
+    settings : SimulationSettings
+        strapdown.orientation is ignored.
+    motion : Motion
+        The motion of settings.motion_generator.
+    progress : callable, optional
+        Called with the number of algorithms done.
+
+    Raises
+    ------
+    ValueError
+        If the settings do not define a run of finite length.
     """
     generator = settings.motion_generator
     check_length(generator, motion)

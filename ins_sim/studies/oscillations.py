@@ -1,10 +1,10 @@
-"""What is measured of an oscillation that is sampled."""
+"""Amplitude, frequency and growth rate of a sampled oscillation."""
 
 import math
 
 import numpy as np
 
-# The part of a history over which its range is taken.
+# Fraction at the end of a history over which its range is taken.
 LAST = 0.3
 FEWEST = 3
 
@@ -17,9 +17,9 @@ def half_range(values, part=LAST):
 
 def frequency(t_s, values):
     """
-    Return the frequency, rad/s, between rising zeros in the last half of a history (n,).
+    Return the frequency, rad/s, from rising zero crossings in the last half of a history (n,).
 
-    None where there are fewer than FEWEST.
+    Return None if there are fewer than FEWEST.
     """
     half = len(t_s) // 2
     t, x = t_s[half:], values[half:] - values[half:].mean()
@@ -32,9 +32,9 @@ def frequency(t_s, values):
 
 def growth_rate(t_s, values):
     """
-    Return the growth rate, 1/s, of an oscillation: of its peaks in the last 60 %.
+    Return the growth rate of an oscillation, 1/s, from its peaks in the last 60 %.
 
-    Raises ValueError where there are fewer than FEWEST.
+    Raises ValueError if there are fewer than FEWEST.
     """
     first = round(0.4 * len(t_s))
     t, size = t_s[first:], np.abs(values[first:])
@@ -42,7 +42,7 @@ def growth_rate(t_s, values):
     k = 1 + np.flatnonzero((inside > size[:-2]) & (inside >= size[2:]))
     if len(k) < FEWEST:
         raise ValueError(f'an oscillation with {len(k)} peaks; expected at least {FEWEST}')
-    # the top of the parabola through a peak and its neighbours
+    # Maximum of the parabola through a peak and its neighbours.
     low, top, high = size[k - 1], size[k], size[k + 1]
     peaks = top + (high - low) ** 2 / (8.0 * (2.0 * top - low - high))
     return float(np.polyfit(t[k], np.log(peaks), 1)[0])

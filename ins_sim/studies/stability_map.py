@@ -1,4 +1,4 @@
-"""Where the closed loop is stable over k_z and the gain: by the linear theory, and by flights."""
+"""Stability of the closed loop over k_z and the gain: by the linear theory, and by flights."""
 
 from dataclasses import dataclass
 
@@ -8,10 +8,10 @@ from ins_sim.core.guidance.error_loop import fly_reduced, ReducedCases
 from ins_sim.core.guidance.linear_loop import Aiding, limits
 
 MOST_K_Z = 1.0
-# k_z is looked for among so many values, and then between two of them
+# Number of values of k_z in the first search, and in the second one between two of them.
 STEPS, STAGES = 32, 2
-# A flight of which the last quarter swings by this part of the one before does not decay, unless
-# it is as quiet as this, rad.
+# A flight does not decay if the range in its last quarter exceeds this fraction of that in the
+# quarter before, unless it is smaller than this, rad.
 DECAYS, QUIET_RAD = 0.99, 1e-7
 STARTS_M = (1.0, 100.0)
 
@@ -21,8 +21,8 @@ class MapPanel:
     """
     A filter of the map.
 
-    kind: of ``linear_loop.Aiding``; cycles: N; slides; least, most: range of the gains, K_v in
-    1/s where windows slide.
+    kind: see ``linear_loop.Aiding``; cycles: N; least, most: range of the gains, K_v in 1/s for
+    sliding windows.
     """
 
     kind: str
@@ -33,15 +33,15 @@ class MapPanel:
 
     @property
     def label(self):
-        """Return filter and N."""
+        """Return a label with filter and N."""
         return f'{"sliding conventional" if self.slides else self.kind}, N {self.cycles}'
 
     def gains(self, count):
-        """Return count gains of the range (count,)."""
+        """Return gains over the range (count,)."""
         return np.geomspace(self.least, self.most, count)
 
     def aiding(self, gain, period_s):
-        """Return the Aiding of a gain."""
+        """Return the Aiding for a gain."""
         step = 1 if self.slides else self.cycles
         return Aiding(self.kind, self.cycles, step, gain * period_s if self.slides else gain)
 
@@ -56,8 +56,9 @@ class MapCurves:
     """
     Limits of k_z over the gains (n,) of a MapPanel.
 
-    linear (n,): by the linear theory; flown {z at the start, m: (n,)}: of reduced flights; both at
-    most MOST_K_Z, and 0 where the loop is unstable without any error.
+    linear (n,): by the linear theory; flown {z at the start, m: (n,)}: by reduced flights. Both
+    are at
+    most MOST_K_Z, and 0 if the loop is unstable without any error.
     """
 
     gains: np.ndarray
@@ -66,7 +67,7 @@ class MapCurves:
 
 
 def map_curves(loop, panel, count, most_rad):
-    """Return the MapCurves of a LateralLoop whose command is limited to +-most_rad."""
+    """Return the MapCurves of a LateralLoop with a command limit of +-most_rad."""
     gains = panel.gains(count)
     linear = [_linear(limits(loop, panel.aiding(gain, loop.period_s))) for gain in gains.tolist()]
     return MapCurves(gains, np.array(linear), {
@@ -81,14 +82,14 @@ def _linear(found):
 
 def flown_limits(loop, panel, gains, start_m, most_rad):
     """
-    Return the least k_z (n,) at which reduced flights from an offset do not calm down.
+    Return the smallest k_z (n,) for which reduced flights from an offset do not decay.
 
-    0: none does; MOST_K_Z: all do.
+    0: none decays; MOST_K_Z: all decay.
     """
     low, width = np.zeros(len(gains)), MOST_K_Z
     for stage in range(STAGES):
         width /= STEPS
-        # the first value of the second stage is known to calm down, the last not to
+        # The flight at the first value of the second search is known to decay, at the last not.
         k_z = low + width * np.arange(STEPS + 1)[:, None]
         restless = _restless(loop, panel, np.tile(gains, STEPS + 1), k_z.ravel(), start_m,
                              most_rad).reshape(k_z.shape)
@@ -100,10 +101,10 @@ def flown_limits(loop, panel, gains, start_m, most_rad):
 
 
 def _restless(loop, panel, gains, k_z, start_m, most_rad):
-    """Return whether flights do not calm down (n,)."""
+    """Return whether flights do not decay (n,)."""
     aiding = panel.aiding(1.0, loop.period_s)
     cases = ReducedCases(gains * aiding.gain, k_z, np.full(len(gains), start_m))
-    # two periods of the slowest mode in a quarter
+    # Two periods of the slowest mode in a quarter of the flight.
     duration_s = 300.0 + 30.0 * aiding.cycles * loop.period_s
     beta = fly_reduced(loop, aiding, cases, duration_s, most_rad).beta
     quarter = len(beta) // 4

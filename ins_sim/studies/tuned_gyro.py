@@ -1,11 +1,11 @@
 """
-The study of Sapegin, Romanov, Bugaiov (2016): error of the roll due to the lag of tuned gyros.
+The study of Sapegin, Romanov and Bugaiov (2016): error of the roll due to the lag of tuned gyros.
 
-The base rocks in roll by 10 deg sin(w t). Two gyros sense its rates, and their readings are
+The base rocks in roll by 10 deg sin(w t). Two gyros measure its rates, and their readings are
 integrated by Poisson's equation and by that of the Euler vector; gyros and equations use RK4 with
 the same step. The amplitude is half the peak-to-peak value of the computed roll over the last
-whole period (docs/theory/tuned_gyro.md, The study). The conditions and printed
-values of the paper's tables are in config/dtg_study_frequency.yaml and dtg_study_speed.yaml.
+whole period (docs/theory/tuned_gyro.md). The conditions and printed values of the paper's tables
+are in config/dtg_study_frequency.yaml and dtg_study_speed.yaml.
 """
 
 from dataclasses import dataclass, replace
@@ -32,7 +32,7 @@ class Cell:
     One cell of a table.
 
     value: rad/s of the base or Hz of the rotor; poisson_deg, euler_vector_deg: amplitude by each
-    algorithm; paper_deg: what the paper prints, or None.
+    algorithm; paper_deg: printed value, or None.
     """
 
     value: float
@@ -42,7 +42,7 @@ class Cell:
 
 
 def half_peak_to_peak(y):
-    """Return half of the range of samples, each vertex from the parabola through 3 points."""
+    """Return half the range of samples, with each extremum from the parabola through 3 points."""
     def highest(v):
         k = min(max(range(len(v)), key=v.__getitem__), len(v) - 2) or 1
         slope, bend = 0.5 * (v[k + 1] - v[k - 1]), v[k + 1] - 2.0 * v[k] + v[k - 1]
@@ -52,9 +52,9 @@ def half_peak_to_peak(y):
 
 def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
     """
-    Return the amplitudes of roll, deg, recovered by Poisson and by the Euler vector.
+    Return the amplitudes of roll, deg, computed by Poisson's equation and by the Euler vector.
 
-    pair: GyroPair at rest, of the step and method; amplitude_deg, rate_rad_s: of the base.  The
+    pair: GyroPair at rest, with its step and method; amplitude_deg, rate_rad_s: of the base. The
     record is 20 s or three periods, whichever is longer.
     """
     period = 2.0 * math.pi / rate_rad_s
@@ -72,10 +72,11 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
 
 def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages, x_1, x_2, out):
     """
-    Take steps of a rocking base; out: roll by Poisson and by the Euler vector from step ``first``.
+    Advance a rocking base; out: roll by Poisson and by the Euler vector from step ``first`` on.
 
-    top: amplitude of the rate, rad/s, of angular frequency rate_rad_s; turned: arrangement;
-    gains_1 to x_2: constants and states of both rotors (``rotor_step``).
+    top: amplitude of the rate, rad/s, with the angular frequency rate_rad_s; turned: arrangement
+    of
+    the gyros; gains_1 to x_2: constants and states of both rotors (``rotor_step``).
     """
     c, theta, u_end = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0), (top, 0.0, 0.0)
     for k in range(steps):
@@ -94,7 +95,7 @@ def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages
 
 
 def _rates(turned, gains_1, gains_2, stages, x_1, x_2, inputs_1, inputs_2):
-    """Return the body rates at the stages of a step; without stages the mean, four times."""
+    """Return the body rates at the stages of a step; without stages four times the mean."""
     if stages is None:
         _, (a, b) = rotor_step(gains_1, x_1, inputs_1)
         _, (c, d) = rotor_step(gains_2, x_2, inputs_2)
@@ -114,15 +115,15 @@ def gyro_at(settings, speed_hz=None):
 
 
 def at_speed(parameters, speed_hz):
-    """Return the parameters with read-out and hinges made for another speed."""
+    """Return the parameters with read-out and hinges designed for another speed."""
     return replace(parameters, speed_hz=speed_hz, hinge_stiffness_n_m_rad=None)
 
 
 def study_table(settings, progress=None):
     """
-    Return a Cell for each of the values of TunedGyroStudySettings, with what the paper prints.
+    Return a Cell for each value of TunedGyroStudySettings, with the printed one.
 
-    progress: function called after each cell.  Raises ValueError for an unstable gyro.
+    progress: called after each cell. Raises ValueError for an unstable gyro.
     """
     paper = settings.paper_deg or (None,) * len(settings.values)
     return _cells(settings, settings.values, paper, progress)
@@ -149,7 +150,7 @@ def _cells(settings, values, paper, progress):
 
 
 def rk4_radius(parameters, speed_hz, step_s):
-    """Return the spectral radius of the matrix of one RK4 step at a speed, tuned there."""
+    """Return the spectral radius of the matrix of one RK4 step at a speed, tuned at this speed."""
     roots = state_space(at_speed(parameters, speed_hz)).roots
     return max(magnitude(rk4_amplification(root * step_s)) for root in roots)
 
@@ -158,9 +159,11 @@ def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution
     """
     Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
 
-    Walks from the nominal speed by resolution_hz until RK4 grows, and finds the limit in that
-    step by bisection; None on a side where no limit lies between low_hz and high_hz.  Raises
-    ValueError where the nominal speed itself is unstable.
+    The speed is changed from the nominal one by resolution_hz until RK4 grows, and the limit is
+    found
+    by bisection in that interval; None on a side without a limit between low_hz and high_hz.
+    Raises
+    ValueError if RK4 grows at the nominal speed.
     """
     def decays(hz):
         return rk4_radius(parameters, hz, step_s) < 1.0

@@ -1,7 +1,7 @@
 """
-What is read from an error budget: its quantities, what must improve, and an ensemble beside it.
+Evaluation of an error budget: its quantities, requirements, and a comparison with an ensemble.
 
-``core.prediction.budget`` propagates; ``quantities`` names what is shown, ``requirement`` answers
-a requirement, ``sensitivities`` has the change of an error with a parameter, and ``beside``
-compares with an ensemble.
+``core.prediction.budget`` propagates. ``quantities`` defines what is shown, ``requirement``
+answers a requirement, ``sensitivities`` gives the change of an error with a parameter, and
+``beside`` compares with an ensemble.
 """

@@ -1,4 +1,4 @@
-"""An ensemble beside the budget: ratios of standard deviations and the intervals they lie in."""
+"""Compare an ensemble with the budget: ratios of standard deviations and their intervals."""
 
 from dataclasses import dataclass, replace
 import os
@@ -11,23 +11,25 @@ from ins_sim.core.prediction.budget.propagation import navigation_start_s
 from ins_sim.core.ensemble.many_runs import simulate_runs
 from .quantities import LINEAR_UP_TO, QUANTITIES, second_order, shares
 
-# Instants at which an ensemble is compared with a budget.
+# Number of instants at which an ensemble is compared with a budget.
 INSTANTS = 60
-# The part of ensembles that lie within the interval where the budget is right.
+# Fraction of ensembles that lie within the interval if the budget is right.
 WITHIN = 0.999
 COMPARED = ('horizontal', 'east', 'north', 'velocity', 'tilt', 'azimuth')
-# Where the errors of a budget are among those of an ensemble: attitude, velocity, position.
+# Order of the errors of a budget in an ensemble, which has attitude, velocity, position.
 IN_ENSEMBLE = [6, 7, 8, 3, 4, 5, 0, 1, 2]
 
 
 @dataclass(frozen=True, eq=False)
 class BesideRuns:
     """
-    The errors of runs beside a budget, at m instants.
+    Errors of an ensemble that is compared with a budget, at m instants.
 
-    runs: how many; diverged: the numbers of those that count no further; t_s (m,): times of
-    navigation, s; count (m,) of runs; mean (m, 9), covariance (m, 9, 9): attitude, velocity and
-    position, East, North, Up.
+    runs: their number; diverged: numbers of the excluded runs; t_s (m,): time since the start of
+    the
+    navigation, s; count (m,): number of runs; mean (m, 9), covariance (m, 9, 9): attitude,
+    velocity
+    and position, East, North, Up.
     """
 
     runs: int
@@ -41,11 +43,12 @@ class BesideRuns:
 @dataclass(frozen=True, eq=False)
 class ComparedQuantity:
     """
-    One quantity of an ensemble over that of the budget, at n instants.
+    One quantity of an ensemble compared with the budget, at n instants.
 
-    name: one of COMPARED; t_s (n,); numbers (n,): of instants of the budget; budget, ensemble
-    (n,): rms, or of a single axis standard deviations; low, high (n,): the interval in which their
-    ratio lies in 99.9 % of ensembles; linear (n,): whether the budget claims to hold.
+    name: one of COMPARED; t_s (n,); numbers (n,): indices of the instants in the budget; budget,
+    ensemble (n,): rms, or standard deviation for a single axis; low, high (n,): interval that
+    contains
+    their ratio for 99.9 % of ensembles; linear (n,): whether linear theory applies.
     """
 
     name: str
@@ -59,20 +62,20 @@ class ComparedQuantity:
 
     @property
     def ratio(self):
-        """Return ensemble over budget, (n,)."""
+        """Return ensemble divided by budget, (n,)."""
         return self.ensemble / self.budget
 
     @property
     def differs(self):
-        """Return whether the ensemble leaves its interval, (n,)."""
+        """Return whether the ratio is outside its interval, (n,)."""
         return (self.ratio < self.low) | (self.ratio > self.high)
 
 
 def fly_beside(settings, motion, budget, runs):
     """
-    Return the BesideRuns of so many runs of SimulationSettings, beside a LinearBudget.
+    Simulate runs of SimulationSettings for the comparison with a LinearBudget.
 
-    Raises ValueError for a single run, and as ``simulate_runs`` does.
+    Return the BesideRuns. Raises ValueError for a single run, and as ``simulate_runs`` does.
     """
     if not isinstance(runs, int) or isinstance(runs, bool) or runs < 2:
         raise ValueError(f'the number of runs is {runs!r}; expected at least 2, whose scatter is '
@@ -93,7 +96,7 @@ def of_ensemble(settings, ensemble):
 
 
 def without_start(budget):
-    """Return a LinearBudget without the standard deviations of the start, which no run draws."""
+    """Return a LinearBudget without the initial standard deviations, which no run draws."""
     drawn = [k for k, source in enumerate(budget.random) if source.triad is not None]
     return replace(budget, random=tuple(budget.random[k] for k in drawn),
                    covariance=budget.covariance[drawn], by_axis=budget.by_axis[drawn])
@@ -108,10 +111,13 @@ def sigma_interval(count, within=WITHIN):
 
 def rms_scatter(covariance, mean, count):
     """
-    Return the standard deviation, relative, of the rms of a vector over so many runs, (n,).
+    Return the relative standard deviation of the rms of a vector over some runs, (n,).
 
-    covariance (n, a, a) and mean (n, a) of the vector: the square of its length has the variance
-    2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random Variables", 1992).
+    covariance (n, a, a) and mean (n, a) of the vector; count: number of runs. The square of the
+    length
+    has the variance 2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random
+    Variables",
+    1992).
     """
     square = np.trace(covariance, axis1=1, axis2=2) + np.square(mean).sum(axis=1)
     variance = (2.0 * np.square(covariance).sum(axis=(1, 2))
@@ -120,28 +126,31 @@ def rms_scatter(covariance, mean, count):
 
 
 def not_compared(budget, beside):
-    """Return how many instants of BesideRuns, but for the start, ``compared`` has to leave out."""
+    """
+    Return the number of instants of BesideRuns, without the start, that ``compared`` leaves out.
+    """
     later = beside.t_s > SAME_S
     return int(np.count_nonzero(later & ~_common(_apart(budget, beside), beside)))
 
 
 def _apart(budget, beside):
-    """Return how far apart the instants of a budget and of runs are, (n, m), s."""
+    """Return the distances between the instants of a budget and of runs, (n, m), s."""
     return np.abs(budget.t_s[:, np.newaxis] - beside.t_s)
 
 
 def _common(apart, beside):
-    """Return which instants of runs the budget has, too, and scatter at all, (m,)."""
+    """Return which instants of runs the budget contains, if any error scatters there, (m,)."""
     return (apart.min(axis=0) <= SAME_S) & (beside.t_s > SAME_S) & (beside.count > 1)
 
 
 def compared(budget, beside):
     """
-    Return the ComparedQuantities of BesideRuns and a LinearBudget, at their common instants.
+    Return the ComparedQuantities of BesideRuns and a LinearBudget at their common instants.
 
-    The budget is that ``without_start``.  Quantities without random errors, as the height of a
-    vertical channel that follows the truth, are left out, and so is the start.  Raises ValueError
-    where there is no common instant.
+    The budget is that of ``without_start``. Quantities without random errors, such as the height
+    if
+    the vertical channel follows the truth, are left out, and so is the start. Raises ValueError if
+    there is no common instant.
     """
     if beside.count.max() < 2:
         raise ValueError(f'the ensemble has {beside.count.max()} run that counts; expected at '

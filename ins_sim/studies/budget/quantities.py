@@ -1,4 +1,4 @@
-"""The quantities that are read from a LinearBudget, and how far linear theory holds."""
+"""The quantities of a LinearBudget, and the range in which linear theory applies."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from ins_sim.core.earth.ellipsoid import MEAN_RADIUS
 
 LENGTH, SPEED, ANGLE = 'm', 'm/s', 'rad'
-# Errors of second order are neglected; from this value of ``second_order`` on they show.
+# Errors of second order are neglected; above this value of ``second_order`` they are visible.
 LINEAR_UP_TO = 0.1
 
 
@@ -16,7 +16,7 @@ class Quantity:
     """
     One quantity of a budget.
 
-    name: as in a requirement; words: as in a title; axes: numbers of its components among the nine
+    name: as in a requirement; words: as in a title; axes: indices of its components among the nine
     errors of a LinearBudget; unit: LENGTH, SPEED or ANGLE.
     """
 
@@ -39,11 +39,12 @@ QUANTITIES = {q.name: q for q in (
 @dataclass(frozen=True, eq=False)
 class Shares:
     """
-    The square of one quantity and who makes it.
+    The square of one quantity, and the contributions of the sources.
 
     random (sources, n): variances; mean (sources, n, axes): errors of the fixed sources; fixed
-    (sources, n): what each of these adds to the square of the sum of them, which may be negative;
-    rms (n,): the root of the whole.
+    (sources, n): contribution of each of these to the square of their sum, which may be negative;
+    rms
+    (n,): square root of the total.
     """
 
     random: np.ndarray
@@ -52,11 +53,11 @@ class Shares:
     rms: np.ndarray
 
     def by_source(self):
-        """Return the shares of the square (sources, n), random ones first."""
+        """Return the contributions to the square (sources, n), random ones first."""
         return np.concatenate([self.random, self.fixed])
 
     def contributions(self):
-        """Return what each source makes alone (sources, n): sigma, or size of the mean error."""
+        """Return the error of each source alone (sources, n): sigma, or size of the mean error."""
         return np.sqrt(np.concatenate([self.random, np.square(self.mean).sum(axis=2)]))
 
 
@@ -64,7 +65,7 @@ def shares(budget, quantity):
     """Return the Shares of a Quantity in a LinearBudget."""
     axes = list(quantity.axes)
     variances = np.diagonal(budget.covariance, axis1=2, axis2=3)[..., axes]
-    # rounding may leave a little less than nothing
+    # Rounding may leave a small negative number.
     random = np.maximum(variances.sum(axis=2), 0.0)
     mean = budget.mean[..., axes]
     fixed = (mean * mean.sum(axis=0)).sum(axis=2)
@@ -74,11 +75,12 @@ def shares(budget, quantity):
 
 def second_order(budget):
     """
-    Return how large errors of second order are against those of first order, (n,).
+    Return the size of second-order errors relative to those of first order, (n,).
 
-    The larger one of the azimuth error, rad, and of the horizontal error times tan(latitude) over
-    the radius of the Earth: how far the computed axes have turned. Linear theory holds to about
-    this part of the error.
+    It is the larger one of the azimuth error, rad, and of the horizontal error times tan(latitude)
+    divided by the radius of the Earth: the rotation of the computed axes. Linear theory is
+    accurate to
+    about this fraction of the error.
     """
     azimuth = shares(budget, QUANTITIES['azimuth']).rms
     far = shares(budget, QUANTITIES['horizontal']).rms
@@ -86,6 +88,6 @@ def second_order(budget):
 
 
 def linear_until(budget):
-    """Return the time, s, from which on ``second_order`` is above LINEAR_UP_TO, or None."""
+    """Return the time, s, from which on ``second_order`` exceeds LINEAR_UP_TO, or None."""
     over = second_order(budget) > LINEAR_UP_TO
     return float(budget.t_s[np.argmax(over)]) if over.any() else None

@@ -1,4 +1,4 @@
-"""A requirement on an error, and what would have to improve to meet it."""
+"""A requirement on an error, and the improvements that would meet it."""
 
 from dataclasses import dataclass
 import math
@@ -17,7 +17,7 @@ UNITS = {'m': (LENGTH, 1.0), 'km': (LENGTH, 1000.0), 'nmi': (LENGTH, 1852.0),
          'arcmin': (ANGLE, math.radians(1.0) / 60.0),
          'arcsec': (ANGLE, math.radians(1.0) / 3600.0), 'mrad': (ANGLE, 1e-3)}
 TIMES = {'s': 1.0, 'min': 60.0, 'h': 3600.0}
-# Statistic: the part of the errors that lies within it, or None of the root mean square.
+# Statistic: the fraction of errors within it, or None for the root mean square.
 STATISTICS = {'rms': None, 'cep50': 0.5, 'cep95': 0.95}
 GRAMMAR = ("QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME, such as 'horizontal rms 1852 m at "
            f"3600 s', with QUANTITY one of {', '.join(QUANTITIES)}, STATISTIC one of "
@@ -25,17 +25,18 @@ GRAMMAR = ("QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME, such as 'horizontal r
            f"{', '.join(UNITS)}, and TIME one of {', '.join(TIMES)}")
 _TEXT = re.compile(r'\s*(\S+)\s+(\S+)\s+([-+.\deE]+)\s*(\S+)\s+at\s+([-+.\deE]+)\s*(\S+)\s*',
                    re.IGNORECASE)
-# Factors that are tried, and how often the interval between two of them is divided like that.
+# Number of factors that are tried, and of refinements of the interval between two of them.
 TRIED, ROUNDS = np.arange(33) / 32.0, 8
 
 
 @dataclass(frozen=True)
 class Requirement:
     """
-    What is required of an error: that a statistic of a quantity is at most a limit at a time.
+    A requirement on an error: a statistic of a quantity is at most a limit at a time.
 
-    text: as it was given; quantity: one of QUANTITIES; statistic: one of STATISTICS; limit: in SI;
-    t_s: time since the start of the navigation, s.
+    text: as given; quantity: one of QUANTITIES; statistic: one of STATISTICS; limit: in SI; t_s:
+    time
+    since the start of the navigation, s.
     """
 
     text: str
@@ -48,11 +49,11 @@ class Requirement:
 @dataclass(frozen=True)
 class Improvement:
     """
-    How one source would have to improve.
+    The required improvement of one source.
 
-    source; factor: of the error that it makes, or None where the others alone exceed the
-    requirement; values: of the parameter then, by axis; without: the value of the requirement if
-    the source made no error, in SI.
+    factor: for its error, or None if the others alone exceed the requirement; values: of the
+    parameter
+    then, by axis; without: value of the requirement without this source, in SI.
     """
 
     source: ErrorSource
@@ -64,12 +65,15 @@ class Improvement:
 @dataclass(frozen=True)
 class RequirementAnswer:
     """
-    What would have to improve to meet a Requirement.
+    The improvements that would meet a Requirement.
 
-    found: the value now, in SI; met: whether that is enough; alone: Improvements of single
-    sources, those that suffice first, then by what is left without the source; random: the factor
-    by which all random errors must shrink, None where the fixed ones alone exceed the requirement
-    or all is met; everything: the factor of all errors.
+    found: present value, in SI; met: whether it meets the requirement; alone: Improvements of
+    single
+    sources, sufficient ones first, then in the order of the value without the source; random:
+    factor
+    by which all random errors must shrink, None if the fixed ones alone exceed the requirement or
+    if
+    it is met; everything: factor for all errors.
     """
 
     requirement: Requirement
@@ -81,7 +85,7 @@ class RequirementAnswer:
 
 
 def parse_requirement(text):
-    """Return the Requirement that a text states; ValueError with the grammar where it is none."""
+    """Parse the text of a Requirement; raise ValueError with the grammar if it is invalid."""
     if not isinstance(text, str):
         raise ValueError(f'the requirement is {text!r}; expected a text: {GRAMMAR}')
     match = _TEXT.fullmatch(text)
@@ -101,7 +105,7 @@ def parse_requirement(text):
 
 
 def times_of(requirements, end_s):
-    """Return the times of Requirements, s; ValueError where a navigation until end_s has none."""
+    """Return the times of Requirements, s; raise ValueError if one is after end_s."""
     for requirement in requirements:
         if requirement.t_s > end_s:
             raise ValueError(f'the requirement is {requirement.text!r}; expected a time of the '
@@ -110,7 +114,7 @@ def times_of(requirements, end_s):
 
 
 class _Scaled:
-    """The value of a requirement at its time with errors scaled by factors."""
+    """The value of a requirement at its time if errors are scaled by factors."""
 
     def __init__(self, budget, requirement):
         axes = list(QUANTITIES[requirement.quantity].axes)
@@ -127,9 +131,9 @@ class _Scaled:
 
     def by_factor(self, of_random, of_fixed):
         """
-        Return a function of factors (n,) -> values, by what they are factors of.
+        Return a function that maps factors (n,) to values of the requirement.
 
-        of_random, of_fixed: whether the factor counts, for each source.
+        of_random, of_fixed: whether the factor applies, for each source.
         """
         on, off = self._sums(of_random, of_fixed), self._sums(~of_random, ~of_fixed)
         return lambda x: self.value(off[0] + np.multiply.outer(x * x, on[0]),
@@ -143,7 +147,7 @@ def answer(budget, requirement):
     """
     Return the RequirementAnswer of a LinearBudget.
 
-    Raises ValueError where the time of the Requirement is none of the budget.
+    Raises ValueError if the budget does not contain the time of the Requirement.
     """
     scaled = _Scaled(budget, requirement)
     count_random, count_fixed = len(budget.random), len(budget.fixed)
@@ -157,7 +161,7 @@ def answer(budget, requirement):
         one = np.arange(count_random + count_fixed) == k
         by = scaled.by_factor(one[:count_random], one[count_random:])
         without = float(by(np.zeros(1))[0])
-        # of two fixed errors that cancel each other, less of one need not be better
+        # If two fixed errors cancel each other, reducing one need not improve the result.
         factor = (_largest_factor(by, requirement.limit)
                   if source.fixed or without <= requirement.limit else None)
         alone.append(Improvement(source, factor, _values(source, factor), without))
@@ -182,7 +186,7 @@ def _largest_factor(by, limit):
 
 
 def _values(source, factor):
-    """Return the values of a parameter that make an error smaller by a factor, or None."""
+    """Return the values of a parameter that reduce an error by a factor, or None."""
     if factor is None or source.inverse and factor == 0.0:
         return None
     return tuple(v / factor if source.inverse else v * factor for v in source.values)

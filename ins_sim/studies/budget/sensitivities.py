@@ -1,4 +1,4 @@
-"""How an error changes with the parameters of the settings."""
+"""Change of an error with the parameters of the settings."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,11 @@ class Sensitivity:
     """
     The change of an error with one parameter, of all axes or of one.
 
-    source; axis: 'x', 'y', 'z', or '' of all; value: of the parameter, in its unit; alone: what
-    the source makes by itself for a unit of the parameter (of a lag, at its bandwidth); slope:
-    d rms / d parameter; both in SI of the quantity over the unit of the parameter.
+    axis: 'x', 'y', 'z', or '' for all; value: of the parameter, in its unit; alone: error due to
+    the
+    source alone for a unit of the parameter (for a lag, at its bandwidth); slope: d rms / d
+    parameter;
+    both in SI of the quantity divided by the unit of the parameter.
     """
 
     source: ErrorSource
@@ -27,10 +29,11 @@ class Sensitivity:
 
 def sensitivities(budget, quantity, k):
     """
-    Return the Sensitivities of a Quantity in a LinearBudget at instant number k.
+    Return the Sensitivities of a Quantity in a LinearBudget at the instant with index k.
 
-    A parameter whose axes are equal changes on all of them; else, of a random source, axis by
-    axis, and of a fixed one in proportion, which is per unit of its largest axis.
+    A parameter with equal axes is changed on all of them. Otherwise a random source is changed
+    axis by
+    axis, and a fixed one in proportion, per unit of its largest axis.
     """
     found, axes = [], list(quantity.axes)
     made = shares(budget, quantity)

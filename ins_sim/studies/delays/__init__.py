@@ -1,6 +1,6 @@
 """
-The study of Bogdanov and Fomichev (2018): what delays of gyro channels do to the solution.
+The study of Bogdanov and Fomichev (2018): effect of delayed gyro channels on the solution.
 
-``figure`` says what a figure shows, ``runs`` flies and predicts one run, ``maps`` has the drift
-over rates and directions, ``study`` puts the figures together.
+``figure`` defines what a figure shows, ``runs`` simulates and predicts one run, ``maps`` computes
+the drift over rates and directions, ``study`` assembles the figures.
 """

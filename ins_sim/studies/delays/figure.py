@@ -1,4 +1,4 @@
-"""What a figure of the study of delays shows: its settings, and the runs that it needs."""
+"""Definition of a figure of the delay study: its settings, and the runs that it needs."""
 
 from dataclasses import dataclass, replace
 import math
@@ -27,7 +27,7 @@ LEVEL = ('north', 'east')
 
 @settings_class
 class DelayFigureSettings(SettingsGroup):
-    """One figure of the study of delays; motion and delays are those of the simulation."""
+    """One figure of the delay study; motion and delays are those of the simulation."""
 
     figure: str = setting('errors', 'errors: latitude and longitude error of motion 2 against '
                           'time; rates: drift of motion 2 over the rates of psi and gamma; '
@@ -51,7 +51,7 @@ class DelayFigureSettings(SettingsGroup):
                 raise ValueError(f'{name} has a value twice; expected different ones')
 
 
-# What a parameter file of a figure is read as, and what it may hold besides.
+# The nodes whose sections a parameter file of a figure may contain.
 READ_NODES = {**NODES, NODE: DelayFigureSettings}
 KNOWN_NODES = {**ALL_NODES, NODE: DelayFigureSettings}
 
@@ -62,7 +62,8 @@ class DelayFigure:
     A figure to be drawn.
 
     name: of its files; shows: DelayFigureSettings; simulation: SimulationSettings of its runs;
-    motion: a recorded one, or None where the settings tell it; notes: sentences about it.
+    motion:
+    a recorded one, or None if the settings define it; notes: messages about it.
     """
 
     name: str
@@ -92,10 +93,18 @@ def make_figures(sources, read_nodes, read_motion):
     """
     Return the DelayFigures of parameter files.
 
-    sources: list of (name, path of the file, assignments); read_nodes: function (paths,
-    assignments, nodes, known nodes) that returns {node: its settings}; read_motion: function of
-    MotionGeneratorSettings that returns the motion of a recording.  Raises ValueError on settings
-    that no figure has, and on two figures of one name.
+    Parameters
+    ----------
+    sources : list of (name, path of the file, assignments)
+    read_nodes : callable
+        Function (paths, assignments, nodes, known nodes) that returns {node: its settings}.
+    read_motion : callable
+        Function of MotionGeneratorSettings that returns the motion of a recording.
+
+    Raises
+    ------
+    ValueError
+        For settings that no figure can have, and for two figures with the same name.
     """
     names = [name for name, _, _ in sources]
     for name in names:
@@ -130,7 +139,7 @@ def _with_motion(simulation, **values):
 
 
 def _within(simulation, motion):
-    """Return the settings of a run that ends with its recording, and a note if it is shorter."""
+    """Return settings whose run ends with its recording, and a note if it became shorter."""
     generator = simulation.motion_generator
     left_s = math.floor(motion.end_s - generator.start_s)
     if not 0 < left_s < generator.duration_s:
@@ -140,7 +149,7 @@ def _within(simulation, motion):
 
 
 def _check(shows, simulation):
-    """Raise ValueError unless delays of gyros are all that makes an error in the runs."""
+    """Raise ValueError unless delays of gyros are the only source of errors in the runs."""
     motion, sensor = simulation.motion_generator.motion, simulation.imu_sensor
     kinds = FIGURES[shows.figure]
     if motion.kind not in kinds:

@@ -1,8 +1,8 @@
 """
-Mean drift of late gyros over the rates of motion 2, and over the direction of rocking.
+Mean drift due to late gyros over the rates of motion 2, and over the direction of rocking.
 
-Both follow from <R (w x T w)>, T = diag(tau), R = C_nb (docs/theory/prediction.md); the
-rotation of the Earth is neglected in w, 1e-4 of the largest drift.
+Both follow from <R (w x T w)>, T = diag(tau), R = C_nb (docs/theory/prediction.md). The rotation
+of the Earth in w is neglected, 1e-4 of the largest drift.
 """
 
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ from ins_sim.core.prediction.fourier import fourier_coefficients
 # The product has harmonics of gamma up to the third.
 GAMMA_SAMPLES = 16
 NOTHING = 1e-12
-# Cells from the middle of the map over the rates to its edge.
+# Number of cells from the middle of the map over the rates to its edge.
 CELLS = 45
-# Half widths of the map of one resonance and of the cut across it, times the time of the mean.
+# Half widths of the map of one resonance and of the cut across it, times the averaging time.
 NEAR, ACROSS = 20.0, 40.0
 NEAR_POINTS, ACROSS_POINTS = 101, 801
 DIRECTION_STEP_DEG = 3.0
@@ -32,11 +32,14 @@ class RatesMap:
     """
     Mean horizontal drift of motion 2 over a time, rad/s.
 
-    span_s: this time; psi_rates (n,), gamma_rates (m,): middles of the cells, rad/s; largest (m,
-    n): the largest drift in each cell; lines: numbers k of the lines of resonance
-    psi' = k gamma'; near_psi_rates, near_gamma_rates, near: the same, not the largest but the
-    drift there, about the rates of the settings; detunings, across: the drift over the detuning;
-    half_width: the detuning at which it is half as high, rad/s, or None where that is not near.
+    span_s: averaging time; psi_rates (n,), gamma_rates (m,): middles of the cells, rad/s; largest
+    (m,
+    n): largest drift in each cell; lines: numbers k of the resonance lines psi' = k gamma';
+    near_psi_rates, near_gamma_rates, near: a second map of the drift (not the largest one) near
+    the
+    rates of the settings; detunings, across: drift over the detuning; half_width: detuning at
+    which
+    the drift is half as large, rad/s, or None if it is not in the range.
     """
 
     span_s: float
@@ -57,9 +60,10 @@ class RockingMap:
     """
     Mean drift of motion 1, rad/s.
 
-    azimuth_deg (n,): of the axis of rocking in the body, from forward to the left;
-    elevation_deg (m,): of it, upwards; size (m, n): of the drift; psi_deg (k,), drift (k, 3):
-    East, North, Up, over psi with the axis level.
+    azimuth_deg (n,), elevation_deg (m,): direction of the rocking axis in the body, from forward
+    to
+    the left, and upwards; size (m, n): magnitude of the drift; psi_deg (k,), drift (k, 3): East,
+    North, Up, over psi for a level axis.
     """
 
     azimuth_deg: np.ndarray
@@ -79,10 +83,10 @@ class TwoAxisDrift:
     Mean drift of motion 2 as a function of its rates.
 
     With u = up and e = forward in b, w = psi' u + gamma' e, so that R (w x T w) is Rz(psi) times
-    psi'^2 A(gamma) + psi' gamma' B(gamma), of which each harmonic k of gamma turns in n with the
-    rate psi' + k gamma'. Its mean over a time is a sine over its angle.
+    psi'^2 A(gamma) + psi' gamma' B(gamma). Each harmonic k of gamma in it rotates in n at the rate
+    psi' + k gamma'; its mean over a time is a sine divided by its angle.
 
-    settings: SimulationSettings with motion two_axis; its length is the time of the mean.
+    settings: SimulationSettings with motion two_axis; their duration is the averaging time.
     """
 
     def __init__(self, settings):
@@ -103,18 +107,20 @@ class TwoAxisDrift:
                             *quaternion.rotate(q_nb, mixed)[:2]], axis=-1)
         re, im, harmonics = fourier_coefficients(samples)
         found = re + 1j * im
-        # East + j North
+        # East + j North.
         both = found[:, [0, 2]] + 1j * found[:, [1, 3]]
         kept = np.abs(both).max(axis=1) > NOTHING * max(np.abs(tau).max(), NOTHING)
         self._terms = list(zip(harmonics[kept].tolist(), both[kept]))
 
     @property
     def lines(self):
-        """Return the numbers k of the lines psi' = k gamma' on which a drift stands still in n."""
+        """Return the numbers k of the lines psi' = k gamma' on which a drift is constant in n."""
         return tuple(-k for k, _ in self._terms if k)
 
     def mean(self, psi_rate, gamma_rate):
-        """Return East + j North, rad/s, of rates, rad/s, arrays that fit each other."""
+        """
+        Return the mean East + j North, rad/s, for arrays of rates, rad/s, of matching shapes.
+        """
         middle_s, total = self._start_s + 0.5 * self.span_s, 0.0
         psi, gamma = self._psi + psi_rate * middle_s, self._gamma + gamma_rate * middle_s
         for k, (square, product) in self._terms:
@@ -125,10 +131,11 @@ class TwoAxisDrift:
 
     def largest(self, psi_rate, gamma_rate, width):
         """
-        Return the largest |mean| in cells about rates, rad/s.
+        Return the largest |mean| in cells of rates, rad/s.
 
-        Of each cell, width rad/s of psi' wide, the middle is looked at and the points in it that
-        are nearest to the lines of resonance, which are narrower than any cell.
+        Each cell is width rad/s of psi' wide. It is evaluated at its middle and at the points in
+        it that
+        are nearest to the resonance lines, which are narrower than any cell.
         """
         found = np.abs(self.mean(psi_rate, gamma_rate))
         for k in self.lines:
@@ -159,7 +166,7 @@ def rates_map(settings):
 
 
 def _half_width(height, far):
-    """Return where a height that is largest at 0 is half of that, up to far; None if it is not."""
+    """Return where a height with its maximum at 0 has halved, up to far; None if it has not."""
     half, low, high = 0.5 * height(0.0), 0.0, far
     grid = np.linspace(0.0, far, ACROSS_POINTS)
     below = np.flatnonzero(height(grid) < half)
@@ -176,10 +183,11 @@ def rocking_map(settings, psi_deg):
     """
     Return the RockingMap of SimulationSettings with motion rocking about a level axis.
 
-    psi_deg: the curve is over these and a degree apart from the least to the largest.
-
-    With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times R0 (n x T n):
-    what stands beside n x T n is odd in kappa.
+    psi_deg: directions of the runs; the curve covers their range in steps of one degree and
+    includes
+    them. With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times R0 (n x T
+    n);
+    all other terms are odd in kappa.
     """
     motion, tau = settings.motion_generator.motion, delays_s(settings)
     rocking = motion.rocking
@@ -200,5 +208,5 @@ def rocking_map(settings, psi_deg):
 
 
 def _turned(n, tau):
-    """Return n x T n of directions n, three arrays."""
+    """Return n x T n for directions n, three arrays."""
     return quaternion.cross(n, tuple(t * x for t, x in zip(tau, n)))

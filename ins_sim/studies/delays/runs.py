@@ -1,4 +1,4 @@
-"""One run of the study of delays: flown with its zero-delay twin, and predicted."""
+"""One run of the delay study: simulated with its zero-delay twin, and predicted."""
 
 from dataclasses import dataclass, replace
 
@@ -14,7 +14,7 @@ from ins_sim.core.simulation.inertial import simulate
 from ins_sim.settings.imu import DelaysUs
 from ins_sim.settings.simulation import SimulationSettings
 
-# A second apart over an hour.
+# One instant a second for an hour.
 MOST_INSTANTS = 3601
 AXES = ('x', 'y', 'z')
 
@@ -22,11 +22,13 @@ AXES = ('x', 'y', 'z')
 @dataclass(frozen=True, eq=False)
 class ErrorFigures:
     """
-    An error history in a few numbers.
+    Summary of an error history.
 
     drift (3,): least-squares slope of the inertial attitude error, East, North, Up, rad/s;
-    mean_drift (3,): its growth over the run by the time, rad/s; largest (3,): the largest
-    |position error| East, North, Up, m.
+    mean_drift
+    (3,): its growth over the run divided by the time, rad/s; largest (3,): largest |position
+    error|
+    East, North, Up, m.
     """
 
     drift: np.ndarray
@@ -37,11 +39,12 @@ class ErrorFigures:
 @dataclass(frozen=True, eq=False)
 class DelaySensitivity:
     """
-    What one second of delay of each gyro channel adds, by the linear theory.
+    Error due to one second of delay of each gyro channel, by the linear theory.
 
-    position (n, 2, 3): East and North error, m/s, at the instants of the run, by the delays of x,
-    y, z; drift (3, 3): slope of the attitude error East, North, Up, 1/s^2, by the delays of x, y,
-    z; largest (2, 3): the largest |position|, m/s.
+    position (n, 2, 3): East and North error, m/s, at the instants of the run, for the delays of x,
+    y,
+    z; drift (3, 3): slope of the attitude error East, North, Up, 1/s^2, for the delays of x, y, z;
+    largest (2, 3): largest |position|, m/s.
     """
 
     position: np.ndarray
@@ -54,12 +57,15 @@ class DelayRun:
     """
     One run with delays.
 
-    t_s (n,): at most MOST_INSTANTS instants since the start of the navigation; track (n, 3):
-    latitude and longitude, rad, and height, m, of the truth; angles (n, 2): latitude and longitude
-    computed less true, rad; predicted_angles (n, 2); apart (n, 3): position error less that of the
-    twin, East, North, Up, m; predicted (n, 3): what the linear theory expects of it; measured:
-    ErrorFigures of the run, of its position error less the twin's; twin, prediction: those of the
-    zero-delay twin and of the linear theory; sensitivity: DelaySensitivity or None.
+    t_s (n,): at most MOST_INSTANTS instants since the start of the navigation; track (n, 3): true
+    latitude and longitude, rad, and height, m; angles (n, 2): computed minus true latitude and
+    longitude, rad; predicted_angles (n, 2); apart (n, 3): position error minus that of the twin,
+    East,
+    North, Up, m; predicted (n, 3): the same by the linear theory; measured: ErrorFigures of the
+    run,
+    with its position error minus that of the twin; twin, prediction: ErrorFigures of the twin and
+    of
+    the theory; sensitivity: DelaySensitivity or None.
     """
 
     settings: SimulationSettings
@@ -77,10 +83,11 @@ class DelayRun:
 
 def fly_run(settings, motion=None, with_sensitivity=False):
     """
-    Return the DelayRun of SimulationSettings.
+    Simulate and predict a run of SimulationSettings and return the DelayRun.
 
     motion: a recorded one, or None for that of the settings; with_sensitivity: whether to predict
-    the error of each channel alone too.
+    the
+    error of each channel alone too.
     """
     generator = settings.motion_generator
     motion = motion or make_motion(generator.motion, generator.datum, generator.earth)
@@ -116,21 +123,21 @@ class _Histories:
 
 
 def _at(t_s, prediction):
-    """Return the histories of a Prediction, which are smooth, at other instants."""
+    """Interpolate the histories of a Prediction, which are smooth, at other instants."""
     return _Histories(*(np.stack([np.interp(t_s, prediction.t_s, column) for column in values.T],
                                  axis=-1)
                         for values in (prediction.attitude, prediction.position)))
 
 
 def _as_angles(truth, position):
-    """Return latitude and longitude (n, 2), rad, of position errors (n, 3)."""
+    """Convert position errors (n, 3) to latitude and longitude (n, 2), rad."""
     s, c = elementary.sincos(truth.lat)
     return np.stack(ellipsoid.level_angles(position[:, 0], position[:, 1], s, c, truth.height)[:2],
                     axis=-1)
 
 
 class _Growth:
-    """How attitude errors grow at the instants t_s (n,) of a Truth; spin: rate of the Earth."""
+    """Growth of attitude errors at the instants t_s (n,) of a Truth; spin: rate of the Earth."""
 
     def __init__(self, t_s, truth, spin):
         self._t_s, self._truth, self._spin = t_s, truth, spin
@@ -148,7 +155,7 @@ class _Growth:
 
 
 def _sensitivity(settings, motion, t_s, growth, kept):
-    """Return the DelaySensitivity, from the prediction of one microsecond on each channel."""
+    """Return the DelaySensitivity, from the prediction for one microsecond on each channel."""
     sensor, found = settings.imu_sensor, []
     for axis in AXES:
         alone = replace(settings, imu_sensor=replace(

@@ -1,4 +1,4 @@
-"""The figures of the study of delays, computed: each run once, whichever figures show it."""
+"""Compute the figures of the delay study; a run that several figures show is computed once."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from .runs import DelayRun, fly_run
 
 @dataclass(frozen=True, eq=False)
 class FigureResult:
-    """What a figure shows: DelayFigure, DelayRuns, and a RatesMap, a RockingMap or None."""
+    """The data of a figure: DelayFigure, DelayRuns, and a RatesMap, a RockingMap or None."""
 
     figure: DelayFigure
     runs: tuple[DelayRun, ...]
@@ -17,12 +17,12 @@ class FigureResult:
 
 
 def distinct_runs(figures):
-    """Return the tasks of ``fly_task``, of all runs that DelayFigures need, each once."""
+    """Return the tasks of ``fly_task`` for all runs that DelayFigures need, each once."""
     return list(_tasks(figures).values())
 
 
 def fly_task(task):
-    """Return the DelayRun of a task, which can be pickled."""
+    """Return the DelayRun of a task; both can be pickled."""
     return fly_run(*task)
 
 
