@@ -1,5 +1,5 @@
 """
-Play a bag into the strapdown, or into the IMU and the strapdown; end when the bag has ended.
+Play a bag into the strapdown, or into the IMU and the strapdown; end when the bag ends.
 
 Example: ros2 launch ins_sim replay.launch.py bag:=DIR source:=truth imu:=imu_tactical_mems
 """

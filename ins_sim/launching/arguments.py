@@ -35,8 +35,9 @@ class Argument:
     choices: tuple[str, ...] = ()
 
 
-_FILES = Argument('params_file', '', 'parameter files, separated by commas or spaces, of which '
-                  'the same section of a later one wins: paths, or names of shipped ones')
+_FILES = Argument('params_file', '', 'parameter files, separated by commas or spaces: paths, or '
+                  'names of shipped files; a later file overrides the same section of an earlier '
+                  'one')
 _IMU = Argument('imu', '', 'instrument errors: ' + ', '.join(INSTRUMENTS) + ', or a path; empty = '
                 'those of the parameter files, or an ideal IMU')
 _NAMESPACE = Argument('namespace', '', 'namespace of the nodes')
@@ -45,20 +46,21 @@ _RATE = Argument('rate_hz', '', 'rate of the truth and of the IMU in all nodes, 
 _PREFIX = Argument('prefix', '', 'prefix of all frames, such as uav1; empty = as the parameter '
                    'files say')
 _SHUTDOWN = Argument('shutdown', 'true', 'true or false: the end of the run ends the whole '
-                     'launch, else the nodes of this file alone. A node that fails ends it always',
+                     'launch (true) or only the nodes of this file (false). A node that fails '
+                     'always ends the launch',
                      bool)
 
 SIMULATION = (
     Argument('motion', '', 'motion: ' + ', '.join(MOTIONS) + ', or a path; empty = that of the '
              'parameter files, or the racetrack'),
     _IMU, _FILES, _RATE,
-    Argument('aided', 'false', 'true or false: velocity_meter, gnss and aided_navigator run as '
-             'well', bool),
-    Argument('one_process', 'false', 'true or false: all nodes but the recorder in the one '
-             'process simulation', bool),
+    Argument('aided', 'false', 'true or false: also start velocity_meter, gnss and '
+             'aided_navigator', bool),
+    Argument('one_process', 'false', 'true or false: run all nodes except the recorder in one '
+             'process, the executable simulation', bool),
     _NAMESPACE, _PREFIX,
-    Argument('tf', '', 'who places the vehicle on /tf: none, truth, ins or aided; empty = as the '
-             'parameter files say, or ins, with aided:=true aided',
+    Argument('tf', '', 'source of the transforms on /tf: none, truth, ins or aided; empty = as in '
+             'the parameter files, or ins (aided with aided:=true)',
              choices=('none', 'truth', 'ins', 'aided')),
     Argument('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; '
              'empty = as the parameter files say, or 1', float),
@@ -70,18 +72,18 @@ SIMULATION = (
     _SHUTDOWN)
 
 REPLAY = (
-    Argument('bag', None, 'folder of the bag; it has truth/odometry, and truth/imu or '
-             'imu/data_raw'),
-    Argument('source', 'imu', 'imu: its readings go into the strapdown; truth: its motion goes '
-             'into the IMU, and that into the strapdown', choices=('imu', 'truth')),
+    Argument('bag', None, 'folder of the bag; it must contain truth/odometry, and truth/imu '
+             'or imu/data_raw'),
+    Argument('source', 'imu', 'imu: play the readings into the strapdown; truth: play the truth '
+             'into the IMU, which feeds the strapdown', choices=('imu', 'truth')),
     _IMU, _FILES, _RATE, _NAMESPACE, _PREFIX,
-    Argument('tf', '', 'who places the vehicle on /tf: none or ins; empty = as the parameter '
-             'files say, or ins', choices=('none', 'ins')),
+    Argument('tf', '', 'source of the transforms on /tf: none or ins; empty = as in the '
+             'parameter files, or ins', choices=('none', 'ins')),
     Argument('rate', '', 'seconds of the bag per second, 0 = as fast as possible; empty = 1, and '
              '0 in lock-step', float),
     Argument('lock_step', 'true', 'true or false: wait for the strapdown, so that nothing is '
              'lost', bool),
-    Argument('loop', 'false', 'true or false: begin again at the end', bool),
+    Argument('loop', 'false', 'true or false: start again at the end', bool),
     Argument('use_sim_time', 'false', 'true or false: the nodes take their time from /clock, '
              'which is then played or published', bool),
     _SHUTDOWN)
