@@ -4,7 +4,7 @@ RUN = $(PYTHON) tools/bootstrap.py
 # a recorded flight for the second part of the demo; without one it is the closed-form cruise
 RECORDING ?= $(firstword $(wildcard ../shared/data/flights/cruise*.csv.gz))
 
-.PHONY: help setup demo test test-slow test-kilted docs figures bench bits fuzz soak lint lock clean
+.PHONY: help setup demo test test-slow test-kilted docs words figures bench bits fuzz soak lint lock clean
 
 help:
 	@echo 'make setup      make .venv and install the package with what it needs'
@@ -14,6 +14,7 @@ help:
 	@echo 'make test-kilted  run the live tests on the wheels of ROS 2 Kilted'
 	@echo 'make figures    compute the long studies and render docs/explanation/validation.md'
 	@echo 'make docs       build the site into build/docs; warnings are errors'
+	@echo 'make words      check spelling and wording of docs and docstrings'
 	@echo 'make bench      run the benchmarks; AGAINST=CHECKOUT compares with another checkout'
 	@echo 'make bits       compare the bits of runs between processors and versions of NumPy'
 	@echo 'make fuzz       try 50000 hostile files and two million hostile messages; takes hours'
@@ -49,6 +50,9 @@ $(KILTED):
 docs:
 	$(RUN) python -m sphinx -W --keep-going -q -b html docs build/docs
 	@echo 'open build/docs/index.html'
+
+words:
+	$(RUN) python tools/check_words.py
 
 figures:
 	$(RUN) python tools/run_tests.py figures

@@ -22,7 +22,8 @@ MAGNETIC = ['pygeomag>=1.1,<2']
 REPORT = ['bokeh>=3.4,<4']
 XARRAY = ['xarray']
 # The site of docs/, built by make docs; its theme and parser are those of the ROS build farm.
-DOCS = ['sphinx>=7.2,<10', 'myst-parser>=2,<6', 'sphinx-rtd-theme>=2,<4']
+DOCS = ['sphinx>=7.2,<10', 'myst-parser>=2,<6', 'sphinx-rtd-theme>=2,<4', 'codespell<3',
+        'proselint<0.17']
 
 # Why these libraries and these bounds: docs/design/libraries.md.  After a change: make lock.
 setup(
