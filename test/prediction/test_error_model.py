@@ -1,4 +1,4 @@
-"""The loop of the error model: equal bits in single steps, in plain Python and compiled."""
+"""The loop of the error model gives equal bits step by step, in plain Python and compiled."""
 
 import numpy as np
 import pytest
@@ -41,14 +41,14 @@ def by_steps():
 
 @pytest.mark.parametrize('cuts', [(), (1, 2, 77, 400)])
 def test_a_plain_loop_is_its_steps(by_steps, cuts, monkeypatch):
-    """However the run is cut."""
+    """Blocks of any length equal single steps, in plain Python."""
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', float('inf'))
     np.testing.assert_array_equal(through(compilation.run, cuts), by_steps)
 
 
 @pytest.mark.parametrize('cuts', [(), (1, 2, 77, 400)])
 def test_a_compiled_loop_is_its_steps(by_steps, cuts, monkeypatch):
-    """However the run is cut."""
+    """Blocks of any length equal single steps, compiled."""
     pytest.importorskip('numba', reason='Numba is not installed')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', -1)
     assert compilation.compiled(error_model.advance_through) is not None

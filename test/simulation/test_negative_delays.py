@@ -28,14 +28,14 @@ def test_any_delay_is_simulated_with_its_twin(delays, where):
 
 
 def test_a_lead_longer_than_the_run_leaves_the_first_reading():
-    """There is nothing to read, and it is no error."""
+    """A lead longer than the run leaves one reading, without an error."""
     chosen = settings({**EARLY, 'duration_s': 0.5, 'gyro.delay_us.x': -1e6})
     result = run_offline(chosen)
     assert len(result.imu) == len(result.twin) == 1 and withheld_readings(chosen) == 50
 
 
 def test_the_command_writes_the_run_and_says_what_is_missing(tmp_path, capsys):
-    """Nothing is lost after the run, and the summary has the twin."""
+    """The summary contains the twin and the number of readings that are missing at the end."""
     words = [word for name, value in {**EARLY, 'gyro.delay_us.x': -1.0,
                                       'gyro.delay_us.z': -25000.0}.items()
              for word in ('-p', f'{name}:={value}')]
