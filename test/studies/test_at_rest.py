@@ -1,4 +1,4 @@
-"""The record at rest, whose ideal readings are made once, is the run of a static motion."""
+"""The record at rest, whose ideal readings are made once, equals the run of a static motion."""
 
 import numpy as np
 import pytest

@@ -1,8 +1,8 @@
 """
-The study of the closed loop: flights of the whole chain against published and reduced ones.
+The study of the closed loop: flights of the complete chain against published and reduced ones.
 
-The table takes half an hour: make figures. What is always held is that the reduced flights, which
-``test_error_loop`` holds to what is published, are those of the chain.
+The table takes half an hour and is made by ``make figures``. The everyday test shows that the
+reduced flights, which ``test_error_loop`` compares with published ones, equal those of the chain.
 """
 
 from functools import partial
@@ -31,7 +31,7 @@ def chosen(*assignments):
 
 
 def reduced(loop, case):
-    """Return the LoopFlight of a LoopCase, reduced, with both channels."""
+    """Return the reduced LoopFlight of a LoopCase with both channels."""
     aiding = aiding_of(case, 100.0)
     cases = ReducedCases(*(np.array([x]) for x in (aiding.gain, case.k_z, case.offset_m)))
     flown = fly_reduced(loop, aiding, cases, case.duration_s, MOST, case.engage_s)
@@ -43,11 +43,13 @@ def reduced(loop, case):
     (LoopCase(0.15, 'paper_corrected', 100, 0.344, duration_s=20.0), 1e-4)], ids=str)
 def test_the_chain_is_the_reduced_loop(case, bound):
     """
-    Sideslip within 1e-5 rad, and offset within 1 cm, in 20 s from 100 m.
+    Sideslip agrees within 1e-5 rad, offset within 1 cm, in 20 s from 100 m.
 
-    What the reduced loop lacks is of that size: Coriolis' force on errors of the velocity of
-    metres per second, 3e-4 m/s^2, and the curvature of the leg.  Both are seen as errors of the
-    acceleration by paper_corrected, ten times as much.
+    The reduced loop neglects terms of that size: the Coriolis force on velocity errors of metres
+    per
+    second, 3e-4 m/s^2, and the curvature of the leg. paper_corrected sees both as acceleration
+    errors,
+    ten times as large.
     """
     settings = chosen()
     flight, other = fly_case(settings, case), reduced(study_loop(settings), case)
@@ -59,7 +61,9 @@ def test_the_chain_is_the_reduced_loop(case, bound):
 
 @pytest.mark.slow
 def test_the_map_is_that_of_the_linear_theory_where_nothing_saturates():
-    """Within 1 % from 1 m; from 100 m, where the command saturates, no higher than that."""
+    """
+    From 1 m within 1 % of the linear limits; from 100 m, with a saturated command, not higher.
+    """
     panel = MapPanel('conventional', 100, True, 0.5, 5.0)
     curves = map_curves(study_loop(chosen()), panel, 3, MOST)
     print(curves)
@@ -68,7 +72,7 @@ def test_the_map_is_that_of_the_linear_theory_where_nothing_saturates():
 
 
 def test_what_is_measured_of_an_oscillation():
-    """Range, frequency and growth of a known one."""
+    """Range, frequency and growth of a known oscillation."""
     t = np.arange(0.0, 300.0, 0.1)
     x = np.exp(-0.005 * t) * np.cos(0.345 * t + 0.3)
     assert frequency(t, x) == pytest.approx(0.345, rel=1e-3)
@@ -85,7 +89,7 @@ def case_name(case):
 
 
 def figure_name(case):
-    """Return the name under which the figures of a LoopCase are noted."""
+    """Return the name under which the results of a LoopCase are recorded."""
     others = (('from', case.offset_m, 100.0), ('engaged', case.engage_s, 0.0),
               ('for', case.duration_s, 300.0))
     return '.'.join([f'closed_loop.{case_name(case)}.k_z_{case.k_z:g}', *(
@@ -97,9 +101,11 @@ def test_the_table(figures):
     """
     Every published row: quiet ones below 0.05 deg, others within 3 %.
 
-    The published simulation has the lateral channel alone, and that is held to it.  The filters
-    aid the forward velocity as well, which calms conventional a little where beta is large: the
-    chain is held to the reduced flight with both channels.
+    The published simulation has the lateral channel alone and is compared with that. The filters
+    aid
+    the forward velocity as well, which damps conventional a little where beta is large: the chain
+    is
+    compared with the reduced flight with both channels.
     """
     settings = chosen()
     loop = study_loop(settings)
@@ -122,21 +128,24 @@ def test_the_table(figures):
         if lateral is None:
             continue
         both = loop_row(case, reduced(loop, case))
-        # Over half an hour Schuler's acceleration, which paper_corrected follows some windows
-        # late, takes 4 % of the error of the velocity.
+        # Over half an hour the Schuler acceleration, which paper_corrected follows some windows
+        # late, changes the velocity error by 4 %.
         near = 0.03 if case.duration_s <= 300.0 else 0.05
         for figure, value in row.published.items():
             if value == 0.0 and figure == 'beta_deg':
                 assert row.lateral[figure] < QUIET_DEG
                 continue
-            # to 5 cm the vehicle is on the leg
+            # Within 5 cm the vehicle is on the leg.
             assert abs(row.lateral[figure]) == pytest.approx(abs(value), rel=0.03, abs=0.05)
             assert getattr(row, figure) == pytest.approx(getattr(both, figure), rel=near, abs=0.05)
 
 
 @pytest.mark.figures
 def test_limits_of_the_chain_are_the_linear_ones(figures):
-    """Within 1 %, from 1 m, by the growth of flights 2 % on either side."""
+    """
+    Limits from the growth of flights 2 % on either side, from 1 m, agree with the linear ones to 1
+    %.
+    """
     settings = chosen()
     linear = linear_limits(study_loop(settings))
     growths = spread(partial(growth_of_flight, settings), cases_near(linear))
@@ -149,7 +158,7 @@ def test_limits_of_the_chain_are_the_linear_ones(figures):
 
 @pytest.mark.figures
 def test_conditions_change_nothing_of_it(figures):
-    """The fast conventional scheme oscillates by degrees with all of them, the others do not."""
+    """Fast conventional oscillates by degrees under all conditions, the others do not."""
     for name, more in CONDITIONS.items():
         flights = spread(partial(fly_case, chosen(*more)), VARIED)
         found = [flight.beta_deg for flight in flights]

@@ -1,8 +1,9 @@
 """
-The tables of the study: rms errors of several flights, and what the filters know of them.
+The tables of the filter study: rms errors of several flights, and consistency of the filters.
 
-The published tables are of twelve flights, which take half an hour: make figures. Four show
-whether a filter still works; their bounds are as much wider as the scatter of four is.
+The published tables are of twelve flights, which take half an hour and are made by
+``make figures``. Four flights show whether a filter still works; their bounds are wider by the
+larger scatter of four.
 """
 
 from functools import partial
@@ -22,12 +23,12 @@ FILES = ('route_flight', 'grade_mid')
 
 
 def numbers(few):
-    """Return the decorator of a test that flies a few flights, and all of them for the figures."""
+    """Return the decorator of a test that uses a few flights, or all of them for the figures."""
     return pytest.mark.parametrize('count', [few, pytest.param(ALL, marks=pytest.mark.figures)])
 
 
 def flown(count, names, cases, assignments=()):
-    """Return the Rows and the Flown of cases on the first flights."""
+    """Return the rows and the flights of cases on the first flights."""
     settings = parameter_files.read_aided([resources.config(name) for name in names], assignments)
     flights = list(zip(*spread(partial(fly_filters, settings, cases), range(count))))
     rows = [filter_row(case, list(f)) for case, f in zip(cases, flights)]
@@ -40,12 +41,12 @@ def flown(count, names, cases, assignments=()):
 
 
 def believed(flights):
-    """Return the rms over flights and time of the horizontal standard deviation, m."""
+    """Return the rms over flights and time of the filter's horizontal standard deviation, m."""
     return float(np.sqrt(np.mean([np.sum(f.sigma[:, :2] ** 2, axis=1) for f in flights])))
 
 
 def scatter(count, probability=0.995):
-    """Return how far the rms of two components over flights may be from sigma: two factors."""
+    """Return the factors within which the rms of two components over flights is about sigma."""
     freedom = 2 * count
     return [float(np.sqrt(chi2.ppf(p, freedom) / freedom)) for p in (1 - probability, probability)]
 
@@ -53,13 +54,13 @@ def scatter(count, probability=0.995):
 @numbers(4)
 def test_fifty_minutes_by_every_filter(count, figures):
     """
-    The published errors, within the scatter of the flights about them (99 %).
+    The published errors are met within the scatter of the flights (99 %).
 
-    The factors of twelve flights are 0.64 and 1.38, of four 0.41 and 1.66.
-
-    The published "rms horizontal error" is read as that at the end of the flight, for every
-    filter. A known deviation: window_kf errs by 0.87 km there; its published 0.5 km is met by the
-    rms over the whole flight, which is held instead.
+    The factors for twelve flights are 0.64 and 1.38, for four 0.41 and 1.66. The published "rms
+    horizontal error" is taken as that at the end of the flight for every filter. Known deviation:
+    window_kf has 0.87 km there; its published 0.5 km is met by the rms over the whole flight,
+    which is
+    tested instead.
     """
     names = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
     rows, flights = flown(count, FILES, [FilterCase(name, 1000) for name in names])
@@ -71,7 +72,7 @@ def test_fifty_minutes_by_every_filter(count, figures):
             ('eskf', 'end_m', 180.0, 200.0)):
         assert low * least < getattr(by[name], figure) < high * most, name
     record(figures, count, rows, flights)
-    # the printed scheme is for straight legs: it refuses every window of a weaving heading
+    # The printed scheme is for straight legs: it refuses every window of a weaving heading.
     assert by['paper'].refused == count * 300
     assert 'in which the body turns' in by['paper'].reason
     assert by['paper'].end_m == by['free'].end_m
@@ -81,7 +82,7 @@ def test_fifty_minutes_by_every_filter(count, figures):
 
 
 def record(figures, count, rows, flights):
-    """Note the rows of the published number of flights."""
+    """Record the rows of the published number of flights."""
     if count != ALL:
         return
     for r, f in zip(rows, flights):
@@ -94,9 +95,9 @@ def record(figures, count, rows, flights):
 @numbers(2)
 def test_averaging_may_be_long(count, figures):
     """
-    The eskf at N = 10 to 6000 cycles: equal within 20 %, in what it thinks and in what is.
+    The eskf at N = 10 to 6000 cycles: sigma and error are equal within 20 %.
 
-    The specification asks for 20 %. The same flights are compared, so that two of them do.
+    The specification asks for 20 %. The same flights are compared, so that two of them suffice.
     """
     rows, flights = flown(count, FILES, [FilterCase('eskf', n) for n in (1000, 10, 100, 6000)])
     record(figures, count, rows[1:], flights[1:])
@@ -111,12 +112,13 @@ def test_averaging_may_be_long(count, figures):
                                               ('tactical', 508.0)])
 def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
     """
-    Error at the end, and mounting of 20 arcmin known to 2 when GNSS fails.
+    Error at the end, and a mounting of 20 arcmin known to 2 when GNSS fails.
 
-    The filter's own sigma within 30 % of the reference figure (of the grades only the names
-    navigation and tactical were given; their figures are ours), and the errors of the flights as
-    large. Four flights are too few to tell: their errors lie mostly along one axis, so that they
-    have about half of the freedom that the bound assumes.
+    The filter's sigma is within 30 % of the reference (only the names of the grades navigation and
+    tactical were given; their values are ours), and the errors of the flights agree with it. Four
+    flights are too few for this: their errors lie mostly along one axis, so that they have about
+    half
+    of the degrees of freedom that the bound assumes.
     """
     rows, flights = flown(
         count, ('gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],
@@ -138,6 +140,6 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
     assert low < eskf.end_m / eskf.sigma_m < high
     assert np.abs(mounting - 20.0).max() < 2.0
     nis = np.concatenate([f.nis for f in flights])
-    # three grades are asked, so that each has a third of the 5 %
+    # There are three grades, so that each has a third of the 5 %.
     interval = [chi2.ppf(p, 2 * len(nis)) / len(nis) for p in (0.025 / 3, 1 - 0.025 / 3)]
     assert interval[0] < nis.mean() < interval[1]

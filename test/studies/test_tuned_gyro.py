@@ -1,4 +1,4 @@
-"""The study of the paper: both tables, both stability limits, and the files that hold them."""
+"""The study of Sapegin et al. (2016): both tables, both stability limits, and their files."""
 
 import math
 
@@ -19,7 +19,7 @@ from support.places import ROOT
 CONFIG = ROOT / 'config'
 FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))
 
-# what the `sapegin_2016` preset gives by the specification, deg
+# Values of the `sapegin_2016` preset by the specification, deg.
 SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
              130.0: 9.972, 143.0: 9.966, 170.0: 9.952, 200.0: 9.933, 250.0: 9.896, 270.0: 9.879,
              320.0: 9.832, 337.0: 9.814}
@@ -46,7 +46,7 @@ def show(cells, unit):
 
 
 def record(figures, tables, name):
-    """Note the cells of a table."""
+    """Record the cells of a table."""
     figures.record(f'tuned_gyro.study.{name}', [c.poisson_deg for c in tables[name]], 'deg',
                    [c.paper_deg for c in tables[name]], 'published')
 
@@ -71,14 +71,14 @@ def test_table_of_speeds(tables, figures):
 
 
 def test_both_algorithms_agree(tables):
-    """1e-11 deg in every cell; and the cells are the reference figures."""
+    """Both algorithms agree to 1e-11 deg in every cell, and with the reference values."""
     for c in (*tables['frequency'], *tables['speed']):
         assert abs(c.poisson_deg - c.euler_vector_deg) <= 1e-11
         assert c.poisson_deg == pytest.approx(SPECIFIED[c.value], abs=6e-4)
 
 
 def test_amplitudes_are_those_of_a_first_order_lag(tables):
-    """To 1e-3 deg: 10 / sqrt(1 + (w T)^2), as A is small and the gyro settles in 20 s."""
+    """To 1e-3 deg: 10 / sqrt(1 + (w T)^2), because A is small and the gyro settles in 20 s."""
     lag = tuned_gyro_report(PRESETS['sapegin_2016']).time_constant_s
     for c in tables['frequency']:
         assert c.poisson_deg == pytest.approx(10.0 / math.hypot(1.0, c.value * lag), abs=1e-3)
@@ -95,7 +95,7 @@ def test_exact_propagation_of_the_damped_preset(tables):
 
 
 def test_stability_limits(figures):
-    """129.4 and 337.4 Hz at 0.75 ms, found by search; the paper says 130 and 337."""
+    """129.4 and 337.4 Hz at 0.75 ms, found by search; the paper states 130 and 337."""
     settings = read('speed')
     assert settings.paper_limits_hz == (130.0, 337.0)
     step_s = 1e-3 * settings.step_ms
@@ -110,7 +110,7 @@ def test_stability_limits(figures):
 @pytest.mark.parametrize('preset, method', [('sapegin_2016', 'rk4'), ('tactical', 'rk4'),
                                             ('sapegin_2016_damped', 'exact')])
 def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
-    """Bit for bit."""
+    """The compiled rocking equals the plain one, bit for bit."""
     pytest.importorskip('numba')
     found = []
     for samples in (10**9, 0):
@@ -121,7 +121,7 @@ def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
 
 
 def test_unstable_speeds_are_refused():
-    """In a table as in the search."""
+    """Unstable speeds are refused in a table and in the search."""
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which this gyro grows'):
         study_curve(read('speed', 'curve_values:=[340.0]'))
     with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
@@ -129,7 +129,9 @@ def test_unstable_speeds_are_refused():
 
 
 def test_progress_is_told_and_the_amplitude_scales():
-    """After each cell; a quarter of the rocking is a quarter of what is recovered."""
+    """
+    progress is called after each cell; a quarter of the rocking gives a quarter of the amplitude.
+    """
     told = []
     few = ('values:=[400.0]', 'paper_deg:=[]', 'step_ms:=1.0')
     (whole,) = study_table(read('frequency', *few), lambda: told.append(1))
@@ -163,7 +165,7 @@ def test_every_shipped_study_runs(path, tmp_path, capsys):
     ('step_ms:=0.0', 'step_ms is 0 ms; expected 0.001 to 100 ms'),
 ])
 def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
-    """Exit 2, nothing written."""
+    """Bad settings give exit code 2 with one message, and nothing is written."""
     out = tmp_path / 'study'
     assert main(['dtg-study', '--params-file', 'dtg_study_frequency', '-p', assignment, '-o',
                  str(out)]) == 2
@@ -172,7 +174,7 @@ def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
 
 
 def test_files_of_another_kind_are_refused(tmp_path, capsys):
-    """A study is no run and a run no study; two files of one name would share a figure."""
+    """A run is refused as a study and vice versa; two files of one name would share a figure."""
     assert main(['dtg-study', '--params-file', 'other_simulator']) == 2
     assert "unknown section '/**/truth_adapter'; the nearest known one" in capsys.readouterr().err
     assert main(['dtg-study', '--params-file', 'imu_tactical_fog']) == 2
@@ -186,7 +188,7 @@ def test_files_of_another_kind_are_refused(tmp_path, capsys):
 
 
 def test_vertices_by_parabola():
-    """The top between two samples is found to the fourth order of the spacing."""
+    """The maximum between two samples is found to the fourth order of their spacing."""
     for phase in np.linspace(0.0, 1.0, 7):
         t = 0.02 * (np.arange(320) + phase)
         assert half_peak_to_peak((3.0 * np.sin(t)).tolist()) == pytest.approx(3.0, abs=1e-7)

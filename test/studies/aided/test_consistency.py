@@ -1,8 +1,8 @@
 """
 NEES and NIS of ensembles of the aided chain, at each instant over the runs.
 
-A hundred flights take long: make figures. A few short ones show whether a filter still knows how
-far it is off.
+A hundred flights take long and are made by ``make figures``. A few short ones show whether a
+filter still knows the size of its errors.
 """
 
 from ins_sim import parameter_files, resources
@@ -16,12 +16,12 @@ from ins_sim.studies.aided_ensembles import AidedPlan, fly_aided_ensemble
 import numpy as np
 import pytest
 
-# Errors of the filter's model and no others: biases and white noise of the size it believes in.
+# Only errors that the filter models: biases and white noise of the size that it assumes.
 MODEL = ('gyro.errors.turn_on_bias_sigma_deg_h:=[0.05, 0.05, 0.05]',
          'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
          'accelerometer.errors.turn_on_bias_sigma_ug:=[200.0, 200.0, 200.0]',
          'accelerometer.errors.velocity_random_walk_m_s_sqrt_h:=[0.018, 0.018, 0.018]')
-# With GNSS for half the flight.
+# GNSS is available for half of the flight.
 FLIGHT = ('duration_s:=600.0', 'gnss_model.use:=true', 'outages.start_s:=[300.0]',
           'outages.end_s:=[4000.0]')
 SHORT = ('duration_s:=60.0', 'gnss_model.use:=true', 'outages.start_s:=[30.0]',
@@ -42,7 +42,7 @@ def consistency(files, assignments, runs, jobs, instants=21):
 
 
 def told(sums):
-    """Return mean, bounds of 95 % at the last instant, and the part of the instants inside."""
+    """Return mean, 95 % bounds at the last instant, and the fraction of instants inside."""
     low, high = sum_intervals(sums)
     k = int(np.flatnonzero(sums.count)[-1])
     return float(sums.mean[k]), float(low[k]), float(high[k]), inside_share(sums)[0]
@@ -54,7 +54,7 @@ def block(found, name):
 
 
 def test_a_few_flights_with_the_instrument_of_the_model():
-    """NEES at the end and the sums of NIS, of six flights, in the 99.9 % intervals for six."""
+    """NEES at the end and the sums of NIS of six flights are in their 99.9 % intervals."""
     found = consistency((), (*SHORT, *MODEL), FEW, 1, 4)
     for name in BLOCKS:
         sums = block(found, name)
@@ -68,7 +68,9 @@ def test_a_few_flights_with_the_instrument_of_the_model():
 
 
 def test_a_filter_that_believes_in_too_good_an_instrument_is_found_out():
-    """Accelerometers with ten times the bias it believes in: outside, by the same six flights."""
+    """
+    Accelerometers with ten times the assumed bias are outside of the intervals for six flights.
+    """
     worse = 'accelerometer.errors.turn_on_bias_sigma_ug:=[2000.0, 2000.0, 2000.0]'
     sums = block(consistency((), (*SHORT, *MODEL, worse), FEW, 1, 4), 'state')
     assert sums.mean[-1] > 10.0 * sum_intervals(sums, 0.999)[1][-1]
@@ -78,11 +80,11 @@ def test_a_filter_that_believes_in_too_good_an_instrument_is_found_out():
 @pytest.mark.parametrize('case', CASES)
 def test_a_hundred_flights(case, figures):
     """
-    NEES at the end and NIS of every fix against their 95 % intervals for a hundred flights.
+    NEES at the end and NIS of every fix, compared with the 95 % intervals for a hundred flights.
 
-    With errors of the filter's model and no others NEES and NIS lie inside; with any of these
-    instruments NIS does at 95 % of the fixes, within what their number allows (three sigma). Of
-    the others NEES is recorded; docs/design/aided_ensembles.md says why it lies where it does.
+    With errors that the filter models NEES and NIS are inside. With each of the instruments NIS is
+    inside at 95 % of the fixes, within the scatter due to their number (three sigma). NEES of the
+    instruments is recorded; docs/design/aided_ensembles.md explains it.
     """
     files, assignments = CASES[case]
     found = consistency(files, (*FLIGHT, *assignments), FLIGHTS, 0)

@@ -1,4 +1,4 @@
-"""What the comparison of filters says: which was best, by how much, and who is consistent."""
+"""The summary of a comparison of filters: the best one, its margin, and the consistency."""
 
 from ins_sim.report.charts.chart import Curve, DASHED, SOLID
 from ins_sim.report.studies.consistency import judged
@@ -12,7 +12,7 @@ TIMES_S = np.arange(0.0, 3001.0, 5.0)
 
 
 def flight(end_m, sigma_m=np.nan, square=np.nan, nis=()):
-    """Return a FilterFlight whose error grows evenly, east and north alike."""
+    """Return a FilterFlight whose error grows evenly, the same east and north."""
     error = np.zeros((len(TIMES_S), 3))
     error[:, :2] = (end_m / np.sqrt(2.0) * TIMES_S / TIMES_S[-1])[:, None]
     freedom = np.tile([2, 2, 0, 4], (len(TIMES_S), 1)) * np.isfinite(square)
@@ -24,7 +24,7 @@ def flight(end_m, sigma_m=np.nan, square=np.nan, nis=()):
 
 
 def study():
-    """Return the rows and flights of a comparison with a filter twice, and two equal ones."""
+    """Return the rows and flights of a comparison with one filter twice, and two equal ones."""
     flown = {FilterCase('free', 1000): flight(9000.0), FilterCase('paper', 1000): flight(9000.0),
              FilterCase('window_kf', 1000): flight(900.0, 100.0, 40.0, [5.0] * 300),
              FilterCase('eskf', 1000): flight(300.0, 200.0, 2.0, [2.0] * 300),
@@ -34,7 +34,7 @@ def study():
 
 
 def test_the_answer():
-    """The best beside the next filter, not beside itself; those outside NIS or NEES are named."""
+    """The best filter is compared with the next one; those outside NIS or NEES are named."""
     rows, _ = study()
     assert answer(rows, 3000.0) == (
         'Of 5 filters over 12 flights of 50 min, eskf, N 1000, was best: rms horizontal error at '
@@ -45,12 +45,12 @@ def test_the_answer():
 
 
 def test_rows_have_nees_at_the_end():
-    """Mean over flights, the interval of as many chi-squares, and the degrees of freedom."""
+    """NEES at the end: mean over flights, interval of the chi-square sum, degrees of freedom."""
     rows, _ = study()
     by = {row.name: row for row in rows}
     assert by['free, N 1000'].nees == {}
     mean, low, high, freedom = by['eskf, N 1000'].nees['position']
-    # chi-square of 24 degrees of freedom (Abramowitz and Stegun, table 26.8), over 12
+    # Chi-square of 24 degrees of freedom (Abramowitz and Stegun, table 26.8), divided by 12.
     assert (mean, freedom) == (2.0, 2)
     assert low == pytest.approx(12.401 / 12.0, rel=1e-4)
     assert high == pytest.approx(39.364 / 12.0, rel=1e-4)
@@ -58,7 +58,9 @@ def test_rows_have_nees_at_the_end():
 
 
 def test_equal_curves_are_one_with_both_names():
-    """A filter has one colour in all charts, and its windows have dashes."""
+    """
+    Equal curves are drawn once with both names; a filter has one colour, its windows have dashes.
+    """
     rows, flights = study()
     errors, consistency, shown = charts_of(rows, flights)
     curves = [mark for mark in errors.panels[0].marks if isinstance(mark, Curve)]
@@ -69,7 +71,7 @@ def test_equal_curves_are_one_with_both_names():
     assert shown.title == 'Position error of each flight, filter eskf, N 1000'
     nees = [mark for mark in consistency.panels[0].marks if isinstance(mark, Curve)]
     assert {c.label: c.colour for c in nees}.items() <= {c.label: c.colour for c in curves}.items()
-    # the filter that is 20 times too optimistic is within what is shown
+    # The range of the figure includes the filter that is 20 times too optimistic.
     assert consistency.panels[0].y_range[1] > 20.0
 
 
@@ -77,12 +79,14 @@ def test_equal_curves_are_one_with_both_names():
     (2.0, 'consistent'), (4.0, 'too optimistic'), (0.5, 'too pessimistic'),
     (np.nan, ''), (None, '')])
 def test_where_a_mean_lies(mean, words):
-    """In words."""
+    """The position of a mean relative to its interval is stated in words."""
     assert judged(mean, 1.0, 3.0) == words
 
 
 def test_cases():
-    """The first window for all, the others for the eskf; what is unknown is refused."""
+    """
+    The first window is used for all filters, the others for the eskf; unknown names are refused.
+    """
     assert cases_of(['free', 'eskf', 'free'], [100, 10]) == (
         FilterCase('free', 100), FilterCase('eskf', 100), FilterCase('eskf', 10))
     with pytest.raises(ValueError, match="filter is 'ukf'; expected one of free, conventional"):

@@ -1,4 +1,6 @@
-"""The command monte-carlo --aided: the same numbers whoever computes them, and its worst run."""
+"""
+The command monte-carlo --aided: the same numbers for any number of workers, and its worst run.
+"""
 
 import json
 import re
@@ -19,7 +21,9 @@ def ensemble(folder, *words, runs=4):
 
 
 def test_jobs_change_no_bit_and_the_worst_run_flies_alone(tmp_path, capsys, monkeypatch):
-    """One process or two: one digest. The command for the worst run gives its end, to the bit."""
+    """
+    One and two processes give one digest; the command for the worst run gives its end, to the bit.
+    """
     monkeypatch.chdir(tmp_path)
     gnss = ['-p', 'gnss_model.use:=true']
     summary, arrays = ensemble(tmp_path / 'a', *gnss, '--jobs', '1')
@@ -48,7 +52,7 @@ def test_jobs_change_no_bit_and_the_worst_run_flies_alone(tmp_path, capsys, monk
 
 
 def test_a_filter_without_a_covariance(tmp_path, capsys):
-    """There is no NEES, and that is said; the errors are there."""
+    """A filter without covariance has errors but no NEES, and a message says so."""
     summary, arrays = ensemble(tmp_path / 'a', '-p', 'filter:=conventional', '--jobs', '1',
                                runs=2)
     told = ' '.join(capsys.readouterr().out.split())
@@ -60,12 +64,12 @@ def test_a_filter_without_a_covariance(tmp_path, capsys):
 
 
 def test_a_run_that_is_refused_is_named(tmp_path, capsys):
-    """A gap ends the solution where on_fault is stop: the run is named with the reason."""
+    """With on_fault stop a gap ends the solution: the run is named with the reason."""
     gaps = ['-p', 'sampling.drop_out_probability:=0.0005', '-p', 'aided_navigator:on_fault:=stop',
             '-p', 'velocity_meter:attack_angle:=none']
     summary, arrays = ensemble(tmp_path / 'a', *gaps, '--jobs', '1')
     told = ' '.join(capsys.readouterr().out.split())
-    # in 2000 samples there is a loss in two runs of three
+    # In 2000 samples there is a loss in two runs of three.
     assert 0 < len(summary['diverged']) < 4
     first = summary['diverged'][0]
     lost = len(summary['diverged'])
@@ -81,7 +85,7 @@ def test_a_run_that_is_refused_is_named(tmp_path, capsys):
     (['-p', 'gnss.rate_hz:=30.0'], 'expected a multiple of the period of rate_hz'),
     (['--runs', '0'], 'runs is 0; expected a whole number from 1 to 10000000')])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2 before a worker starts, and nothing is left."""
+    """Bad input gives exit code 2 before a worker starts, and nothing is written."""
     assert main([*WORDS, '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and not list(tmp_path.iterdir())

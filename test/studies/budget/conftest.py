@@ -1,4 +1,4 @@
-"""Budgets that several tests read."""
+"""Budgets that several tests use."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The budget against ensembles: inside 99.9 % intervals as far as linear theory holds."""
+"""The budget compared with ensembles: inside 99.9 % intervals while linear theory applies."""
 
 import numpy as np
 import pytest
@@ -13,13 +13,13 @@ FOG, MEMS = 'imu_tactical_fog', 'imu_tactical_mems'
 
 
 def test_intervals_of_a_thousand_runs():
-    """Of 1000 runs s/sigma lies in [0.956, 1.044] (95 %) and [0.927, 1.074] (99.9 %)."""
+    """For 1000 runs s/sigma is in [0.956, 1.044] (95 %) and [0.927, 1.074] (99.9 %)."""
     assert np.round(sigma_interval(1000, 0.95), 3).tolist() == [0.956, 1.044]
     assert np.round(sigma_interval(1000), 3).tolist() == [0.927, 1.074]
 
 
 def test_scatter_of_the_horizontal_rms():
-    """It is sqrt((s_N^4 + s_E^4)/2n)/(s_N^2 + s_E^2), and 10000 draws with a mean scatter so."""
+    """The scatter is sqrt((s_N^4 + s_E^4)/2n)/(s_N^2 + s_E^2); 10000 draws with a mean agree."""
     sigma = np.array([4300.0, 8600.0])
     wanted = np.sqrt(np.sum(sigma ** 4) / 2000.0) / np.sum(sigma ** 2)
     found = rms_scatter(np.diag(sigma ** 2)[None], np.zeros((1, 2)), 1000)[0]
@@ -28,20 +28,23 @@ def test_scatter_of_the_horizontal_rms():
     draws = np.random.default_rng(1).multivariate_normal(mean, p, (10000, 50))
     rms = np.sqrt(np.mean(np.sum(draws ** 2, axis=2), axis=1))
     whole = np.sqrt(np.trace(p) + mean @ mean)
-    # of second order in the scatter, and the scatter of a standard deviation of 10000
+    # Terms of second order in the scatter, and the scatter of a standard deviation from 10000
+    # draws.
     assert rms.std() / whole == pytest.approx(
         rms_scatter(p[None], mean[None], 50)[0], rel=0.03)
 
 
 def test_the_scatter_of_that_fog(fog):
-    """The horizontal rms of 1000 runs of the tactical FOG has one sigma of 1.83 % after 1 h."""
+    """The horizontal rms of 1000 runs of the tactical FOG has a sigma of 1.83 % after 1 h."""
     p = fog.linear.total_covariance()[-1, :2, :2]
     plain = np.diag(np.diag(p))
     assert rms_scatter(plain[None], np.zeros((1, 2)), 1000)[0] == pytest.approx(0.0183, abs=5e-5)
 
 
 def test_an_ensemble_of_another_instrument_differs():
-    """Of 1000 runs with 1.15 times the sigma of the budget it is said; of the right one not."""
+    """
+    1000 runs with 1.15 times the sigma of the budget are marked; those with the right one are not.
+    """
     t_s = np.array([0.0, 10.0])
     p = np.zeros((1, 2, 9, 9))
     p[0, 1] = np.diag([4.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1e-8, 1e-8, 1e-6])
@@ -63,7 +66,7 @@ def test_an_ensemble_of_another_instrument_differs():
     pytest.param(MEMS, 1000, 3600.0, marks=pytest.mark.figures)])
 def test_ensemble_is_inside_its_interval(instrument, runs, seconds, figures):
     """
-    Racetrack: every quantity at every instant, unless linear theory has ended.
+    On the racetrack every quantity is inside at every instant, unless linear theory has ended.
 
     The hour of 1000 runs takes minutes and is made by ``make figures``.
     """

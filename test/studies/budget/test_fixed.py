@@ -1,4 +1,4 @@
-"""What errs in the same way in every run: the budget against single simulations of it."""
+"""Errors that are the same in every run: the budget compared with single simulations."""
 
 import numpy as np
 import pytest
@@ -52,11 +52,11 @@ def budget_and_run(motion, values):
 
 
 def check(linear, found, parts):
-    """Position and velocity within a part of what was found, and attitude too."""
+    """Compare position, velocity and attitude within given fractions of the simulated ones."""
     mean = linear.total_mean()[-1]
     for rows in (slice(0, 3), slice(3, 6), slice(6, 9)):
         size = np.linalg.norm(found[rows])
-        # floors: what rounding and the algorithms of the strapdown leave
+        # Floors: rounding and truncation of the strapdown.
         floor = {0: 1e-3, 3: 1e-5, 6: 1e-7}[rows.start]
         assert np.linalg.norm(mean[rows] - found[rows]) < parts * size + floor
 
@@ -64,7 +64,7 @@ def check(linear, found, parts):
 @pytest.mark.slow
 @pytest.mark.parametrize('key', FIXED)
 def test_one_error_alone(key):
-    """Racetrack, 100 s: within 4e-3 of a simulation with this error alone."""
+    """Racetrack, 100 s: the budget agrees with a simulation of this error alone within 4e-3."""
     linear, found = budget_and_run('racetrack', {'duration_s': 100.0, **values_of(key)})
     assert [source.key for source in linear.fixed] == [key]
     check(linear, found, 4e-3)
@@ -72,7 +72,7 @@ def test_one_error_alone(key):
 
 @pytest.mark.parametrize('motion', ['racetrack', 'motion_2'])
 def test_all_errors_at_once(motion):
-    """A minute with every fixed error: 2e-3, and the turn of the axes, of second order."""
+    """One minute with every fixed error: 2e-3, and the rotation of the axes, of second order."""
     values = {'duration_s': 60.0}
     for key in FIXED:
         values.update(values_of(key))
@@ -83,7 +83,7 @@ def test_all_errors_at_once(motion):
 
 @pytest.mark.parametrize('source', ['stream', 'motion'])
 def test_the_start_of_lags(source):
-    """Navigation that starts two seconds later, or at an IMU fed by the motion, fits as well."""
+    """Navigation that starts two seconds later, or an IMU fed by the motion, agrees as well."""
     for after_s in (0.0, 2.0):
         linear, found = budget_and_run('motion_2', {
             'duration_s': 20.0, 'initial.after_s': after_s, 'imu_sensor:source': source,
@@ -93,7 +93,10 @@ def test_the_start_of_lags(source):
 
 @pytest.mark.parametrize('channel', ['free', 'damped'])
 def test_the_vertical_channel(channel):
-    """A velocity error upwards of 0.1 m/s, free: by the gradient of gravity; damped: gone."""
+    """
+    A velocity error of 0.1 m/s upwards: free, it follows the gravity gradient; damped, it
+    vanishes.
+    """
     linear, found = budget_and_run('racetrack', {
         'duration_s': 60.0, 'vertical.channel': channel, 'vertical.time_constant_s': 5.0,
         'initial.velocity_error_m_s': [0.0, 0.0, 0.1]})

@@ -1,4 +1,4 @@
-"""Properties of the propagation: steps, processes that are each other's limits, and axes."""
+"""Properties of the propagation: steps, limits of processes, and axes."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def budget(values, motion='racetrack'):
 
 
 def test_random_parts_bear_longer_steps(monkeypatch):
-    """With steps of 0.2 s sigmas are right to 1e-5, against steps of 0.05 s."""
+    """With steps of 0.2 s sigmas agree to 1e-5 with those for steps of 0.05 s."""
     files = ['racetrack', 'imu_tactical_fog']
     fine = budget({}, files)
     monkeypatch.setattr(propagation, 'STEP_S', 0.2)
@@ -31,7 +31,9 @@ def test_random_parts_bear_longer_steps(monkeypatch):
 
 
 def test_an_endless_process_is_a_walk():
-    """Gauss-Markov with an infinite time is a walk of its sigma after an hour."""
+    """
+    Gauss-Markov with infinite correlation time is a random walk with its sigma after an hour.
+    """
     times = [np.inf, 300.0, 300.0]
     walk = budget({GYRO + 'rate_random_walk_deg_h_sqrt_h': [0.5, 0.0, 0.0]})
     endless = budget({GYRO + 'gauss_markov_sigma_deg_h': [0.5, 0.0, 0.0],
@@ -44,19 +46,22 @@ def test_an_endless_process_is_a_walk():
 
 
 def test_a_slow_process_is_a_bias_and_a_fast_one_is_white():
-    """A time constant of 1e9 s is a turn-on bias; one of 1 ms white noise, 2 sigma^2 T."""
+    """A time constant of 1e9 s is a turn-on bias; one of 1 ms is white noise with 2 sigma^2 T."""
     bias = budget({FORCE + 'turn_on_bias_sigma_ug': 100.0})
     slow = budget({FORCE + 'gauss_markov_sigma_ug': 100.0, FORCE + 'gauss_markov_time_s': 1e9})
     assert slow.rms() == pytest.approx(bias.rms(), rel=1e-6)
     density = 1000.0 * 9.80665e-6 * np.sqrt(2.0 * 1e-3)
     white = budget({FORCE + 'noise_density_m_s2_sqrt_hz': density})
     fast = budget({FORCE + 'gauss_markov_sigma_ug': 1000.0, FORCE + 'gauss_markov_time_s': 1e-3})
-    # a process of correlation time T that has run for t lacks T/t of its variance
+    # After the time t the variance of a process with correlation time T is short by the fraction
+    # T/t.
     assert fast.rms()[60:] == pytest.approx(white.rms()[60:], rel=1e-4)
 
 
 def test_a_walk_has_run_before_the_navigation():
-    """It starts at motion time zero: at the start it is a bias of K sqrt(t)."""
+    """
+    A random walk starts at motion time zero: at the start of navigation it is a bias of K sqrt(t).
+    """
     key = GYRO + 'rate_random_walk_deg_h_sqrt_h'
     same = {'motion.kind': 'static', 'duration_s': 300.0}
     late = budget({key: 0.5, **same, 'duration_s': 600.0, 'initial.after_s': 300.0}, []).rms()
@@ -67,7 +72,7 @@ def test_a_walk_has_run_before_the_navigation():
 
 
 def test_axes_add_up():
-    """The variances by axis of each source make its variance, and one axis alone has its own."""
+    """The variances by axis of each source add up to its variance; one axis alone has its own."""
     values = {GYRO + 'turn_on_bias_sigma_deg_h': [1.0, 2.0, 3.0],
               GYRO + 'bias_instability_deg_h': [0.1, 0.0, 0.3],
               FORCE + 'velocity_random_walk_m_s_sqrt_h': [0.1, 0.2, 0.0]}
@@ -83,7 +88,10 @@ def test_axes_add_up():
 
 @pytest.mark.parametrize('motion', ['racetrack', 'motion_2'])
 def test_against_the_covariance_of_the_strapdown(motion):
-    """As the navigator's own propagation, whose steps turn by up to 0.6 rad: 0.6^2/24/2."""
+    """
+    The budget agrees with the navigator's covariance, whose steps rotate by up to 0.6 rad:
+    0.6^2/24/2.
+    """
     settings = ins_sim.read_settings(motion, {
         'duration_s': 100.0, 'strapdown:output_every': 100,
         **{GYRO + key: value for key, value in (
@@ -96,7 +104,7 @@ def test_against_the_covariance_of_the_strapdown(motion):
         'initial.tilt_sigma_mrad': 0.3, 'initial.azimuth_sigma_mrad': 1.5})
     free = free_covariance(settings.strapdown)
     flown = read_motion(settings.motion_generator)
-    # a perfect IMU: the covariance is taken along the truth
+    # With a perfect IMU the covariance is propagated along the truth.
     perfect = ins_sim.read_settings(motion, {'duration_s': 100.0})
     for _ in navigate_blocks(settings.strapdown, flown, imu_blocks(perfect, flown),
                              covariance=free):

@@ -1,4 +1,4 @@
-"""Values that an independent model of the same errors has found (its own code, and 40 runs)."""
+"""Values found by an independent model of the same errors (own code, and 40 runs)."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ RANDOM_PARTS = {
 
 @pytest.mark.parametrize('rotation, column, tolerance', [(False, 1, 1e-3), (True, 2, 2e-3)])
 def test_each_error_at_rest(rotation, column, tolerance):
-    """Each error of all axes alone: 1e-3 without, 2e-3 with the rotation of the Earth."""
+    """Each error on all axes alone: 1e-3 without, 2e-3 with the rotation of the Earth."""
     settings = ins_sim.read_settings([], {
         **REST, 'earth.rotation': rotation, **{key: row[0] for key, row in AT_REST.items()}})
     found = ins_sim.budget(settings)
@@ -38,7 +38,7 @@ def test_each_error_at_rest(rotation, column, tolerance):
 
 
 def test_racetrack_with_the_fog(fog):
-    """Horizontal rms after 600, 1800 and 3600 s, 0.5 %; and its ranking."""
+    """Horizontal rms after 600, 1800 and 3600 s within 0.5 %, and the ranking of the sources."""
     found = [fog.rms()[fog.linear.at(t)] for t in RANDOM_PARTS]
     assert found == pytest.approx([977.0, 6255.9, 9656.6], rel=5e-3)
     made = {s.key: s.label for s in fog.sources}
@@ -52,7 +52,9 @@ def test_racetrack_with_the_fog(fog):
 
 
 def test_racetrack_with_the_mems(mems):
-    """Horizontal rms, 0.5 %; the azimuth is off by 7 deg, where linear theory is a guide."""
+    """
+    Horizontal rms within 0.5 %; the azimuth error is 7 deg, where linear theory is approximate.
+    """
     found = [mems.rms()[mems.linear.at(t)] for t in RANDOM_PARTS]
     assert found == pytest.approx([6593.4, 42010.0, 63518.0], rel=5e-3)
     assert np.degrees(mems.rms('azimuth')[-1]) == pytest.approx(7.0, abs=0.5)
@@ -60,7 +62,7 @@ def test_racetrack_with_the_mems(mems):
 
 
 def test_what_must_improve_for_a_mile(fog):
-    """1852 m: no single source; all random ones by 0.1756, or everything by 0.1918."""
+    """1852 m: no single source suffices; all random ones by 0.1756, or everything by 0.1918."""
     found = fog.requirement('horizontal rms 1852 m at 3600 s')
     assert not found.met and all(i.factor is None for i in found.alone)
     assert found.alone[0].source.label == 'gyro turn-on bias'
@@ -70,7 +72,7 @@ def test_what_must_improve_for_a_mile(fog):
 
 
 def test_what_must_improve_for_four_miles(fog):
-    """7408 m: turn-on bias of 0.6827 deg/h; with it the budget meets the requirement."""
+    """7408 m: a turn-on bias of 0.6827 deg/h; with it the budget meets the requirement."""
     found = fog.requirement('horizontal rms 7408 m at 1 h')
     enough = [i for i in found.alone if i.factor is not None]
     assert [i.source.label for i in enough] == ['gyro turn-on bias']
@@ -94,7 +96,7 @@ def test_the_parts_make_the_whole(fog):
 @pytest.mark.slow
 @pytest.mark.parametrize('motion', [{'motion.kind': 'static'}, {'motion.kind': 'cruise'}])
 def test_linear_theory_ends_for_the_mems_at_rest(motion):
-    """At rest and on cruise after half an hour, and by the turn of the axes over the Earth."""
+    """Linear theory ends at rest and on the cruise after half an hour, by rotation of the axes."""
     found = ins_sim.budget(ins_sim.read_settings('imu_tactical_mems',
                                                  {'duration_s': 3600.0, **motion}))
     assert 1500.0 < found.linear_until() < 2100.0

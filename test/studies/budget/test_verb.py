@@ -25,7 +25,7 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def written(study):
-    """Return the folder of a budget beside it, with two requirements."""
+    """Return the folder of a budget with this comparison and two requirements."""
     folder = study.parent / 'budget'
     assert main(['budget', *FILES, '--require', 'horizontal rms 1 m at 60 s', '--require',
                  'horizontal cep95 8 m at 1 min', '--beside', str(study), '-o',
@@ -34,7 +34,7 @@ def written(study):
 
 
 def test_what_is_written(written):
-    """Figures, page, numbers and parameters; the page answers and is small."""
+    """Figures, page, numbers and parameters are written; the page has the answers and is small."""
     names = {path.name for path in written.iterdir()}
     assert names >= {*(f'{name}.png' for name in (*FIGURES, 'budget_beside')), report.MARK,
                      report.ARRAYS, report.SETTINGS, 'report.html'}
@@ -54,7 +54,7 @@ def test_what_is_written(written):
 
 @pytest.mark.slow
 def test_python_says_the_same(study, tmp_path):
-    """``ins_sim.budget`` with tables for pandas and xarray, and the folder of the verb."""
+    """``ins_sim.budget`` gives tables for pandas and xarray, and the same folder as the verb."""
     pandas, xarray = pytest.importorskip('pandas'), pytest.importorskip('xarray')
     settings = ins_sim.read_settings(['racetrack', 'imu_tactical_fog'], {'duration_s': 60.0})
     found = ins_sim.budget(settings, [33.3], beside=study)
@@ -79,7 +79,7 @@ def test_python_says_the_same(study, tmp_path):
 
 
 def refused(capsys, *words):
-    """Return the sentence with which the verb refuses, exit code 2."""
+    """Return the message with which the verb refuses, exit code 2."""
     assert main(['budget', *words]) == 2
     captured = capsys.readouterr()
     assert captured.err.count('\n') == 1 and captured.err.startswith('ins_sim budget: ')
@@ -91,14 +91,14 @@ def refused(capsys, *words):
     'horizontal rms nan m at 60 s', 'azimuth cep50 1 deg at 60 s', 'azimuth rms 3 m at 60 s', '',
     'horizontal rms 1 m at 60 s please', 'horizontal rms 1e400 m at 60 s', 'x' * 5000])
 def test_a_misspelt_requirement_gets_the_grammar(text, tmp_path, capsys):
-    """In one sentence, before anything is computed, and nothing is written."""
+    """A misspelt requirement is answered by the grammar before anything is computed or written."""
     said = refused(capsys, *FILES, '--require', text, '-o', str(tmp_path / 'b'))
     assert 'QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME' in said and len(said) < 800
     assert not (tmp_path / 'b').exists()
 
 
 def test_what_cannot_be_answered_is_refused(study, tmp_path, capsys):
-    """A late requirement, one run, other settings, no study, tuned gyros."""
+    """A late requirement, one run, other settings, no study, and tuned gyros are refused."""
     out = ['-o', str(tmp_path / 'b')]
     assert 'which ends after 60 s' in refused(
         capsys, *FILES, '--require', 'horizontal rms 1 m at 61 s', *out)
@@ -116,7 +116,7 @@ def test_what_cannot_be_answered_is_refused(study, tmp_path, capsys):
 
 
 def test_damaged_studies_are_refused(study, tmp_path, capsys):
-    """An ensemble.npz that is none, and one without what is needed."""
+    """An invalid ensemble.npz and one with missing arrays are refused."""
     for content in (b'', b'PK\x03\x04 nothing', None):
         folder = tmp_path / 'study'
         folder.mkdir(exist_ok=True)
@@ -130,7 +130,7 @@ def test_damaged_studies_are_refused(study, tmp_path, capsys):
 
 
 def test_a_requirement_that_is_met_is_said(capsys, tmp_path):
-    """And instruments without any error have a budget of zero."""
+    """A requirement that is met is reported; instruments without errors have a budget of zero."""
     assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--require',
                  'horizontal cep50 1 m at 10 s', '-o', str(tmp_path / 'b')]) == 0
     said = capsys.readouterr().out
@@ -139,7 +139,9 @@ def test_a_requirement_that_is_met_is_said(capsys, tmp_path):
 
 @pytest.mark.slow
 def test_what_linear_theory_does_not_cover_is_said(capsys, tmp_path):
-    """An azimuth known to 20 deg: from the start on; an input beyond the range; the start."""
+    """
+    Limits of linear theory are reported: an azimuth sigma of 20 deg; an input beyond the range.
+    """
     assert main(['budget', '--params-file', 'motion_2', '-p', 'duration_s:=10.0', '-p',
                  'initial.azimuth_sigma_mrad:=350.0', '-p',
                  'gyro.errors.saturation_deg_s:=[40.0, 40.0, 40.0]', '--runs', '16', '-p',
@@ -152,7 +154,7 @@ def test_what_linear_theory_does_not_cover_is_said(capsys, tmp_path):
 
 
 def test_two_errors_that_cancel_need_both():
-    """Of a requirement that fixed errors alone exceed it is said that no random one helps."""
+    """If fixed errors alone exceed a requirement, a message says that no random one helps."""
     settings = ins_sim.read_settings('racetrack', {
         'duration_s': 60.0, 'gyro.errors.bias_deg_h': 10.0,
         'gyro.errors.turn_on_bias_sigma_deg_h': 1.0})
@@ -162,7 +164,9 @@ def test_two_errors_that_cancel_need_both():
 
 
 def test_sensitivities_are_derivatives():
-    """d rms / d parameter against a difference; of a random, a fixed and an inverse one."""
+    """
+    Sensitivities equal differences of the rms for a random, a fixed and an inverse parameter.
+    """
     values = {'duration_s': 200.0, 'gyro.errors.turn_on_bias_sigma_deg_h': [1.0, 2.0, 3.0],
               'gyro.errors.bias_deg_h': 2.0, 'gyro.errors.bandwidth_hz': 50.0}
 
@@ -176,14 +180,16 @@ def test_sensitivities_are_derivatives():
              0.02), ('gyro.errors.bias_deg_h', '', 1.99, 2.01, 0.02)):
         slope = (rms(**{key: more}) - rms(**{key: less})) / step
         assert slopes[key, axis] == pytest.approx(slope, rel=1e-3)
-    # its discretisation changes with it too
+    # The discretisation of a lag changes with its bandwidth too.
     key = 'gyro.errors.bandwidth_hz'
     slope = (rms(**{key: 51.0}) - rms(**{key: 49.0})) / 2.0
     assert slopes[key, ''] == pytest.approx(slope, rel=0.1)
 
 
 def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
-    """Of 10 intervals a budget of 360 has all instants, of 7 the last one; one run has none."""
+    """
+    Of 10 intervals a budget of 360 contains all instants, of 7 the last one; one run has none.
+    """
     said = []
     for instants, runs in ((11, 2), (8, 2), (11, 1)):
         study = tmp_path / f'mc_{instants}_{runs}'
@@ -201,7 +207,7 @@ def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
 
 
 def test_ideal_instruments_are_not_said_to_agree(capsys, tmp_path):
-    """Nothing scatters, so nothing is compared."""
+    """Ideal instruments have no scatter, so nothing is compared."""
     assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--runs', '2',
                  '-o', str(tmp_path / 'b')]) == 0
     said = ' '.join(capsys.readouterr().out.split())
@@ -209,13 +215,13 @@ def test_ideal_instruments_are_not_said_to_agree(capsys, tmp_path):
 
 
 def test_an_empty_name_of_a_study_is_refused(capsys, tmp_path):
-    """It is not taken as no comparison."""
+    """An empty name of a study is not taken for no comparison."""
     assert 'holds no ensemble.npz' in refused(
         capsys, *FILES, '--beside', '', '-o', str(tmp_path / 'b'))
 
 
 def test_a_factor_is_never_shown_as_zero(capsys, tmp_path):
-    """A requirement that asks for a billionth."""
+    """The factor of a requirement that asks for a billionth is not shown as zero."""
     assert main(['budget', *FILES, '--require', 'horizontal rms 1e-9 m at 60 s', '-o',
                  str(tmp_path / 'b')]) == 0
     assert 'all errors x 1.2' in ' '.join(capsys.readouterr().out.split())

@@ -1,4 +1,4 @@
-"""The runs of the study of delays, against the specification and the linear theory."""
+"""The runs of the delay study, compared with the specification and the linear theory."""
 
 import numpy as np
 import pytest
@@ -18,12 +18,12 @@ HALF_UNIT = {0.0: 5e-5, 0.001: 5e-5, 0.01: 5e-6, 0.1: 5e-6}
 
 @pytest.fixture(scope='module')
 def tuned():
-    """Return the run of figure 1 that is tuned."""
+    """Return the tuned run of figure 1."""
     return fly_run(figure('figure_1').runs()[0])
 
 
 def check_end(run, detuning, figures):
-    """Compare the errors after an hour, to 1e-3 of the largest of each curve, and its rounding."""
+    """Compare the errors after an hour, within 1e-3 of the largest of each curve, and rounding."""
     assert run.t_s[-1] == 3600.0
     assert run.settings.motion_generator.motion.two_axis.detuning_rad_s == detuning
     end, largest = ARCMIN * run.angles[-1], ARCMIN * np.abs(run.angles).max(axis=0)
@@ -36,10 +36,11 @@ def check_end(run, detuning, figures):
 
 def check_prediction(run):
     """
-    The slope of the attitude error within 1e-4 + (w dt)^2/4, the position within 1e-2.
+    The attitude slope agrees within 1e-4 + (w dt)^2/4, the position within 1e-2.
 
-    A detuned drift nu turns; the rotation vector then grows about Up by half its product with nu
-    besides, and is at most 2 nu / detuning.
+    A detuned drift nu rotates; the rotation vector then also grows about Up by half its product
+    with
+    nu, and is at most 2 nu / detuning.
     """
     motion = run.settings.motion_generator.motion
     sine = np.sin(np.radians(abs(motion.theta_deg)))
@@ -68,7 +69,7 @@ def test_tuned_motion_2_errs_as_specified(tuned, figures):
 @pytest.mark.parametrize('detuning', [
     0.001, pytest.param(0.01, marks=pytest.mark.slow), pytest.param(0.1, marks=pytest.mark.slow)])
 def test_detuned_motion_2_errs_as_specified(detuning, figures):
-    """Of a drift that turns, the slope is predicted too: the mean would be another number."""
+    """For a rotating drift the slope is predicted, which differs from the mean."""
     shows = figure('figure_2')
     run = fly_run(shows.runs()[shows.shows.detunings_rad_s.index(detuning)])
     check_end(run, detuning, figures)
@@ -88,14 +89,14 @@ def test_other_figures_of_motion_2(name, key):
         assert run.measured.largest[[1, 0]] == pytest.approx(
             summary.PUBLISHED_POSITION['two_axis', key, 0.0], rel=2e-5)
     else:
-        # psi' = -1 at theta +30: 1/8 cos(theta) (1 + sin(theta)), against East
+        # psi' = -1 at theta +30: 1/8 cos(theta) (1 + sin(theta)), about East.
         size = 0.125e-6 * np.cos(np.radians(30.0)) * 1.5
         assert run.measured.drift[0] == pytest.approx(-size, rel=2e-4)
         assert np.abs(run.measured.drift[1:]).max() <= 1e-4 * size
 
 
 def test_any_three_delays_of_a_flight():
-    """Sensitivities times delays are the error of delays that the run was not flown with."""
+    """Sensitivities times delays give the error for delays other than those of the run."""
     shows = figure('figure_5', duration_s=300.0)
     known = fly_run(shows.runs()[0], with_sensitivity=True)
     other = fly_run(figure('figure_5', duration_s=300.0, gyro__delay_us__x=-1.0,
@@ -108,13 +109,13 @@ def test_any_three_delays_of_a_flight():
     assert np.abs(other.apart[:, :2] - expected).max() <= 5e-3 * largest
     assert known.sensitivity.drift @ delays == pytest.approx(
         other.measured.drift, abs=5e-3 * np.linalg.norm(other.measured.drift))
-    # linear to rounding: the prediction of the run itself is their sum
+    # The prediction is linear to rounding: that of the run itself is their sum.
     own = known.sensitivity.position @ (1e-6 * np.array((2.0, 1.0, 3.0)))
     assert own == pytest.approx(known.predicted[:, :2], abs=1e-9 * np.abs(own).max())
 
 
 def test_a_run_is_flown_once_for_all_figures():
-    """Figures 1 and 2 and the map over the rates show the same four runs, a flight its own."""
+    """Figures 1 and 2 and the map over the rates share four runs; a flight has its own."""
     shown = [figure(name, duration_s=2.0)
              for name in ('figure_1', 'figure_2', 'rates', 'figure_3', 'rocking')]
     assert len(distinct_runs(shown)) == 4 + 1 + 9
@@ -125,7 +126,7 @@ def test_a_run_is_flown_once_for_all_figures():
 
 
 def test_a_long_run_is_kept_in_few_instants():
-    """Both ends are among them; the figures of the run are of all of them."""
+    """Both ends are among the instants; the numbers of the run come from all samples."""
     run = fly_run(figure('figure_1', duration_s=60.0, output_every=1).runs()[3])
     assert len(run.t_s) == 3601 and run.t_s[[0, -1]] == pytest.approx([0.0, 60.0])
     assert (np.diff(run.t_s) > 0.0).all()

@@ -1,4 +1,4 @@
-"""The delays that come out are those that were set, with the scatter that is said."""
+"""Estimated delays equal the set ones, with the stated scatter."""
 
 import math
 
@@ -15,11 +15,11 @@ SET_US = np.array([2.0, 1.0, 3.0])
 
 
 def lag_of_first_order(bandwidth_hz, dt_s, frequency_hz):
-    """Return the phase of mean outputs behind mean inputs over the angular frequency, s."""
+    """Return the phase of mean outputs behind mean inputs divided by the angular frequency, s."""
     w, z = 2.0 * math.pi * bandwidth_hz, np.exp(2j * math.pi * frequency_hz * dt_s)
     decay = math.exp(-w * dt_s)
-    # The state behind an interval is u + decay (x - u), the mean output u + (1 - decay) / (w dt)
-    # times what is left of x - u at its start.
+    # The state after an interval is u + decay (x - u), the mean output u + (1 - decay) / (w dt)
+    # times the remainder of x - u at its start.
     state = (1.0 - decay) / (z - decay)
     response = 1.0 + (1.0 - decay) / (w * dt_s) * (state - 1.0)
     return -np.angle(response) / (2.0 * math.pi * frequency_hz)
@@ -29,7 +29,7 @@ def test_the_lag_of_the_fog_is_361_5_us():
     """
     440 Hz at 100 Hz under a rocking of 1 Hz, by the model and by its frequency response.
 
-    A delay is found to the nanosecond to which the motion is evaluated.
+    The motion is evaluated at whole nanoseconds, which limits the estimate.
     """
     record, chosen = ideal({**DIAGONAL, **FOG}, 20.0)
     found = 1e6 * model_lags([record], chosen.imu_sensor.gyro.errors)
@@ -40,10 +40,11 @@ def test_the_lag_of_the_fog_is_361_5_us():
 @pytest.mark.slow
 def test_twelve_seeds_of_the_fog_on_the_diagonal():
     """
-    The mean is within 0.15 us of the truth, and the scatter is what is said.
+    The mean of twelve seeds is within 0.15 us of the truth, and the scatter is the stated one.
 
-    36 squares of error over sigma are within 99.9 % of chi-square; and so they are where the
-    angle random walk is not known.
+    The 36 squares of error over sigma are within 99.9 % of chi-square, also if the angle random
+    walk
+    is unknown.
     """
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 600.0)
     truth = 1e-6 * SET_US + model_lags([record], chosen.imu_sensor.gyro.errors)
@@ -69,12 +70,14 @@ def test_twelve_seeds_of_the_fog_on_the_diagonal():
 
 
 def replaced_walk(record, factor):
-    """Return a record whose white noise is said to be so many times what it is."""
+    """Return a record whose stated white noise is the actual one times a factor."""
     return type(record)(**{**vars(record), 'white': tuple(factor * w for w in record.white)})
 
 
 def test_one_seed_on_the_diagonal():
-    """Delays of one minute are within four sigma, which is sqrt(10) times that of ten minutes."""
+    """
+    Delays from one minute are within four sigma, which is sqrt(10) times that of ten minutes.
+    """
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     truth = 1e-6 * SET_US + model_lags([record], chosen.imu_sensor.gyro.errors)
     for channel, delay in zip(estimate_triad([read(record, chosen, 5)]).channels, truth):
@@ -83,7 +86,7 @@ def test_one_seed_on_the_diagonal():
 
 
 def test_motion_2_there_and_back():
-    """Two records of five minutes: the delays of y and z, and the geometry that was drawn."""
+    """Two records of five minutes give the delays of y and z, and the drawn geometry."""
     there, chosen = ideal({**MOTION_2, **FOG, **DELAYS}, 300.0)
     back, _ = ideal({**REVERSED_2, **FOG, **DELAYS}, 300.0, start_s=300.0)
     records = [read(there, chosen, 3), read(back, chosen, 3)]
@@ -96,20 +99,22 @@ def test_motion_2_there_and_back():
 
 
 def test_residuals_that_are_larger_than_the_noise_said_give_the_sigmas():
-    """A walk said to be a third of what it is: the scatter is seen, and sigma is as due."""
+    """With a third of the true random walk stated, sigma comes from the scatter and is right."""
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     one = read(record, chosen, 1)
     told = estimate_triad([replaced_walk(one, 1.0 / 3.0)])
     right = estimate_triad([one])
     for channel, other in zip(told.channels, right.channels):
         assert channel.weights == BY_RESIDUALS and other.weights == BY_WALK
-        # of 64 blocks sigma is known to 9 %
+        # From 64 blocks sigma is known to 9 %.
         assert channel.delay_sigma == pytest.approx(other.delay_sigma, rel=0.3)
     assert sum('scatter' in note for note in told.notes) == 3
 
 
 def test_gaps_cost_their_readings_alone():
-    """A third of the readings lost, and ten seconds at once: the gaps are counted."""
+    """
+    A third of the readings lost, and ten seconds at once: the gaps are counted, nothing else lost.
+    """
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     one = read(record, chosen, 1)
     count = len(one.imu)
@@ -117,7 +122,7 @@ def test_gaps_cost_their_readings_alone():
     kept[3000:4000] = False
     lost = estimate_triad([thinned(one, kept)])
     for channel, whole in zip(lost.channels, estimate_triad([one]).channels):
-        # what is left out has the variance that is missing
+        # The missing readings increase the variance accordingly.
         apart = math.sqrt(channel.delay_sigma ** 2 - whole.delay_sigma ** 2)
         assert abs(channel.delay - whole.delay) < 4.0 * apart
         assert channel.delay_sigma / whole.delay_sigma == pytest.approx(

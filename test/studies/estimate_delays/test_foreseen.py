@@ -1,4 +1,4 @@
-"""What a motion of a bench would show, by covariance alone: the figures of the specification."""
+"""Expected sigmas of bench motions by covariance alone: the values of the specification."""
 
 import math
 
@@ -36,9 +36,10 @@ def test_rocking_about_the_diagonal():
 
 def test_motion_2_reversed_half_way():
     """
-    0.466 us a channel, 0.658 us a difference, of y and z; x turns uniformly and shows nothing.
+    0.466 us a channel, 0.658 us a difference, of y and z; x rotates uniformly and cannot be
+    estimated.
 
-    N / sqrt(T) over the rms of the derivative, 0.5 cos(30 deg) / sqrt(2), is 0.4654.
+    N / sqrt(T) divided by the rms of the derivative, 0.5 cos(30 deg) / sqrt(2), is 0.4654.
     """
     found = foreseen('motion 2, reversed half-way')
     assert [bool(why) for why in found.refused] == [True, False, False]
@@ -47,7 +48,9 @@ def test_motion_2_reversed_half_way():
 
 
 def test_motion_2_in_one_sense_cannot_measure_delays():
-    """A sigma of 2000 us, as 1 us reads like 0.5 urad: refused, with this reason."""
+    """
+    Sigma is 2000 us, because 1 us looks like 0.5 urad of misalignment: refused with this reason.
+    """
     still = settings(FOG, earth__rotation=False)
     found = foreseen('motion 2 in one sense', still)
     assert all(found.refused)
@@ -63,10 +66,11 @@ def test_motion_2_in_one_sense_cannot_measure_delays():
 
 def test_the_diagonal_is_best_and_speed_helps():
     """
-    Of the motions compared only two show three delays, and the diagonal is eleven times better.
+    Only two of the motions give three delays, and the diagonal is eleven times better.
 
-    Sigma goes with the reciprocal of amplitude and of the square of frequency; the mean over a
-    sampling interval takes sin(x)/x of it, x = pi f dt.
+    Sigma is proportional to the inverse of the amplitude and of the square of the frequency; the
+    mean
+    over a sampling interval reduces it by sin(x)/x, x = pi f dt.
     """
     worst = {name: foreseen(name) for name in CASES}
     three = {name: found.worst for name, found in worst.items() if not any(found.refused)}
@@ -79,19 +83,21 @@ def test_the_diagonal_is_best_and_speed_helps():
         np.sin(x) / x * frequencies * frequencies)[:, None]
     seen = np.isfinite(sweep.sigmas)
     assert not seen[-1, -1] and seen.sum() == seen.size - 1
-    # Large amplitudes turn the Earth's rate by more; a few periods are no 600 s.
+    # Large amplitudes rotate the Earth rate more; a few periods are not exactly 600 s.
     ratio = (sweep.sigmas / sweep.sigmas[1, 1] / (expected / expected[1, 1]))[seen]
     assert ratio == pytest.approx(1.0, abs=5e-3)
 
 
 def test_the_map_is_that_of_the_least_squares():
-    """The map of the axis of rocking has the sigmas of a rocking about that axis."""
+    """
+    The map of the rocking axis has the sigmas of the least squares for a rocking about that axis.
+    """
     single = foreseen('rocking about the forward axis, 5 deg, 1 Hz').sigmas[0]
     for psi, theta in ((35.26438968, -45.0), (20.0, -60.0), (60.0, -30.0)):
         chosen = settings({**DIAGONAL, 'motion.psi_deg': psi, 'motion.theta_deg': theta})
         case = bench_motions.BenchCase('this', (chosen.motion_generator.motion,))
         found = bench_motions.foresee_case(case, CHOSEN, WHITE, 600.0)
-        # north in the body: forward, left, up
+        # North in the body: forward, left, up.
         p, t = math.radians(psi), math.radians(theta)
         forward, left, up = (math.cos(p) * math.cos(t), -math.sin(p), -math.cos(p) * math.sin(t))
         azimuth, elevation = math.degrees(math.atan2(left, forward)), math.degrees(math.asin(up))
@@ -99,13 +105,13 @@ def test_the_map_is_that_of_the_least_squares():
         assert max(found.sigmas) == pytest.approx(float(mapped[0, 0]), rel=1e-3)
     far = bench_motions.direction_map(single, np.linspace(0.0, 180.0, 181),
                                       np.linspace(-90.0, 90.0, 181))
-    # the nearest whole degree is 0.26 deg off the diagonal
+    # The nearest whole degree is 0.26 deg off the diagonal.
     assert far.min() == pytest.approx(math.sqrt(3.0) * single, rel=0.01)
     assert far.min() > math.sqrt(3.0) * single
 
 
 def test_what_cannot_be_told_apart_changes_no_reading():
-    """On the diagonal scale factor and misalignments of a channel are one number."""
+    """On the diagonal scale factor and misalignments of a channel are one combination."""
     generator = CHOSEN.motion_generator
     motion = make_motion(bench_motions.diagonal_rocking(), generator.datum, generator.earth)
     record = planned_record('plan', motion, generator.datum, generator.earth, WHITE, 100.0, 0.0,
@@ -119,21 +125,21 @@ def test_what_cannot_be_told_apart_changes_no_reading():
         for direction in weak:
             assert set(np.flatnonzero(direction)) <= {SCALE, NEXT, LAST}
             assert direction[ASYMMETRY] == direction[DELAY] == 0.0
-            # less is told of a direction than 1e-3 of length one, and three parts of 1e-3 at most
-            # have the length of the root of three
+            # A direction of length one is unobservable if its effect is below 1e-3; three parts of
+            # at most 1e-3 have the length of the root of three.
             size = direction / np.abs(direction).max() * 1e-3
             assert size @ fit.information @ size < 3.0
 
 
 def test_three_angles_tell_everything():
-    """Three axes that move on their own leave no direction to the priors."""
+    """With three independent axes every combination is observable."""
     record, chosen = ideal({**THREE_ANGLES, **FOG}, 60.0)
     for channel in estimate_triad([read(record, chosen, 0)]).channels:
         assert channel.weak == () and not channel.refused
 
 
 def test_eigenvectors_are_those_of_lapack():
-    """Symmetric matrices of random spectrum, over eight decades, and a singular one."""
+    """Symmetric matrices of random spectrum over eight decades, and a singular one."""
     rng = np.random.default_rng(4)
     for count in (1, 2, 5, 8):
         q = np.linalg.qr(rng.normal(size=(count, count)))[0]

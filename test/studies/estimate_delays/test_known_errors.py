@@ -1,4 +1,4 @@
-"""Errors that are set come out as they are set, without noise, whatever a reading is."""
+"""Without noise the set errors are estimated exactly, for each kind of output."""
 
 import math
 
@@ -24,11 +24,13 @@ DELAYS = {'gyro.delay_us.x': 5000.0, 'gyro.delay_us.y': -300.0, 'gyro.delay_us.z
 @pytest.mark.parametrize('output', ['rotation_vector', 'integrated'])
 def test_all_errors_come_out_as_they_were_set(output):
     """
-    Delays of 5 ms, -0.3 ms and 1 us, and all other errors at once.
+    Delays of 5 ms, -0.3 ms and 1 us are found together with all other errors.
 
-    An axis that is turned by 0.4 mrad towards one that is 5.3 ms later or earlier sees 2.1 us of
-    it: the linear model leaves out this product, and of the rates, which change by 0.02 of
-    themselves meanwhile, 0.4 mrad times that.
+    An axis misaligned by 0.4 mrad towards one that is 5.3 ms later or earlier sees 2.1 us of it:
+    the
+    linear model neglects this product. The rates change by 0.02 in this time; 0.4 mrad times that
+    is
+    neglected too.
     """
     record, chosen = ideal({**THREE_ANGLES, **ERRORS, **DELAYS, 'output': output}, 60.0)
     found = estimate_triad([read(record, chosen, 0)]).channels
@@ -48,7 +50,7 @@ def test_all_errors_come_out_as_they_were_set(output):
 
 
 def test_delays_alone_are_found_to_a_nanosecond():
-    """Without other errors nothing but the nanosecond of the motion's time limits a delay."""
+    """Without other errors a delay is limited only by the nanosecond of the time of the motion."""
     record, chosen = ideal({**THREE_ANGLES, **DELAYS}, 60.0)
     found = estimate_triad([record]).channels
     assert [1e6 * c.delay for c in found] == pytest.approx([5000.0, -300.0, 1.0], abs=1e-3)
@@ -67,7 +69,7 @@ def test_a_stamp_in_the_middle_of_the_interval_is_a_delay_of_half_of_it():
 
 
 def test_records_of_two_instruments_are_not_taken_together():
-    """A delay of y that is 20 us longer in the second record is many standard deviations."""
+    """A delay of y that is 20 us longer in the second record is many standard deviations off."""
     first, chosen = ideal({**DIAGONAL, **FOG}, 60.0)
     second, _ = ideal({**DIAGONAL, **FOG, 'gyro.delay_us.y': 20.0}, 60.0, start_s=60.0)
     records = [read(first, chosen, 0), read(second, chosen, 0)]

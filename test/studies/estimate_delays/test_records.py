@@ -1,4 +1,6 @@
-"""The verb and the function over runs, bags and CSV files: one answer, and one sentence of bad."""
+"""
+The verb and the function with runs, bags and CSV files: one answer, and one message for bad ones.
+"""
 
 from dataclasses import replace
 import json
@@ -30,9 +32,10 @@ def made(tmp_path_factory):
 
 def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
     """
-    The bag has the truth as samples, the CSV file the motion in the parameters.
+    A run, a bag and a CSV file give the same answer.
 
-    Readings are the same; the bag's motion ends 3 s inside, so that its noise is a part of it.
+    The bag contains the truth as samples, the CSV file relies on the motion of the parameters.
+    Readings are the same; the motion of the bag ends 3 s earlier, which changes the used noise.
     """
     out = tmp_path / 'out'
     assert main(['estimate-delays', str(made / 'run'), '-o', str(out)]) == 0
@@ -61,14 +64,14 @@ def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
         assert 1e6 * csv.delays[k] == pytest.approx(value, abs=1e-3)
         assert 1e6 * csv.delay_sigmas[k] == pytest.approx(sigma, rel=1e-6)
         for other in (bag, blind):
-            # 24 of 30 s: half of sigma is that of what is missing
+            # 24 of 30 s: the difference is within half a sigma of the missing part.
             assert abs(1e6 * other.delays[k] - value) < 4.0 * 0.5 * sigma
             assert 1e6 * other.delay_sigmas[k] == pytest.approx(sigma * np.sqrt(30.0 / 24.0),
                                                                 rel=0.35)
 
 
 def test_an_ins_log_with_its_reference(made, tmp_path):
-    """The readings in one CSV file, the attitude in another, on one clock."""
+    """The readings are in one CSV file, the attitude in another, on one clock."""
     reference = tmp_path / 'reference.csv'
     assert main(['convert', str(made / 'bag'), str(reference)]) == 0
     found = ins_sim.estimate_delays(made / 'imu.csv', {
@@ -79,7 +82,7 @@ def test_an_ins_log_with_its_reference(made, tmp_path):
 
 
 def test_from_python(made):
-    """Paths, several of them, and records for data frames and xarray."""
+    """Python accepts one or several paths and returns records for data frames and xarray."""
     found = ins_sim.estimate_delays(made / 'run')
     again = ins_sim.estimate_delays([made / 'run', made / 'bag'], topic=None)
     assert found.delays - found.lags == pytest.approx([2e-6, 1e-6, 3e-6],
@@ -100,7 +103,7 @@ def test_from_python(made):
 
 
 def test_a_motion_of_the_caller(made):
-    """The run itself carries a motion that no parameters describe; its folder does not."""
+    """A run object carries a user-defined motion; its folder does not."""
     chosen = ins_sim.read_settings('imu_tactical_fog', {**DIAGONAL, **DELAYS, 'duration_s': 20.0})
     run = ins_sim.simulate(chosen, twin=False)
     own = replace(run, own_motion=True)
@@ -113,7 +116,7 @@ def test_a_motion_of_the_caller(made):
 
 
 def refused(words, capsys):
-    """Return the sentence with which the verb refuses."""
+    """Return the message with which the verb refuses."""
     capsys.readouterr()
     assert main(['estimate-delays', *map(str, words)]) == 2
     error = capsys.readouterr().err.strip()
@@ -123,7 +126,7 @@ def refused(words, capsys):
 
 
 def test_bad_input_is_one_sentence(made, tmp_path, capsys):
-    """What is wrong is said, with what was expected, and nothing is left behind."""
+    """The message names the fault and the expectation, and nothing is written."""
     out = ['-o', tmp_path / 'out']
     csv, run, bag = made / 'imu.csv', made / 'run', made / 'bag'
     cases = [
@@ -152,7 +155,7 @@ def test_bad_input_is_one_sentence(made, tmp_path, capsys):
 
 
 def test_records_that_do_not_serve(made, tmp_path, capsys):
-    """Too short, at rest, and a bag without truth."""
+    """Records that are too short, at rest, or bags without truth are refused."""
     imu = read_imu(made / 'bag', 'imu/data_raw')
     short = tmp_path / 'short.csv'
     csv_writer.write_imu(short, imu[:500])
@@ -169,7 +172,7 @@ def test_records_that_do_not_serve(made, tmp_path, capsys):
 
 
 def test_without_a_source_motions_are_compared(tmp_path, capsys):
-    """Bars, map and speed; a motion of the parameters stands among those compared."""
+    """Bars, map and speed are written; a motion of the parameters is among those compared."""
     out = tmp_path / 'plan'
     assert main(['estimate-delays', *FOG, *MOTION, '-p', 'motion.rocking.frequency_hz:=2.0',
                  '--duration', '100', '-o', str(out)]) == 0
@@ -179,7 +182,7 @@ def test_without_a_source_motions_are_compared(tmp_path, capsys):
     named = {m['motion']: m for m in motions}
     own = named['rocking of the parameters']
     base = named['rocking about the diagonal, 5 deg, 1 Hz']
-    # twice the frequency, four times the angular acceleration
+    # Twice the frequency, four times the angular acceleration.
     assert np.array(own['sigma_us']) == pytest.approx(np.array(base['sigma_us']) / 4.0, rel=0.01)
     said = capsys.readouterr().out
     assert 'Of the motions compared rocking of the parameters shows delays best' in said
@@ -188,7 +191,7 @@ def test_without_a_source_motions_are_compared(tmp_path, capsys):
 
 @pytest.mark.parametrize('duration', ['0', '-5', 'nan'])
 def test_a_motion_of_no_length_is_refused(duration, tmp_path, capsys):
-    """Nor is a length of 0 s taken for the default."""
+    """A motion of zero length is refused; 0 s is not taken for the default."""
     assert main(['estimate-delays', '--duration', duration, '-o', str(tmp_path / 'e')]) == 2
     assert f'--duration is {duration} s; expected more than 0' in capsys.readouterr().err
     assert not (tmp_path / 'e').exists()
