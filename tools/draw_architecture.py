@@ -72,9 +72,11 @@ def table():
     rooms, core = may_import()
     rows = ['| room | may import |', '| --- | --- |']
     for room, others in rooms.items():
-        names = sorted(others)
+        names = sorted(others - {room})
         if core <= others:
-            names = ['all of core', *sorted(others - core)]
+            names = ['all of core', *sorted(others - core - {room})]
+        # Two underscores would be bold type.
+        names = [f'`{name}`' if name.startswith('__') else name for name in names]
         rows.append(f'| `{room}` | {", ".join(names) or "nothing"} |')
     return '\n'.join(rows)
 
