@@ -1,8 +1,8 @@
 """
-The regular part of a recorded IMU: what is lost, repeated, late or no number, and the true noise.
+The regular part of a recorded IMU: lost, repeated, late and invalid samples, and the true noise.
 
 Every record is white noise of known density, whatever happened to its stamps: the Allan deviation
-at one interval and the fitted N give it back within four standard deviations.
+at one interval and the fitted N agree with it within four standard deviations.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from ins_sim.report.allan_record import regular_record
 COUNT, RATE = 20_000, 100.0
 EVEN = 1_700_000_000_000_000_000 + 10_000_000 * np.arange(COUNT)
 NUMBER = np.arange(COUNT)
-# ten readings are sent together, at the end of their tenth of a second
+# Ten readings are sent together, at the end of their tenth of a second.
 TENS = EVEN[NUMBER // 10 * 10 + 9] + NUMBER % 10 * 100_000
 
 
@@ -33,7 +33,7 @@ def jitter(sigma_s):
 
 
 def check_density(found):
-    """Compare N with the truth: its relative deviation is 0.6/sqrt(readings) or more."""
+    """Compare N with the truth: its relative deviation is at least 0.6/sqrt(readings)."""
     for samples, size in ((found.imu.omega, 1.0), (found.imu.f, 2.0)):
         fitted = allan.fit_coefficients(allan.estimate_deviation(samples, found.rate_hz))
         ratio = fitted.random_walk * np.sqrt(found.rate_hz) / size
@@ -74,7 +74,7 @@ CASES = {
 
 @pytest.mark.parametrize('name', CASES)
 def test_the_noise_of_a_record_with_faults(name):
-    """Each fault is said once with its count, and the density is that of the readings."""
+    """Each fault is reported once with its count, and the density is that of the readings."""
     t_ns, left, says = CASES[name]
     found = regular_record(record(t_ns))
     rate = {'3.6 % off its name': 103.6, 'a clock of milliseconds': 1e9 / 970_000}.get(name, RATE)
@@ -86,7 +86,7 @@ def test_the_noise_of_a_record_with_faults(name):
 
 
 def test_readings_that_are_no_numbers_count_as_lost():
-    """Their count is said, and the longest part without them is taken."""
+    """Invalid readings are counted, and the longest part without them is used."""
     imu = record(EVEN)
     imu.omega[700], imu.f[9000, 1] = np.nan, np.inf
     found = regular_record(imu)
@@ -100,7 +100,7 @@ def test_readings_that_are_no_numbers_count_as_lost():
 
 
 def test_a_message_that_is_there_twice():
-    """Stamp and values are the same: the copy is left out; another reading is not."""
+    """A copy with the same stamp and values is left out; a different reading is not."""
     found = regular_record(record(EVEN)[np.insert(NUMBER, 500, 500)])
     assert found.notes == ('1 reading is there twice, with stamp and values: the copies are left '
                            'out',)
@@ -110,7 +110,7 @@ def test_a_message_that_is_there_twice():
 
 
 def test_the_rate_may_be_given():
-    """One stamp in all messages says nothing; the rate of the user goes on."""
+    """If all messages have one stamp, the rate given by the user is used."""
     imu = record(np.full(COUNT, 7))
     with pytest.raises(ValueError, match=r'of 19999 intervals 19999 are not positive; '
                                          r'"-p rate_hz:=HZ" takes all readings in their order'):
@@ -124,7 +124,7 @@ def test_the_rate_may_be_given():
 
 @pytest.mark.parametrize('count', [0, 1, 2, 39])
 def test_too_few(count):
-    """No error but a sentence."""
+    """Too few readings give one message, not an exception."""
     with pytest.raises(ValueError, match=f'has {count} readings, of which {count} are left; '
                                          'expected at least 40'):
         regular_record(record(EVEN[:count]))
@@ -132,7 +132,7 @@ def test_too_few(count):
 
 @pytest.mark.parametrize('lost', [0.01, 0.2])
 def test_many_lost_at_random(lost):
-    """The part that is left has the true rate, or is said to be too short."""
+    """The remaining part has the true rate, or is reported as too short."""
     keep = np.random.default_rng(3).random(COUNT) >= lost
     try:
         found = regular_record(record(EVEN)[keep])

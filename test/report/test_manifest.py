@@ -11,7 +11,7 @@ import yaml
 
 @pytest.fixture(autouse=True)
 def promised_machine(monkeypatch):
-    """Let the machine be one of those that the promise is about."""
+    """Make the machine one of those for which equal bits are guaranteed."""
     monkeypatch.setattr(manifest.platform, 'machine', lambda: 'x86_64')
 
 

@@ -36,7 +36,7 @@ def navigated():
 
 
 def known(result, **values):
-    """Return the result with a constant error (3,) by kind."""
+    """Return the result with a constant error (3,) for each kind."""
     comparison, = result.comparisons
     t_ns = comparison.position.t_ns
     return replace(result, comparisons=[replace(comparison, **{
@@ -60,7 +60,9 @@ def test_errors_have_the_units_in_which_they_read_well(navigated):
 
 
 def test_a_part_that_would_hide_the_other_has_its_own_panel(navigated):
-    """A height that runs away leaves the horizontal error readable."""
+    """
+    A height error that grows fast has its own panel, so that the horizontal one stays readable.
+    """
     chart = drawn(known(navigated, position=(30.0, 40.0, 2e4)))
     assert [panel.y_label for panel in chart.panels][:2] == ['horizontal position error [m]',
                                                              'height error [km]']
@@ -69,14 +71,14 @@ def test_a_part_that_would_hide_the_other_has_its_own_panel(navigated):
 
 
 def test_an_error_that_is_not_known_has_no_panel(navigated):
-    """No empty panels: without attitude in the reference there is none of attitude."""
+    """Without an attitude in the reference there is no panel of attitude."""
     comparison, = navigated.comparisons
     chart = drawn(replace(navigated, comparisons=[replace(comparison, attitude=None)]))
     assert not any('tilt' in p.y_label or 'attitude' in p.y_label for p in chart.panels)
 
 
 def test_two_references_are_told_apart(navigated):
-    """By name and dash, in the colours of the parts."""
+    """References differ by name and dash, in the colours of the components."""
     comparison, = navigated.comparisons
     both = replace(navigated, comparisons=[comparison, replace(comparison, name='odometry')],
                    references=[*navigated.references, navigated.references[0]])
@@ -86,7 +88,7 @@ def test_two_references_are_told_apart(navigated):
 
 
 def test_gaps_are_shaded(navigated):
-    """Between segments nothing is drawn; a gap that was bridged is marked as such."""
+    """Nothing is drawn between segments; a bridged gap is marked as such."""
     assert marks(drawn(navigated), Stretch) == []
     restarted = drawn(run(*recorded(with_gap(0.5)), on_gap='restart'))
     stretch, = marks(restarted, Stretch)
@@ -98,7 +100,7 @@ def test_gaps_are_shaded(navigated):
 
 
 def test_a_curve_is_interrupted_where_nothing_is_known_for_long():
-    """A reference that is silent for 6 s is not drawn through."""
+    """A reference that is silent for 6 s is not connected."""
     imu, reference = recorded(stamps(100.0))
     heard = (reference.position.t_ns < 5 * SECOND) | (reference.position.t_ns > 11 * SECOND)
     position = SampledTrack(reference.position.t_ns[heard], reference.position.values[heard])
@@ -120,7 +122,7 @@ def test_the_track_has_equal_axes(navigated):
 
 
 def test_a_solution_that_leaves_its_reference_has_a_second_panel(navigated):
-    """The way of the reference would be a dot."""
+    """Without a second panel the track of the reference would be a dot."""
     states, = navigated.states
     away = replace(states, lat=states.lat + np.linspace(0.0, 0.01, len(states.lat)))
     far, near = drawn(replace(navigated, states=[away]), 'track').panels
@@ -131,7 +133,7 @@ def test_a_solution_that_leaves_its_reference_has_a_second_panel(navigated):
 
 
 def test_without_a_reference_the_solution_is_drawn(navigated):
-    """Velocity and height; nothing is said about errors."""
+    """Velocity and height are drawn; nothing is stated about errors."""
     alone = replace(navigated, comparisons=[], references=[])
     chart = drawn(alone)
     assert [panel.y_label for panel in chart.panels] == ['velocity [m/s]', 'height [m]']

@@ -1,4 +1,4 @@
-"""Histories in temporary files: what is read is what was written, and nothing stays behind."""
+"""Histories in temporary files: data are read as written, and no file remains."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def states(count):
 
 
 def stored(history, store, length=777):
-    """Return what a store makes of the blocks of a history."""
+    """Return the history that a store makes of blocks."""
     for block in history.blocks(length):
         store.append(block)
     return store.history()
@@ -29,7 +29,7 @@ def stored(history, store, length=777):
 
 @pytest.mark.parametrize('part', PARTS, ids=str)
 def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
-    """Rows and slices, with steps longer than a block too."""
+    """Rows and slices, also with steps longer than a block."""
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())
@@ -45,7 +45,7 @@ def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
 
 @pytest.mark.parametrize('length', [1, 4096, 8192, 8193, 50000])
 def test_blocks_join_to_the_history(tmp_path, length):
-    """In memory and in files, however they are cut."""
+    """In memory and in files, for any block length."""
     history = states(9000)
     with spool.Spool(tmp_path) as spooled:
         for read in (stored(history, Collected()), stored(history, spooled.store())):
@@ -55,14 +55,14 @@ def test_blocks_join_to_the_history(tmp_path, length):
 
 
 def test_a_store_without_blocks_has_no_history(tmp_path):
-    """A run without output is refused by who asked for it."""
+    """A store without blocks returns no history; the caller refuses such a run."""
     with spool.Spool(tmp_path) as spooled:
         assert spooled.store().history() is None
     assert Collected().history() is None
 
 
 def test_nothing_is_left_in_the_folder(tmp_path):
-    """Neither while the files are open, so that a killed process leaves none, nor afterwards."""
+    """The folder is empty even while the files are open, so that a killed process leaves none."""
     with spool.Spool(tmp_path) as spooled:
         read = stored(states(100), spooled.store())
         assert not list(tmp_path.iterdir())
@@ -71,7 +71,7 @@ def test_nothing_is_left_in_the_folder(tmp_path):
 
 
 def test_arrays_and_columns_are_saved_alike(tmp_path):
-    """NumPy reads both; a column is longer than what is copied at once."""
+    """NumPy reads arrays and columns; a column longer than the copy buffer is saved."""
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())

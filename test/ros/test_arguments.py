@@ -1,4 +1,4 @@
-"""What stands on the command line of a node beside its ROS arguments."""
+"""Arguments of a node on the command line besides its ROS arguments."""
 
 import pytest
 
@@ -16,7 +16,7 @@ def test_help(name, capsys):
 
 
 def test_help_says_what_can_be_set_later(capsys):
-    """Of the generator its pace, and nothing else."""
+    """For the generator only its pace can be set later."""
     assert answer('motion_generator', ['motion_generator', '-h']) == 0
     said = capsys.readouterr().out
     assert said.count('can be set while it runs') == 1
@@ -27,7 +27,7 @@ def test_help_says_what_can_be_set_later(capsys):
     (['strapdown', '--bogus'], '--bogus'), (['strapdown', '--ros-args', '--', 'more'], 'more'),
     (['strapdown', 'x\x1b[2J'], r'x\x1b[2J')])
 def test_what_is_no_ros_argument(words, bad, capsys):
-    """One sentence, exit code 2."""
+    """One message, exit code 2."""
     assert answer('strapdown', words) == 2
     said = capsys.readouterr().err
     assert f'strapdown: unknown argument {bad}; expected ROS arguments behind --ros-args' in said
@@ -35,7 +35,7 @@ def test_what_is_no_ros_argument(words, bad, capsys):
 
 
 def test_ros_arguments_are_left_to_ros():
-    """With the name of the program before them, or without."""
+    """With or without the name of the program before them."""
     assert answer('strapdown', ['strapdown', '--ros-args', '-p', 'rate_hz:=5.0', '--']) is None
     assert answer('recorder', ['--ros-args', '-p', 'x:=1']) is None
     assert answer('recorder', []) is None

@@ -16,10 +16,11 @@ IDEAL = {'time.epoch': 'fixed', 'time.epoch_s': 1735689600, 'rate_hz': 100.0,
          'duration_s': 30.0, 'gyro.delay_us.y': 1.0, 'publish_clock': True}
 FOG = {**IDEAL, **{key: list(value) if isinstance(value, tuple) else value
                    for key, value in preset('tactical_fog').items()}, 'seed': 7}
-# The live strapdown starts from, and is compared with, a truth that went through the Cartesian
-# coordinates of a message: 1 ulp of the radius of the Earth is 1e-9 m, and a position is a sum of
-# a few such terms; an angle rounds at 1e-15 rad, which in 30 s of gravity is 1e-13 m/s, and the
-# first slope of an angle at that over one step.  An ulp of a longitude in degrees is 7e-15.
+# The live strapdown starts from, and is compared with, a truth that passed through the Cartesian
+# coordinates of a message. One ulp of the radius of the Earth is 1e-9 m, and a position is a sum
+# of a few such terms. An angle rounds at 1e-15 rad, which in 30 s of gravity is 1e-13 m/s; the
+# first slope of an angle rounds at 1e-15 rad over one step. One ulp of a longitude in degrees is
+# 7e-15.
 ROUNDING = {
     ('ins/odometry', 'position'): 8e-9, ('ins/odometry', 'orientation'): 1e-14,
     ('ins/odometry', 'linear'): 1e-11, ('ins/odometry', 'angular'): 1e-14,
@@ -31,7 +32,9 @@ RELATIVE = 1e-12
 
 @pytest.mark.parametrize('values', [IDEAL, FOG], ids=['ideal', 'fog'])
 def test_live_is_offline_message_for_message(values, ros_domain, tmp_path):
-    """The same topics with the same stamps; values to 1e-12 of their scale beside the rounding."""
+    """
+    The same topics with the same stamps; values to 1e-12 of their scale besides the rounding.
+    """
     wanted = [topic.name for topic in (*topics.DATA, topics.CLOCK_TOPIC)]
     words = [f'{name}:={str(value).lower() if isinstance(value, bool) else value}'
              for name, value in {**values, 'source': 'stream'}.items()]

@@ -1,4 +1,4 @@
-"""Bad streams: a node says what is wrong on the log and on /diagnostics, and starts anew."""
+"""Faulty streams: a node reports the fault on log and /diagnostics, and starts anew."""
 
 import time
 
@@ -19,7 +19,7 @@ DT = 10_000_000
 
 
 class Source:
-    """A node chain without generator, and the truth at any stamp, by hand."""
+    """A node chain without generator, and truth at any stamps."""
 
     def __init__(self, domain, folder, parameters=None):
         self.chain = Chain(domain, folder)
@@ -36,7 +36,7 @@ class Source:
         self.strapdown = self.chain.start('strapdown', parameters)
 
     def send(self, stamps_ns, poison=None):
-        """Publish the truth at stamps; poison: index of the sample that holds a NaN."""
+        """Publish the truth at stamps; poison: index of a sample with a NaN."""
         stamps_ns = np.asarray(stamps_ns, dtype=np.int64)
         blocks = truth_blocks(self._frame, self._motion.at(stamps_ns))
         for topic, writer, publish in self._out:
@@ -48,7 +48,7 @@ class Source:
                 time.sleep(1e-4)
 
     def begin(self):
-        """Send sample 0 until it is answered, then a second of truth."""
+        """Send sample 0 until it is acknowledged, then a second of truth."""
         heard = self.listener.heard['ins/odometry']
         end = time.monotonic() + 60.0
         while not heard:
@@ -60,11 +60,11 @@ class Source:
         self.wait_solution(100 * DT)
 
     def wait_solution(self, t_ns):
-        """Wait until the solution of this stamp is heard."""
+        """Wait until the solution with this stamp is received."""
         self.listener.poll_until(lambda: t_ns in self.listener.heard['ins/odometry'], 30.0)
 
     def wait_diagnosis(self, node, part):
-        """Wait until /diagnostics says this about a node."""
+        """Wait until /diagnostics contains this about a node."""
         try:
             self.listener.spin_until(lambda: any(
                 node in name and part in message for name, _, message in self.diagnostics))
@@ -137,7 +137,7 @@ def test_imu_at_another_rate_is_reported(ros_domain, tmp_path):
                                ['-r', 'ins/odometry:=elsewhere', '-r', '__node:=other'])
     try:
         source.begin()
-        # whenever this strapdown begins to hear, there are readings to come
+        # Readings are published whenever this strapdown starts to receive.
         sample, end = 101, time.monotonic() + 60.0
         while 'imu comes at another rate' not in source.chain.text(other):
             assert time.monotonic() < end, source.chain.text(other)

@@ -1,4 +1,4 @@
-"""Three processes over DDS: the numbers of the offline run, whatever the machine does."""
+"""Three processes over DDS give the numbers of the offline run, also on a busy machine."""
 
 import subprocess
 import sys
@@ -29,7 +29,7 @@ def lock_step(domain, folder, order=FORWARD, values=VALUES, load=0, more=(), war
     """
     Run the chain in lock-step and return {topic name: {stamp: doubles}}.
 
-    more: topics to hear besides; warns: whether the nodes are to warn, or must not.
+    more: further topics to receive; warns: whether the nodes must warn, or must not.
     """
     listener, chain = Listener(domain, (*HEARD, *more)), Chain(domain, folder)
     hogs = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
@@ -54,17 +54,19 @@ def lock_step(domain, folder, order=FORWARD, values=VALUES, load=0, more=(), war
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    The solution and its errors agree to 1e-9 relative, beside the rounding of a position.
+    The solution and its errors agree to 1e-9 relative, besides the rounding of a position.
 
-    Truth and solution pass through Cartesian messages: 1 ulp of the radius of the Earth is
-    1e-9 m, and a position is a sum of a few such terms; an attitude rounds at 1e-15, and
-    its first slope at that over one step.
+    Truth and solution pass through Cartesian messages: 1 ulp of the radius of the Earth is 1e-9 m,
+    and
+    a position is a sum of a few such terms; an attitude rounds at 1e-15, and its first slope at
+    that
+    over one step.
     """
     same_as_offline(VALUES, lock_step(ros_domain, tmp_path))
 
 
 def same_as_offline(values, heard):
-    """Compare what was heard with the offline run of the values; return the Run."""
+    """Compare received messages with the offline run of the values; return the Run."""
     settings = studies.settings({**values, 'source': 'stream'})
     run = run_offline(settings, twin=False)
     frame = MapFrame(settings.strapdown.datum, True)

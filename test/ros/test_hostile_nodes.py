@@ -1,4 +1,4 @@
-"""Hostile messages amid a good flight of all nodes: nothing ends, nothing is lost for good."""
+"""Hostile messages during a flight of all nodes: no node ends, and all recover."""
 
 from collections import Counter
 
@@ -9,17 +9,18 @@ pytest.importorskip('rclpy')
 
 KINDS = {'field', 'fields', 'stamp', 'shifted', 'text', 'malformed', 'order', 'duplicate',
          'publisher'}
-# messages between two calm stretches
+# Number of messages between two quiet periods.
 ATTACK = 2500
 
 
 def attacked(seed, count):
     """
-    Send so many hostile messages amid a flight; return how many were tried by kind.
+    Send hostile messages during a flight; return the number tried by kind.
 
-    After every ATTACK the good stream alone must bring all nodes back.  A HostileFlight raises a
-    Finding for what is not finite, for too many messages, bytes and lines, and for a node that
-    has ended; an exception out of a callback ends the test by itself.
+    After every ATTACK the good stream alone must bring all nodes back. A HostileFlight raises a
+    Finding for values that are not finite, for too many messages, bytes and lines, and for a node
+    that
+    has ended; an exception out of a callback ends the test.
     """
     with HostileFlight(seed) as flight:
         flight.good(50)
@@ -28,7 +29,7 @@ def attacked(seed, count):
             flight.calm()
         print(f'\nseed {seed}: {sum(flight.tried.values())} hostile messages; one led to at most '
               f'{flight.most_sent} of the nodes; a node held at most {flight.most_bytes} bytes')
-        # bounds stand before the last net, which none of these messages reaches
+        # The bounds reject all these messages before the safety net.
         assert not flight.rescued
         kinds = Counter()
         for (kind, _), number in flight.tried.items():
@@ -40,14 +41,14 @@ def attacked(seed, count):
 
 @pytest.mark.parametrize('seed', [1, 2])
 def test_ten_thousand_hostile_messages(seed, ros_domain):
-    """No exception out, nothing not finite, bounded work, memory and log; all nodes come back."""
+    """No exception, finite output, bounded work, memory and log; all nodes recover."""
     attacked(seed, 10_000)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('variant', range(1, len(VARIANTS)))
 def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
-    """Sources, outputs, errors, channels, modes and filters: all nodes come back."""
+    """Sources, outputs, errors, channels, modes and filters: all nodes recover."""
     with HostileFlight(variant, variant=variant) as flight:
         flight.good(50)
         flight.attack(2000)
@@ -58,12 +59,12 @@ def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
 @pytest.mark.slow
 @pytest.mark.parametrize('seed', [3, 4])
 def test_fifty_thousand_hostile_messages(seed, ros_domain):
-    """The same for longer; tools/fuzz_nodes.py goes on with two million."""
+    """The same for longer; tools/fuzz_nodes.py continues with two million."""
     attacked(seed, 50_000)
 
 
 def test_a_recorder_hears_all_of_it(ros_domain, tmp_path):
-    """Hostile messages are recorded like others: the bag is whole, and can be read."""
+    """Hostile messages are recorded like others: the bag is complete and can be read."""
     from ins_sim.bags.bag_reader import open_bag
     bag = tmp_path / 'bag'
     with HostileFlight(5, {'recorder': {

@@ -13,10 +13,11 @@ pytestmark = pytest.mark.live
                          ids=['real time at 1 kHz', 'lock-step'])
 def test_no_solution_is_lost(rate_hz, duration_s, factor, ros_domain, tmp_path):
     """
-    From the first solution on, the listener hears every one to the last instant.
+    From the first solution on, the listener receives every one to the last instant.
 
-    What the generator sends before DDS has made it known to the nodes is heard by none of them.
-    Speed and latency of the same runs are printed by benchmarks/live_chain.py.
+    Messages sent before DDS discovery are received by no node. Speed and latency of the same runs
+    are
+    printed by benchmarks/live_chain.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, (topics.INS_ODOMETRY,))
     parameters = {'rate_hz': float(rate_hz), 'duration_s': float(duration_s),

@@ -1,4 +1,4 @@
-"""One message that nobody should send: what is said of it, and that all nodes go on."""
+"""One hostile message: its log message, and all nodes keep running."""
 
 import struct
 
@@ -14,19 +14,19 @@ IMU_DOUBLES, ODOMETRY_DOUBLES = 37, 85
 
 
 class Amid(HostileFlight):
-    """A flight of all nodes, and the last good messages of it."""
+    """A flight of all nodes, and its last good messages."""
 
     def last(self, topic):
         """Return the last good message of a topic."""
         return self.hostile.last(topic.name)
 
     def send(self, topic, data):
-        """Send one message that is not of the flight."""
+        """Send one message that is not part of the flight."""
         self.fed.bus.put(topic.name, data)
         self._drive()
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return the log messages of a node."""
         return '\n'.join(self.fed.logs[node].kept)
 
 
@@ -45,7 +45,7 @@ def moved(data, shift_ns):
 
 
 def with_double(data, count, index, value):
-    """Return a message of so many doubles with another one, a sample later."""
+    """Return a message with one of its doubles replaced, one sample later."""
     spoilt = bytearray(moved(data, 10_000_000))
     struct.pack_into('<d', spoilt, len(data) - 8 * (count - index), value)
     return bytes(spoilt)
@@ -60,9 +60,9 @@ def with_double(data, count, index, value):
     (topics.TRUTH_IMU, IMU_DOUBLES, 13, 1e200, 'imu_sensor', 'holds the angular velocity (1e+200'),
     (topics.INS_ODOMETRY, ODOMETRY_DOUBLES, 44, float('nan'), 'velocity_meter', 'nan')])
 def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, says, flight):
-    """It is dropped by name, and the very next sample is solved as if nothing had been."""
+    """It is dropped with its name, and the very next sample is processed normally."""
     flight.send(topic, with_double(flight.last(topic), count, index, value))
-    # what is taken by hand is taken with the next sample
+    # Messages from the polled queue are processed with the next sample.
     flight.good(1)
     assert says in flight.said(node)
     flight.calm(20 if topic != topics.INS_ODOMETRY else 100)
@@ -72,14 +72,14 @@ def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, s
 @pytest.mark.parametrize('data', [b'\x00\x01\x00', b'\x00\x00\x00\x00' + bytes(8),
                                   b'\x00\x07\x00\x00' + bytes(9), b''])
 def test_a_malformed_answer_is_dropped(data, flight):
-    """On sim/ack of the generator, in one sentence with the topic's name."""
+    """On sim/ack of the generator, with one message that names the topic."""
     flight.send(topics.ACK, data)
     assert 'sim/ack: std_msgs/msg/Header' in flight.said('motion_generator')
     flight.calm(10)
 
 
 def test_instants_of_400_digits_are_no_fix(flight):
-    """Neither the navigator nor its diagnostics a second later minds."""
+    """Neither the navigator nor its diagnostics a second later fail."""
     stamp_ns, frame, (status,) = diagnostic_array.read_diagnostics(
         flight.last(topics.METER_RECORD))
     for key in ('window_start_ns', 'window_end_ns', 'arrival_ns', 'cycles'):
@@ -95,7 +95,7 @@ def test_instants_of_400_digits_are_no_fix(flight):
 
 
 def test_two_strays_a_day_apart_make_nobody_compute_for_minutes(flight):
-    """Truth of 1 000 000 s and of 1 020 000 s: two sentences, and no reading between them."""
+    """Truth at 1 000 000 s and at 1 020 000 s: two messages, and no reading in between."""
     for stamp_s in (1_000_000, 1_020_000):
         data = flight.last(topics.TRUTH_IMU)
         flight.send(topics.TRUTH_IMU, data[:4] + struct.pack('<iI', stamp_s, 0) + data[12:])
@@ -106,7 +106,7 @@ def test_two_strays_a_day_apart_make_nobody_compute_for_minutes(flight):
 
 
 def test_one_solution_that_is_ahead_disables_nothing(flight):
-    """One ins/odometry a second ahead: the windows go on, but for the one it falls into."""
+    """One ins/odometry a second ahead: all windows continue except the one it falls into."""
     flight.send(topics.INS_ODOMETRY, moved(flight.last(topics.INS_ODOMETRY), SECOND))
     flight.good(150)
     valid = flight.fed.bus.sent[topics.METER_VELOCITY.name]
@@ -125,7 +125,9 @@ def test_a_second_strapdown_disables_nothing(flight):
 
 
 def test_another_epoch_is_named_and_kills_nobody(ros_domain):
-    """Two generators of two epochs: the truth that is not announced is named, and ends nobody."""
+    """
+    Two generators with two epochs: the truth that is not announced is reported; no node ends.
+    """
     with Amid(1) as flight:
         flight.good(1)
         other = RunAnnouncement(1000 * SECOND, 0, 100.0, 60 * SECOND)
@@ -144,7 +146,7 @@ def test_another_epoch_is_named_and_kills_nobody(ros_domain):
 @pytest.mark.parametrize('node', ['imu_sensor', 'strapdown', 'velocity_meter', 'gnss',
                                   'aided_navigator'])
 def test_reset_brings_a_node_back(node, flight):
-    """Whatever stream has jumped wherever: after ~/reset the node follows the good one."""
+    """Whichever stream has jumped, after ~/reset the node follows the good one."""
     from std_srvs.srv import Trigger
     for topic in (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.INS_ODOMETRY, topics.IMU_RAW,
                   topics.GNSS_FIX, topics.GNSS_VELOCITY, topics.METER_RECORD):
@@ -163,7 +165,7 @@ def test_reset_brings_a_node_back(node, flight):
 
 
 def test_what_nobody_foresaw_is_a_fault(flight):
-    """The last net: an exception in a stage is one sentence, and the node starts anew."""
+    """The safety net: an exception in a stage is one message, and the node starts anew."""
     strapdown, calls = flight.fed.nodes['strapdown'], []
 
     def fails(*sample):

@@ -1,4 +1,4 @@
-"""What a transport drops comes: soon while a node runs, and before it has left."""
+"""Lost messages are resent soon while a node runs, and before it ends."""
 
 from importlib import metadata
 import os
@@ -36,7 +36,7 @@ RELEASES = {'7.1.6': [BEFORE_3], '9.1.2': [FROM_3], 'odd': [BEFORE_3, FROM_3],
 
 @pytest.mark.parametrize('version', RELEASES)
 def test_a_profile_that_the_user_has_named_stays(version, monkeypatch):
-    """Without one it is ours, for Jazzy, for Kilted, and for both where rclpy is unknown."""
+    """Otherwise it is ours, for Jazzy, for Kilted, and for both if rclpy is unknown."""
     def installed(name):
         if version is None:
             raise metadata.PackageNotFoundError(name)
@@ -56,7 +56,7 @@ def test_a_profile_that_the_user_has_named_stays(version, monkeypatch):
 @pytest.mark.parametrize('name, element', [('fastdds', 'heartbeatPeriod'),
                                            ('fastdds3', 'heartbeat_period')])
 def test_writers_ask_what_readers_miss_every_tenth_of_a_second(name, element):
-    """The heartbeat of our profile, as either release spells it; Fast DDS alone asks every 3 s."""
+    """The heartbeat of our profile, as each release spells it; Fast DDS alone uses 3 s."""
     root = ElementTree.parse(resources.middleware_profile(name)).getroot()
     period, = (e for e in root.iter() if e.tag.endswith(element))
     assert {e.tag.split('}')[-1]: e.text for e in period} == {'nanosec': '100000000'}
@@ -64,7 +64,7 @@ def test_writers_ask_what_readers_miss_every_tenth_of_a_second(name, element):
 
 @pytest.mark.live
 def test_the_middleware_takes_the_profile(chain):
-    """A profile in the words of another release is refused in red, and heartbeats are 3 s."""
+    """A profile in the syntax of another release is refused, and heartbeats are 3 s."""
     node = chain.start('motion_generator', {'motion.kind': 'racetrack', 'duration_s': 0.1})
     assert node.wait(GUARD_S) == 0
     text = chain.text(node)
@@ -74,9 +74,9 @@ def test_the_middleware_takes_the_profile(chain):
 @pytest.mark.live
 def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
     """
-    A recorder that is held up until the generator would have ended gets everything.
+    A recorder that is suspended until the generator would have ended receives everything.
 
-    The segment of shared memory is 512 KiB; what is sent meanwhile is several times that.
+    The shared-memory segment is 512 KiB; several times that is sent in the meantime.
     """
     wanted = [topic.name for topic in (*topics.TRUTH, topics.CLOCK_TOPIC)]
     recorder = chain.start_verb('record', *wanted, '-o', tmp_path / 'bag')

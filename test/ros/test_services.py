@@ -18,7 +18,7 @@ def chain(ros_domain, tmp_path):
 
 
 def fails(chain, node, parameters, code, arguments=()):
-    """Start a node, expect an exit code, and return the one sentence it wrote."""
+    """Start a node, expect an exit code, and return its one message."""
     process = chain.start(node, parameters, arguments)
     assert process.wait(60.0) == code, chain.text(process)
     text = chain.text(process)
@@ -142,7 +142,9 @@ def test_clock_and_use_sim_time(chain, ros_domain):
 
 
 def test_an_injected_fault_is_seen(chain, ros_domain):
-    """The service ~/fault makes a channel fail; imu/parity and /diagnostics say so, and stop."""
+    """
+    The service ~/fault makes a channel fail; imu/parity and /diagnostics show it, and then stop.
+    """
     from std_srvs.srv import SetBool
     dtg = {'gyro.model': 'dtg', 'output': 'integrated', 'gyro.dtg.fault.channel': 'gyro_2_z',
            'gyro.dtg.fault.bias_deg_h': 500.0, 'gyro.dtg.fault.start_s': -1.0,
@@ -158,7 +160,7 @@ def test_an_injected_fault_is_seen(chain, ros_domain):
             listener.spin_until(lambda: listener.poll() or (
                 parities and condition(parities[max(parities)])))
 
-        # x the parity of the reading, y its mean over a window, z what that may be
+        # x: parity of the reading, y: its mean over a window, z: its threshold.
         hear(lambda p: p[2] > 0.0)
         assert abs(parities[max(parities)][1]) <= parities[max(parities)][2]
         assert not [m for _, _, m in seen if 'parity' in m]

@@ -17,7 +17,7 @@ AT_ONCE = 10
 SIGNALS = {'SIGINT': (signal.SIGINT,), 'SIGINT twice': (signal.SIGINT, signal.SIGINT),
            'SIGTERM': (signal.SIGTERM,)}
 PARAMETERS = {'rate_hz': 200.0, 'duration_s': 0.0}
-# makes the handlers anew each time one has made the process deaf
+# This changes the handlers again whenever the process has started to ignore signals.
 HANDLERS = """
 from ins_sim.ros.process.runtime import Stop
 Stop().install()
@@ -33,9 +33,9 @@ for _ in range(5000):
 @pytest.mark.parametrize('name', SIGNALS)
 def test_signals(name, ros_domain, tmp_path):
     """
-    30 of 30 tries, five of each node, which talk to each other.
+    30 of 30 tries, five of each node, while the nodes exchange messages.
 
-    Some signals come while the process still imports, some while it publishes.
+    Some signals arrive while the process still imports, some while it publishes.
     """
     rng = random.Random(name)
     nodes = ('motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter', 'gnss',
@@ -57,7 +57,7 @@ def test_signals(name, ros_domain, tmp_path):
 
 
 def test_signals_in_the_moment_of_a_change_of_handlers():
-    """A shower of signals: some fall into signal.signal itself, and nothing is said of them."""
+    """Many signals: some arrive within signal.signal itself, and nothing is printed."""
     with subprocess.Popen([sys.executable, '-c', HANDLERS], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as process:
         process.stdout.readline()
@@ -71,12 +71,12 @@ def test_signals_in_the_moment_of_a_change_of_handlers():
 
 
 def test_a_node_that_hangs_in_its_end_ends():
-    """Stuck in C with the interpreter locked, as Fast DDS may be: exit code as it was to be."""
+    """Blocked in C with the interpreter locked, as Fast DDS may be: the intended exit code."""
     code = ('import ctypes\n'
             'from ins_sim.ros.process.last_resort import exit_within\n'
             'exit_within(1, 3)\n'
             'ctypes.PyDLL(None).sleep(60)\n')
     start = time.monotonic()
     assert subprocess.run([sys.executable, '-c', code], timeout=GUARD_S).returncode == 3
-    # not before its second, and not by the 60 s that it is stuck for
+    # Not before its second, and not after the 60 s for which it is blocked.
     assert 1.0 <= time.monotonic() - start < 60.0

@@ -1,4 +1,4 @@
-"""The soak run in short: it prints what it is to print, and loses nothing at a low rate."""
+"""A short soak run prints its results and loses nothing at a low rate."""
 
 import os
 import re
@@ -15,7 +15,7 @@ NODES = ('recorder', 'strapdown', 'imu_sensor', 'motion_generator')
 
 
 def test_a_short_soak(ros_domain, tmp_path):
-    """Exit code 0; losses, latency, memory, handles, CPU and load are told."""
+    """Exit code 0; losses, latency, memory, handles, CPU and load are printed."""
     ended = subprocess.run(
         [sys.executable, ROOT / 'tools' / 'soak.py', '10', '100', tmp_path / 'soak'],
         env={**os.environ, 'PYTHONPATH': str(ROOT)}, capture_output=True, text=True,

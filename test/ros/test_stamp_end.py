@@ -1,4 +1,4 @@
-"""Where the stamps of ROS end, int32 seconds: 2038-01-19."""
+"""The end of ROS stamps, int32 seconds: 2038-01-19."""
 
 import pytest
 
@@ -17,7 +17,7 @@ def endless(epoch_s):
 
 
 def test_an_endless_run_ends_with_its_stamps():
-    """The last sample can be packed, 10 s before the end, as readings are stamped later."""
+    """The last sample can be packed, 10 s before the end, because readings have later stamps."""
     source = endless(2147483600)
     assert source.endless and source.count == 3801
     index = topics.TRUTH.index(topics.TRUTH_IMU)
@@ -31,7 +31,7 @@ def test_an_endless_run_ends_with_its_stamps():
 
 @pytest.mark.live
 def test_the_generator_says_so(chain):
-    """Exit code 0 and one sentence."""
+    """Exit code 0 and one message."""
     generator = chain.start('motion_generator', {
         'duration_s': 0.0, 'time.epoch_s': 2147483636, 'motion.kind': 'static'})
     assert generator.wait(60.0) == 0, chain.text(generator)

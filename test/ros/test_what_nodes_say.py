@@ -1,4 +1,4 @@
-"""What nodes say is bounded, and names what is wrong: kinds, texts, publishers, losses, names."""
+"""Log messages of nodes are bounded and name the fault: kinds, texts, publishers, losses."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ pytest.importorskip('rclpy')
 
 @pytest.fixture
 def log(monkeypatch):
-    """Return a list of what is said, and its clock."""
+    """Return a list of log messages, and its clock."""
     clock, lines = ToldClock(), []
     monkeypatch.setattr(said, 'time', clock)
     return SimpleNamespace(clock=clock, lines=lines, said=said.Said(lines.append))
@@ -27,11 +27,11 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
         log.clock.now_s += 0.5
     assert len(log.lines) == 15
     assert log.lines[0].endswith('expected 0.01 s')
-    # after 1, 2, 4, ... 64 s, and then every 64 s
+    # After 1, 2, 4, ... 64 s, and then every 64 s.
     assert log.lines[1].endswith('(1 more of this kind before it)')
     assert log.lines[2].endswith('(3 more of this kind before it)')
     assert log.lines[-1].endswith('(127 more of this kind before it)')
-    # it comes back after a while: at once
+    # After a pause it is logged at once.
     log.clock.now_s += 200.0
     log.said.say('imu comes at another rate from 1 s; expected 0.01 s')
     log.clock.now_s += 1.0
@@ -40,7 +40,7 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
 
 
 def test_thousands_of_different_texts_are_few_lines(log):
-    """3000 kinds in 5 s: 20 lines at once, two a second, and how many were not said."""
+    """3000 kinds in 5 s: 20 lines at once, two a second, and the number of suppressed ones."""
     for k in range(3000):
         log.said.say(f'a message holds what nobody knows: {"x" * (k % 300)}')
         log.clock.now_s += 5.0 / 3000
@@ -53,14 +53,14 @@ def test_thousands_of_different_texts_are_few_lines(log):
     ('plain', 'plain'), ('\x1b[31mred', '\\x1b[31mred'), ('a\nb\tc', 'a\\nb\\tc'),
     ('\u202eback', '\\u202eback'), ('\ud800', '\\ud800'), ('Grüße', 'Grüße')])
 def test_texts_are_cut_and_made_visible(text, shown):
-    """No escape sequence of a stranger reaches a terminal, no text fills a disk."""
+    """No escape sequence reaches a terminal, and no text fills a disk."""
     assert said.short(text) == shown
     long = said.short(text * 10_000, 20)
     assert len(long) < 220 and long.isprintable() and long.endswith('characters)')
 
 
 def test_the_lock_step_complaint_is_a_line():
-    """4000 names of 10 kB on sim/ack: ten of them, cut, and that there are others."""
+    """4000 names of 10 kB on sim/ack: ten of them, truncated, and that there are others."""
     lock = LockStep(('strapdown',), 10, 30.0)
     for k in range(4000):
         lock.ack(f'{k}\x1b' + 'x' * 10_000, 0, 5)
@@ -74,7 +74,7 @@ def test_the_lock_step_complaint_is_a_line():
 
 
 def test_two_publishers_are_named():
-    """Two generators: said by both, and by whoever reads them, with their names."""
+    """Two generators are reported by both, and by their readers, with their names."""
     from ins_sim.ros.process.publishers import SolePublishers
     from ins_sim.ros.transport.qos import data_profile
     infos = [SimpleNamespace(node_name=name, node_namespace='/run', qos_profile=data_profile(1))
@@ -93,7 +93,7 @@ def test_two_publishers_are_named():
 
 
 def test_losses_are_told_from_a_wrong_rate():
-    """By the numbers of the publishers: the advice is about load, with topics.depth."""
+    """By the numbers of the publishers: the advice is about load and topics.depth."""
     from ins_sim.ros.process.publishers import MessageLosses
     queue = SimpleNamespace(gaps=Gaps(), dropped=0)
     losses = MessageLosses({'truth/odometry': queue}, 500)
@@ -112,7 +112,9 @@ def test_losses_are_told_from_a_wrong_rate():
 
 @pytest.mark.parametrize('may_drop', [True, False])
 def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
-    """What has waited for more than 5 s, where nobody waits for its answer; else all of it."""
+    """
+    Messages older than 5 s are dropped if nobody waits for an acknowledgement; otherwise none.
+    """
     from ins_sim.messages import topics
     from ins_sim.ros.transport import backlog
     clock, taken = ToldClock(), []
@@ -133,7 +135,7 @@ def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
 
 
 def test_the_net_takes_whatever_is_raised():
-    """One sentence with type, cause and place; what ends a process passes."""
+    """One message with type, cause and place; exceptions that end a process pass."""
     told = []
 
     def divide(a, b):

@@ -1,4 +1,4 @@
-"""Compressed arrays: the same bits come back, and what gains nothing is not compressed."""
+"""Compressed arrays keep their bits, and arrays that would not shrink are not compressed."""
 
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
@@ -19,7 +19,7 @@ ARRAYS = {
 
 
 def test_arrays_come_back_to_the_bit(tmp_path):
-    """By numpy.load: types, shapes and bytes, of arrays that do not lie row after row too."""
+    """numpy.load restores types, shapes and bytes, also of arrays that are not contiguous."""
     arrays = {**ARRAYS, 'across': np.asfortranarray(ARRAYS['noise']),
               'every 7th': ARRAYS['noise'][::7]}
     write_arrays(tmp_path / 'run.npz', arrays)
@@ -31,7 +31,7 @@ def test_arrays_come_back_to_the_bit(tmp_path):
 
 
 def test_only_what_shrinks_is_compressed(tmp_path):
-    """Stamps and constants are; noise, of which every bit is news, is not."""
+    """Stamps and constants are compressed, noise is not."""
     write_arrays(tmp_path / 'run.npz', ARRAYS)
     with ZipFile(tmp_path / 'run.npz') as archive:
         for name, method in (('t_ns', ZIP_DEFLATED), ('constant', ZIP_DEFLATED),
@@ -43,9 +43,9 @@ def test_only_what_shrinks_is_compressed(tmp_path):
 @pytest.mark.parametrize('period_ns', [10_000_000, 2 ** 20])
 def test_a_long_run_at_rest_can_be_read_again(period_ns, tmp_path):
     """
-    Eight hours of a perfect IMU at rest shrink a thousandfold, but for their stamps.
+    Eight hours of a perfect IMU at rest shrink a thousandfold, except for their stamps.
 
-    The reader refuses what unpacks to more than a hundred times its size.
+    The reader refuses a file that unpacks to more than a hundred times its size, but not this one.
     """
     count = 2_900_000
     imu = {'imu_t_ns': np.arange(count) * period_ns,
@@ -59,7 +59,7 @@ def test_a_long_run_at_rest_can_be_read_again(period_ns, tmp_path):
 
 @pytest.mark.parametrize('step', [1, 3, 8192, 9000, 30000])
 def test_every_nth_row_of_a_column_in_a_file(step, tmp_path):
-    """Rows of several blocks, picked out block by block, are those of the array."""
+    """Rows of several blocks, selected block by block, equal those of the array."""
     values = np.random.default_rng(2).normal(size=(COUNT, 3))
     errors = NavErrors(np.arange(COUNT), values, 2.0 * values, 3.0 * values, 4.0 * values)
     with spool.Spool(tmp_path) as spooled:

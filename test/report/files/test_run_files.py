@@ -1,4 +1,6 @@
-"""The files of a run: thinned arrays, CSV tables and trajectories hold the arrays to the bit."""
+"""
+The files of a run: thinned arrays, CSV tables and trajectories agree with the arrays to the bit.
+"""
 
 import csv
 
@@ -63,7 +65,7 @@ def check_trajectory(path, settings, history):
 
 
 def test_tables_and_trajectories_of_the_verb(run, tmp_path):
-    """simulate --csv --tum writes each record, and adds nothing where it is not asked to."""
+    """simulate --csv --tum writes each record; without the options nothing is added."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '-o', str(tmp_path / 'plain')]) == 0
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--csv', '--tum', '-o',
                  str(tmp_path / 'run')]) == 0
@@ -80,7 +82,7 @@ def test_tables_and_trajectories_of_the_verb(run, tmp_path):
 
 @pytest.mark.filterwarnings("ignore:The 'float_precision' argument is deprecated")
 def test_a_dataframe_is_what_pandas_reads_from_the_table(run, tmp_path):
-    """Names, index and bits."""
+    """Names, index and bits of a dataframe equal those that pandas reads from the table."""
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')
     run.save(tmp_path / 'run', csv=True)
     for name in RECORDS:
@@ -90,7 +92,7 @@ def test_a_dataframe_is_what_pandas_reads_from_the_table(run, tmp_path):
 
 
 def test_the_table_of_the_imu_is_navigated_as_it_is(run, tmp_path):
-    """Names, units and stamps are those that navigate knows."""
+    """navigate recognises the names, units and stamps of the table of the IMU."""
     run.save(tmp_path / 'run', csv=True)
     read, notes = read_imu(tmp_path / 'run' / 'imu.csv')
     assert len(notes) == 1 and 't_s from t_ns times 1e-09' in notes[0]
@@ -100,7 +102,7 @@ def test_the_table_of_the_imu_is_navigated_as_it_is(run, tmp_path):
 
 
 def test_evo_reads_the_trajectories(run, tmp_path):
-    """Its position error is that of ours, at stamps that it pairs."""
+    """The position error of evo equals ours at the stamps that it pairs."""
     file_interface = pytest.importorskip('evo.tools.file_interface',
                                          reason='evo is not installed (PyPI)')
     from support.bags.bag_tools import evo_position_rms
@@ -111,13 +113,15 @@ def test_evo_reads_the_trajectories(run, tmp_path):
         valid, details = trajectory.check()
         assert valid, details
     rms = np.sqrt((run.errors.position ** 2).sum(axis=1).mean())
-    # a difference of positions 6400 km from the centre of the Earth: 1e-9 m each
+    # A difference of positions 6400 km from the centre of the Earth: 1e-9 m each.
     assert evo_position_rms(truth, ins) == pytest.approx(rms, rel=1e-3, abs=1e-8)
 
 
 @pytest.mark.parametrize('thin', [1, 7, 200, 201, 10 ** 6])
 def test_every_nth_instant(run, thin, tmp_path):
-    """Of truth, solution, errors and twin, from the verb and from a run; the IMU is whole."""
+    """
+    Truth, solution, errors and twin are thinned, by the verb and by a run; the IMU is complete.
+    """
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--csv', '--thin', str(thin), '-o',
                  str(tmp_path / 'verb')]) == 0
     run.save(tmp_path / 'api', thin=thin, csv=True, tum=True)
@@ -132,14 +136,14 @@ def test_every_nth_instant(run, thin, tmp_path):
         told = (tmp_path / folder / 'manifest.yaml').read_text()
         assert ('thin' in told) == (thin > 1)
     check_trajectory(tmp_path / 'api' / 'ins.tum', run.settings, run.states[::thin])
-    # what was found in the run does not depend on it
+    # The summary of the run does not depend on thinning.
     run.save(tmp_path / 'whole')
     assert (tmp_path / 'whole' / 'summary.json').read_text() == (
         tmp_path / 'verb' / 'summary.json').read_text()
 
 
 def test_what_is_left_out_is_said_once(tmp_path, capsys):
-    """With its count; nothing is said where nothing is left out."""
+    """Thinning is reported once with its count, and not at all if nothing is left out."""
     for thin, sentence in ((1, None), (10, 'the files hold 21 of 201 output instants (thin 10)')):
         assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--thin', str(thin), '--force',
                      '-o', str(tmp_path / 'run')]) == 0
@@ -150,21 +154,21 @@ def test_what_is_left_out_is_said_once(tmp_path, capsys):
 
 @pytest.mark.parametrize('thin', [0, -3, 2.5, '2', True, None])
 def test_thin_is_a_whole_number(run, thin, tmp_path):
-    """One sentence, and nothing is written."""
+    """Invalid values of thin are refused with one message, and nothing is written."""
     with pytest.raises(ValueError, match='^thin is .*; expected a whole number of at least 1$'):
         run.save(tmp_path / 'run', thin=thin)
     assert not (tmp_path / 'run').exists()
 
 
 def test_the_verb_refuses_thin_0_before_the_run(tmp_path, capsys):
-    """Exit code 2."""
+    """thin 0 is refused with exit code 2 before the run."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '--thin', '0', '-o', str(tmp_path / 'x')]) == 2
     assert 'thin is 0; expected a whole number of at least 1' in capsys.readouterr().err
     assert not (tmp_path / 'x').exists()
 
 
 def test_an_aided_run(aided, tmp_path):
-    """Records of the aided solution stand beside those of the strapdown, thinned alike."""
+    """Records of the aided solution are written beside those of the strapdown, thinned alike."""
     aided.save(tmp_path / 'run', thin=5, csv=True, tum=True)
     for name in ('truth', 'states', 'errors'):
         check_table(tmp_path / 'run' / f'aided_{name}.csv', getattr(aided, name)[::5])
@@ -176,7 +180,7 @@ def test_an_aided_run(aided, tmp_path):
 
 
 def test_a_navigation(tmp_path):
-    """The verb and the function write the solution and its errors; the map is at the start."""
+    """Verb and function write the solution and its errors; the map is at the start."""
     (tmp_path / 'track.csv').write_text('t_s,lat_deg,lon_deg,height_m\n' + ''.join(
         f'{k},45.0,0.0,0.0\n' for k in range(4)))
     record = record_at_rest(300)
@@ -194,7 +198,7 @@ def test_a_navigation(tmp_path):
 
 
 def test_kept_is_the_result_itself_where_nothing_is_left_out(run):
-    """No copy of an hour is made."""
+    """Without thinning no copy of the result is made."""
     assert WantedFiles().kept(run.result) is run.result
     assert WantedFiles(3).kept(run.result).imu is run.result.imu
 

@@ -1,4 +1,4 @@
-"""A run.npz that is something else: one sentence, and no memory that the file cannot fill."""
+"""An invalid run.npz is refused with one message, without allocating the memory it claims."""
 
 import io
 import zipfile
@@ -19,7 +19,7 @@ def saved(folder, save=np.savez, **changed):
 
 
 def test_the_arrays_of_a_run_come_back(tmp_path):
-    """With and without the parity, compressed or not."""
+    """Arrays with and without the parity, compressed or not, are read back."""
     for save in (np.savez, np.savez_compressed):
         imu = storage.read_imu(saved(tmp_path, save))
         assert imu.parity is None and np.array_equal(imu.omega, GOOD['imu_omega'])
@@ -37,7 +37,7 @@ def test_the_arrays_of_a_run_come_back(tmp_path):
     (dict(imu_omega=np.array([['x'] * 3] * 50)), 'imu_omega has the type <U1'),
     (dict(imu_omega=np.array([{}], dtype=object)), 'imu_omega.npy says it has (1,) of object')])
 def test_other_arrays_are_named(changed, sentence, tmp_path, capsys):
-    """allan says which one, and what it is."""
+    """allan names the invalid array and what is wrong with it."""
     saved(tmp_path, **changed)
     (tmp_path / 'parameters.yaml').write_text('/**: {ros__parameters: {rate_hz: 100.0}}\n')
     assert main(['allan', str(tmp_path), '-o', str(tmp_path / 'out')]) == 2
@@ -46,7 +46,7 @@ def test_other_arrays_are_named(changed, sentence, tmp_path, capsys):
 
 
 def test_sizes_that_the_file_does_not_have_are_not_allocated(tmp_path):
-    """A header of 2^40 rows, and a hundred megabytes of zeros in 100 kB."""
+    """A header of 2^40 rows, and a hundred megabytes of zeros in 100 kB, are refused."""
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, {'descr': '<i8', 'fortran_order': False,
                                                   'shape': (2 ** 40,)})

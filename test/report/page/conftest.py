@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def without_bokeh(monkeypatch):
-    """Let Bokeh be missing, as on a machine without the extra report."""
+    """Make Bokeh unavailable, as on a machine without the extra report."""
     from ins_sim.report import page
     for name in [name for name in sys.modules if name.partition('.')[0] == 'bokeh']:
         monkeypatch.delitem(sys.modules, name)

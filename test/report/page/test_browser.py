@@ -1,4 +1,4 @@
-"""Reports in a real browser, at the widths of a desk and of a telephone."""
+"""Reports in a real browser, at the widths of a desktop and of a telephone."""
 
 from support.aided_runs import command
 from support.reports.browser import find_browser, seen
@@ -8,7 +8,7 @@ from ins_sim.report.page.html import REPORT, write_page
 import pytest
 
 pytest.importorskip('bokeh')
-# Width of the window and a height in which the whole report stands.
+# Width of the window, and a height that contains the complete report.
 WINDOWS = ((1280, 5000), (400, 8000))
 
 
@@ -21,14 +21,16 @@ def run(tmp_path_factory):
 
 
 def check(found, width, panels):
-    """Every panel is drawn within the window, nothing is loaded, and nothing is complained of."""
+    """
+    Check that every panel is drawn within the window, nothing is loaded, and no error occurs.
+    """
     assert found['heard'] == []
     assert found['loaded'] == []
     assert found['width'] == width and found['scroll'] <= width
     assert len(found['plots']) == panels
     for plot in found['plots']:
         assert 0.0 <= plot['left'] and plot['right'] <= width and plot['height'] >= 100.0
-        # The pixels of axes and curves; an empty canvas has one colour.
+        # Pixels of axes and curves; an empty canvas has one colour.
         assert plot['colours'] > 3
     for entry in found['legends']:
         assert entry['right'] <= width and entry['size'] >= 12.0
@@ -36,7 +38,7 @@ def check(found, width, panels):
 
 @pytest.mark.parametrize('width, height', WINDOWS)
 def test_the_report_of_a_run_is_seen(run, width, height, tmp_path):
-    """Figures of both solutions and the track; panels with one axis are zoomed together."""
+    """Figures of both solutions and the track; panels with a common axis are zoomed together."""
     found = seen(run / REPORT, width, height, tmp_path, 'run')
     # Position, velocity, tilt, azimuth and NIS; position, attitude and drift; the track.
     check(found, width, 5 + 3 + 1)
@@ -50,7 +52,7 @@ def test_the_report_of_a_run_is_seen(run, width, height, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize('width, height', WINDOWS)
 def test_every_mark_is_seen(width, height, tmp_path):
-    """All that a chart may hold, in one report."""
+    """Every kind of mark of a chart is drawn, in one report."""
     charts = every_mark()
     write_page(tmp_path, Page(
         'Every mark', 'All is seen.', charts,
@@ -62,7 +64,7 @@ def test_every_mark_is_seen(width, height, tmp_path):
 
 @pytest.mark.slow
 def test_without_bokeh_the_images_are_seen(tmp_path, without_bokeh):
-    """The page then holds the figures as images, within the window."""
+    """Without Bokeh the page contains the figures as images, within the window."""
     charts = every_mark()
     write_page(tmp_path, Page('Every mark', 'All is seen.', charts))
     found = seen(tmp_path / REPORT, 400, 8000, tmp_path, 'images')
@@ -72,7 +74,7 @@ def test_without_bokeh_the_images_are_seen(tmp_path, without_bokeh):
 
 
 def test_a_missing_browser_is_a_failure_in_ci_alone(monkeypatch):
-    """Elsewhere the test is skipped, and says what it looked for."""
+    """Outside of CI the test is skipped and states what it looked for."""
     monkeypatch.setattr('support.reports.browser.NAMES', ('no-such-browser',))
     for value, outcome in (('true', pytest.fail.Exception), ('', pytest.skip.Exception)):
         monkeypatch.setenv('CI', value)

@@ -1,4 +1,4 @@
-"""The page of a report: whole, escaped, the same bytes each time, and no larger than promised."""
+"""The page of a report: complete, escaped, reproducible bytes, and of limited size."""
 
 from html.parser import HTMLParser
 import re
@@ -28,7 +28,7 @@ EVERY = Page('Title <b> & "words"', 'The answer <script>alert(1)</script>.', eve
 
 
 class Outline(HTMLParser):
-    """Collects the tags, the texts and the links of a page, and checks that tags are closed."""
+    """Collect tags, texts and links of a page, and check that tags are closed."""
 
     VOID = {'meta', 'link', 'img', 'br', 'wbr', 'path', 'rect', 'circle'}
 
@@ -39,14 +39,14 @@ class Outline(HTMLParser):
         assert self._open == []
 
     def handle_starttag(self, tag, attrs):
-        """Note a tag."""
+        """Record a tag."""
         self.tags.append(tag)
         self.links += [value for name, value in attrs if name in ('href', 'src')]
         if tag not in self.VOID:
             self._open.append(tag)
 
     def handle_startendtag(self, tag, attrs):
-        """Note a tag without content."""
+        """Record a tag without content."""
         self.tags.append(tag)
 
     def handle_endtag(self, tag):
@@ -54,7 +54,7 @@ class Outline(HTMLParser):
         assert self._open.pop() == tag
 
     def handle_data(self, data):
-        """Note a text that is read."""
+        """Record a text that is shown."""
         if self._open and self._open[-1] not in ('script', 'style'):
             self.texts.append(data)
 
@@ -66,7 +66,7 @@ def written(folder, page):
 
 
 def test_texts_are_shown_as_they_are(tmp_path):
-    """No text of a page, a chart or a file becomes markup; what cannot be seen is escaped."""
+    """No text of a page, a chart or a file becomes markup; invisible characters are escaped."""
     text = written(tmp_path, EVERY)
     outline = Outline(text)
     read = ''.join(outline.texts)
@@ -77,12 +77,12 @@ def test_texts_are_shown_as_they_are(tmp_path):
     assert not {'b', 'i', 'of', 'x'} & set(outline.tags)
     assert outline.tags.count('h1') == 1 and {'main', 'header', 'figure', 'table'} <= set(
         outline.tags)
-    # The answer stands before figures and tables.
+    # The answer precedes figures and tables.
     assert text.index('class="answer"') < min(text.index('<figure>'), text.index('<table'))
 
 
 def test_the_page_says_what_was_simulated(tmp_path):
-    """Settings that differ, seed, versions, digest, and links to the files beside it."""
+    """Changed settings, seed, versions, digest, and links to the files beside it are shown."""
     outline = Outline(written(tmp_path, EVERY))
     read = ''.join(outline.texts)
     for words in ('gyro.delay_us.y', 'two_axis', 'seed of imu_sensor', 'digest of the errors',
@@ -93,7 +93,7 @@ def test_the_page_says_what_was_simulated(tmp_path):
 
 
 def test_settings_that_differ_are_those_of_the_file():
-    """Read back as parameters they give the same settings."""
+    """The shown settings, read as parameters, give the same settings."""
     rows = changed_settings(SETTINGS)
     assert {row[0]: row[1] for row in rows}['gyro.errors.bandwidth_hz'] == '3 × 440.0'
     nodes = {row[0]: row[4] for row in rows}
@@ -103,13 +103,13 @@ def test_settings_that_differ_are_those_of_the_file():
 
 
 def test_the_same_page_has_the_same_bytes(tmp_path):
-    """Though Bokeh numbers its objects through the whole process."""
+    """The bytes are reproducible, although Bokeh numbers its objects through the whole process."""
     pytest.importorskip('bokeh')
     assert written(tmp_path, EVERY) == written(tmp_path, EVERY)
 
 
 def test_the_script_is_as_small_as_promised(tmp_path):
-    """At most 1.5 MB stand in a page for its figures, whatever they show; nothing is fetched."""
+    """Figures add at most 1.5 MB of script to a page; nothing is fetched."""
     pytest.importorskip('bokeh')
     empty = Chart('empty', 'Nothing', (Panel((), 'x', 'y'),))
     text = written(tmp_path, Page('t', 'a', (empty,)))
@@ -118,7 +118,7 @@ def test_the_script_is_as_small_as_promised(tmp_path):
 
 
 def test_curves_of_an_hour_stay_small(tmp_path):
-    """Twenty noisy curves of 360001 points: at most 5 MB with the script."""
+    """Twenty noisy curves of 360001 points: at most 5 MB including the script."""
     pytest.importorskip('bokeh')
     t = np.arange(360001) / 6000.0
     noise = np.random.default_rng(1).normal(size=(20, len(t)))
@@ -128,7 +128,7 @@ def test_curves_of_an_hour_stay_small(tmp_path):
 
 
 def test_without_bokeh_the_figures_are_images(tmp_path, without_bokeh):
-    """The page says how to get others; images of the folder are taken as they are."""
+    """The page states how to get zoomable figures; images of the folder are embedded."""
     (tmp_path / 'track.png').write_bytes(b'an image')
     outline = Outline(written(tmp_path, EVERY))
     assert NO_BOKEH in outline.texts
@@ -139,13 +139,13 @@ def test_without_bokeh_the_figures_are_images(tmp_path, without_bokeh):
 
 
 def test_a_page_without_figures_needs_no_script(tmp_path):
-    """Tables and sentences alone."""
+    """A page with tables and sentences only contains no script."""
     text = written(tmp_path, Page('t', 'a'))
     assert '<script' not in text and NO_BOKEH not in text
 
 
 def test_bokeh_is_loaded_by_what_writes_a_page_alone():
-    """Half a second, for which no other verb pays."""
+    """Loading Bokeh takes half a second, which other verbs do not pay."""
     code = ('import sys, ins_sim, ins_sim.cli.main, ins_sim.report.storage\n'
             'import ins_sim.report.page.html\n'
             'assert not [name for name in sys.modules if name.startswith("bokeh")]\n')
@@ -157,5 +157,5 @@ def test_bokeh_is_loaded_by_what_writes_a_page_alone():
     (np.int64(123456), '123456'), (None, '–'), (float('nan'), '–'), (True, 'yes'),
     (np.float64(1e-9), '1e-09'), ('word', 'word')])
 def test_cells(value, text):
-    """Numbers with four digits, counts as a whole."""
+    """Numbers have four digits, counts are complete."""
     assert cell_text(value) == text

@@ -1,4 +1,4 @@
-"""The figures of a run: units that fit, a prediction only where it says something."""
+"""The figures of a run: suitable units, and a prediction only where it is meaningful."""
 
 from dataclasses import replace
 
@@ -33,13 +33,13 @@ def labels(panel):
 
 
 def test_a_prediction_that_fits_has_a_panel_of_what_it_leaves(motion_2):
-    """Both curves coincide: what is left is drawn by itself, a thousand times larger."""
+    """Both curves coincide; the difference is drawn separately, a thousand times larger."""
     run, prediction = motion_2
     chart = error_chart('t', run.errors, prediction)
     position, residual, _, drift = chart.panels
     assert labels(position) == ['east', 'north', 'linear prediction']
     assert labels(residual) == ['east', 'north']
-    # The panel is in mm: what the prediction leaves is within its bound.
+    # The panel is in mm: the difference is within the bound of the prediction.
     left = max(np.abs(mark.y).max() for mark in residual.marks)
     assert 0.0 < left < 0.05 * 57.5
     assert [mark.y for mark in drift.marks if isinstance(mark, Level)] == pytest.approx(
@@ -47,7 +47,7 @@ def test_a_prediction_that_fits_has_a_panel_of_what_it_leaves(motion_2):
 
 
 def test_a_prediction_of_nothing_is_not_drawn(motion_2):
-    """Where it is no larger than what the theory may leave out, and where there is none."""
+    """A prediction below its own bound, or a missing one, is not drawn."""
     run, prediction = motion_2
     for given in (None, replace(prediction, largest=np.zeros(3)),
                   replace(prediction, position_bound=1e9)):
@@ -57,7 +57,7 @@ def test_a_prediction_of_nothing_is_not_drawn(motion_2):
 
 
 def test_a_prediction_that_is_wrong_has_no_panel_of_its_own(motion_2):
-    """The difference is seen where both are drawn."""
+    """A wrong prediction has no panel of differences; both curves are visible."""
     run, prediction = motion_2
     doubled = replace(prediction, position=2.0 * prediction.position)
     chart = error_chart('t', run.errors, doubled)
@@ -65,7 +65,9 @@ def test_a_prediction_that_is_wrong_has_no_panel_of_its_own(motion_2):
 
 
 def test_what_delays_cause_is_the_run_less_its_twin():
-    """With the errors of a FOG, kilometres in the run: 4.5 m of them by a delay of 1 us."""
+    """
+    With errors of a FOG of kilometres the panel of run minus twin shows the 4.5 m due to 1 us.
+    """
     settings = ins_sim.read_settings(['motion_2', 'delay_y_1us', 'imu_tactical_fog'],
                                      {'duration_s': 200.0})
     run, prediction = ins_sim.simulate(settings), ins_sim.predict(settings)
@@ -74,7 +76,8 @@ def test_what_delays_cause_is_the_run_less_its_twin():
     north = (run.errors.position - run.twin.position)[:, 1]
     assert position.y_label == 'position error [m]'
     assert np.abs(position.marks[1].y).max() == np.abs(north).max()
-    # Of the delays alone within a percent, though the FOG makes a hundred times as much.
+    # The effect of the delays agrees within a percent, although the FOG causes a hundred times
+    # more.
     assert np.abs(north).max() == pytest.approx(prediction.largest[1], rel=0.01)
     assert np.abs(run.errors.position[:, 1]).max() > 20.0 * np.abs(north).max()
 
@@ -82,7 +85,7 @@ def test_what_delays_cause_is_the_run_less_its_twin():
 @pytest.mark.parametrize('size, unit, factor', [(2e4, 'km', 1e-3), (500.0, 'm', 1.0),
                                                 (0.01, 'mm', 1e3)])
 def test_positions_are_in_the_unit_of_their_size(size, unit, factor):
-    """Kilometres where metres read badly; up is left out where it is zero."""
+    """Kilometres are used for large errors; up is left out if it is zero."""
     position = error_chart('t', errors(size)).panels[0]
     assert position.y_label == f'position error [{unit}]'
     assert labels(position) == ['east', 'north']
@@ -91,7 +94,7 @@ def test_positions_are_in_the_unit_of_their_size(size, unit, factor):
 
 
 def test_a_history_is_read_in_blocks():
-    """The extremes of a long history are in its curves, wherever the blocks end."""
+    """Curves contain the extremes of a long history, for any block boundaries."""
     n = 200001
     values = np.random.default_rng(1).normal(size=(n, 3))
     history = NavErrors(np.arange(n, dtype=np.int64), values, values, values, values)
@@ -103,7 +106,7 @@ def test_a_history_is_read_in_blocks():
 
 
 def test_blocks_are_interpolated_without_a_seam():
-    """As NumPy does it at once, and NaN beyond the ends."""
+    """Interpolation block by block equals numpy.interp, with NaN beyond the ends."""
     known = np.arange(0.0, 100.0)
     values = np.stack([known ** 2, -known], axis=1)
     t = np.linspace(-1.0, 101.0, 977)
@@ -115,7 +118,7 @@ def test_blocks_are_interpolated_without_a_seam():
 
 
 def test_a_track_has_equal_axes_and_kilometres():
-    """A flight of 60 s at 200 m/s is drawn from its start, in km."""
+    """A flight of 60 s at 200 m/s is drawn from its start, in km, with equal axes."""
     settings = ins_sim.read_settings(['cruise'], {'duration_s': 120.0})
     run = ins_sim.simulate(settings, twin=False)
     tracks = run_tracks(run.result)

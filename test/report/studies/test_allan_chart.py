@@ -27,13 +27,13 @@ def exact_noise(wanted=WANTED, settings=WANTED):
 
 
 def labelled(panel, start):
-    """Return the mark whose label begins so."""
+    """Return the mark whose label starts with a text."""
     return next(mark for mark in panel.marks if (getattr(mark, 'label', None) or '')
                 .startswith(start))
 
 
 def test_the_floor_that_is_drawn_is_the_number_in_the_legend():
-    """Flat at sqrt(2 ln 2/pi) = 0.664 of B, and both numbers are named."""
+    """The line is flat at sqrt(2 ln 2/pi) = 0.664 of B, and both numbers are named."""
     top, _ = allan_chart('a gyro', exact_noise()).panels
     floor = labelled(top, '0.664 B')
     assert isinstance(floor, Level) and floor.x is None
@@ -53,7 +53,9 @@ def test_the_slopes_give_their_coefficient_where_it_is_read():
 
 
 def test_fit_settings_and_what_they_are_off():
-    """The settings beside the fit; below what differs, in percent, about the scatter of one."""
+    """
+    The settings are shown beside the fit, and below it the difference in percent with its scatter.
+    """
     noise = exact_noise(settings=(5.0, 0.04, 0.5, 0.4))
     top, bottom = allan_chart('a gyro', noise).panels
     fit, expected = labelled(top, 'fit'), labelled(top, 'expected of the settings')
@@ -67,7 +69,9 @@ def test_fit_settings_and_what_they_are_off():
 
 
 def test_what_is_not_known_is_not_drawn():
-    """No settings, settings without noise, and a coefficient that the record does not show."""
+    """
+    Missing settings, settings without noise, and coefficients that were not found are not drawn.
+    """
     for noise in (exact_noise(settings=None), exact_noise(settings=(0.0,) * 4)):
         top, _ = allan_chart('a gyro', noise).panels
         assert not [m for m in top.marks if 'expected' in (getattr(m, 'label', '') or '')]
@@ -80,7 +84,7 @@ def test_what_is_not_known_is_not_drawn():
 
 
 def test_the_title_and_the_answer():
-    """Instrument, rate and length in words; the floor first, as in the figure."""
+    """Instrument, rate and length are in the title; the floor comes first, as in the figure."""
     noise = exact_noise()
     chart = allan_chart('imu_tactical_fog', noise)
     assert chart.name == 'gyro'

@@ -14,13 +14,13 @@ T_S = np.arange(0.0, 300.1, 0.1)
 
 
 def flight(beta_deg, z=100.0, estimated=1.0):
-    """Return a LoopFlight that swings by beta_deg at 0.3 rad/s; estimated: error of z, m."""
+    """Return a LoopFlight that oscillates by beta_deg at 0.3 rad/s; estimated: error of z, m."""
     swing = np.sin(0.3 * T_S)
     return LoopFlight(T_S, z * swing, np.radians(beta_deg) * swing, z * swing + estimated)
 
 
 def test_flights_over_time():
-    """Sideslip in degrees, the offset, and what the estimate is off, of each flight."""
+    """Sideslip in degrees, offset, and error of the estimate, of each flight."""
     chart = histories_chart('histories_0.15', 'a title', ['a', 'b'],
                             [flight(8.0), flight(0.1, 2e4)])
     sideslip, offset, error = chart.panels
@@ -34,7 +34,7 @@ def test_flights_over_time():
 
 
 def test_every_flight_of_the_table_looks_different():
-    """Colour and dash of a flight are its own, and the same in all panels."""
+    """Colour and dash of a flight are unique, and the same in all panels."""
     count = len(TABLE)
     chart = histories_chart('x', '', [str(k) for k in range(count)], [flight(1.0)] * count)
     looks = [[(mark.colour, mark.dash) for mark in panel.marks] for panel in chart.panels]
@@ -42,7 +42,10 @@ def test_every_flight_of_the_table_looks_different():
 
 
 def test_the_map_draws_no_limit_where_there_is_none():
-    """Filters of a kind share a panel; a limit beyond the map is left out, zero is one."""
+    """
+    Filters of one kind share a panel; a limit beyond the map is left out, a limit of zero is
+    drawn.
+    """
     gains = np.array([0.1, 1.0, 10.0])
     curves = [MapCurves(gains, np.array([1.0, 0.5, 0.0]),
                         {1.0: np.array([1.0, 0.51, 0.0]), 100.0: np.array([0.9, 0.2, 0.0])})
@@ -63,7 +66,7 @@ def test_the_map_draws_no_limit_where_there_is_none():
 
 
 def test_what_the_tables_say():
-    """Quiet flights are counted, and the one that swings most is named."""
+    """Quiet flights are counted, and the one with the largest oscillation is named."""
     quiet, restless = TABLE[0], next(case for case in TABLE if case.k_z == 0.17)
     rows = [loop_row(quiet, flight(0.01)), loop_row(restless, flight(8.0, 31.0), flight(7.9))]
     assert flights_answer(rows[:1]) == (

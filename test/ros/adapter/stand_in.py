@@ -1,8 +1,8 @@
 """
-A stand-in for another simulator: a process that publishes nothing but nav_msgs/Odometry.
+A stand-in for another simulator: a process that publishes only nav_msgs/Odometry.
 
-Arguments: a motion of ``other_simulators.MOTIONS``, rate in Hz, length in s, whether it goes in
-lock-step (it then waits for the acknowledgements of truth_adapter) or in real time.
+Arguments: a motion of ``other_simulators.MOTIONS``, rate in Hz, length in s, and whether it uses
+lock-step (it then waits for the acknowledgements of truth_adapter) or real time.
 """
 
 import sys

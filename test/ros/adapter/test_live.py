@@ -1,4 +1,4 @@
-"""Another simulator, which says Odometry and nothing else, drives an IMU and a strapdown."""
+"""Another simulator that publishes only Odometry drives an IMU and a strapdown."""
 
 import sys
 
@@ -45,7 +45,7 @@ def expected():
 
 
 def without_covariances(numbers):
-    """Return pose and twist of what ins/odometry holds."""
+    """Return pose and twist of the doubles of ins/odometry."""
     return numbers[:7] + numbers[43:49]
 
 

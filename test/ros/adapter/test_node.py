@@ -27,7 +27,7 @@ class Graph(FedNodes):
         self.adapter = self.nodes['truth_adapter']
         self.acked, self.stamps = [], []
         self.bus.listen = self._hear
-        # what the adapter announces, which the bus does not carry
+        # The announcement of the adapter, which the bus does not carry.
         for node in self.nodes.values():
             node._announced.take(self.adapter._announced.run.pack())
         return self
@@ -41,11 +41,11 @@ class Graph(FedNodes):
 
     @property
     def said(self):
-        """What the adapter has said."""
+        """Return the log messages of the adapter."""
         return list(self.logs['truth_adapter'].kept)
 
     def send(self, messages, pause_s=0.02):
-        """Send messages of the other simulator, and let time pass."""
+        """Send messages of the other simulator, and advance time."""
         for data in messages:
             self.bus.put(ODOM, data)
             self.bus.drive()
@@ -69,7 +69,7 @@ def shifted(data, shift_ns):
 
 @pytest.mark.parametrize('pacing', [{}, LOCK_STEP], ids=['real time', 'lock-step'])
 def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
-    """Truth, readings and solutions come of every instant, and what was adapted is said once."""
+    """Truth, readings and solutions exist for every instant, and adaptations are logged once."""
     with Graph(**pacing) as graph:
         graph.send(messages_of())
         assert graph.stamps == sorted(set(graph.stamps)) and len(graph.stamps) > 380
@@ -80,7 +80,7 @@ def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
 
 
 def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
-    """The input's epoch is its own: stamps near 0 and those of 2026 give truth at them."""
+    """Stamps near 0 and those of 2026 are kept as the stamps of the truth."""
     shift_ns = 1_796_000_000 * 10**9
     with Graph() as graph:
         graph.send(messages_of())
@@ -91,10 +91,13 @@ def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
 
 
 def test_a_simulator_that_waits_is_held_by_the_consumers(ros_domain):
-    """Without an answer of strapdown a window of truth goes out and the input is not answered."""
+    """
+    Without acknowledgements of strapdown one window of truth is sent, and the input is not
+    acknowledged.
+    """
     with Graph(others=False, **LOCK_STEP) as graph:
         graph.send(messages_of())
-        # The first sample is repeated until it is answered.
+        # The first sample is repeated until it is acknowledged.
         assert len(set(graph.stamps)) == 1 and len(graph.stamps) > 5
         held_ns = graph.acked[-1]
         assert held_ns < 2.1e9
@@ -106,7 +109,7 @@ def test_a_simulator_that_waits_is_held_by_the_consumers(ros_domain):
 
 
 def test_a_consumer_that_never_answers_is_named(ros_domain):
-    """After pacing.timeout_s one sentence names it, and the node ends."""
+    """After pacing.timeout_s one message names it, and the node ends."""
     with Graph(others=False, **LOCK_STEP) as graph:
         graph.send(messages_of())
         for _ in range(60):
@@ -116,7 +119,9 @@ def test_a_consumer_that_never_answers_is_named(ros_domain):
 
 
 def test_a_simulator_that_begins_again_is_followed_in_lock_step(ros_domain):
-    """When the stamps jump back all nodes begin anew, once all was answered; nothing is lost."""
+    """
+    When the stamps jump back all nodes start anew after all acknowledgements; nothing is lost.
+    """
     with Graph(**LOCK_STEP) as graph:
         graph.send(messages_of())
         count, first = len(graph.stamps), graph.stamps[0]
@@ -129,7 +134,7 @@ def test_a_simulator_that_begins_again_is_followed_in_lock_step(ros_domain):
 
 
 def test_one_that_does_not_wait_is_told(ros_domain):
-    """In lock-step an input that does not wait fills no memory: it is told and begun anew."""
+    """In lock-step an input that does not wait is reported and restarted; memory is bounded."""
     with Graph(others=False, **LOCK_STEP, **{'topics.depth': 100}) as graph:
         graph.send(messages_of(8.0))
         assert len(graph.adapter._release) <= 102
@@ -141,14 +146,14 @@ def test_one_that_does_not_wait_is_told(ros_domain):
     (('odom_ned', 'base_link'), "has the frame 'odom_ned'; expected a world with z up"),
     (('world', 'base_link_frd'), "has the frame 'base_link_frd'")])
 def test_a_frame_that_is_not_enu_is_refused(frames, said, ros_domain):
-    """Nothing is made of a world with z down, and that is said."""
+    """A world with z down gives no truth, and a message says so."""
     with Graph(others=False) as graph:
         graph.send(messages_of(frames=frames))
         assert not graph.stamps and any(said in line for line in graph.said)
 
 
 def test_two_vehicles_on_one_topic_are_told_apart(ros_domain):
-    """Messages of other frames than the first ones are dropped with a sentence."""
+    """Messages with other frames than the first ones are dropped with a message."""
     mixed = [data for pair in zip(messages_of(), messages_of(frames=('odom', 'other')))
              for data in pair]
     with Graph() as graph:
@@ -159,7 +164,7 @@ def test_two_vehicles_on_one_topic_are_told_apart(ros_domain):
 
 
 def test_damaged_messages_are_said_and_passed_over(ros_domain):
-    """Bytes that are no Odometry, and values beyond belief, end nothing."""
+    """Bytes that are not Odometry, and implausible values, do not end the node."""
     messages = messages_of(8.0)
     messages[150] = messages[150][:200]
     messages[250] = messages[250][:-8] + struct.pack('<d', float('nan'))
@@ -175,7 +180,7 @@ def test_damaged_messages_are_said_and_passed_over(ros_domain):
 
 
 def test_an_odometry_that_stops_is_missed(ros_domain):
-    """Silence is told, and truth goes on behind it."""
+    """Silence is reported, and truth continues after it."""
     with Graph() as graph:
         messages = messages_of(8.0)
         graph.send(messages[:200])
@@ -187,7 +192,7 @@ def test_an_odometry_that_stops_is_missed(ros_domain):
 
 
 def test_reset_judges_anew(ros_domain):
-    """The service ~/reset forgets what the input is like."""
+    """The service ~/reset forgets the properties of the input."""
     from types import SimpleNamespace
     with Graph() as graph:
         messages = messages_of(8.0)
@@ -204,7 +209,7 @@ def test_reset_judges_anew(ros_domain):
     ({'pacing.window': 2000, 'topics.depth': 100}, 'expected at most topics.depth, 100'),
     ({'pacing.lock_step': True, 'pacing.required': []}, 'pacing.required is empty')])
 def test_parameters_that_do_not_go_together_are_refused(values, said, ros_domain):
-    """One sentence names key, value and expectation."""
+    """One message names key, value and expectation."""
     with pytest.raises(ValueError, match=said.replace('(', '[(]')):
         with Graph(others=False, **values):
             pass

@@ -52,7 +52,7 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
         listener.poll_until(lambda: all(12 * SECOND in h for h in listener.heard.values()))
         texts = [chain.text(process) for process in started.values()]
         assert set(chain.end().values()) == {0}, texts
-        # of a machine that stands still for a second the navigator says so
+        # If the machine stops for a second, the navigator logs it.
         warnings = [line for text in texts for line in text.splitlines()
                     if 'WARN' in line and 'waiting for a fix of' not in line]
         assert all('jumps back' in line for line in warnings), warnings
@@ -67,10 +67,12 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    Every topic to the rounding of truth and solution in Cartesian messages, as in test_graph.
+    Every topic agrees to the rounding of truth and solution in Cartesian messages, as in
+    test_graph.
 
-    Then the same bits with the nodes started in another order on a busy machine, whoever waits
-    for whom, and once more when the generator goes back to sample 0 on the way.
+    Then the same bits follow with the nodes started in another order on a busy machine, and once
+    more
+    when the generator goes back to sample 0 in between.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', NODES)
     settings = chosen_settings({**VALUES, 'source': 'stream'})
@@ -102,7 +104,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         assert len(heard[name]) == len(states)
         difference = np.abs(got - np.array(rows))
         if name == 'aided/odometry':
-            # the rate is that of the gyros relative to the Earth
+            # The rate is that of the gyros relative to the Earth.
             assert np.abs(got[:, 46:49]).max() > 1e-6
             difference[:, 46:49] = 0.0
         bound = most.get(name, 8e-9)
@@ -119,14 +121,19 @@ HAND = {'window.cycles': 100, 'initial.velocity_sigma_m_s': 0.0, 'gate_probabili
 
 
 def send_both(stream, first, stop):
-    """Publish readings of the samples first to stop - 1, which wait for the truth, and then it."""
+    """
+    Publish readings of the samples first to stop - 1, which wait for the truth, and then the
+    truth.
+    """
     stamps = np.arange(first, stop) * DT
     stream.send(stamps, topics.IMU_RAW)
     stream.send(stamps)
 
 
 def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path):
-    """After 5 s the navigator says so and goes on; when records come it waits for them again."""
+    """
+    After 5 s the navigator logs it and continues; when records arrive it waits for them again.
+    """
     stream = Stream(ros_domain, tmp_path, (topics.AIDED_ERRORS[1],),
                     {'motion.kind': 'racetrack'}, ALONE)
     values = {'window.cycles': 100, 'limits.height_max_m': 2e4}
@@ -143,11 +150,11 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         stream.listener.poll_until(lambda: 150 * DT in errors)
         stream.wait_diagnosis('going on without velocity_meter')
         fixes = offline_fixes(stream, np.arange(0, 301) * DT, values)
-        # wrong by 5 m/s, so that it shows
+        # The record is wrong by 5 m/s, so that its use is visible.
         late = replace(fixes[0], velocity=(fixes[0].velocity[0] - 5.0, fixes[0].velocity[1]))
         stream.send_bytes(topics.METER_RECORD, velocity_record.pack_fix(late, 0))
         send_both(stream, 151, 231)
-        # it waits for the window of 2 s now
+        # Now it waits for the window of 2 s.
         stream.wait_ack(199 * DT)
         stream.listener.poll_until(lambda: 199 * DT in errors)
         assert 200 * DT not in errors
@@ -155,7 +162,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         print(f'\nvelocity error {np.linalg.norm(before):.4f} m/s, with the late fix '
               f'{np.linalg.norm(after):.4f} m/s')
         assert np.linalg.norm(np.subtract(after, before)) > 1e-3
-        # one of another window is refused in a sentence, and holds nothing up
+        # A record of another window is refused with a message and delays nothing.
         stream.send_bytes(topics.METER_RECORD, velocity_record.pack_fix(
             replace(fixes[1], cycles=50), 0))
         stream.chain.wait_text(node, 'averages 50 cycles in 1 s; expected 100 cycles in 1 s')
@@ -182,9 +189,9 @@ def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain
 
 def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_path):
     """
-    Every topic is whole in the bag, though meter, GNSS and sigmas say nothing with sample 0.
+    Every topic is complete in the bag, although meter, GNSS and sigmas are silent at sample 0.
 
-    The records are the offline fixes to the rounding of the truth; aided/fix says that its
+    The records are the offline fixes to the rounding of the truth; aided/fix states that its
     covariance is unknown, and aided/sigma/* is silent.
     """
     values = {**VALUES, 'duration_s': 6.0, 'filter': 'paper_corrected', 'gnss_model.use': False}
@@ -216,7 +223,7 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
         fix, aided = bag.arrays('gnss/fix'), bag.arrays('aided/fix')
     dense = [t.name for t in topics.AIDING if t not in topics.SELDOM]
     assert {name: counts[name] for name in dense} == dict.fromkeys(dense, 601)
-    # GNSS at 0 to 5 s, that of 6 s being late; the window of 6 s too
+    # GNSS at 0 to 5 s, because that of 6 s is late; the window of 6 s too.
     assert counts['gnss/fix'] == 6 and counts['gnss/velocity'] == 5
     assert fix['status'].tolist() == [0, 0, 0, 0, 0, -1]
     assert not any(counts[t.name] for t in topics.AIDED_SIGMAS)

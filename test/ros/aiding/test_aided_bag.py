@@ -16,15 +16,15 @@ FLIGHT = ('duration_s:=20.0', 'time.epoch:=fixed', 'time.epoch_s:=0',
           'outages.start_s:=[12.0]', 'outages.end_s:=[16.0]', 'pacing.real_time_factor:=0.0',
           f'pacing.required:=[{", ".join(NODES)}, recorder]')
 FRAMED = [topic for topic in topics.AIDING if topic is not topics.METER_RECORD]
-# An ulp of the radius of the Earth is 1e-9 m, and a position a sum of a few such terms; what 20 s
-# make of the rounding of the truth in a message is far below.
+# One ulp of the radius of the Earth is 1e-9 m, and a position is a sum of a few such terms; the
+# effect of the rounding of the truth in a message over 20 s is far below.
 ROUNDING = {'position': 1e-8, 'altitude': 1e-8, 'vector': 1e-8, 'latitude': 1e-13,
             'longitude': 1e-13}
 RELATIVE = 1e-11
 
 
 def test_live_is_offline_message_for_message(ros_domain, tmp_path, capsys):
-    """The same stamps on every topic; the parameters are those that the offline run wrote."""
+    """The stamps agree on every topic; the parameters are those written by the offline run."""
     assert command(tmp_path, '--bag', str(tmp_path / 'offline'), flight=FLIGHT) == 0
     names = [topic.name for topic in (topics.INS_ODOMETRY, *topics.AIDING)]
     file = str(tmp_path / 'run' / 'parameters.yaml')

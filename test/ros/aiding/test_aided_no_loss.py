@@ -1,4 +1,4 @@
-"""Six nodes in real time: nothing is lost on the way."""
+"""Six nodes in real time lose no message."""
 
 from ins_sim.messages import topics
 from support.live import Chain, Listener, run_in_real_time
@@ -9,8 +9,8 @@ pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
 RATE_HZ, SECONDS = 100, 15
-# the meter as a simulated instrument, GNSS with an outage in the middle; by node, for the section
-# of a node in a file wins over what is said for all
+# The meter in mode signal, GNSS with an outage in the middle; set by node, because a node section
+# of a file overrides what is given for all nodes.
 VALUES = {'motion_generator:duration_s': float(SECONDS), 'velocity_meter:mode': 'signal',
           'aided_navigator:gnss_model.use': True, 'gnss:outages.start_s': [SECONDS / 3.0],
           'gnss:outages.end_s': [SECONDS / 1.5]}
@@ -20,10 +20,11 @@ HEARD = {topics.TRUTH_IMU: RATE_HZ, topics.IMU_RAW: RATE_HZ, topics.INS_ODOMETRY
 
 def test_real_time_loses_nothing(ros_domain, tmp_path):
     """
-    Each topic without a gap from its first message to the last instant.
+    Each topic is complete from its first message to the last instant.
 
-    What the generator sends before DDS has made it known to all is heard by none. Ten minutes of
-    the same, and the CPU of each node, are printed by benchmarks/live_aided.py.
+    Messages sent before DDS discovery are received by no node. Ten minutes of the same, and the
+    CPU
+    time of each node, are printed by benchmarks/live_aided.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, HEARD)
     awaited = topics.IMU_RAW, topics.INS_ODOMETRY, topics.AIDED_ODOMETRY, topics.GNSS_FIX

@@ -1,4 +1,4 @@
-"""The node gnss by itself: its fixes are those of the core, bit for bit, when they are due."""
+"""The node gnss alone: its fixes are those of the core, bit for bit, at the right time."""
 
 from ins_sim.settings.catalogue import build
 from ins_sim.core.sensors.gnss import Gnss
@@ -30,7 +30,7 @@ def offline(stream, stamps_ns, values):
 
 
 def heard_fixes(stream):
-    """Return what a reader makes of the messages heard."""
+    """Return the fixes that a reader makes of the received messages."""
     pairs, found = GnssPairs(0, 120_000_000), []
     for data in stream.raw['gnss/velocity'].values():
         pairs.push_velocity(data)
@@ -41,9 +41,10 @@ def heard_fixes(stream):
 
 def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
     """
-    Bytes of every message; a fix waits for the truth of its arrival; outages are no silence.
+    Bytes of every message; a fix waits for the truth of its arrival; outages publish invalid
+    fixes.
 
-    The service forces an outage and ends it; /diagnostics count.
+    The service starts an outage and ends it; /diagnostics count.
     """
     from std_srvs.srv import SetBool
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
@@ -56,13 +57,13 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         stream.wait_ack(1011 * DT)
         fix = stream.heard['gnss/fix']
         stream.listener.poll_until(lambda: 19 * SECOND // 2 in fix)
-        # at 10.11 s that of 10.0 s, late by 120 ms, is not there
+        # At 10.11 s the fix of 10.0 s, late by 120 ms, has not arrived.
         assert max(fix) == 19 * SECOND // 2 and len(fix) == 20
         stream.send(stamps[1012:])
         stream.wait_counts({topics.GNSS_FIX: 21, topics.GNSS_VELOCITY: 18})
         writer = GnssWriter(0)
         for fix_ in expected[:21]:
-            # DDS pads to four bytes
+            # DDS pads to four bytes.
             assert stream.raw['gnss/fix'][fix_.t_ns].startswith(writer.fix(fix_))
             assert (fix_.t_ns in stream.raw['gnss/velocity']) == fix_.valid
             assert not fix_.valid or stream.raw['gnss/velocity'][fix_.t_ns].startswith(
@@ -78,7 +79,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         stream.listener.call(SetBool, 'gnss/outage', SetBool.Request(data=False))
         stream.send(np.arange(1201, 1301) * DT)
         stream.wait_counts({topics.GNSS_FIX: 26, topics.GNSS_VELOCITY: 20})
-        # that of 10.5 s was on its way when the outage was forced, that of 12.0 s when it ended
+        # The fix of 10.5 s was on its way when the outage started, that of 12.0 s when it ended.
         last = heard_fixes(stream)[21:]
         assert [f.valid for f in last] == [True, False, False, False, True]
         v = offline(stream, np.arange(1200, 1301) * DT, VALUES)[1].v_n
@@ -98,7 +99,7 @@ def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
                 (v.key, v.value) for s in array.status for v in s.values), 10)
         stream.begin(node)
         stream.send(np.arange(1, 551) * DT)
-        # fix 0 as often as sample 0 was sent
+        # Fix 0 is sent as often as sample 0.
         stream.listener.spin_until(lambda: said.get('outages') == '2')
         assert int(said['fixes']) >= 4 and said['outage forced'] == 'False'
     finally:
@@ -106,7 +107,7 @@ def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
 
 
 def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
-    """A fix that was on its way does not come into the new run; nor does a NaN."""
+    """A fix on its way is not carried into the new run; NaN is dropped."""
     stream = Stream(ros_domain, tmp_path, HEARD)
     try:
         node = stream.chain.start('gnss', {'gnss.latency_ms': 500.0})
@@ -123,7 +124,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
         stream.wait_diagnosis('gap')
         stream.wait_ack(300 * DT)
         stream.listener.poll_until(lambda: SECOND in fix)
-        # 2.0 s was on its way in both runs, and both times it was cut off
+        # The fix of 2.0 s was on its way in both runs and is dropped both times.
         assert sorted(fix) == [0, SECOND]
     finally:
         stream.close()

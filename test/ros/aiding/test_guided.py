@@ -1,4 +1,4 @@
-"""The closed loop over DDS: six nodes in lock-step fly what the offline run flies."""
+"""The closed loop over DDS: six nodes in lock-step reproduce the offline run."""
 
 import ins_sim
 from ins_sim import graph, resources
@@ -13,10 +13,10 @@ pytestmark = pytest.mark.live
 
 FILES = ('default', 'guided_flight')
 LENGTH_S = 4.0
-# a meter that errs, so that the loop is at work
+# A meter with errors, so that the loop is active.
 VALUES = {'filter': 'paper_corrected', 'velocity_meter:surrogate.k_z': 0.15,
           'duration_s': LENGTH_S, 'guidance.latency_s': 0.03, 'motion.guided.offset_m': 5.0}
-# by node, for the section of a node in a file wins over what is said for all
+# Set by node, because a node section of a file overrides what is given for all nodes.
 LIVE = {'motion.guided.offset_m': 5.0, 'aided_navigator:filter': 'paper_corrected',
         'velocity_meter:surrogate.k_z': 0.15,
         'motion_generator:duration_s': LENGTH_S, 'motion_generator:guidance.latency_s': 0.03,
@@ -27,7 +27,7 @@ ORDER = tuple(process.name for process in (*graph.AIDING, *graph.PROCESSES))
 
 
 def lock_step(domain, folder, order):
-    """Run six processes; return {topic: {stamp: doubles}} and what they have said."""
+    """Run six processes; return {topic: {stamp: doubles}} and their log messages."""
     folder.mkdir()
     files = [word for name in FILES for word in ('--params-file', str(resources.config(name)))]
     listener, chain = Listener(domain, HEARD, later=topics.GUIDANCE), Chain(domain, folder)
@@ -51,10 +51,11 @@ def lock_step(domain, folder, order):
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    Command, truth and solution, to the rounding of Cartesian messages; twice the same bits.
+    Command, truth and solution agree to the rounding of Cartesian messages; twice the same bits.
 
-    A position is a sum of a few terms of the radius of the Earth, each of 1e-9 m, which the
-    command turns into 0.0125 rad/m of it; the solution is that of the truth so changed.
+    A position is a sum of a few terms of the radius of the Earth, each rounded to 1e-9 m; the
+    command
+    changes by 0.0125 rad/m times that, and the solution follows the changed truth.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', ORDER)
     run = ins_sim.simulate_aided(
@@ -63,13 +64,13 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     seen = run.run.steered.estimates
     commands = heard[topics.GUIDANCE_COMMAND.name]
     got = np.array([commands[t] for t in sorted(commands)])
-    # the last period is not flown any more
+    # The last period is not flown.
     assert sorted(commands) == seen.t_ns[:-1].tolist()
     expected = np.stack([seen.command, seen.z, seen.v_z], axis=1)[:-1]
     off = np.abs(got - expected).max(axis=0)
     print(f'\ncommand, z and v_z off by {off}; largest {np.abs(expected).max(axis=0)}')
     assert off[0] < 2e-10 and off[1] < 1.6e-8 and off[2] < 1e-9
-    # it is not at its limit of 8 deg, and half a degree at least
+    # The command is below its limit of 8 deg, and at least half a degree.
     assert 0.01 < np.abs(expected[-1, 0]) and np.abs(expected[:, 0]).max() < 0.13
     frame = MapFrame(run.run.settings.motion_generator.datum, True)
     for record, topic in ((run.run.truth, topics.TRUTH_ODOMETRY), (run.states,

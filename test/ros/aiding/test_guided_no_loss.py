@@ -19,10 +19,12 @@ HEARD = (topics.TRUTH_IMU, topics.IMU_RAW, topics.INS_ODOMETRY, topics.AIDED_ODO
 
 def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path, figures):
     """
-    Each topic without a gap from its first message on; the sideslip dies out, nobody warns.
+    Each topic is complete from its first message on; the sideslip decays, and no warning is
+    logged.
 
-    The vehicle begins 100 m to the right of the leg, and the eskf with perfect instruments knows
-    where it is; what the generator sends before DDS has made it known to all is heard by none.
+    The vehicle starts 100 m to the right of the leg, and the eskf with perfect instruments knows
+    its
+    position. Messages sent before DDS discovery are received by no node.
     """
     chain = Chain(ros_domain, tmp_path)
     listener = Listener(ros_domain, HEARD, later=topics.GUIDANCE)
@@ -39,7 +41,7 @@ def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path
     for topic in (*HEARD, *topics.GUIDANCE):
         stamps = np.array(sorted(listener.heard[topic.name]))
         assert stamps[0] < 5e9
-        # the last control period is not flown any more
+        # The last control period is not flown.
         last = SECONDS * RATE_HZ - (topic in topics.GUIDANCE)
         missing = last - round(stamps[0] * 1e-9 * RATE_HZ) + 1 - len(stamps)
         print(f'{topic.name}: {len(stamps)} heard from {stamps[0] * 1e-9:.2f} s on, '

@@ -1,4 +1,4 @@
-"""The topic that steers, node objects without DDS: whatever comes on it, the vehicle flies on."""
+"""The steering topic, node objects without DDS: for any input the vehicle keeps flying."""
 
 import math
 import struct
@@ -12,15 +12,15 @@ from support.hostile.flight import HostileFlight, STEERED
 pytest.importorskip('rclpy')
 
 NAME = topics.AIDED_ODOMETRY.name
-# near enough to the leg that the command is not at its limit
+# Near enough to the leg that the command is not at its limit.
 NEAR = {'motion.kind': 'guided', 'rate_hz': 100.0, 'topics.depth': 500, 'duration_s': 0.0,
         'motion.guided.offset_m': 5.0, 'time.epoch_s': 0}
-# of a message of Odometry: its doubles
+# The doubles of a message of Odometry.
 DOUBLES = 85
 
 
 class Steered(HostileFlight):
-    """A closed loop in which what steers passes through ``change(data) -> data or None``."""
+    """A closed loop whose steering messages pass through ``change(data) -> data or None``."""
 
     def __init__(self, generator=None, **more):
         more = {'motion_generator': {**NEAR, **(generator or {})}, **more}
@@ -48,12 +48,12 @@ class Steered(HostileFlight):
 
     @property
     def said(self):
-        """Return what the generator has said."""
+        """Return the log messages of the generator."""
         return '\n'.join(self.fed.logs['motion_generator'].kept)
 
     @property
     def why(self):
-        """Return why the autopilot does not steer, '' where it does."""
+        """Return the reason for which the autopilot does not steer, '' if it does."""
         return self.generator._steerer._command.why
 
     def engage(self, on):
@@ -77,7 +77,7 @@ def with_double(data, index, change):
 
 
 def moved(data, shift_ns):
-    """Return a message with a stamp that much later."""
+    """Return a message with a stamp later by a shift."""
     stamp_ns, _ = topics.AIDED_ODOMETRY.reader(((0, 1),)).read(data)
     return data[:4] + struct.pack('<iI', *divmod(stamp_ns + shift_ns, SECOND)) + data[12:]
 
@@ -108,7 +108,9 @@ def in_frames(data, *frames):
     ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump',
          'quaternion'))
 def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
-    """One sentence; the last solution is held for a second, then it flies straight and level."""
+    """
+    One message; the last solution is held for a second, then the vehicle flies straight and level.
+    """
     before = len(flight.commands)
     flight.change = change
     flight.good(250)
@@ -116,7 +118,7 @@ def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
     assert flight.fed.logs['motion_generator'].lines < 20
     held = [beta for _, beta, _, _ in flight.commands[before:]]
     if 'jumps by' in sentence:
-        # straight for a second; then at 300 km from the leg it goes on from where it is
+        # It flies straight for a second; then, 300 km from the leg, it continues from where it is.
         assert not any(held[1:100]) and held[-1] != 0.0
     else:
         assert held[50] != 0.0 and held[-1] == 0.0 and flight.why == 'old'
@@ -128,7 +130,7 @@ def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
 
 
 def test_two_publishers_are_named(flight):
-    """By the diagnostics, as for every topic that one node alone should publish."""
+    """Diagnostics name them, as for every topic with a single intended publisher."""
     flight.generator.count_publishers = lambda name: 2 if name.endswith(NAME) else 1
     flight.generator.get_publishers_info_by_topic = lambda name: []
     flight.generator.monitor.publish()
@@ -136,7 +138,7 @@ def test_two_publishers_are_named(flight):
 
 
 def test_two_that_alternate_300_km_apart_do_not_steer(flight):
-    """Both are of now: of a stamp the first one counts, and every second one is a jump."""
+    """Of two messages with one stamp the first counts, and every second one is a jump."""
     turn = [0]
 
     def alternate(data):
@@ -150,11 +152,11 @@ def test_two_that_alternate_300_km_apart_do_not_steer(flight):
 
 
 def test_disengaged_it_flies_straight(flight):
-    """By service; and engaged again it steers."""
+    """The service disengages and engages the autopilot."""
     assert flight.engage(False).message == 'disengaged: it flies straight'
     flight.good(50)
     assert flight.why == 'not engaged' and flight.commands[-1][1] == 0.0
-    # the estimate is published all the same
+    # The estimate is published nevertheless.
     assert flight.commands[-1][2] > 0.1
     assert flight.engage(True).message == 'engaged'
     flight.good(5)
@@ -164,7 +166,7 @@ def test_disengaged_it_flies_straight(flight):
 
 
 def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
-    """And says so; the turn is flown as on a route."""
+    """It logs this; the turn is flown as on a route."""
     route = {'motion.route.points.latitude_deg': [55.0, 55.5, 55.6],
              'motion.route.points.longitude_deg': [37.0, 37.3, 38.2]}
     with Steered({**route, 'start_s': 285.0, 'guidance.engage_after_s': 1e6}) as flight:
@@ -197,7 +199,7 @@ def test_a_command_beyond_the_limit_is_counted(ros_domain):
 
 
 def test_a_filter_that_refuses_turns_steers_on(ros_domain):
-    """Filter paper: the loop stays closed (what it refuses the navigator says)."""
+    """With filter paper the loop stays closed; the navigator logs its refusals."""
     with Steered(aided_navigator={'rate_hz': 100.0, 'filter': 'paper', 'window.cycles': 50,
                                   'topics.depth': 500}) as flight:
         flight.good(300)
@@ -205,7 +207,7 @@ def test_a_filter_that_refuses_turns_steers_on(ros_domain):
 
 
 def test_an_autopilot_that_raises_is_named(flight):
-    """The vehicle flies straight, and nothing dies."""
+    """The vehicle flies straight, and no node ends."""
     flight.generator._steerer.steering.autopilot.command = lambda *_: 1 / 0
     flight.good(20)
     assert 'the autopilot raises ZeroDivisionError (division by zero) at ' in flight.said
@@ -213,7 +215,7 @@ def test_an_autopilot_that_raises_is_named(flight):
 
 
 def test_after_a_reset_the_flight_is_the_same(flight):
-    """Bit for bit; a solution of the old run that was under way is none of the new one."""
+    """The bits are the same; a solution of the old run that was on its way is not used."""
     first = list(flight.commands)
     flight.good(1)
     flight.commands.clear()
@@ -223,14 +225,14 @@ def test_after_a_reset_the_flight_is_the_same(flight):
 
 
 class LockStep:
-    """A Steerer in lock-step whose time is told."""
+    """A Steerer in lock-step with a simulated clock."""
 
     def __init__(self, flight):
         self._flight, self._steerer = flight, flight.generator._steerer
         self._sent = flight.generator._next
 
     def may_send(self, wait_s):
-        """Return whether the next sample may be sent after so long."""
+        """Return whether the next sample may be sent after a wait."""
         self._flight.fed.clock.now_s += wait_s
         reached = self._steerer.reach(self._sent, self._sent + 200, True)
         sends, self._sent = reached > self._sent, reached
@@ -238,7 +240,9 @@ class LockStep:
 
 
 def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
-    """Every tenth one: their interval is learnt, and the newest one up to the instant serves."""
+    """
+    With every tenth solution the interval is learnt, and the newest one up to the instant is used.
+    """
     turn = [0]
 
     def tenth(data):
@@ -252,13 +256,13 @@ def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
     lock = LockStep(flight)
     while lock.may_send(0.0):
         assert steerer._motion.known_ns <= newest_ns + SECOND // 10
-    # it waits for the next one
+    # It waits for the next solution.
     assert steerer._motion.known_ns == newest_ns + SECOND // 10
     assert flight.why == '' and 'no solution of' not in flight.said
 
 
 def test_solutions_that_are_always_late_are_said_once(flight):
-    """In real time the last one serves; a second of it is mentioned."""
+    """In real time the last solution is used; a delay of a second is logged once."""
     held = []
 
     def late(data):
@@ -272,7 +276,7 @@ def test_solutions_that_are_always_late_are_said_once(flight):
 
 
 def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
-    """5 s, 2.5 s, ...: a lost sample costs as much, an estimator that has ended 10 s in all."""
+    """5 s, 2.5 s, ...: an estimator that has ended costs 10 s in all."""
     flight.change = lambda data: None
     flight.good(1)
     lock = LockStep(flight)
@@ -281,7 +285,7 @@ def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
         assert lock.may_send(0.02 * patience_s)
     assert 'no solution of 1.000000000 s on aided/odometry in 5 s; expected that' in flight.said
     assert 'guidance.latency_s must be larger): the last one is used' in flight.said
-    # the time of a pause does not count
+    # The time of a pause does not count.
     assert not lock.may_send(0.0)
     flight.fed.clock.now_s += 100.0
     flight.generator._on_pause(SimpleNamespace(data=False), SimpleNamespace())

@@ -1,4 +1,4 @@
-"""The node velocity_meter by itself: its records are the fixes of the core, bit for bit."""
+"""The node velocity_meter alone: its records are the fixes of the core, bit for bit."""
 
 from dataclasses import replace
 
@@ -13,19 +13,19 @@ pytestmark = pytest.mark.live
 
 FLIGHT = {'motion.kind': 'racetrack'}
 VALUES = {'window.cycles': 100, 'window.latency_ms': 50.0, 'seed': 3, 'limits.height_max_m': 2e4}
-# without covariances, as the truth is sent
+# Without covariances, as the truth is sent.
 INS = replace(topics.INS_ODOMETRY, runs=None)
 BOTH = (topics.TRUTH_ODOMETRY, INS)
 
 
 class Record:
-    """The record as a topic that the Listener can hear: no doubles, its bytes count."""
+    """The record as a topic for the Listener: no doubles, its bytes are compared."""
 
     name, type_name = topics.METER_RECORD.name, topics.METER_RECORD.type_name
 
     @staticmethod
     def reader():
-        """Return a reader of the stamp alone."""
+        """Return a reader of the stamp only."""
         from ins_sim.messages.cdr import Reader
         return Reader('std_msgs/msg/Header')
 
@@ -34,7 +34,7 @@ HEARD = (Record, topics.METER_VELOCITY)
 
 
 def records(stream):
-    """Return the VelocityFixes heard."""
+    """Return the received VelocityFixes."""
     return [velocity_record.read_fix(data, 0) for data in stream.raw[Record.name].values()]
 
 
@@ -42,9 +42,9 @@ def records(stream):
                                                 ('surrogate', 20, 28)])
 def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, tmp_path):
     """
-    Every window, each when the truth has reached its arrival, with the angle of the INS.
+    Every window is published when the truth has reached its arrival, with the angle of the INS.
 
-    A window waits for the INS: truth alone, however far, brings no record and no answer.
+    A window waits for the INS: truth alone gives no record and no acknowledgement.
     """
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT, BOTH)
     values = {**VALUES, 'mode': mode, 'window.slide_cycles': slide}
@@ -60,7 +60,7 @@ def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, t
         assert 3 * SECOND not in stream.heard[Record.name]
         assert max(stream.heard['sim/ack']) == 299 * DT
         stream.send(stamps[300:], INS, ins[300:])
-        # that of 3 s is on its way
+        # The record of 3 s is on its way.
         stream.wait_ack(303 * DT)
         assert 3 * SECOND not in stream.heard[Record.name]
         stream.send(stamps[304:])
@@ -78,7 +78,7 @@ def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, t
 
 
 def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
-    """After 5 s a warning; the windows come invalid, with a record each, until it delivers."""
+    """After 5 s a warning; windows are invalid, with a record each, until the INS delivers."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)
@@ -90,12 +90,12 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
         assert {f.status for f in records(stream)} == {'no INS velocity in the window'}
         assert all(f.cycles == 100 and np.isnan(f.velocity).all() for f in records(stream))
         stream.wait_diagnosis('no message on ins/odometry')
-        # at once now, and valid again with the INS
+        # Windows are published at once now, and are valid again with the INS.
         stream.send(np.arange(311, 411) * DT)
         stream.listener.poll_until(lambda: 4 * SECOND in stream.heard[Record.name], 4.0)
         stamps = np.arange(401, 511) * DT
         stream.send(stamps, INS, stream.blocks(stamps)[topics.TRUTH_ODOMETRY])
-        # it is not waited for until it has come
+        # The node does not wait for the INS until it has arrived again.
         stream.listener.poll_for(0.5)
         stream.send(np.arange(411, 511) * DT)
         stream.listener.poll_until(lambda: 5 * SECOND in stream.heard[Record.name])
@@ -105,7 +105,7 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
 
 
 def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path):
-    """In lock-step the generator waits for the answer, and /clock with it."""
+    """In lock-step the generator waits for the acknowledgement, and /clock with it."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'use_sim_time': True})
@@ -113,7 +113,7 @@ def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path)
         stamps = np.arange(0, 111) * DT
         stream.send(stamps[1:])
         stream.wait_ack(99 * DT)
-        # long after the moment that it waits within the callback
+        # Long after the time that the node waits within the callback.
         stream.listener.poll_for(0.3)
         assert max(stream.heard['sim/ack']) == 99 * DT
         stream.send(stamps, INS, stream.blocks(stamps)[topics.TRUTH_ODOMETRY])
@@ -125,7 +125,7 @@ def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path)
 
 
 def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
-    """Calm water: a record of each window, no velocity; /diagnostics give the last reason."""
+    """Calm water: one record for each window, no velocity; /diagnostics state the last reason."""
     from diagnostic_msgs.msg import DiagnosticArray
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
     values = {**VALUES, 'attack_angle': 'none', 'window.latency_ms': 0.0,
@@ -151,7 +151,7 @@ def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
 
 
 def test_a_gap_starts_anew(ros_domain, tmp_path):
-    """A window with a gap in it has no record: the instrument starts anew."""
+    """A window with a gap has no record: the instrument starts anew."""
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'attack_angle': 'none'})
@@ -166,7 +166,7 @@ def test_a_gap_starts_anew(ros_domain, tmp_path):
 
 
 def test_a_jump_back_begins_anew(ros_domain, tmp_path):
-    """The second run has every window of the first, whatever of the INS was under way."""
+    """The second run has every window of the first, whatever INS messages were on their way."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)
@@ -178,7 +178,7 @@ def test_a_jump_back_begins_anew(ros_domain, tmp_path):
         stream.listener.poll_until(lambda: SECOND in stream.raw[Record.name])
         first = records(stream)
         stream.raw[Record.name].clear()
-        # the truth jumps back while the INS is still on its way to 2.3 s
+        # The truth jumps back while the INS messages up to 2.3 s are still on their way.
         stream.send(stamps[:50])
         stream.chain.wait_text(node, 'truth jumps back from 2.500000000 s to 0.000000000 s')
         stream.send(stamps[200:230], INS, ins[200:230])

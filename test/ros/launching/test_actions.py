@@ -1,4 +1,4 @@
-"""The launch files, read with stand-ins for launch: what they start, and what ends them."""
+"""The launch files with stand-ins for launch: what they start, and what ends them."""
 
 import os
 import runpy
@@ -20,7 +20,7 @@ MODULES = {
 
 
 class Call:
-    """A constructor of launch: it keeps what it was called with."""
+    """A constructor of launch that stores its arguments."""
 
     def __init__(self, *words, **named):
         self.what, self.words = type(self).__name__, words
@@ -34,12 +34,12 @@ class Configuration:
         self.name = name
 
     def perform(self, context):
-        """Return it."""
+        """Return the value."""
         return context.launch_configurations[self.name]
 
 
 class Context(SimpleNamespace):
-    """A context with the values of the launch arguments, and what is being launched."""
+    """A context with the values of the launch arguments and the current event."""
 
     is_shutdown = False
 
@@ -50,7 +50,7 @@ class Context(SimpleNamespace):
 
 @pytest.fixture
 def launch(monkeypatch):
-    """Put stand-ins in the place of launch; return the modules."""
+    """Replace launch by stand-ins; return the modules."""
     for module, names in MODULES.items():
         stub = ModuleType(module)
         for name in names:
@@ -67,7 +67,7 @@ def launch(monkeypatch):
 
 
 def forget_actions():
-    """Let the module be imported anew: it has the launch of its first import."""
+    """Import the module again, because it keeps the launch of its first import."""
     sys.modules.pop('ins_sim.launching.actions', None)
     vars(launching).pop('actions', None)
 
@@ -106,7 +106,7 @@ def flat(actions):
 
 
 def handlers(actions):
-    """Return {process: what is done at its end} of actions."""
+    """Return {process: handler of its end} of actions."""
     registered = [a.words[0] for a in actions if a.what == 'RegisterEventHandler']
     assert all(h.what == 'OnProcessExit' for h in registered)
     nodes = {id(action): name for name, action in flat(actions).items()}
@@ -120,7 +120,9 @@ def text_of(node):
 
 
 def test_simulation(started):
-    """The nodes of the table, with the same files, in the namespace, and the defaults first."""
+    """
+    The nodes of the table start with the same files, in the namespace, with the defaults first.
+    """
     actions = started('simulation', motion='racetrack', imu='imu_tactical_mems', rate_hz='200.0',
                       namespace='left', tf='none', before={'ros_namespace': '/fleet'})
     nodes = flat(actions)
@@ -136,14 +138,14 @@ def test_simulation(started):
 
 
 def test_one_process_has_no_name(started):
-    """ROS would give it to all nodes of the process."""
+    """ROS would give the name to all nodes of the process."""
     nodes = flat(started('simulation', one_process='true', record='bag'))
     assert set(nodes) == {'simulation', 'recorder'}
     assert nodes['simulation'].name is None and nodes['recorder'].name == 'recorder'
 
 
 def test_what_is_said(started):
-    """The sentences of the plan."""
+    """The messages of the plan are logged."""
     said = [a.msg for a in started('simulation', record='bag', lock_step='false')
             if a.what == 'LogInfo']
     assert said[-1].startswith('record without lock_step: ')
@@ -153,7 +155,9 @@ def test_what_is_said(started):
     ('simulation', {}, {'motion_generator', 'imu_sensor', 'strapdown'}),
     ('replay', {'bag': 'old'}, {'player', 'strapdown'})])
 def test_ends(file, given, names, started):
-    """A run that has ended ends all or the nodes alone; a node that fails always ends all."""
+    """
+    The end of the run ends everything or the nodes only; a node that fails always ends everything.
+    """
     context = SimpleNamespace(is_shutdown=False)
     for shutdown in ('true', 'false'):
         actions = started(file, **given, shutdown=shutdown)
@@ -175,7 +179,7 @@ def test_ends(file, given, names, started):
 
 
 def test_replay(started):
-    """The nodes behind the source, and the verb that plays into them."""
+    """The nodes after the source, and the verb that plays into them."""
     for source, names in (('imu', {'strapdown'}), ('truth', {'strapdown', 'imu_sensor'})):
         nodes = flat(started('replay', bag='old', source=source, namespace='left', loop='true',
                              before={'ros_namespace': '/fleet'}))
@@ -197,7 +201,9 @@ def included(launch, path, names):
 
 
 def test_misspelt_arguments_are_refused(started, launch):
-    """Those given to the file itself, of launch_arguments and of the command line."""
+    """
+    Arguments given to the file itself are checked, from launch_arguments and the command line.
+    """
     path = resources.launch('simulation')
     assert started('simulation', event=included(launch, path, ['motion', 'launch-prefix']))
     with pytest.raises(ValueError, match="unknown launch argument 'moton'; the nearest known one "
@@ -206,7 +212,7 @@ def test_misspelt_arguments_are_refused(started, launch):
 
 
 def test_arguments_of_the_including_file_are_its_own(started, launch):
-    """However near they are: a parent may have an argument motions."""
+    """A parent file may have an argument with a similar name, such as motions."""
     assert started('simulation', event=included(launch, '/elsewhere/parent.launch.py',
                                                 ['motions']), before={'motions': 'x'})
     parent = included(launch, '/elsewhere/parent.launch.py', ['motions'])

@@ -12,14 +12,14 @@ CONFIG = {path.stem: yaml.safe_load(path.read_text(encoding='utf-8'))
 
 
 def shared(name):
-    """Return what a shipped file holds for all nodes."""
+    """Return the values of a shipped file for all nodes."""
     return CONFIG[name].get('/**', {'ros__parameters': {}})['ros__parameters']
 
 
 def test_motions_hold_a_motion_and_nothing_of_instruments():
-    """Every shipped motion is in the table; none has delays or errors that nobody asked for."""
+    """Every shipped motion is in the table; none contains delays or errors."""
     moving = {name for name in CONFIG if 'motion' in shared(name)} - {'default'}
-    # sensed by tuned gyros, as its name says
+    # This one uses tuned gyros, as its name says.
     assert set(arguments.MOTIONS) == moving - {'dtg_motion_2'}
     for name in arguments.MOTIONS:
         assert not {'gyro', 'accelerometer', 'sampling', 'output'} & set(shared(name))
@@ -27,7 +27,7 @@ def test_motions_hold_a_motion_and_nothing_of_instruments():
 
 
 def test_instruments_are_those_shipped():
-    """They are the files named imu_*, with one section, which a later /** wins over."""
+    """They are the files named imu_*, with one section, which a later /** overrides."""
     assert set(arguments.INSTRUMENTS) == {name for name in CONFIG if name.startswith('imu_')}
     assert all(set(CONFIG[name]) == {'/**'} for name in arguments.INSTRUMENTS)
 
@@ -36,7 +36,7 @@ def test_instruments_are_those_shipped():
     (arguments.SIMULATION, 'moton', 'motion'), (arguments.SIMULATION, 'rate', 'rate_hz'),
     (arguments.SIMULATION, 'param_file', 'params_file'), (arguments.REPLAY, 'sorce', 'source')])
 def test_a_misspelt_argument_names_the_nearest(known, name, near):
-    """One sentence."""
+    """A misspelt argument gives one message with the nearest name."""
     with pytest.raises(ValueError) as refused:
         arguments.check_names([known[0].name, 'launch-prefix', name], known)
     assert str(refused.value) == (f"unknown launch argument '{name}'; the nearest known one is "
@@ -48,7 +48,7 @@ def test_a_misspelt_argument_names_the_nearest(known, name, near):
     ('rate_hz', 'fast', "rate_hz is 'fast'; expected a number"),
     ('tf', 'in', "tf is 'in'; expected one of none, truth, ins, aided (nearest: ins)")])
 def test_bad_values(name, text, says):
-    """Argument, value and expectation."""
+    """The message contains argument, value and expectation."""
     texts = {one.name: one.default for one in arguments.SIMULATION}
     with pytest.raises(ValueError) as refused:
         arguments.read_values({**texts, name: text}, arguments.SIMULATION)
@@ -56,7 +56,9 @@ def test_bad_values(name, text, says):
 
 
 def test_values():
-    """What is not given is '' or None; ROS writes true with a capital, too."""
+    """
+    Arguments that are not given are '' or None; True is accepted with a capital, as ROS writes it.
+    """
     texts = {one.name: one.default for one in arguments.SIMULATION}
     value = arguments.read_values({**texts, 'use_sim_time': 'True', 'rate_hz': '200'},
                                   arguments.SIMULATION)
@@ -68,13 +70,13 @@ def test_values():
     ('', []), ('motion_2', ['motion_2']), ('motion_2,imu_tactical_fog', None),
     ('motion_2 imu_tactical_fog', None), (' motion_2 ,  imu_tactical_fog', None)])
 def test_several_parameter_files(text, names):
-    """By commas or spaces, in order."""
+    """Separated by commas or spaces, in order."""
     names = ['motion_2', 'imu_tactical_fog'] if names is None else names
     assert arguments.parameter_files(text) == [str(resources.config(name)) for name in names]
 
 
 def test_a_file_with_a_space_in_its_name(tmp_path):
-    """One path where there is such a file; a missing one is named."""
+    """The text is one path if such a file exists; a missing file is named."""
     path = tmp_path / 'my own, really.yaml'
     path.write_text('')
     assert arguments.parameter_files(str(path)) == [str(path)]
@@ -83,7 +85,9 @@ def test_a_file_with_a_space_in_its_name(tmp_path):
 
 
 def test_presets(tmp_path, monkeypatch):
-    """By name or path; what is another kind of file, or misspelt, is refused with the nearest."""
+    """
+    By name or path; other kinds of files and misspelt names are refused with the nearest one.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'own.yaml').write_text('')
     assert arguments.preset_file('motion', 'racetrack', arguments.MOTIONS) == str(

@@ -10,7 +10,7 @@ from ins_sim.ros_parameters import Parameters
 
 @pytest.fixture(autouse=True)
 def transforms(monkeypatch):
-    """Let tf2_msgs be installed, as on a machine with ROS."""
+    """Make tf2_msgs available, as on a machine with ROS."""
     found = {'tf2_msgs': object()}
     monkeypatch.setattr(plan, 'find_spec', found.get)
     return found
@@ -24,7 +24,7 @@ def simulation(namespace='', **given):
 
 
 def replay(**given):
-    """Return the Plan of the launch file replay, and what is played."""
+    """Return the Plan of the launch file replay, and the played topics."""
     texts = {one.name: one.default for one in arguments.REPLAY}
     return plan.replay({**texts, 'bag': 'old', **given})[:2]
 
@@ -49,7 +49,9 @@ def named(made):
 
 @pytest.mark.parametrize('namespace', ['', 'left', 'fleet/left'])
 def test_the_launch_line(namespace):
-    """Motion, instrument, rate, prefix, recorder and aids reach the nodes that know them."""
+    """
+    Motion, instrument, rate, prefix, recorder and aids reach the nodes that have these parameters.
+    """
     made = simulation(namespace, motion='racetrack', imu='imu_tactical_mems', rate_hz='200.0',
                       use_sim_time='true', prefix='uav1', record='DIR', aided='true')
     assert set(named(made)) == {process.name for process in (
@@ -74,7 +76,7 @@ def test_the_launch_line(namespace):
 
 
 def test_no_arguments():
-    """The defaults of the nodes, but for the transforms; nothing else is given."""
+    """Only the transforms differ from the defaults of the nodes; nothing else is set."""
     made = simulation()
     assert named(made) == [process.name for process in graph.PROCESSES]
     assert not made.files and not made.overrides_text
@@ -83,7 +85,7 @@ def test_no_arguments():
 
 
 def test_a_users_wildcard_counts(tmp_path):
-    """No file of the launch stands over /**, whole numbers or not; launch arguments do."""
+    """No launch file overrides the user's /**, with integers or floats; launch arguments do."""
     own = tmp_path / 'own.yaml'
     own.write_text('/**:\n  ros__parameters:\n    rate_hz: 50\n    tf: {source: none}\n'
                    '    gyro: {errors: {angle_random_walk_deg_sqrt_h: [0.5, 0.5, 0.5]}}\n')
@@ -100,7 +102,7 @@ def test_a_users_wildcard_counts(tmp_path):
 
 @pytest.mark.parametrize('section', ['/**', '/**/imu_sensor', 'imu_sensor', '/*'])
 def test_launch_arguments_win_over_every_section(section, tmp_path):
-    """Over that of a node as well."""
+    """Launch arguments override node sections as well."""
     own = tmp_path / 'own.yaml'
     own.write_text(f'{section}: {{ros__parameters: {{rate_hz: 50.0}}}}')
     made = simulation(params_file=str(own), rate_hz='200.0')
@@ -108,7 +110,7 @@ def test_launch_arguments_win_over_every_section(section, tmp_path):
 
 
 def test_files_in_their_order(tmp_path):
-    """The later one wins; both win over the presets."""
+    """The later file overrides the earlier one; both override the presets."""
     for name, rate in (('a', 50.0), ('b', 60.0)):
         (tmp_path / f'{name}.yaml').write_text(
             f'/**: {{ros__parameters: {{rate_hz: {rate}, motion.kind: static, seed: 3}}}}')
@@ -119,7 +121,7 @@ def test_files_in_their_order(tmp_path):
 
 
 def test_one_process():
-    """The executable simulation in place of the nodes, which keep their parameters."""
+    """The executable simulation replaces the nodes, which keep their parameters."""
     made = simulation('left', one_process='true', aided='true', record='bag', rate_hz='50')
     assert named(made) == ['recorder', 'simulation'] and made.named == {'recorder'}
     assert parameters(made, 'simulation')['aided'] is True
@@ -133,7 +135,9 @@ def test_one_process():
 @pytest.mark.parametrize('lock_step, waits, said', [
     ('', True, False), ('true', True, False), ('false', False, True)])
 def test_a_recorder_is_waited_for(lock_step, waits, said):
-    """Unless that is not wanted: then what may be lost is said."""
+    """
+    The generator waits for the recorder, unless lock_step:=false; then possible losses are stated.
+    """
     made = simulation(record='bag', lock_step=lock_step)
     assert parameters(made, 'motion_generator')['pacing.lock_step'] is waits
     assert (made.said == (plan.LOSSES,)) is said
@@ -141,7 +145,7 @@ def test_a_recorder_is_waited_for(lock_step, waits, said):
 
 
 def test_only_what_is_published_is_recorded(transforms):
-    """Lock-step waits for every topic: none of a steered motion without one."""
+    """Lock-step waits for every recorded topic, so that unpublished topics are not recorded."""
     def recorded(**given):
         return parameters(simulation(record='bag', **given), 'recorder')['record.topics']
 
@@ -154,7 +158,7 @@ def test_only_what_is_published_is_recorded(transforms):
 
 
 def test_without_tf2_msgs(transforms):
-    """One sentence in place of one of each node; asked for, the nodes say it."""
+    """One message replaces one from each node; with an explicit tf the nodes log it."""
     transforms.clear()
     made = simulation()
     assert made.said == (plan.NO_TRANSFORMS,) and not made.defaults
@@ -170,14 +174,14 @@ def test_without_tf2_msgs(transforms):
     ({'tf': 'aided'}, 'tf is aided; expected aided:=true with it'),
     ({'motion': 'moton_1'}, "motion is 'moton_1'; expected a path or one of aggressive, ")])
 def test_what_a_node_would_refuse_is_refused_before(given, says):
-    """Nothing is started then."""
+    """Values that a node would refuse are refused before anything starts."""
     with pytest.raises(ValueError) as refused:
         simulation(**given)
     assert str(refused.value).startswith(says)
 
 
 def test_a_file_that_is_none(tmp_path):
-    """It is refused in the words of the offline commands."""
+    """An invalid file is refused with the message of the offline commands."""
     path = tmp_path / 'a.yaml'
     path.write_text('/**: {ros__parameters: {')
     with pytest.raises(ValueError, match='a.yaml is not YAML: line 2'):
@@ -185,7 +189,7 @@ def test_a_file_that_is_none(tmp_path):
 
 
 def test_replay():
-    """The nodes behind the source; an instrument for a truth alone."""
+    """The nodes after the source; an instrument only for a played truth."""
     for source, names in (('imu', ['strapdown']), ('truth', ['strapdown', 'imu_sensor'])):
         made, played = replay(source=source, rate_hz='50', prefix='uav1')
         assert named(made) == names and played is graph.REPLAYS[source]
@@ -206,7 +210,7 @@ def test_replay():
     ({}, ['--lock-step', 'strapdown']), ({'lock_step': 'false', 'rate': '2'}, ['--rate', '2.0']),
     ({'loop': 'true', 'use_sim_time': 'true'}, ['--lock-step', 'strapdown', '--loop', '--clock'])])
 def test_options_of_the_player(given, words):
-    """As the verb play takes them."""
+    """The options are those of the verb play."""
     texts = {one.name: one.default for one in arguments.REPLAY}
     value = plan.replay({**texts, 'bag': 'old', **given})[2]
     assert plan.play_options(value) == words

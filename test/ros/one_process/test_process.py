@@ -1,4 +1,4 @@
-"""The executable simulation as a process: parameters, names, services, end, and company."""
+"""The executable simulation as a process: parameters, names, services, and end."""
 
 import signal
 
@@ -29,7 +29,10 @@ def chain(ros_domain, tmp_path):
 
 
 def lock_step(chain, domain, arguments, nodes):
-    """Return {topic: {stamp: bytes}} of a run of some executables, one of them the generator's."""
+    """
+    Return {topic: {stamp: bytes}} of a run of some executables, one of them containing the
+    generator.
+    """
     listener = Listener(domain, HEARD)
     try:
         master = [chain.start(node, {}, arguments) for node in nodes][-1]
@@ -43,7 +46,7 @@ def lock_step(chain, domain, arguments, nodes):
 
 
 def test_the_bytes_of_three_processes_by_one_parameter_file(chain, ros_domain, tmp_path):
-    """A file with sections by node; the launch files of ROS name the process, not its nodes."""
+    """A file with node sections works; ROS launch files name the process, not its nodes."""
     path = tmp_path / 'parameters.yaml'
     path.write_text(FILE)
     arguments = ['--params-file', str(path)]
@@ -55,9 +58,9 @@ def test_the_bytes_of_three_processes_by_one_parameter_file(chain, ros_domain, t
 
 def test_names_services_and_company(chain, ros_domain):
     """
-    Nodes and services have the names of separate ones; another sensor beside them is named.
+    Nodes and services have the names of separate ones; a second sensor beside them is reported.
 
-    What is typed once more by Ctrl-C ends it with code 0 and no traceback.
+    Ctrl-C, even repeated, ends the process with code 0 and no traceback.
     """
     from std_srvs.srv import SetBool, Trigger
     from rcl_interfaces.srv import GetParameters
@@ -109,7 +112,7 @@ def test_what_is_wrong_is_one_sentence(parameters, code, sentence, chain):
 
 
 def test_a_signal_at_any_time(chain):
-    """While it imports, while it starts, while it runs."""
+    """While it imports, while it starts, and while it runs."""
     started = [chain.start('simulation', {'aided': True, 'rate_hz': 200.0}) for _ in range(3)]
     for process in started:
         wait_handlers(process)

@@ -12,7 +12,7 @@ from support.places import ROOT
 
 pytest.importorskip('rclpy')
 
-# A filter of somebody else, as a process or as a class: answers each reading with its stamp.
+# A filter under test, as a process or as a class: it answers each reading with its stamp.
 FILTER = '''
 from geometry_msgs.msg import Vector3Stamped
 import rclpy
@@ -44,7 +44,7 @@ def vector(v):
 
 
 def test_readings_and_truth_are_those_of_the_offline_run(start_simulation):  # noqa: F811
-    """Stamps and readings to the bit; then there is no further step."""
+    """Stamps and readings agree to the bit; then there is no further step."""
     sim = start_simulation('motion_2', VALUES, topics=['ins/odometry', 'truth/imu'])
     steps = list(sim.steps())
     run = ins_sim.simulate(ins_sim.read_settings('motion_2', {**VALUES, 'source': 'stream'}))
@@ -57,7 +57,7 @@ def test_readings_and_truth_are_those_of_the_offline_run(start_simulation):  # n
 
 
 def test_two_at_once_do_not_hear_each_other():
-    """Each has a domain; what is called by a service changes one of them."""
+    """Each has its own domain; a service call changes only one of them."""
     from std_srvs.srv import SetBool
     values = {'rate_hz': 100.0, 'motion.kind': 'racetrack'}
     options = {'topics': ['gnss/fix'], 'aided': True}
@@ -74,7 +74,7 @@ def test_two_at_once_do_not_hear_each_other():
 
 @pytest.mark.live
 def test_a_filter_that_is_a_process():
-    """It joins when it likes; every step waits for its answer."""
+    """It joins at any time; every step waits for its answer."""
     from geometry_msgs.msg import Vector3Stamped
     with RunningSimulation((), VALUES, answers={'filter/rate': Vector3Stamped}) as sim:
         with subprocess.Popen([sys.executable, '-c', FILTER], env=sim.environment,
@@ -88,7 +88,9 @@ def test_a_filter_that_is_a_process():
 
 
 def test_a_filter_that_is_a_node_of_the_test():
-    """The same in one process, with a reading lost now and then; without it one sentence."""
+    """
+    The same in one process, with a lost reading now and then; a missing filter gives one message.
+    """
     from geometry_msgs.msg import Vector3Stamped
     names = {'__name__': 'filter'}
     exec(FILTER, names)
@@ -117,13 +119,13 @@ def test_what_is_wrong_is_one_sentence(arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
         with RunningSimulation(**arguments):
             pass
-    # nothing is left behind
+    # Nothing remains.
     with RunningSimulation((), VALUES) as sim:
         assert sim.step().imu is not None
 
 
 def test_it_needs_no_pytest():
-    """The context manager serves any framework."""
+    """The context manager works with any test framework."""
     code = ('import sys; sys.modules["pytest"] = None\n'
             'from ins_sim.testing import RunningSimulation, start_simulation\n'
             'with RunningSimulation() as sim: print(sim.step().stamp_ns)')

@@ -1,4 +1,4 @@
-"""The nodes in one process publish, byte for byte, what they publish one by one."""
+"""The nodes in one process publish the same bytes as separate nodes."""
 
 from collections import defaultdict
 from functools import partial
@@ -40,7 +40,7 @@ RUNS = {
 
 
 def apart(values):
-    """Return {topic: {stamp: bytes}} of nodes joined by a bus of the tests, in lock-step."""
+    """Return {topic: {stamp: bytes}} of nodes joined by a test bus, in lock-step."""
     sent = defaultdict(dict)
     names = (*(AIDS if values.get('aided') else ()), *NODES)
     with FedNodes({name: values for name in names}) as fed:
@@ -48,7 +48,7 @@ def apart(values):
         generator, ended = fed.nodes['motion_generator'], []
         generator._finish = ended.append
         if values.get('aided'):
-            # the graph knows no publishers of the bus
+            # The graph contains no publishers of the bus.
             fed.nodes['aided_navigator']._joined = True
         while not ended:
             generator._advance(None)

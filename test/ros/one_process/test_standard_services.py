@@ -1,4 +1,4 @@
-"""The services of simulation_interfaces: built from its public definitions where it is missing."""
+"""The services of simulation_interfaces, built from its public definitions if it is missing."""
 
 import importlib.util
 import json
@@ -10,7 +10,7 @@ from support.nodes.built_interfaces import build_interfaces
 
 pytest.importorskip('rclpy')
 
-# Release 2.1, without its comments: what the services used here need.
+# Release 2.1, without comments: the parts that the services need.
 RESULT = ('uint8 RESULT_FEATURE_UNSUPPORTED = 0\nuint8 RESULT_OK = 1\nuint8 RESULT_NOT_FOUND = 2\n'
           'uint8 RESULT_INCORRECT_STATE = 3\nuint8 RESULT_OPERATION_FAILED = 4\nuint8 result\n'
           'string error_message\n')
@@ -36,7 +36,7 @@ DEFINITIONS = {
                                'uint8 SCOPE_STATE = 2\nuint8 SCOPE_SPAWNED = 4\n'
                                'uint8 SCOPE_ALL = 255\nuint8 scope\n---\nResult result\n',
 }
-# Somebody who knows the standard alone: calls in order, and prints what is answered.
+# A client that knows only the standard: it calls the services in order and prints the answers.
 CLIENT = """
 import json, sys
 import rclpy
@@ -102,7 +102,7 @@ print('FOUND ' + json.dumps(out), flush=True)
 @pytest.mark.slow
 @pytest.mark.parametrize('executable', ['simulation', 'motion_generator'])
 def test_somebody_who_knows_the_standard(executable, chain, tmp_path):
-    """Features, states, steps and resets; unknown states and scopes are refused in words."""
+    """Features, states, steps and resets; unknown states and scopes are refused with a message."""
     environment = {} if importlib.util.find_spec('simulation_interfaces') else build_interfaces(
         tmp_path / 'built', 'simulation_interfaces', DEFINITIONS, 'service_msgs')
     for name, value in environment.items():
@@ -128,7 +128,7 @@ def test_somebody_who_knows_the_standard(executable, chain, tmp_path):
 
 
 def test_a_release_that_is_too_old_is_said_once(monkeypatch):
-    """What lacks a service is named; the generator runs without these services."""
+    """A missing type is named; the generator runs without these services."""
     from types import ModuleType
     from ins_sim.ros.lock_step import standard_services
     from support.hostile.fed_nodes import FedNodes

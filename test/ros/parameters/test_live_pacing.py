@@ -15,7 +15,7 @@ TICK_S = 1e-3
 
 
 class Generator(FedNodes):
-    """A generator whose clock is told; ``sent(ticks)`` lets time pass in ms."""
+    """A generator with a simulated clock; ``sent(ticks)`` advances time in ms."""
 
     def __init__(self, **parameters):
         super().__init__({'motion_generator': {**RUN, **parameters}})
@@ -27,7 +27,7 @@ class Generator(FedNodes):
         return self
 
     def sent(self, ticks):
-        """Return how many samples are sent in so many ms, at most one burst a ms."""
+        """Return the number of samples sent in some ms, at most one burst a ms."""
         counts = []
         for _ in range(ticks):
             before = self.node._next
@@ -37,7 +37,7 @@ class Generator(FedNodes):
         return counts
 
     def set(self, factor):
-        """Set the factor; return '' or why not."""
+        """Set the factor; return '' or the reason for a refusal."""
         return ask(self.node, {FACTOR: factor})[0]
 
 
@@ -45,9 +45,9 @@ class Generator(FedNodes):
 @pytest.mark.parametrize('factor', [0.1, 0.5, 2, 8.0])
 def test_time_goes_on_without_a_burst(factor, ticks, ros_domain):
     """
-    Wherever in a period it is changed: no two samples in 1 ms, and none is late.
+    Wherever in a period the factor is changed, no two samples are within 1 ms, and none is late.
 
-    In a second there are as many as the new factor says, and then as the old one.
+    The number of samples in a second follows the new factor, and then the old one.
     """
     with Generator() as generator:
         assert sum(generator.sent(ticks)) == 100 + (ticks > 1000)
@@ -68,7 +68,7 @@ def test_time_goes_on_without_a_burst(factor, ticks, ros_domain):
 
 
 def test_a_generator_that_was_late_does_not_catch_up_at_once(ros_domain):
-    """What was due before the change is due at the new pace."""
+    """Samples that were due before the change are sent at the new pace."""
     with Generator() as generator:
         generator.sent(100)
         generator.clock.pass_by(5.0)
@@ -77,7 +77,7 @@ def test_a_generator_that_was_late_does_not_catch_up_at_once(ros_domain):
 
 
 def test_a_factor_of_zero_needs_lock_step(ros_domain):
-    """One sentence without it; with it the clock is off, and on again."""
+    """A factor of 0 without lock-step is refused; with it the clock is off, and later on again."""
     with Generator() as generator:
         generator.sent(10)
         assert generator.set(0.0) == (
@@ -98,7 +98,7 @@ def test_a_factor_of_zero_needs_lock_step(ros_domain):
 
 @pytest.mark.parametrize('value', ['fast', -1.0, float('nan'), float('inf'), [1.0], True, 1e7])
 def test_nonsense_is_refused(value, ros_domain):
-    """One sentence with the name; the pace stays."""
+    """One message names the parameter; the pace does not change."""
     with Generator() as generator:
         assert sum(generator.sent(100)) == 10
         reason = generator.set(value)
@@ -107,7 +107,7 @@ def test_nonsense_is_refused(value, ros_domain):
 
 
 def test_before_the_run_and_after_a_pause(ros_domain):
-    """It counts from the first sample on, and in a pause nothing is sent."""
+    """The factor applies from the first sample on, and in a pause nothing is sent."""
     with Generator() as generator:
         assert generator.set(4) == ''
         assert 'from the first sample on' in generator.logs['motion_generator'].kept[-1]
@@ -119,7 +119,7 @@ def test_before_the_run_and_after_a_pause(ros_domain):
 
 
 def test_the_pace_of_a_clock(monkeypatch):
-    """What is left of a period is stretched: 0.3 of one at 1 is 0.3 of one at 10."""
+    """The rest of a period is stretched: 0.3 of one at factor 1 is 0.3 of one at factor 10."""
     now = [0.0]
     monkeypatch.setattr(pacing, 'time', type('Clock', (), {'monotonic': lambda: now[0]}))
     pace = pacing.Pace(1.0, DT_S)

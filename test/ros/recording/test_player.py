@@ -47,7 +47,7 @@ def contents(path):
 
 
 def mixed_bag(path, count=200):
-    """Write a bag of a stream, of words, and of a latched topic; 100 Hz from 50 s on."""
+    """Write a bag of a stream, of strings, and of a latched topic; 100 Hz from 50 s on."""
     pack = topics.IMU_RAW.writer().pack
     with BagWriter(path) as bag:
         bag.add_topic('imu', topics.IMU)
@@ -69,7 +69,7 @@ def mixed_bag(path, count=200):
 
 
 def test_played_and_recorded_again(chain, tmp_path):
-    """The same bytes in the same order, the same offers; in a namespace as well."""
+    """The same bytes in the same order with the same offered QoS, in a namespace as well."""
     path = mixed_bag(tmp_path / 'bag')
     recorder = chain.start_verb('record', 'imu', 'words', 'latched', '-o', tmp_path / 'again',
                                 '--ros-args', '-r', '__ns:=/robot')
@@ -93,10 +93,11 @@ def test_played_and_recorded_again(chain, tmp_path):
 
 def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
     """
-    Messages come spread over the time they were recorded in, and /clock with them.
+    Messages are spread over the time in which they were recorded, and /clock with them.
 
-    A player that does not wait would send a second of messages within milliseconds; one on a busy
-    machine may send the first ones late and the others after them at once, up to half of it here.
+    A player that does not wait would send a second of messages within milliseconds. On a busy
+    machine
+    the first ones may be late and others follow at once; up to half of them is accepted here.
     """
     path = mixed_bag(tmp_path / 'bag')
     talker = Talker(ros_domain)
@@ -126,7 +127,7 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_signals(number, chain, tmp_path):
-    """Exit code 0 in the middle of a loop without end."""
+    """Exit code 0 in the middle of an endless loop."""
     path = mixed_bag(tmp_path / 'bag', 20)
     player = chain.start_verb('play', path, '--loop', '--wait', '0', '--topics', 'imu')
     chain.wait_text(player, 'begins again')
@@ -149,7 +150,7 @@ def original(chain, tmp_path):
 
 def test_lock_step_gives_the_original_run(chain, tmp_path):
     """
-    From the truth through imu_sensor, or from its readings: the same bytes of odometry.
+    Played from the truth through imu_sensor, or from its readings: the same bytes of odometry.
 
     The processes are those of replay.launch.py, in a namespace.
     """
@@ -174,7 +175,7 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
 
 
 def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
-    """In lock-step each time round is a run: the strapdown reports the jump and starts anew."""
+    """In lock-step each round is a run: the strapdown reports the jump and starts anew."""
     path = original(chain, tmp_path)
     listener = Listener(ros_domain, (topics.INS_ODOMETRY,))
     strapdown = chain.start('strapdown', PARAMETERS)
@@ -194,13 +195,13 @@ def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
         table = bag.arrays('ins/odometry', names)
     heard = listener.heard['ins/odometry']
     assert sorted(heard) == table['stamp_ns'].tolist()
-    # every stamp was solved at least twice, the last time as in the original
+    # Every stamp was solved at least twice, the last time as in the original.
     expected = np.concatenate([table[n] for n in names], axis=1)
     assert np.array_equal([heard[t] for t in sorted(heard)], expected)
 
 
 def test_on_fault_stop_ends_the_loop(chain, tmp_path):
-    """A strapdown that stops at a fault ends with 3, and the player names it and ends with 4."""
+    """A strapdown that stops at a fault exits with 3; the player names it and exits with 4."""
     path = original(chain, tmp_path)
     strapdown = chain.start('strapdown', {**PARAMETERS, 'on_fault': 'stop'})
     player = chain.start_verb('play', path, '--lock-step', 'strapdown', '--topics', *FROM_IMU,
@@ -212,7 +213,7 @@ def test_on_fault_stop_ends_the_loop(chain, tmp_path):
 
 
 def test_what_is_refused(chain, tmp_path):
-    """Code 2 and a sentence."""
+    """Exit code 2 and one message."""
     path = mixed_bag(tmp_path / 'bag', 5)
     for words, sentence in (
             ((tmp_path / 'none',), 'none does not exist; expected a bag'),
@@ -225,7 +226,9 @@ def test_what_is_refused(chain, tmp_path):
 
 
 def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
-    """The first messages logged at 0, the others since 1970: not waited for in silence."""
+    """
+    First messages logged at 0 and others in 1970: the player logs the gap and does not just wait.
+    """
     path, pack = tmp_path / 'bag', topics.IMU_RAW.writer().pack
     with BagWriter(path) as bag:
         bag.add_topic('imu', topics.IMU)

@@ -1,4 +1,4 @@
-"""The recorder: any topic, whatever its type and quality of service, and how it ends."""
+"""The recorder: any topic of any type and quality of service."""
 
 import signal
 import time
@@ -19,7 +19,7 @@ SECOND = 1_000_000_000
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path):
-    """Every message of every topic once, at its own stamp, its bytes those that others hear."""
+    """Every message of every topic once, at its own stamp, with the bytes that others receive."""
     listener = Listener(ros_domain, topics.DATA)
     path = tmp_path / 'bag'
     recorder = chain.start_verb('record', *listener.raw, '-o', path, '--storage', storage)
@@ -44,7 +44,7 @@ def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path)
 
 
 def test_all_topics_in_lock_step(chain, tmp_path):
-    """Sample 0 is answered once no new topic has appeared for a second: not one is missed."""
+    """Sample 0 is acknowledged when no new topic has appeared for a second: none is missed."""
     parameters = {'rate_hz': 100.0, 'duration_s': 2.0, 'pacing.real_time_factor': 0.0,
                   'pacing.required': '[strapdown, recorder]'}
     recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
@@ -56,12 +56,12 @@ def test_all_topics_in_lock_step(chain, tmp_path):
     assert {'/sim/status', '/sim/ack', '/rosout', '/diagnostics'} <= set(said)
     with open_bag(tmp_path / 'bag') as bag:
         spans = bag.spans()
-        # what has no stamp lies within the run, give or take its wall time
+        # Messages without a stamp lie within the run, up to its wall time.
         assert all(0 <= s.first_ns and s.last_ns < 60 * SECOND for s in spans.values() if s.count)
 
 
 def test_a_stamp_before_the_epoch(talker, chain, tmp_path):
-    """Jitter may put the first stamp before zero; it is logged at zero, as simulate --bag does."""
+    """Jitter may make the first stamp negative; it is logged at zero, as by simulate --bag."""
     from sensor_msgs.msg import Imu
     path, writer = tmp_path / 'bag', topics.IMU_RAW.writer()
     publisher = talker.publisher(Imu, 'imu/data_raw')
@@ -79,7 +79,7 @@ def test_a_stamp_before_the_epoch(talker, chain, tmp_path):
 
 def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
     """
-    Types of others, one unknown to the bags too; best effort; latched; a topic that comes late.
+    Foreign types, one unknown to the bags too; best effort; latched; a topic that appears late.
 
     Bytes, types, definitions and offered qualities are those of the publishers.
     """
@@ -103,7 +103,7 @@ def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
             '/late/array': [DiagnosticArray(status=[DiagnosticStatus(name=f'{k}')] * k)
                             for k in range(10)],
             '/goals': [Goals() for _ in range(3)]}
-    # once: the bytes between the fields are whatever lay in memory
+    # Only one message, because the bytes between its fields are uninitialised.
     sent = {name: [serialize_message(m) for m in messages] for name, messages in sent.items()}
     begin_ns = time.time_ns()
     for publisher, messages in zip((text, weak, array, goals), sent.values()):
@@ -115,11 +115,11 @@ def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
         assert set(bag.topics) == set(sent)
         for name, messages in sent.items():
             got = list(bag.messages([name]))
-            # DDS fills the last word of a message up
+            # DDS pads the last word of a message.
             for (_, _, data), message in zip(got, messages):
                 assert data[:len(message)] == message and len(data) - len(message) < 4
             assert said[name][1:] == (len(messages), '0 lost') and len(got) == len(messages)
-            # without any stamp the time of reception is all there is
+            # Without any stamp only the time of reception is known.
             assert name == '/latched' or all(begin_ns <= t <= end_ns for _, t, _ in got)
         offers = {name: bag_qos.read_profiles(c.qos)[0] for name, c in bag.topics.items()}
         assert bag.topics['/chatter'].definition == message_definition('std_msgs/msg/String')[0]
@@ -133,7 +133,7 @@ def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
 
 
 def test_our_names_in_other_hands(talker, chain, tmp_path):
-    """A driver with best effort on imu/data_raw is recorded; another type is said to be one."""
+    """A best-effort driver on imu/data_raw is recorded; another type on it is reported."""
     from sensor_msgs.msg import Imu
     from std_msgs.msg import String
     imu = talker.publisher(Imu, 'imu/data_raw', reliability='best_effort')
@@ -149,9 +149,10 @@ def test_our_names_in_other_hands(talker, chain, tmp_path):
 
 def test_all_topics_namespace_and_times(talker, chain, tmp_path):
     """
-    With --all hidden topics stay out; what has no stamp is logged at the stamps around it.
+    With --all hidden topics are left out; messages without a stamp are logged at the stamps
+    around.
 
-    A relative name lies in the namespace of the recorder.
+    A relative name is in the namespace of the recorder.
     """
     from std_msgs.msg import String
     imu, text = talker.imu('/robot/imu'), talker.publisher(String, '/robot/words')
@@ -173,7 +174,9 @@ def test_all_topics_namespace_and_times(talker, chain, tmp_path):
 
 
 def test_received_times_and_repeats(talker, chain, tmp_path):
-    """log_time received: when it came. Equal stamped messages are one, equal texts are many."""
+    """
+    log_time received: time of arrival. Equal stamped messages count once, equal strings each time.
+    """
     from std_msgs.msg import String
     imu, text = talker.imu(), talker.publisher(String, 'words')
     recorder = chain.start('recorder', {'record.topics': '[imu, words]', 'storage.path':
@@ -190,9 +193,9 @@ def test_received_times_and_repeats(talker, chain, tmp_path):
 
 def test_losses_are_counted(talker, chain, tmp_path):
     """
-    A queue of ten that is not emptied in time: recorded and lost are what was sent.
+    With a queue of ten that is not emptied in time, recorded plus lost equals sent.
 
-    The stamps say the same where twenty steps or more show what is usual.
+    The stamps give the same count if twenty steps or more show the usual one.
     """
     imu = talker.imu()
     recorder = chain.start('recorder', {'record.topics': '[imu]', 'record.depth': 10,
@@ -215,10 +218,11 @@ def test_losses_are_counted(talker, chain, tmp_path):
 
 def test_stamps_of_two_clocks(talker, chain, tmp_path):
     """
-    6000 messages in a burst, to the last moment: what was sent is in the bag or counted as lost.
+    6000 messages in a burst up to the end: every one is in the bag or counted as lost.
 
-    The one topic is stamped from the start of the computer, the other one from 1970; a file of
-    ten seconds of either clock is one file.
+    One topic is stamped since boot, the other since 1970; a split of ten seconds of either clock
+    gives
+    one file.
     """
     boot, wall = talker.imu('boot'), talker.imu('wall')
     recorder = chain.start_verb('record', 'boot', 'wall', '-o', tmp_path / 'bag',

@@ -1,4 +1,4 @@
-"""How a recording ends: splits, signals at any time, SIGKILL."""
+"""The end of a recording: splits, signals at any time, SIGKILL."""
 
 import signal
 import time
@@ -17,7 +17,7 @@ KINDS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none')]
     ('mcap', ('--max-duration', '1.0')), ('sqlite3', ('--max-duration', '1.0')),
     ('mcap', ('--max-size', '0.05')), ('sqlite3', ('--max-size', '0.05'))])
 def test_splits(storage, options, talker, chain, tmp_path):
-    """By time or by size, whole together and each alone."""
+    """Split by time or by size: complete together, and each file can be read alone."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 *options)
@@ -40,7 +40,7 @@ def test_splits(storage, options, talker, chain, tmp_path):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, tmp_path):
-    """While messages come: exit code 0, all that was said to be in it is."""
+    """A signal while messages arrive: exit code 0, and all reported messages are in the bag."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 '--compression', compression)
@@ -55,11 +55,11 @@ def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, 
 @pytest.mark.parametrize('numbers', [(signal.SIGINT,), (signal.SIGTERM,),
                                      (signal.SIGINT, signal.SIGINT)])
 def test_signals_whenever_they_come(numbers, chain, tmp_path):
-    """While it imports, starts, records or ends: code 0, and no bag or a whole one."""
+    """While it imports, starts, records or ends: code 0, and no bag or a complete one."""
     for k in range(6):
         path = tmp_path / f'bag_{k}'
         recorder = chain.start_verb('record', '--all', '-o', path)
-        # before that the handlers are not those of a node, and the code is that of a verb
+        # Before this the signal handlers are those of a verb, with its exit code.
         wait_started(chain, recorder, k)
         for number in numbers:
             recorder.send_signal(number)
@@ -72,7 +72,7 @@ def test_signals_whenever_they_come(numbers, chain, tmp_path):
 
 
 def wait_started(chain, recorder, k):
-    """Wait for the handlers of a node, and the more the larger k."""
+    """Wait for the signal handlers of a node, longer for larger k."""
     end = time.monotonic() + 30.0
     while time.monotonic() < end:
         with open(f'/proc/{recorder.pid}/maps') as maps:
@@ -86,7 +86,7 @@ def wait_started(chain, recorder, k):
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, talker, chain, tmp_path, capsys):
-    """SIGKILL: all but the last second is there, and info says that the bag was cut."""
+    """SIGKILL: all but the last second is there, and info reports a truncated bag."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 '--compression', compression)

@@ -15,18 +15,19 @@ pytestmark = pytest.mark.live
 RATE_HZ, LENGTH_S = 1000, 5
 DT_NS = 1_000_000
 TOPICS = [topic.name for topic in (*topics.DATA, topics.CLOCK_TOPIC)]
-# A publisher repairs what its transport drops at its next heartbeat, which DDS sends every 3 s:
-# what it keeps must last longer.
+# A publisher resends lost samples at its next heartbeat, every 3 s by default in DDS: its queue
+# must last longer.
 DEPTH = 10_000
 
 
 def test_nothing_is_lost_at_1_khz(ros_domain, tmp_path):
     """
-    Twelve topics, the generator free-running: no gap in the publishers' numbers or the stamps.
+    Twelve topics in real time: no gap in the numbers of the publishers or in the stamps.
 
-    Samples before the nodes have found each other are no loss of the recorder; from the first
-    one recorded of a topic on, every one is there, to the last.  Ten minutes of the same, and the
-    CPU they take, are printed by benchmarks/live_recorder.py.
+    Samples before discovery are not counted; from the first recorded one of a topic on, all are
+    there,
+    to the last. Ten minutes of the same, and the CPU time, are printed by
+    benchmarks/live_recorder.py.
     """
     chain, path = Chain(ros_domain, tmp_path), tmp_path / 'bag'
     parameters = {'rate_hz': float(RATE_HZ), 'duration_s': float(LENGTH_S),

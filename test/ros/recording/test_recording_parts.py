@@ -24,12 +24,12 @@ def imu(stamp_ns):
     ([1, 2, 1, 3, 2, 4, 3], 2, 0, 0),
     ([5, 1, 6, 2, 3, 7], 2, 0, 4),
     ([1, 1, 2, 2, 5, 3, 6], 2, 2, 0),
-    # a publisher that starts again, before the graph has told of it
+    # A publisher that restarts before the graph has reported it.
     ([1, 2, 3, 1, 2, 3, 4], 1, 0, 0),
-    # of a topic that is late by one: what was counted as lost and still comes stays counted
+    # On a topic that is late by one, messages counted as lost that still arrive stay counted.
     ([1, 3, 2, 4], 1, 1, 0)])
 def test_gaps(numbers, publishers, lost, before):
-    """Without loss nothing is counted, whatever the interleaving."""
+    """Without loss nothing is counted, for any interleaving."""
     gaps = Gaps()
     gaps.publishers = publishers
     for number in numbers:
@@ -38,14 +38,14 @@ def test_gaps(numbers, publishers, lost, before):
 
 
 def test_without_numbers_losses_are_unknown():
-    """Some middleware numbers nothing."""
+    """Some middleware does not number messages."""
     gaps = Gaps()
     gaps.take(None)
     assert not gaps.known and gaps.lost == 0
 
 
 def test_the_time_of_a_run():
-    """The newest stamp, running on; late topics do not turn it back, a run that restarts does."""
+    """The newest stamp, running on; late topics do not turn it back, a restarted run does."""
     clock = RunClock()
     assert clock.now(5) is None
     assert clock.hear(imu(100 * SECOND), 10) == 100 * SECOND
@@ -59,14 +59,16 @@ def test_the_time_of_a_run():
 @pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x00\x00', b'\x00\x00' + imu(5)[2:],
                                   imu(-SECOND)])
 def test_stamps_that_no_bag_can_hold(data):
-    """Too short, of the other byte order, before 1970: they do not touch the clock."""
+    """Too short, of the other byte order, before 1970: they do not change the clock."""
     clock = RunClock()
     assert clock.hear(data, 1) is None and clock.now(2) is None
 
 
 @pytest.fixture
 def bag(tmp_path):
-    """Return the path of a bag: words, truth from before the first reading on, readings, acks."""
+    """
+    Return the path of a bag: strings, truth from before the first reading on, readings, acks.
+    """
     path = tmp_path / 'bag'
     truth = topics.TRUTH_ODOMETRY
     with BagWriter(path) as writer:
@@ -85,7 +87,9 @@ def bag(tmp_path):
 
 
 def test_the_first_sample_of_lock_step(bag):
-    """What is older goes first, what is newer or has no stamp afterwards; nothing is missing."""
+    """
+    Older messages are sent first, newer ones and those without stamp afterwards; none is missing.
+    """
     playing = Playing(bag, Options(required=('strapdown',)))
     assert playing.driver == '/imu/data_raw' and playing.left_out == ['/sim/ack']
     beginning = PlaybackStart(playing, stamp_of)
@@ -111,14 +115,14 @@ def test_the_first_sample_of_lock_step(bag):
     ({'topics': ('sim/ack',), 'required': ('strapdown',)}, 'has no message on a topic'),
     ({'required': ('strapdown',), 'window': 0}, '--window is 0; expected 1 to 2000')])
 def test_options_that_are_refused(options, sentence, bag):
-    """One sentence that names option, value and expectation."""
+    """One message names option, value and expectation."""
     with pytest.raises(ValueError) as error:
         Playing(bag, Options(**options))
     assert sentence in str(error.value) and '\n' not in str(error.value)
 
 
 def test_log_times_that_clock_cannot_say(tmp_path):
-    """Beyond 2038 they are played, but not with /clock: refused before the first message."""
+    """Beyond 2038 messages are played, but with /clock they are refused before the first one."""
     path = tmp_path / 'bag'
     with BagWriter(path) as writer:
         writer.add_topic('imu', topics.IMU)
@@ -134,30 +138,30 @@ def test_log_times_that_clock_cannot_say(tmp_path):
 
 
 def test_start_and_duration(bag):
-    """Both count from the first message of the topics that are played; the ends are in."""
+    """Both count from the first message of the played topics; the ends are included."""
     playing = Playing(bag, Options(topics=('imu/data_raw',), start_s=1.0, duration_s=3.0))
     assert [t // SECOND for _, t, _ in playing.messages()] == [3, 4, 5, 6]
     playing.close()
 
 
 def stamps_with_losses(count, lost):
-    """Return the stamps, ns, of a stream at 1 kHz of which some samples are missing."""
+    """Return the stamps, ns, of a stream at 1 kHz with some samples missing."""
     return [k * 10**6 for k in range(count) if k not in lost]
 
 
 @pytest.mark.parametrize('stamps, missing, step_ns', [
     (stamps_with_losses(1000, ()), 0, 10**6),
     (stamps_with_losses(1001, range(1, 1000, 3)), 333, 10**6),
-    # 42 % of the samples, in runs of queues that overflow
+    # 42 % of the samples, in runs of overflowing queues.
     (stamps_with_losses(10000, [k + j for k in range(10, 9900, 100) for j in range(42)]), 4158,
      10**6),
-    # a pause is none, nor is a run that starts anew
+    # A pause is no hole, nor is a run that restarts.
     ([*range(0, 10**9, 10**7), *range(10**12, 10**12 + 10**9, 10**7)], 0, 10**7),
     ([*range(0, 10**9, 10**7), *range(0, 10**9, 10**7)], 0, 10**7),
-    # stamps that jitter by a tenth of the period, one of ten lost
+    # Stamps that jitter by a tenth of the period, one of ten lost.
     ([k * 10**7 + (k * 7919 % 1000 - 500) * 1000 for k in range(2000) if k % 10], 199, None)])
 def test_holes(stamps, missing, step_ns):
-    """Counted against the usual step of the stream itself."""
+    """Holes are counted by the usual step of the stream itself."""
     holes = Holes()
     for stamp_ns in stamps:
         holes.take(stamp_ns)
@@ -166,7 +170,7 @@ def test_holes(stamps, missing, step_ns):
 
 
 def test_holes_of_what_is_not_steady():
-    """Events, a few messages, and stamps of two clocks in turns have no rate."""
+    """Events, a few messages, and alternating stamps of two clocks have no rate."""
     events, turns, few = Holes(), Holes(), Holes()
     t_ns = 0
     for k in range(1000):

@@ -1,4 +1,4 @@
-"""The announced run: node objects without DDS that learn the epoch before, amid or never."""
+"""The announced run: node objects that learn the epoch before, during or never."""
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -18,7 +18,7 @@ GNSS = {**COMMON, 'gnss.rate_hz': 10.0, 'outages.start_s': [0.25], 'outages.end_
 
 
 class Announced(HostileFlight):
-    """A flight of all nodes; ``knows`` says whether sim/run is known to have a publisher."""
+    """A flight of all nodes; ``knows`` tells whether sim/run is known to have a publisher."""
 
     announced = None
 
@@ -26,12 +26,14 @@ class Announced(HostileFlight):
         super().__init__(1, more)
 
     def know(self, count, others=1):
-        """Let every node count so many publishers of sim/run, and of all other topics."""
+        """
+        Set the number of known publishers of sim/run, and of all other topics, in every node.
+        """
         for node in self.fed.nodes.values():
             node.count_publishers = lambda name: count if name == '/sim/run' else others
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return the log messages of a node."""
         return '\n'.join(self.fed.logs[node].kept)
 
     def newest(self, topic):
@@ -46,7 +48,7 @@ def flight(ros_domain):
 
 
 def test_the_generator_announces_before_the_truth(ros_domain):
-    """Epoch, start, rate and end, and nothing else was sent by then."""
+    """Epoch, start, rate and end are announced before anything else is sent."""
     heard = []
     values = {**COMMON, 'time.epoch': 'fixed', 'start_s': 5.0, 'duration_s': 7.0}
     nodes = FedNodes({'motion_generator': values})
@@ -60,7 +62,10 @@ def test_the_generator_announces_before_the_truth(ros_domain):
 
 
 def test_what_comes_before_the_announcement_waits(flight):
-    """Nothing is lost and nothing is answered: the readings of the first samples come with it."""
+    """
+    Nothing is lost and nothing is acknowledged: the first readings are processed with the
+    announcement.
+    """
     flight.know(1)
     flight.good(20)
     assert flight.newest(topics.IMU_RAW) is None and flight.newest(topics.ACK) is None
@@ -73,7 +78,9 @@ def test_what_comes_before_the_announcement_waits(flight):
 
 
 def test_motion_time_is_that_of_the_epoch(ros_domain):
-    """An outage of 0.25 to 0.35 s of motion time is one of these stamps, as offline."""
+    """
+    An outage from 0.25 to 0.35 s of motion time applies to the corresponding stamps, as offline.
+    """
     with Announced(gnss={**GNSS}) as flight:
         flight.know(1)
         flight.announce(RunAnnouncement(-SECOND, SECOND, 100.0, 60 * SECOND))
@@ -82,12 +89,12 @@ def test_motion_time_is_that_of_the_epoch(ros_domain):
         flight.fed.bus.listen = lambda name, data: status.append(
             reader.numbers(data)[0]) if name == topics.GNSS_FIX.name else None
         flight.good(60)
-        # motion time is one second later than the stamps: the outage has gone by
+        # Motion time is one second later than the stamps: the outage has passed.
         assert status and set(status) == {0}
 
 
 def test_where_nobody_announces_motion_time_is_the_stamp(flight):
-    """As with a recorded or a real IMU; said once by each node."""
+    """As with a recorded or a real IMU; each node logs it once."""
     flight.know(0)
     flight.good(30)
     assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
@@ -97,7 +104,9 @@ def test_where_nobody_announces_motion_time_is_the_stamp(flight):
 
 
 def test_readings_may_come_before_the_generator_is_found(flight):
-    """From a sensor that has found it: the navigators wait for 5 s, and then for nobody."""
+    """
+    The navigators wait 5 s for the generator of a sensor that has found it, and then for none.
+    """
     flight.know(0)
     flight.good(1)
     assert flight.newest(topics.INS_ODOMETRY) is not None
@@ -117,7 +126,7 @@ def test_readings_may_come_before_the_generator_is_found(flight):
 
 
 def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
-    """30 s, then one sentence, and the first samples are not lost."""
+    """After 30 s one message is logged, and the first samples are not lost."""
     flight.know(1)
     flight.good(2)
     flight.fed.clock.pass_by(30.0)
@@ -139,7 +148,7 @@ def test_more_than_the_queue_holds_is_counted(ros_domain):
 
 
 def test_another_generator_starts_all_anew(flight):
-    """Its epoch is taken, in one sentence; the same run again is none."""
+    """Its epoch is taken with one message; the same run announced again gives none."""
     flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
     flight.good(50)
     flight.announce(RunAnnouncement(0, 0, 100.0, 90 * SECOND))
@@ -159,7 +168,9 @@ def test_another_generator_starts_all_anew(flight):
     (RunAnnouncement(-100 * SECOND, 100 * SECOND, 100.0, 100 * SECOND), 'a message has the stamp '
      '10.010000000 s, 0.010000000 s after the end of the run')], ids=('before', 'after'))
 def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
-    """One sentence of each node that lives by the epoch; the strapdown navigates all the same."""
+    """
+    Nodes that depend on the epoch log one message each; the strapdown navigates nevertheless.
+    """
     flight.announce(run)
     if run is not RUN:
         flight.good(1001)

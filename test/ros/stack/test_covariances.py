@@ -1,4 +1,4 @@
-"""Every covariance that is published, live and in a bag, is one: none zero, all positive."""
+"""All published covariances, live and in a bag, are positive; none is zero."""
 
 from collections import defaultdict
 
@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from support.aided_runs import command
 
-# Of each type of message: where its covariances begin among its doubles, and their size.
+# For each type of message: where its covariances begin among its doubles, and their size.
 PLACES = {topics.IMU: ((4, 3), (16, 3), (28, 3)), topics.ODOMETRY: ((7, 6), (49, 6)),
           topics.FIX: ((3, 3),), topics.TWIST: ((6, 6),), topics.MAGNETIC: ((3, 3),),
           topics.PRESSURE: ((1, 1),)}
-# What has covariances, whichever the node.
+# Topics with covariances, of any node.
 KNOWN = (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.TRUTH_FIX, topics.IMU_RAW,
          topics.IMU_DATA, topics.IMU_MAG, topics.IMU_PRESSURE, topics.INS_ODOMETRY,
          topics.INS_FIX, topics.METER_VELOCITY, topics.GNSS_FIX, topics.GNSS_VELOCITY,
@@ -31,7 +31,7 @@ class Covariances:
         self._found = defaultdict(list)
 
     def add(self, name, data):
-        """Take a message, if it has covariances."""
+        """Add a message, if it has covariances."""
         if name not in TYPES:
             return
         reader = self._readers[name]
@@ -44,14 +44,14 @@ class Covariances:
             assert kind in (2, 3)
         for first, size in PLACES[TYPES[name]]:
             if doubles[first] == -1.0:
-                # REP-145: not measured
+                # REP-145: not measured.
                 assert name == topics.IMU_RAW.name and first == 4
             else:
                 self._found[name, first].append(
                     np.reshape(doubles[first:first + size * size], (size, size)))
 
     def check(self, expected, least):
-        """Check all of them; expected: topics that must have had at least so many."""
+        """Check all covariances; expected: topics that must have at least so many."""
         assert {name for name, _ in self._found} == expected
         for (name, first), matrices in self._found.items():
             assert len(matrices) >= least
@@ -60,21 +60,21 @@ class Covariances:
             assert (sigmas > 0.0).all() and np.isfinite(sigmas).all(), (name, first)
             whole = whole / (sigmas[:, :, None] * sigmas[:, None, :])
             turned = np.swapaxes(whole, 1, 2)
-            # products of rounded rotations: symmetric and positive to a few roundings of them
+            # Products of rounded rotations are symmetric and positive within a few roundings.
             assert np.abs(whole - turned).max() < 1e-12, (name, first)
             assert np.linalg.eigvalsh(0.5 * (whole + turned)).min() > -1e-12, (name, first)
 
 
 @pytest.fixture
 def magnetic(monkeypatch):
-    """Let the field of the Earth be one that needs no package."""
+    """Replace the magnetic field by one that needs no package."""
     monkeypatch.setattr(environment, 'magnetic_field', lambda year: lambda *place: (
         1e-6, 2e-5, -4e-5))
 
 
 @pytest.mark.parametrize('name', ['eskf', 'conventional'])
 def test_in_a_bag(name, tmp_path, magnetic):
-    """Of a whole aided flight; a filter without covariance says that it knows none."""
+    """A complete aided flight; a filter without covariance states that it is unknown."""
     path, found = tmp_path / 'bag', Covariances()
     gnss = [f'gnss_model.use:={str(name == "eskf").lower()}', f'filter:={name}']
     assert command(tmp_path, '--bag', str(path), flight=(
@@ -87,7 +87,7 @@ def test_in_a_bag(name, tmp_path, magnetic):
 
 
 def test_of_live_nodes(ros_domain, magnetic):
-    """Of all nodes, in this process; the truth is what the generator sends."""
+    """Of all nodes in this process, with the truth of the generator."""
     pytest.importorskip('rclpy')
     from support.hostile.flight import HostileFlight, NODES
     found = Covariances()

@@ -1,4 +1,4 @@
-"""Quality of service: overrides by parameters are seen, and best-effort publishers are heard."""
+"""Quality of service: overrides by parameters work, and best-effort publishers are received."""
 
 import time
 
@@ -30,7 +30,7 @@ def make_node(ros_domain):
 
 
 def wait_for(condition):
-    """Wait until DDS has made something known; return it."""
+    """Wait until DDS has discovered something; return it."""
     end = time.monotonic() + GUARD_S
     while not (found := condition()):
         assert time.monotonic() < end
@@ -40,7 +40,9 @@ def wait_for(condition):
 
 @pytest.mark.live
 def test_a_reader_sees_the_overrides(make_node, talker):
-    """Reliability of publisher and subscription as the parameters say; of the others as ever."""
+    """
+    Publishers and subscriptions have the reliability of the parameters; others are unchanged.
+    """
     from rclpy.qos import ReliabilityPolicy
     own = {f'qos_overrides./{name}.{key}': value for name, key, value in (
         ('ins/odometry', 'publisher.reliability', 'best_effort'),
@@ -65,7 +67,7 @@ def test_a_reader_sees_the_overrides(make_node, talker):
 
 @pytest.mark.live
 def test_a_best_effort_publisher_is_heard(make_node, talker):
-    """Driver and queue in hand are subscribed to anew once such a publisher is there."""
+    """Subscriptions are made anew when a best-effort publisher appears."""
     from nav_msgs.msg import Odometry
     from rclpy.executors import SingleThreadedExecutor
     from sensor_msgs.msg import Imu
@@ -94,7 +96,7 @@ def test_a_best_effort_publisher_is_heard(make_node, talker):
 
 
 class Told:
-    """A logger that keeps what it is told."""
+    """A logger that stores its messages."""
 
     def __init__(self, said):
         self.info = self.warning = said.append
@@ -102,7 +104,7 @@ class Told:
 
 @pytest.mark.live
 def test_the_announcement_is_read_as_the_parameters_say(make_node, talker):
-    """The subscription of sim/run takes overrides as every other one does."""
+    """Overrides apply to the subscription of sim/run as to every other one."""
     key = 'qos_overrides./sim/run.subscription.durability'
     node, said = make_node('strapdown', **{key: 'volatile'}), []
     info, = wait_for(lambda: talker.node.get_subscriptions_info_by_topic('/sim/run'))
@@ -115,7 +117,7 @@ def test_the_announcement_is_read_as_the_parameters_say(make_node, talker):
 
 @pytest.mark.live
 def test_what_is_handed_over_in_memory_is_not_subscribed_to(make_node, talker):
-    """A best-effort publisher, our own or another one's, changes nothing there and raises none."""
+    """A best-effort publisher changes nothing for topics that are passed in memory."""
     simulation = make_node('simulation', **{
         f'qos_overrides./{name}.publisher.reliability': 'best_effort'
         for name in ('truth/imu', 'truth/odometry', 'imu/data_raw')})
@@ -137,7 +139,7 @@ def test_what_is_handed_over_in_memory_is_not_subscribed_to(make_node, talker):
 
 
 def import_odometry():
-    """Return the class, which is imported only where ROS is."""
+    """Return the class, imported only where ROS is available."""
     from nav_msgs.msg import Odometry
     return Odometry
 
@@ -151,14 +153,14 @@ def import_odometry():
     ('imu/data_raw.subscription.reliability', 'best-effort', "is 'best-effort'; expected one of "
      'reliable, best_effort')])
 def test_an_override_that_cannot_be(key, value, sentence, make_node):
-    """One sentence with place, key, value and expectation, before anything is published."""
+    """One message with place, key, value and expectation, before anything is published."""
     with pytest.raises(ValueError, match=f'^qos_overrides./{key}:? {sentence}$'):
         make_node('strapdown', **{f'qos_overrides./{key}': value})
 
 
 @pytest.mark.live
 def test_overrides_of_other_nodes_are_told_once(make_node):
-    """A parameter file may serve all nodes; and /diagnostics names the node."""
+    """A parameter file may serve all nodes; /diagnostics names the node."""
     node, said = make_node('strapdown', **{'qos_overrides./no/topic.publisher.depth': 3}), []
     node.get_logger = lambda: Told(said)
     sent = []

@@ -22,7 +22,7 @@ def played(chain, domain, bag, last_ns, parameters):
     """Play a bag in lock-step into strapdown; return {topic: {stamp_ns: doubles}}."""
     listener = Listener(domain, (topics.INS_ODOMETRY, topics.INS_FIX))
     node = chain.start('strapdown', {**LIVE, **parameters})
-    # the play is over within a second: what is published before they have met would be lost
+    # The play takes less than a second: messages before discovery would be lost.
     listener.poll_until(lambda: all(map(listener.node.count_publishers, listener.heard)))
     player = chain.start_verb('play', bag, '--lock-step', 'strapdown', '--topics',
                               parameters.get('inputs.imu', '/' + IMU),
@@ -42,7 +42,7 @@ def played(chain, domain, bag, last_ns, parameters):
 
 
 def within(heard, segment, datum):
-    """Assert that messages are the solution within 1e-9 m, m/s, rad."""
+    """Assert that messages agree with the solution within 1e-9 m, m/s, rad."""
     frame = MapFrame(Datum(*datum), True)
     odometry, fix = heard[topics.INS_ODOMETRY.name], heard[topics.INS_FIX.name]
     assert [*odometry] == segment.t_ns.tolist() == [*fix]
@@ -60,7 +60,7 @@ def parameters_of(datum):
 
 
 def test_a_made_bag(chain, ros_domain, tmp_path):
-    """Our own recording of a car at rest that drives off, as imu/data_raw and gnss/fix."""
+    """An artificial record of a car at rest that drives off, as imu/data_raw and gnss/fix."""
     imu, fixes = vehicle(rest_s=8.0, length_s=25.0, rate_hz=50.0)
     bag, datum = tmp_path / 'bag', (49.9, 5.7, 90.0)
     with BagWriter(bag) as writer:

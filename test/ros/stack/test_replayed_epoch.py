@@ -1,4 +1,4 @@
-"""A bag of an offline run, played: the nodes take the epoch from it, and give the same bits."""
+"""Playing the bag of an offline run: the nodes take the epoch from it and give the same bits."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
@@ -20,7 +20,7 @@ def test_noise_is_that_of_the_recorded_run(chain, ros_domain, tmp_path):
     """
     Errors are drawn by motion time, so the readings are those of the bag bit for bit.
 
-    Only two topics are asked for; the announcement is played before them all the same.
+    Only two topics are requested; the announcement is played before them nevertheless.
     """
     words = [w for name, value in {**NOISE, 'source': 'stream'}.items()
              for w in ('-p', f'{name}:={value}')]

@@ -1,4 +1,4 @@
-"""Our transforms over DDS, heard as the type of tf2_msgs by a node that is not ours."""
+"""Our transforms over DDS, received as tf2_msgs by a foreign node."""
 
 import importlib.util
 import json
@@ -15,8 +15,8 @@ from support.live import GUARD_S
 pytest.importorskip('rclpy')
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
-# A node as a user writes it, with the quality of service of a tf2 listener; it prints what it has
-# heard, and then places a frame that is not its own until it is ended.
+# A node as a user writes it, with the QoS of a tf2 listener; it prints the received transforms and
+# then publishes one of our frames until it is ended.
 LISTENER = """
 import json, time
 from geometry_msgs.msg import TransformStamped
@@ -58,9 +58,9 @@ def definitions():
 
 def test_a_listener_of_tf_hears_us(chain, tmp_path):
     """
-    Frames, poses and what stands fixed; and who places a frame as well is named, not before.
+    Frames, poses and static transforms; a second publisher of a frame is reported, not before.
 
-    A recorder logs every transform at its own stamp, and what stands fixed as latched.
+    A recorder logs every transform at its own stamp, and static ones as latched.
     """
     environment = {} if importlib.util.find_spec('tf2_msgs') else build_interfaces(
         tmp_path / 'tf2_msgs', 'tf2_msgs', definitions(), 'geometry_msgs')
@@ -99,5 +99,5 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
         assert 'transient_local' in bag.topics['/tf_static'].qos
     assert {one[1] for name, _, one in found if name == '/tf_static'} == {
         'uav1/odom', 'uav1/imu_link'}
-    # the other node stamps with zero
+    # The other node uses a zero stamp.
     assert len(found) > 200 and all(log_ns == one[2] for _, log_ns, one in found)

@@ -1,4 +1,4 @@
-"""Live transforms, node objects without DDS: frames, sources and who else places them."""
+"""Live transforms, node objects without DDS: frames, sources and second publishers."""
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -41,7 +41,7 @@ class Placed(HostileFlight):
         return '\n'.join(self.fed.logs[node].kept)
 
     def look(self):
-        """Let every node look at the graph and at /tf."""
+        """Let every node examine the graph and /tf."""
         for node in self.fed.nodes.values():
             node.monitor.publish()
 
@@ -55,7 +55,7 @@ def pairs_of(flight):
     ('none', set()), ('ins', {('uav1/odom', 'uav1/base_link')}),
     ('aided', {('uav1/odom', 'uav1/base_link'), ('uav1/map', 'uav1/odom')})])
 def test_who_places_what(source, moves, ros_domain):
-    """What stands fixed, once and at the first stamp; what moves, with every solution."""
+    """Static transforms once at the first stamp; moving ones with every solution."""
     with Placed(source, gnss={'lever_arm_m': [1.0, 2.0, 3.0]}) as flight:
         flight.good(100)
         assert pairs_of(flight) == moves
@@ -77,7 +77,7 @@ def test_who_places_what(source, moves, ros_domain):
 
 
 def test_the_truth_places_the_vehicle(ros_domain):
-    """The generator, with every sample, behind its Odometry."""
+    """The generator publishes map -> base_link with every sample, after its Odometry."""
     generator = {**FLIGHT, 'tf.source': 'truth', 'frames.base_link': 'body'}
     with Placed('none', motion_generator=generator) as flight:
         node = flight.fed.nodes['motion_generator']
@@ -95,7 +95,7 @@ def test_the_truth_places_the_vehicle(ros_domain):
 
 
 def test_every_aided_solution_has_its_odom(ros_domain):
-    """map -> odom -> base_link is the aided pose at every instant, the last one too."""
+    """map -> odom -> base_link is the aided pose at every instant, including the last one."""
     with Placed('aided') as flight:
         flight.good(300)
         flight.fed.nodes['aided_navigator']._patience.wait()
@@ -109,7 +109,7 @@ def test_every_aided_solution_has_its_odom(ros_domain):
 
 
 def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
-    """One sentence after 5 s; it answers before the odom has come again."""
+    """One message after 5 s; it acknowledges before the odom has arrived again."""
     with Placed('aided', velocity_meter={'attack_angle': 'none'}) as flight:
         flight.good(10)
         strapdown = flight.fed.nodes['strapdown']
@@ -132,7 +132,7 @@ def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
     ('ins', 'strapdown', 'uav1/odom', 'uav1/base_link'),
     ('aided', 'aided_navigator', 'uav1/map', 'uav1/odom')])
 def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domain):
-    """Another tf.source, another localization, or a second vehicle of the same prefix."""
+    """Another tf.source, another localization, or a second vehicle with the same prefix."""
     with Placed(source) as flight:
         flight.good(10)
         flight.fed.bus.put('/tf', TransformWriter((parent, child)).pack(0, POSE))
@@ -153,7 +153,7 @@ def test_bytes_that_are_no_transform_are_named(ros_domain):
 
 
 def test_guided_by_the_free_ins(ros_domain):
-    """ins/odometry, in odom, steers: odom stands fixed in map, where the INS began."""
+    """ins/odometry, in odom, steers: odom is constant in map, where the INS started."""
     steered = {**COMMON, 'motion.kind': 'guided', 'duration_s': 0.0, 'time.epoch_s': 0,
                'guidance.topic': 'ins/odometry', 'frames.prefix': 'uav1'}
     with Placed('none') as flight:

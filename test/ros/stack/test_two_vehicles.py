@@ -21,7 +21,7 @@ EPOCHS = {'left': {'time.epoch': 'fixed', 'time.epoch_s': 1735689600}, 'right': 
 
 
 def runs_of(listener):
-    """Return a list that gets the runs announced to a node, as they come."""
+    """Return a list that receives the runs announced to a node."""
     from ins_sim.ros.transport import qos
     found = []
     listener.node.create_subscription(
@@ -32,9 +32,10 @@ def runs_of(listener):
 
 def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
     """
-    No message of one is taken for the other's, and the nodes learn the epoch of their generator.
+    No message of one vehicle is used by the other; the nodes learn the epoch of their generator.
 
-    On ROS of PyPI, which has no tf2_msgs, each node says so once and runs without transforms.
+    With ROS from PyPI, which has no tf2_msgs, each node logs this once and runs without
+    transforms.
     """
     before_ns = time.time_ns()
     listeners = {name: Listener(ros_domain, HEARD, name) for name in EPOCHS}
@@ -48,11 +49,11 @@ def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
                     node, {**VALUES, **more, 'frames.prefix': f'uav{number}'},
                     ['-r', f'__ns:=/{name}'])
         ends = [process for (_, node), process in started.items() if node == 'motion_generator']
-        # while one ends the other goes on
+        # While one ends the other continues.
         for listener in listeners.values():
             listener.poll_until(lambda: [other.poll() for other in listeners.values()] and all(
                 end.poll() is not None for end in ends))
-        # the end of the run lies in the queues
+        # The end of the run is still in the queues.
         for listener in listeners.values():
             listener.poll_until(lambda: len(listener.heard['ins/error/position']) >= 400)
         listeners['right'].spin_until(lambda: runs['right'])
@@ -76,6 +77,6 @@ def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
     run, = runs['right']
     assert before_ns - 10**6 < run.first_stamp_ns < time.time_ns()
     assert right[0] == run.first_stamp_ns and run.end_ns == 4 * SECOND
-    # the same flight: the epoch moves the stamps and nothing else
+    # The same flight: the epoch changes only the stamps.
     for topic in HEARD:
         assert [*heard['left'][topic.name].values()] == [*heard['right'][topic.name].values()]

@@ -1,4 +1,4 @@
-"""Two vehicles, two namespaces, two prefixes, one bag, in the hands of others' programs."""
+"""Two vehicles, two namespaces, two prefixes, one bag, read by other programs."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
@@ -22,10 +22,10 @@ VALUES = {'motion.kind': 'racetrack', 'duration_s': LENGTH_S, 'rate_hz': 50.0,
 
 def test_the_bag_of_two_vehicles(chain, tmp_path):
     """
-    Without holes, each message in the frames of its vehicle; others read it and find nothing.
+    The bag has no holes, each message has the frames of its vehicle; other programs read it.
 
-    As in docs/how_to/recipes/two_vehicles.md.  The recorder is not one of those that lock-step
-    waits for, since it serves two masters: what was sent before it found a topic is missing.
+    As in docs/how_to/recipes/two_vehicles.md. Lock-step does not wait for the recorder, because it
+    serves two generators: messages before it found a topic are missing.
     """
     path = tmp_path / 'bag'
     names = [f'/{vehicle}/{topic.name}' for vehicle in VEHICLES for topic in RECORDED]
@@ -60,13 +60,13 @@ def start(chain, vehicle, prefix):
 
 
 def others_read(bag, counts):
-    """See what the programs say that are installed; skip for the first that is not."""
+    """Run the installed programs; skip at the first that is not installed."""
     for name, findings in bag_tools.LINTERS.items():
         assert findings(bag) == [], name
     pairs = [(f'/{v}/truth/odometry', f'/{v}/ins/odometry') for v in VEHICLES]
     tracks = bag_tools.evo_trajectories(bag, [name for pair in pairs for name in pair])
     assert all(track.num_poses == counts[name] for name, track in tracks.items())
     for truth, ins in pairs:
-        # 0.1 deg/sqrt(h) moves an INS by millimetres in ten seconds
+        # 0.1 deg/sqrt(h) moves an INS by millimetres in ten seconds.
         assert bag_tools.evo_position_rms(tracks[truth], tracks[ins]) < 0.1
     assert bag_tools.served_by_foxglove(bag) == set(counts)
