@@ -1,4 +1,4 @@
-"""A writer that is killed, or whose disk is full, leaves what it wrote, and one can see it."""
+"""A writer that is killed, or whose disk is full, leaves the data it wrote in a marked bag."""
 
 import os
 import signal
@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 KINDS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none')]
-# a recorder of 100 Hz in a hurry; after each flush it says how many messages it has handed over
+# A recorder at 100 Hz at full speed; after each flush it prints the number of messages written.
 RECORDER = """
 import sys
 from ins_sim.bags.bag_writer import BagWriter
@@ -32,14 +32,14 @@ while True:
     if k % 250 == 0:
         print(k, flush=True)
 """
-# as much of the log time as a recorder may lose that flushes nothing itself: one second
+# A recorder that never flushes may lose this part of the log time: one second.
 UNFLUSHED = 101
 
 
 @pytest.mark.parametrize('flush', ['flush', 'none'])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, flush, tmp_path, capsys):
-    """SIGKILL: all that was flushed opens in place, info says that it was cut, exit code 0."""
+    """All flushed data can be read, info reports a truncated bag, exit code 0."""
     path = tmp_path / 'bag'
     process = subprocess.Popen([sys.executable, '-c', RECORDER, path, storage, compression, flush],
                                stdout=subprocess.PIPE, text=True)
@@ -63,7 +63,7 @@ def test_killed_in_the_middle(storage, compression, flush, tmp_path, capsys):
     assert main(['info', str(path)]) == 0
     shown = capsys.readouterr().out
     assert 'state     cut: it was not closed' in shown and str(len(array)) in shown
-    # a bag is not replaced without being asked, not even a cut one
+    # Even a truncated bag is replaced only on request.
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run'), '--bag',
                  str(path)]) == 2
     assert 'exists; expected a new path' in capsys.readouterr().err
@@ -91,7 +91,7 @@ except OSError as error:
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_no_room_is_left(storage, compression, tmp_path):
-    """The error says how many messages are kept; exactly these are read, in a bag that is cut."""
+    """The error states how many messages are kept; exactly these are read from a truncated bag."""
     path = tmp_path / 'bag'
     result = subprocess.run([sys.executable, '-c', FULL, path, storage, compression],
                             capture_output=True, text=True)
@@ -106,13 +106,13 @@ def test_no_room_is_left(storage, compression, tmp_path):
 
 
 def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
-    """Exit code 2, a sentence, and a bag that is not closed but can be read."""
+    """Exit code 2, one message, and a bag that is not closed but can be read."""
     writev, left = os.writev, [5_000_000]
 
     def full(descriptor, parts):
         left[0] -= sum(part.nbytes for part in parts)
         if left[0] < 0:
-            # the kernel takes what fits, and then no more
+            # The kernel writes what fits, and then nothing more.
             os.write(descriptor, bytes(parts[0])[:20])
             raise OSError(28, 'No space left on device')
         return writev(descriptor, parts)
@@ -130,7 +130,7 @@ def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
 
 
 def test_closing_on_a_full_disk_keeps_the_messages(tmp_path, monkeypatch):
-    """Not even the summary fits: what is there is a cut file, and not a broken one."""
+    """If not even the summary fits, the file is truncated, not broken."""
     bag = BagWriter(tmp_path / 'bag')
     bag.add_topic('imu', topics.IMU)
     bag.write('imu', 5, topics.IMU_RAW.writer().pack(5, (0.0,) * 3, (0.0,) * 3))
@@ -148,7 +148,7 @@ def test_closing_on_a_full_disk_keeps_the_messages(tmp_path, monkeypatch):
 
 
 def test_a_bag_in_writing_can_be_read(tmp_path):
-    """What was flushed, in both storages, while the writer goes on."""
+    """Flushed data can be read in both storages while the writer continues."""
     for storage in ('mcap', 'sqlite3'):
         with BagWriter(tmp_path / storage, storage) as bag:
             bag.add_topic('imu', topics.IMU)
@@ -162,7 +162,7 @@ def test_a_bag_in_writing_can_be_read(tmp_path):
 
 
 def test_an_error_in_the_middle_leaves_a_cut_bag(tmp_path):
-    """What a recorder cannot finish is kept; what is discarded is gone."""
+    """A bag that a recorder cannot finish is kept; a discarded one is deleted."""
     with pytest.raises(RuntimeError), BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu', topics.IMU)
         bag.write('imu', 1, topics.IMU_RAW.writer().pack(1, (0.0,) * 3, (0.0,) * 3))

@@ -1,4 +1,4 @@
-"""Bags that are cut or corrupt: what is whole is read, the rest is one sentence."""
+"""Truncated or corrupt bags: complete parts are read, the rest gives one message."""
 
 import sqlite3
 
@@ -15,7 +15,7 @@ STAMPS = np.arange(N) * 10**7
 
 @pytest.mark.parametrize('compression', ['none', 'lz4', 'zstd'])
 def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
-    """Wherever it is cut: whole chunks, in order, and a note that says so."""
+    """For any cut: complete chunks, in order, and a note."""
     file = write(tmp_path / 'bag', 'mcap', compression) / 'bag_0.mcap'
     data, last = file.read_bytes(), -1
     for size in [*range(0, len(data), max(1, len(data) // 97)), len(data) - 1]:
@@ -40,7 +40,7 @@ def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
 
 
 def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
-    """As a crash of the machine may leave it: the length is there, the data are not."""
+    """After a crash of the machine the length may be right but not the data."""
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data, position, chunks = path.read_bytes(), len(form.MAGIC), []
     while data[position] != form.DATA_END:
@@ -56,7 +56,9 @@ def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
 
 
 def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
-    """Its files are found in the order of their numbers, and info says that it was not closed."""
+    """
+    Its files are found in the order of their numbers, and info reports that it was not closed.
+    """
     write(tmp_path / 'bag', split_bytes=500_000)
     (tmp_path / 'bag' / 'metadata.yaml').unlink()
     with open_bag(tmp_path / 'bag') as bag:
@@ -67,7 +69,7 @@ def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
 
 
 def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
-    """Nobody can tell which is meant."""
+    """It is ambiguous and refused."""
     for storage in ('mcap', 'sqlite3'):
         write(tmp_path / storage, storage)
     (tmp_path / 'sqlite3' / 'sqlite3_0.db3').rename(tmp_path / 'mcap' / 'x.db3')
@@ -110,7 +112,7 @@ def _first(data, opcode):
 
 
 def test_a_corrupt_database_is_found(tmp_path, capsys):
-    """A page of noise in the middle, and a cut file."""
+    """A page of noise in the middle, and a truncated file."""
     path = write(tmp_path / 'bag', 'sqlite3') / 'bag_0.db3'
     data = path.read_bytes()
     path.write_bytes(data[:len(data) // 2] + b'\xaa' * 65536 + data[len(data) // 2 + 65536:])
@@ -120,7 +122,7 @@ def test_a_corrupt_database_is_found(tmp_path, capsys):
 
 
 def test_values_of_the_wrong_kind_in_a_database(tmp_path, capsys):
-    """Texts for bytes, nothing for times, names that are numbers, messages of no topic."""
+    """Strings for bytes, NULL for times, names that are numbers, messages without a topic."""
     for k, (statement, sentence) in enumerate((
             ("UPDATE messages SET data = 'some text' WHERE id = 5", 'is no time with bytes'),
             ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'is no time with bytes'),
@@ -144,7 +146,7 @@ def _change(path, statement):
 
 
 def test_a_database_that_never_ends(tmp_path, capsys):
-    """A view that counts for ever in the place of the messages is given up."""
+    """A view that counts endlessly in place of the messages is refused."""
     path = next(write(tmp_path / 'bag', 'sqlite3').glob('*.db3'))
     database = sqlite3.connect(path)
     database.execute('DROP TABLE messages')

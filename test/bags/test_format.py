@@ -23,7 +23,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
-    """Twice the same gives equal files; another storage or chunking the same payload."""
+    """Writing twice gives equal files; another storage or chunk size gives the same payload."""
     for folder in ('one', 'two'):
         write_everything(tmp_path / folder / 'bag', storage, compression)
         (tmp_path / folder / 'bag').touch()
@@ -38,7 +38,9 @@ def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_splits_by_size_and_by_time(storage, tmp_path):
-    """Each file holds what its line in metadata.yaml says; together they hold everything."""
+    """
+    Each file contains what its line in metadata.yaml states; together they contain everything.
+    """
     expected = write_everything(tmp_path / 'size', storage, 'none', split_bytes=3 * CHUNK_BYTES)
     write_everything(tmp_path / 'time', storage, 'none', split_ns=20 * 10**9)
     for name in ('size', 'time'):
@@ -81,7 +83,7 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
                          '      duration:\n        nanoseconds: 0\n      message_count: 1\n  '
                          'custom_data: ~\n  ros_distro: jazzy\n')
     topic = yaml.safe_load(text)['rosbag2_bagfile_information']['topics_with_message_count'][0]
-    # published in the definition of the type's description (REP-2016)
+    # Published in the definition of the type description (REP-2016).
     assert topic['topic_metadata']['type_description_hash'] == (
         'RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b')
     profile, = topic['topic_metadata']['offered_qos_profiles']
@@ -91,7 +93,7 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
 
 @pytest.mark.parametrize('type_name', [*TYPES, *(t for t, _ in strings().values())])
 def test_the_hash_of_a_type_is_that_of_ros(type_name):
-    """As the type descriptions that ROS installs say."""
+    """The hash equals that in the type descriptions installed by ROS."""
     package, kind, name = type_name.split('/')
     prefixes = [*filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(':')), sys.prefix]
     paths = [Path(p) / 'share' / package / kind / f'{name}.json' for p in prefixes]
@@ -104,7 +106,7 @@ def test_the_hash_of_a_type_is_that_of_ros(type_name):
 
 
 def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
-    """Schema version 4, one file, no log left beside it."""
+    """Schema version 4, one file, no log file beside it."""
     with BagWriter(tmp_path / 'bag', 'sqlite3') as bag:
         bag.add_topic('/t', topics.STRING)
         bag.write('/t', 1, bytes(STORE.serialize_cdr(STORE.types[topics.STRING]('x'),
@@ -124,7 +126,7 @@ def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_messages_out_of_order_come_in_order(storage, tmp_path):
-    """Log times go back within and across chunks and files; equal ones keep their order."""
+    """Log times may decrease within and across chunks and files; equal ones keep their order."""
     rng = np.random.default_rng(3)
     log_ns = rng.integers(0, 10**10, 4000) // 10**6 * 10**6
     writer = topics.IMU_RAW.writer()
@@ -146,7 +148,7 @@ def test_messages_out_of_order_come_in_order(storage, tmp_path):
 
 
 def test_blocks_in_any_order_become_one_order(tmp_path):
-    """Ties stand as the blocks are given, and unsorted blocks are sorted."""
+    """Equal times keep the order of the blocks, and unsorted blocks are sorted."""
     writer = topics.ERROR_DRIFT.writer()
     a, b = np.array([30, 10, 20, 20]), np.array([20, 5])
     with BagWriter(tmp_path / 'bag') as bag:
@@ -162,7 +164,7 @@ def test_blocks_in_any_order_become_one_order(tmp_path):
 
 
 def test_frames_of_any_length_nan_and_equal_stamps(tmp_path):
-    """Messages of one topic need not be equally long, nor their numbers finite."""
+    """Messages of one topic may differ in length, and their numbers need not be finite."""
     frames = ['', 'm', 'map', 'a_longer_frame', 'm', '']
     values = np.array([np.nan, np.inf, -np.inf, -0.0, 5e-324, 1.0])
     with BagWriter(tmp_path / 'bag') as bag:
@@ -180,7 +182,7 @@ def test_frames_of_any_length_nan_and_equal_stamps(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_empty_bags_and_topics(storage, tmp_path):
-    """No message, or no topic, is a bag all the same, for rosbags too."""
+    """A bag without messages or topics is valid, for rosbags too."""
     with BagWriter(tmp_path / 'none', storage):
         pass
     with BagWriter(tmp_path / 'bag', storage) as bag:
@@ -197,7 +199,9 @@ def test_empty_bags_and_topics(storage, tmp_path):
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 @pytest.mark.parametrize('names', [('a', 'b'), ('a', 'a')])
 def test_stamps_of_two_clocks(storage, names, tmp_path):
-    """In turns, on one topic or two: no chunk a message, and files as long as each clock says."""
+    """
+    Alternating stamps of two clocks do not give a chunk for each message; files follow each clock.
+    """
     with BagWriter(tmp_path / 'bag', storage, split_ns=2 * 10**9) as bag:
         for name in dict.fromkeys(names):
             bag.add_topic(name, topics.IMU)
@@ -209,7 +213,7 @@ def test_stamps_of_two_clocks(storage, names, tmp_path):
     with open_bag(tmp_path / 'bag') as bag:
         assert sum(span.count for span in bag.spans().values()) == 4000
         files = bag.files
-    # ten seconds by either clock
+    # Ten seconds by either clock.
     assert len(files) == 5
     if storage == 'mcap':
         assert sum(path.stat().st_size for path in files) < 1.1 * 4000 * (324 + 31) + 5 * 6000

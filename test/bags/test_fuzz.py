@@ -1,4 +1,4 @@
-"""Whatever the bytes of a bag: valid messages or one sentence, soon and in little memory."""
+"""For any bytes a bag gives valid messages or one message, quickly and in little memory."""
 
 import time
 import tracemalloc
@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 KINDS = [('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none')]
-# without checksums, so that what is changed inside a chunk is not found by them
+# Without checksums, which would detect changes inside a chunk.
 UNCHECKED = [('mcap', 'indexed'), ('mcap', 'scanned'), ('mcap', 'loose')]
 SUFFIX = {'mcap': '.mcap', 'sqlite3': '.db3'}
 N = 40
-# CPU time that only a reader that goes round in circles takes: a sound one needs milliseconds
+# CPU time that only an endless loop takes: a correct reader needs milliseconds.
 GUARD_S = 60.0
-# a reader of the file below needs some 300 kB; its Python objects more than its data
+# A reader of the file below needs some 300 kB, more for Python objects than for data.
 BYTES = 20_000_000
 
 flips = strategies.lists(strategies.tuples(strategies.floats(0, 1, exclude_max=True),
@@ -29,7 +29,7 @@ cuts = strategies.one_of(strategies.none(), strategies.floats(0, 1))
 
 @pytest.fixture(scope='module')
 def files(tmp_path_factory):
-    """Return {kind: the bytes of a small bag of it}, and where to put others."""
+    """Return {kind: bytes of a small bag}, and a folder for others."""
     folder = tmp_path_factory.mktemp('fuzz')
     found = {}
     for kind in KINDS:
@@ -72,7 +72,7 @@ def unchecked(path, kind):
 
 
 def read_all(path):
-    """Read everything in every way; return how many messages there were."""
+    """Read everything in every way; return the number of messages."""
     with open_bag(path) as bag:
         count = sum(span.count for span in bag.spans().values())
         messages = list(bag.messages())
@@ -88,7 +88,7 @@ def read_all(path):
 
 
 def sound_or_refused(path, data):
-    """Read a file of these bytes, and hold time, memory and the kind of the error."""
+    """Read a file of these bytes, and check time, memory and the kind of error."""
     path.write_bytes(data)
     path.with_name(path.name + '-wal').unlink(missing_ok=True)
     tracemalloc.start()
@@ -120,7 +120,7 @@ def changed(data, flips, cut):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_bytes_flipped_and_cut(kind, files):
-    """At random places."""
+    """Bytes are flipped and files truncated at random places."""
     folder, found = files
     path = folder / f'flipped{SUFFIX[kind[0]]}'
 
@@ -134,14 +134,14 @@ def test_bytes_flipped_and_cut(kind, files):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_every_byte_outside_of_the_data(kind, files):
-    """Where the format is: records of MCAP, headers and first cells of SQLite pages."""
+    """Records of MCAP, headers and first cells of SQLite pages."""
     folder, found = files
     data, path = found[kind], folder / f'each{SUFFIX[kind[0]]}'
     if kind[0] == 'mcap':
         chunk = first_chunk(data) if kind[1] != 'loose' else 0
         places = [*range(200), *range(chunk, chunk + 250), *range(len(data) - 700, len(data))]
         if kind[1] in ('indexed', 'scanned'):
-            # the heads of the messages in the first chunk
+            # The headers of the messages in the first chunk.
             heads = [k for k in range(chunk, chunk + 9000) if data[k:k + 1] == b'\x05'
                      and data[k + 3:k + 9] == bytes(6)]
             places += [k + j for k in heads[:8] for j in range(31)]
@@ -157,7 +157,7 @@ def test_every_byte_outside_of_the_data(kind, files):
 @given(strategies.binary(max_size=400), strategies.sampled_from(['.mcap', '.db3']),
        strategies.booleans())
 def test_noise(tmp_path_factory, data, suffix, behind_magic):
-    """Random bytes, with the right beginning or without."""
+    """Random bytes, with the right magic number or without."""
     magic = {'.mcap': b'\x89MCAP0\r\n\x01\x08' + bytes(7) + bytes(8),
              '.db3': b'SQLite format 3\x00\x10\x00\x01\x01\x00\x40\x20\x20'}[suffix]
     path = tmp_path_factory.getbasetemp() / f'noise{suffix}'
@@ -168,7 +168,7 @@ def test_noise(tmp_path_factory, data, suffix, behind_magic):
 @given(strategies.sampled_from(sorted(LAYOUTS)), strategies.lists(strategies.tuples(
     strategies.text(max_size=9), flips, cuts), min_size=1, max_size=8))
 def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages):
-    """Each message, sound or not, is read as messages.cdr.Reader reads it, or refused as there."""
+    """Each message is read, or refused, as messages.cdr.Reader does."""
     layout, data = LAYOUTS[type_name], []
     for text, changes, cut in messages:
         text = text.replace('\x00', '')
@@ -192,7 +192,7 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
     except ValueError:
         assert refused
         return
-    # stamps of too many nanoseconds, which the reader of single messages refuses, are counted
+    # Stamps with too many nanoseconds, which the reader of single messages refuses, are counted.
     assert refused == bool(odd)
     if refused:
         return
@@ -204,7 +204,7 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
 
 
 def test_a_chunk_that_says_it_is_huge_takes_no_memory(files):
-    """Each size field of the first chunk at its largest."""
+    """Each size field of the first chunk is set to its maximum."""
     folder, found = files
     for kind in KINDS[:3]:
         data = found[kind]

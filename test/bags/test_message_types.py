@@ -1,4 +1,4 @@
-"""What replaces rosbags at run time, against rosbags: definitions, hashes and transforms."""
+"""The replacement of rosbags at run time equals rosbags: definitions, hashes and transforms."""
 
 import subprocess
 import sys
@@ -13,7 +13,7 @@ typesys = pytest.importorskip('rosbags.typesys')
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
 TF = 'tf2_msgs/msg/TFMessage'
 TOOLS = ROOT / 'tools'
-# A frame of every length modulo eight occurs, so that every padding does.
+# Frame names of every length modulo eight occur, and so every padding.
 FRAMES = st.text(st.characters(exclude_characters='\0', exclude_categories=['Cs']), max_size=10)
 NUMBERS = st.floats(allow_nan=False, width=64)
 TRANSFORMS = st.lists(st.tuples(FRAMES, FRAMES, st.tuples(*[NUMBERS] * 4)), max_size=4)
@@ -27,7 +27,7 @@ def test_the_table_is_what_the_script_writes(monkeypatch):
 
 
 def test_every_type_has_the_definition_and_hash_of_rosbags():
-    """The text of a type is followed by those of its parts in the order of rosbags."""
+    """The text of a type is followed by those of its fields in the order of rosbags."""
     assert len(STORE.types) > 100
     for name in STORE.types:
         definition, _ = STORE.generate_msgdef(name, ros_version=2)
@@ -41,7 +41,7 @@ def test_an_unknown_type_is_one_sentence():
 
 
 def test_definitions_need_no_library():
-    """Nothing but the standard library is imported for them."""
+    """Only the standard library is imported for them."""
     code = ('import sys; before = set(sys.modules); from ins_sim.bags import definitions; '
             'definitions.message_definition("sensor_msgs/msg/Imu"); '
             'print(*{n.partition(".")[0] for n in set(sys.modules) - before})')
@@ -74,7 +74,7 @@ def test_transforms_are_those_that_rosbags_packed(transforms):
 
 @given(TRANSFORMS, st.data())
 def test_a_cut_message_is_refused(transforms, draw):
-    """Wherever it is cut, the error is a ValueError."""
+    """For any cut the error is a ValueError."""
     whole = packed(transforms)
     stop = draw.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(ValueError):

@@ -1,4 +1,4 @@
-"""Bags of offline runs in the hands of mcap, evo, foxglove-sdk and three linters of PyPI."""
+"""Bags of offline runs read by mcap, evo, foxglove-sdk and three linters of PyPI."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.io import simulated
@@ -7,7 +7,7 @@ import pytest
 from support.bags import bag_tools
 from support.aided_runs import flown, settings
 
-# the shortest that the linters judge for drift is 5 s
+# The linters judge drift from 5 s on.
 FLIGHT = ('duration_s:=12.0', 'window.cycles:=50', 'frames.prefix:=uav1', 'tf.source:=aided',
           'imu_data:=true')
 
@@ -25,14 +25,14 @@ def bag(tmp_path_factory):
 
 
 def test_mcap_reads_all(bag):
-    """As many messages of each topic as our reader finds."""
+    """mcap reads as many messages of each topic as our reader."""
     with open_bag(bag) as ours:
         expected = {name: span.count for name, span in ours.spans().items()}
     assert bag_tools.mcap_counts(bag) == expected and len(expected) > 20
 
 
 def test_evo_reads_the_trajectories(bag):
-    """The rms of the position error that it finds is that of our own numbers."""
+    """The rms position error of evo equals that of our own numbers."""
     names = [f'/{name}/odometry' for name in ('truth', 'ins', 'aided')]
     truth, *others = bag_tools.evo_trajectories(bag, names).values()
     with open_bag(bag) as ours:
@@ -42,12 +42,12 @@ def test_evo_reads_the_trajectories(bag):
         assert trajectory.num_poses == len(at[name])
         errors = np.array([at[name][t] - at[names[0]][t] for t in at[name]])
         rms = np.sqrt((errors ** 2).sum(axis=1).mean())
-        # evo pairs by stamps in float seconds and computes in the same doubles
+        # evo pairs by stamps in float seconds and computes in the same doubles.
         assert bag_tools.evo_position_rms(truth, trajectory) == pytest.approx(rms, rel=1e-9)
 
 
 def test_foxglove_serves_every_topic(bag):
-    """A client gets a message of each, bytes and log time unchanged."""
+    """A client receives a message of each topic, with unchanged bytes and log time."""
     with open_bag(bag) as ours:
         expected = {name for name, span in ours.spans().items() if span.count}
     assert bag_tools.served_by_foxglove(bag) == expected

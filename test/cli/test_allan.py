@@ -1,4 +1,4 @@
-"""The command allan: from the settings, from a run and from a bag; nothing silently wrong."""
+"""The command allan, from settings, a run and a bag; nothing is silently wrong."""
 
 import json
 
@@ -18,7 +18,7 @@ SIGMA = np.array([0.01, 0.02, 0.03])
 
 
 def rows(folder):
-    """Return {(triad, symbol): row} of a finished folder, with its pictures and its report."""
+    """Return {(triad, symbol): row} of a finished folder; check its pictures and its report."""
     assert 'Allan deviation of the gyro' in (folder / 'report.html').read_text(encoding='utf-8')
     for triad in ('gyro', 'accelerometer'):
         assert (folder / f'{triad}.png').read_bytes().startswith(b'\x89PNG')
@@ -30,9 +30,10 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
     """
     Records of three hours of the FOG at rest: N within 5 %, B within 20 %, K within 30 %.
 
-    From seed to seed B scatters by 13 % and K by 20 %, and one of them may hide the other: the
-    root mean square of three records is held to the bounds.  Pulses are made five times as large
-    as in the preset, so that every record shows them.
+    From seed to seed B scatters by 13 % and K by 20 %, and one may hide the other: the root mean
+    square of three records is compared with the bounds. Pulses are five times those of the preset,
+    so
+    that every record shows them.
     """
     found = []
     for seed in (1, 2, 3):
@@ -56,7 +57,7 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
 
 
 def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
-    """The record of the folder, the settings beside it, and a word about motion."""
+    """The record of the folder, the settings beside it, and a note about motion."""
     run, out = tmp_path / 'run', tmp_path / 'out'
     arguments = ['simulate', *FOG, '-p', 'duration_s:=300.0', '--no-twin', '-o', str(run)]
     assert main([*arguments, '-p', 'motion.kind:=static']) == 0
@@ -65,7 +66,7 @@ def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
     assert 'gyro: run, 10 Hz, 300.1 s' in shown and 'not static' not in shown
     n = rows(out)['gyro', 'N']
     assert n['settings'] == pytest.approx([0.012] * 3)
-    # 3000 samples and three axes: N is known to about 2 %
+    # 3000 samples and three axes give N to about 2 %.
     assert n['all'] == pytest.approx(0.012, rel=0.08)
     assert main([*arguments, '-p', 'motion.kind:=rocking', '--force']) == 0
     assert main(['allan', str(run), '-o', str(out), '--force']) == 0
@@ -85,20 +86,20 @@ def write_bag(path, t_ns, *names):
             connection = bag.add_connection(name, topics.IMU, typestore=store)
             for t in t_ns.tolist():
                 values = rng.normal(size=3)
-                # received late and unevenly: the stamp of the header counts
+                # Messages are received late and unevenly: the stamp of the header counts.
                 bag.write(connection, t + int(rng.integers(9_000_000)),
                           pack(t, SIGMA * values, 10.0 * SIGMA * rng.normal(size=3)))
 
 
 def test_a_bag_of_imu_messages(tmp_path, capsys):
-    """White noise of known size by axis comes back; its topic is asked for where there are two."""
+    """White noise of known size by axis is found; with two topics the topic must be given."""
     t_ns = 1_700_000_000_000_000_000 + 10_000_000 * np.arange(4000)
     write_bag(tmp_path / 'one', t_ns, '/imu/data')
     assert main(['allan', str(tmp_path / 'one'), '-o', str(tmp_path / 'out')]) == 0
     assert 'settings' not in capsys.readouterr().out
     found = rows(tmp_path / 'out')
     for k, axis in enumerate('xyz'):
-        # N = sigma sqrt(dt); 4000 samples give it to 1.5 %
+        # N = sigma sqrt(dt); 4000 samples give it to 1.5 %.
         n = SIGMA[k] * 0.1 * 57.29578 * 60.0
         assert found['gyro', 'N'][axis] == pytest.approx(n, rel=0.06)
         assert found['accelerometer', 'N'][axis] == pytest.approx(SIGMA[k] * 60.0, rel=0.06)
@@ -129,7 +130,7 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
 
 
 def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old ones intact; --force replaces what this command wrote, and only that."""
+    """Exit code 2, the old ones stay; --force replaces only what this command wrote."""
     out = tmp_path / 'out'
     arguments = ['allan', *FOG, '--duration', '60', '-o', str(out)]
     assert main(arguments) == 0
@@ -157,7 +158,7 @@ def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and nothing is a traceback."""
+    """Nothing is written, and there is no traceback."""
     monkeypatch.chdir(tmp_path)
     assert main(['allan', *arguments]) == 2
     error = capsys.readouterr().err
@@ -166,7 +167,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path
 
 
 def test_a_folder_that_is_no_run_is_named(tmp_path):
-    """Arrays of another make, and a file that is no archive."""
+    """Foreign arrays, and a file that is not an archive, are refused."""
     np.savez(tmp_path / storage.ARRAYS, truth_t_ns=np.arange(3))
     with pytest.raises(ValueError, match='run.npz holds no IMU record'):
         storage.read_imu(tmp_path)
@@ -176,7 +177,7 @@ def test_a_folder_that_is_no_run_is_named(tmp_path):
 
 
 def test_a_perfect_axis_is_left_out():
-    """Noise on one axis of three: its coefficients stand alone; of a perfect triad nothing."""
+    """Noise on one of three axes gives its coefficients; a perfect triad gives nothing."""
     settings = parameter_files.read([], [
         'rate_hz:=10.0', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.0, 0.1, 0.0]'])
     imu = ImuSamples.concatenate(resting_record(settings, 200.0))
@@ -193,7 +194,9 @@ def test_a_perfect_axis_is_left_out():
 
 
 def test_expected_coefficients_of_the_settings():
-    """Pulses over sqrt(12); an endless in-run bias of 0.3 deg/h adds to a walk of 0.4."""
+    """
+    Pulses over sqrt(12); an in-run bias of 0.3 deg/h with infinite time adds to a walk of 0.4.
+    """
     errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, gauss_markov_sigma_deg_h=(0.3,) * 3,
                         gauss_markov_time_s=(float('inf'), float('inf'), 100.0),
                         rate_random_walk_deg_h_sqrt_h=(0.4,) * 3)

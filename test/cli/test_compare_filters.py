@@ -1,4 +1,4 @@
-"""The command compare-filters: tables, figures, report, and its bad input."""
+"""The command compare-filters: tables, figures, report, and invalid input."""
 
 import json
 import re
@@ -29,11 +29,11 @@ def test_the_command_shows_table_and_figure(tmp_path, capsys):
     assert [(r['filter'], r['cycles']) for r in rows] == [
         *((name, 100) for name in FILTERS), ('eskf', 1000), ('eskf', 10)]
     assert all(r['flights'] == 2 and 0.0 < r['end_m'] < 1000.0 for r in rows)
-    # whatever the width of the terminal
+    # For any width of the terminal.
     assert 'refuses a window in which the body turns' in ' '.join(text.split())
     for figure in ('comparison.png', 'consistency.png', 'flights.png'):
         assert (tmp_path / 'a' / figure).stat().st_size > 20000
-    # What nobody estimates is not judged; window_kf has no attitude.
+    # Quantities that are not estimated are not judged; window_kf has no attitude.
     blocks = {r['filter']: list(r['nees']) for r in rows}
     assert blocks == {
         'free': [], 'conventional': [], 'paper': [], 'paper_corrected': [],
@@ -48,7 +48,10 @@ def test_the_command_shows_table_and_figure(tmp_path, capsys):
 
 
 def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
-    """Finished flights are not flown again, others' are refused, and in the end none are left."""
+    """
+    Finished flights are not repeated, those of other settings are refused; all are removed at the
+    end.
+    """
     from ins_sim.studies import filters
     fly, flown = filters.fly_filters, []
 
@@ -87,7 +90,7 @@ def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
     (['-p', 'filtre:=eskf'], "unknown parameter 'filtre'; the nearest known one is 'filter'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, the sentence, and no folder."""
+    """Exit code 2, one message, and no folder."""
     assert main(['compare-filters', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1

@@ -1,4 +1,4 @@
-"""The command convert: round trips lose nothing but rounding, and bad input is one sentence."""
+"""The command convert: round trips lose only rounding, and invalid input gives one message."""
 
 import gzip
 import json
@@ -34,13 +34,16 @@ def convert(*words):
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     """
-    What stands in the CSV is what is in the bag: positions to the bit, angles to rounding.
+    The bag contains the values of the CSV file: positions to the bit, angles to rounding.
 
-    A quaternion makes angles, and angles the quaternion, within 16 roundings of 2^-53.  The second
-    bag is of the spline through the first: its positions are those of the samples to one rounding
-    of 180 deg (2.9e-14) and of 1e4 m.  At its samples a cubic spline errs by h^4 / 180 of the
+    A quaternion is computed from angles, and angles from it, within 16 roundings of 2^-53. The
+    second
+    bag is made from the spline through the first: its positions are those of the samples to one
+    rounding of 180 deg (2.9e-14) and of 1e4 m. At its samples a cubic spline errs by h^4 / 180 of
+    the
     fifth derivative in the rate, of 25, 6, 5 deg at 1/7, 1/5, 1/6 Hz, twice for the products of
-    the angles; the force has six standard deviations of two roundings of the longitude.
+    the
+    angles; the force has six standard deviations of two roundings of the longitude.
     """
     motion = record(tmp_path / 'bag', FLIGHT, 20.0)
     flight, second, last = tmp_path / name, tmp_path / 'second', tmp_path / f'last_{name}'
@@ -53,7 +56,7 @@ def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     assert np.array_equal(rows.t_ns, fix['stamp_ns'])
     assert np.array_equal(rows.lat_deg, fix['latitude'])
     assert np.array_equal(rows.height_m, fix['altitude'])
-    # over the date line; the file wraps, and reading unwraps
+    # Over the date line the file wraps, and reading unwraps.
     assert np.abs(rows.lon_deg - np.degrees(truth.lon)).max() < 3e-14
     poses = csv_imu.read_reference(flight)[0]
     q = poses.attitude.values
@@ -90,7 +93,7 @@ def test_a_recorded_flight_becomes_a_bag_at_a_rate(shared_data, tmp_path, capsys
     """
     A real flight at its own 50 Hz: every row comes back, angles and positions to rounding.
 
-    Then flown from the bag and from the file: the same poses to rounding.
+    Flown from the bag and from the file, the poses agree to rounding.
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     bag, back = tmp_path / 'bag', tmp_path / 'back.csv'
@@ -109,7 +112,7 @@ def test_a_recorded_flight_becomes_a_bag_at_a_rate(shared_data, tmp_path, capsys
 
 
 def imu_of(n=5000):
-    """Return a RecordedImu at an epoch, with a value that no float prints shortly."""
+    """Return a RecordedImu at an epoch, with a value that has no short decimal form."""
     rng = np.random.default_rng(1)
     return RecordedImu(1_432_235_498_000_000_001 + np.arange(n) * 10_000_019,
                        rng.standard_normal((n, 3)) / 3.0, 9.8 + rng.standard_normal((n, 3)) * 1e-9,
@@ -157,7 +160,7 @@ def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
 
 
 def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
-    """Motion time zero is where it was: start_s counts from the first row of either."""
+    """Motion time zero stays: start_s counts from the first row of either."""
     record(tmp_path / 'bag', FLIGHT, 20.0)
     assert convert(tmp_path / 'bag', tmp_path / 'flight.csv') == 0
     capsys.readouterr()
@@ -169,12 +172,12 @@ def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
     y = RecordedMotion(read_poses(tmp_path / 'flight.csv'),
                        Recording(path=str(tmp_path / 'flight.csv')), Earth()).at(t_ns)
     assert np.abs(x.lat - y.lat).max() < 1e-15 and np.abs(x.v_n - y.v_n).max() < 1e-6
-    # both cubics err by h^4 / 384
+    # Both cubics err by h^4 / 384.
     assert np.abs(x.omega_ib_b - y.omega_ib_b).max() < 1e-5
 
 
 def test_nothing_is_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old one intact; --force replaces a file by a file and a bag by a bag."""
+    """Exit code 2, the old one stays; --force replaces a file by a file and a bag by a bag."""
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
     assert convert(tmp_path / 'imu.csv', tmp_path / 'bag') == 0
     before = (tmp_path / 'bag' / 'metadata.yaml').read_bytes()
@@ -207,7 +210,7 @@ def empty_bag(path, name='odom', type_name=topics.VECTOR):
 
 
 def early(path):
-    """Write a flight that begins before zero."""
+    """Write a flight that begins before time zero."""
     t = np.arange(200) * 0.1 - 5.0
     path.write_text('\n'.join([','.join(COLUMNS), *(
         f'{x:.1f},55,37,100,0,0,0,,,' for x in t)]) + '\n')
@@ -251,7 +254,7 @@ def early(path):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(make, words, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and nothing is a traceback."""
+    """Nothing is written, and there is no traceback."""
     monkeypatch.chdir(tmp_path)
     if make is not None:
         make(tmp_path)
@@ -262,7 +265,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(make, words, sentence, tmp_pa
 
 
 def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
-    """The file is there whole or not at all."""
+    """The file is written completely or not at all."""
     path = tmp_path / 'imu.csv.gz'
     csv_writer.write_imu(path, imu_of(10))
     before = path.read_bytes()
@@ -273,7 +276,7 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
 
 
 def test_a_part_of_another_process_is_left_alone(tmp_path):
-    """Two that write one file at once: each has a part of its own, and the last one stands."""
+    """Two processes that write one file have temporary files of their own; the last one wins."""
     other = tmp_path / '.imu.csv.part'
     other.write_text('of another process')
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
@@ -282,7 +285,7 @@ def test_a_part_of_another_process_is_left_alone(tmp_path):
 
 @pytest.mark.parametrize('content', ['flight', 'imu'])
 def test_stamps_of_an_unset_clock_are_told(content, tmp_path, capsys):
-    """With the remedy, after which nothing is said; stamps of a clock are left as they are."""
+    """A note states the remedy; with it there is no note. Valid stamps are unchanged."""
     rows = [f'{0.1 * k:.1f},55.0,37.0,100.0,0,0,90,0,10.0,0' for k in range(200)]
     head = ','.join(COLUMNS)
     if content == 'imu':

@@ -56,12 +56,12 @@ def test_a_flight_of_others_by_a_map_of_its_columns(tmp_path):
      '5 whose specific force is exactly zero'),
     ({}, '')])
 def test_odd_samples_are_kept_and_said(spoil, says, tmp_path, capsys):
-    """A conversion leaves nothing out, and does not pass over it in silence, either way."""
+    """A conversion leaves nothing out, and reports odd samples, in both directions."""
     rows = [spoil.get(k, f'0.{k:02d},0,0,0,0,0,9.8') for k in range(30)]
     (tmp_path / 'imu.csv').write_text('\n'.join(['t_s,' + ','.join(csv_imu.IMU), *rows, '']))
     for words in (['imu.csv', 'bag'], ['bag', 'back.csv']):
         if words[0] == 'bag' and 'goes back' in says:
-            # its time of logging is its stamp, by which a bag is in order
+            # The log time is the stamp, by which a bag is sorted.
             says = ''
         assert main(['convert', *(str(tmp_path / word) for word in words)]) == 0
         said = capsys.readouterr().out

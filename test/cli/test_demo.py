@@ -1,4 +1,4 @@
-"""The demo: both parts over DDS, and what an interruption leaves behind."""
+"""The demo: both parts over DDS, and the state after an interruption."""
 
 import os
 import signal
@@ -23,14 +23,14 @@ def start(folder, duration_s, log):
 
 
 def members(group):
-    """Return the processes of a process group that are left."""
+    """Return the remaining processes of a process group."""
     found = subprocess.run(['ps', '-eo', 'pgid=,pid='], capture_output=True, text=True,
                            check=True).stdout.split()
     return [pid for pgid, pid in zip(found[::2], found[1::2]) if int(pgid) == group]
 
 
 def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
-    """A whole run; then SIGTERM and SIGINT in the middle: exit 130, old results, no process."""
+    """A complete run; then SIGTERM and SIGINT in the middle: exit 130, old results, no process."""
     folder, log = tmp_path / 'demo', tmp_path / 'log'
     with open(log, 'w') as stream:
         assert start(folder, 10.0, stream).wait(GUARD_S) == 0, log.read_text()
@@ -55,7 +55,7 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
 
 
 def test_a_killed_demo_leaves_no_node(ros_domain, tmp_path):
-    """SIGKILL, which nobody can catch: the nodes end with the demo that started them."""
+    """After SIGKILL, which cannot be caught, the nodes end with the demo that started them."""
     with open(tmp_path / 'log', 'w') as stream:
         demo = start(tmp_path / 'demo', 3000.0, stream)
     end = time.monotonic() + GUARD_S

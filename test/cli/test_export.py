@@ -1,4 +1,4 @@
-"""The verb export: the imu.yaml of Kalibr, its numbers by hand."""
+"""The verb export: the imu.yaml of Kalibr, with numbers computed by hand."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 DEG = math.pi / 180.0
-# of the Allan deviation of flicker noise over its coefficient, IEEE Std 952
+# Allan deviation of flicker noise divided by its coefficient, IEEE Std 952.
 FLOOR = math.sqrt(2.0 * math.log(2.0) / math.pi)
 KEYS = {'accelerometer_noise_density', 'accelerometer_random_walk', 'gyroscope_noise_density',
         'gyroscope_random_walk', 'rostopic', 'update_rate'}
@@ -22,7 +22,7 @@ def test_a_preset_by_hand(tmp_path, capsys):
     """
     The MEMS IMU: 0.04 deg/sqrt(h), 0.03 m/s/sqrt(h); walks of 2 deg/h/sqrt(h), 200 ug/sqrt(h).
 
-    Its flicker noise, 0.38 deg/h and 38 ug, is as much again over 60 s.  Six digits are written.
+    Its flicker noise, 0.38 deg/h and 38 ug, adds as much over 60 s. Six digits are written.
     """
     path = tmp_path / 'imu.yaml'
     assert export(path, '--params-file', 'imu_tactical_mems', '-p', 'rate_hz:=200.0') == 0
@@ -43,7 +43,7 @@ def test_a_preset_by_hand(tmp_path, capsys):
 
 
 def test_a_walk_alone_and_a_gauss_markov_process(tmp_path):
-    """K as it is given; sigma sqrt(2/T) of a Gauss-Markov process, sigma/60 where T is endless."""
+    """K as given; sigma sqrt(2/T) for a Gauss-Markov process, sigma/60 for infinite T."""
     path = tmp_path / 'imu.yaml'
     words = ['-p', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.6, 0.6, 0.6]',
              '-p', 'accelerometer.errors.velocity_random_walk_m_s_sqrt_h:=[0.6, 0.6, 0.6]',
@@ -56,13 +56,13 @@ def test_a_walk_alone_and_a_gauss_markov_process(tmp_path):
         found = yaml.safe_load(path.read_text())
         assert found['gyroscope_random_walk'] == pytest.approx(DEG / 3600.0, rel=1e-6)
         assert found['gyroscope_noise_density'] == pytest.approx(0.01 * DEG, rel=1e-6)
-        # the worst axis
+        # The worst axis.
         assert found['accelerometer_random_walk'] == pytest.approx(max(walk, walks['200.0']),
                                                                    rel=1e-6)
 
 
 def test_axes_that_differ(tmp_path, capsys):
-    """The worst counts, and that is said once."""
+    """The worst axis is used, and one message says so."""
     path = tmp_path / 'imu.yaml'
     assert export(path, '--params-file', 'imu_tactical_mems', '--topic', '/left/imu/data_raw',
                   '-p', 'imu_sensor:gyro.errors.angle_random_walk_deg_sqrt_h:=[0.1, 0.3, 0.2]'
@@ -82,7 +82,7 @@ def test_axes_that_differ(tmp_path, capsys):
     (['--params-file', 'imu_tactical_dtg'], 'gyro.model is dtg; expected ideal'),
     (['--params-file', 'absent'], "no config named 'absent'")])
 def test_refusals(words, said, tmp_path, capsys):
-    """One sentence, and no file."""
+    """One message, and no file."""
     path = tmp_path / 'imu.yaml'
     assert export(path, *words) == 2
     error = capsys.readouterr().err
@@ -91,7 +91,7 @@ def test_refusals(words, said, tmp_path, capsys):
 
 
 def test_what_is_there_is_kept(tmp_path, capsys):
-    """As by the other verbs: --force replaces a file, and never a folder."""
+    """--force replaces a file, and never a folder, as for the other verbs."""
     path = tmp_path / 'imu.yaml'
     path.write_text('mine')
     instrument = ['--params-file', 'imu_tactical_fog']

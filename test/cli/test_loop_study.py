@@ -1,4 +1,4 @@
-"""The command loop-study: tables, figures, numbers, and its bad input."""
+"""The command loop-study: tables, figures, numbers, and invalid input."""
 
 from dataclasses import replace
 import json
@@ -28,14 +28,14 @@ def study(folder, *words):
 
 
 def test_flights_and_conditions(short, tmp_path, capsys):
-    """Rows with figures of the chain, of the lateral channel alone, and what is published."""
+    """Rows with results of the chain, of the lateral channel alone, and the published ones."""
     found = study(tmp_path / 'a', '--parts', 'table', 'conditions')
     text = ' '.join(capsys.readouterr().out.split())
     assert 'Closed loop' in text and 'signals of the meter' in text
     rows = found['table']
     assert [row['case'] for row in rows] == ['sliding, N 1000, K_v 1', 'sliding, N 1000, K_v 50']
     assert all(row['published'] == {'beta_deg': 0.0} for row in rows)
-    # no window has ended yet
+    # No window has ended yet.
     assert all(row['end_m'] == pytest.approx(row['lateral']['end_m'], abs=1e-3) for row in rows)
     assert [row['condition'] for row in found['conditions']] == ['noise of the meter',
                                                                  'signals of the meter']
@@ -64,7 +64,7 @@ def test_the_map(short, tmp_path):
      "'gain_per_s'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, the sentence, and no folder."""
+    """Exit code 2, one message, and no folder."""
     assert main(['loop-study', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1

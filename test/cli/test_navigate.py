@@ -1,4 +1,4 @@
-"""The command navigate on bags: the loop closes, and what is wrong is one sentence."""
+"""The command navigate on bags: the loop closes, and faults give one message."""
 
 import json
 import math
@@ -37,7 +37,7 @@ def motion_of(*assignments):
 
 
 def truth_topics(motion, length_s, rate_hz=100.0, start_ns=0):
-    """Return the topics of a robot: IMU turned by MOUNTING, fix and velocity at 5 Hz."""
+    """Return the topics of a robot: IMU rotated by MOUNTING, fix and velocity at 5 Hz."""
     t_ns = start_ns + np.arange(round(length_s * rate_hz) + 1, dtype=np.int64) * round(
         SECOND / rate_hz)
     truth = motion.at(t_ns)
@@ -65,9 +65,9 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
     """
     Attitude from the orientation in the messages, mounting from two links of /tf_static.
 
-    Bound: the truncation of the trapezoid falls with the square of the step
-    (test_free_navigation), so that the error at 100 Hz is 4/3 of what it has more than that at
-    200 Hz; the terms of fourth order get a hundredth of it.
+    Bound: the truncation error of the trapezoidal rule falls with the square of the step, so that
+    the
+    error at 100 Hz is 4/3 of its excess over that at 200 Hz; fourth-order terms get a hundredth.
     """
     _, motion = motion_of('motion.kind:=sinusoids')
     _, recorded = truth_topics(motion, 20.0, start_ns=EPOCH)
@@ -95,7 +95,7 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
         assert arrays['states_q_nb'].shape == (2001, 4)
         assert arrays['states_t_ns'][0] == EPOCH
         assert arrays['error_0_position'].shape == (101, 3)
-    # the parameters run again
+    # The parameters can be used again.
     assert main(['navigate', str(bag), '--params-file', str(out / 'parameters.yaml'), '-o',
                  str(tmp_path / 'again')]) == 0
     with np.load(out / 'nav.npz') as a, np.load(tmp_path / 'again' / 'nav.npz') as b:
@@ -106,9 +106,9 @@ def test_a_bag_of_our_own_nodes_aligns_itself_and_navigates(tmp_path, capsys):
     """
     The topics as bag_recorder writes them: the IMU at rest for 60 s, then 60 s of navigation.
 
-    A perfect IMU: the increments have one rounding of their angles, 1e-16 rad in 0.01 s, which
-    1e-14 rad/s of the Earth's 4e-5 level ones make 2.5e-10 rad of heading at most; a tilt of
-    1e-15 and that heading let the strapdown drift by micrometres.
+    With a perfect IMU the increments have one rounding of their angles, 1e-16 rad in 0.01 s. This
+    1e-14 rad/s relative to the level Earth rate of 4e-5 is a heading error of at most 2.5e-10 rad;
+    with a tilt of 1e-15 the strapdown drifts by micrometres.
     """
     chosen, motion = motion_of('motion.kind:=static', 'motion.psi_deg:=-40.0',
                                'motion.theta_deg:=5.0', 'duration_s:=120.0', 'output:=integrated',
@@ -149,7 +149,9 @@ def test_a_bag_of_our_own_nodes_aligns_itself_and_navigates(tmp_path, capsys):
 
 
 def drive(start_s=20.0, length_s=60.0, heading_deg=70.0):
-    """Return times, velocity and position of a car: at rest, then straight on, 1 m/s^2 to 10."""
+    """
+    Return times, velocity and position of a car: at rest, then straight on, 1 m/s^2 to 10 m/s.
+    """
     t = np.arange(round(length_s * 50.0) + 1) / 50.0
     moved = np.clip(t - start_s, 0.0, 10.0)
     speed = moved + 0.0
@@ -160,7 +162,7 @@ def drive(start_s=20.0, length_s=60.0, heading_deg=70.0):
 
 
 def car(tmp_path, bias=0.002, with_fix=True, frame='imu_link'):
-    """Return a bag of the car with a MEMS gyro bias about up, level, and a fix at 5 Hz."""
+    """Return a bag of the car with an upward MEMS gyro bias, level, and a fix at 5 Hz."""
     t, v, way, pushed = drive()
     t_ns = np.round(t * 1e9).astype(np.int64)
     lat0, n = math.radians(50.0), len(t)
@@ -184,9 +186,11 @@ def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
     """
     MEMS: no gyrocompass; bias from the standstill, heading 70 deg from the course of the fix.
 
-    The heading is held to the random walk of the rate noise: 1e-3 rad/s at 50 Hz over the 27 s
-    to 20 m and the error of the bias over 20 s of mean: sqrt(27 / 50) 1e-3 + 27 1e-3 /
-    sqrt(1000), three times, 0.27 deg.
+    The heading bound is the random walk of the rate noise, 1e-3 rad/s at 50 Hz over the 27 s to 20
+    m,
+    plus the bias error after 20 s of averaging: sqrt(27 / 50) 1e-3 + 27 1e-3 / sqrt(1000), three
+    times,
+    0.27 deg.
     """
     out = tmp_path / 'out'
     assert main(['navigate', str(car(tmp_path)), '-o', str(out)]) == 0
@@ -202,7 +206,7 @@ def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
 
 
 def test_the_odometry_is_laid_on_the_start(tmp_path):
-    """A frame of unknown place and heading: the truth in it is the truth again."""
+    """In a frame of unknown origin and heading the truth agrees with the truth again."""
     _, motion = motion_of('motion.kind:=sinusoids')
     truth, recorded = truth_topics(motion, 20.0)
     generator = motion_of('motion.kind:=sinusoids')[0].motion_generator
@@ -216,7 +220,7 @@ def test_the_odometry_is_laid_on_the_start(tmp_path):
     assert main(['navigate', str(bag), '-p', 'initial.attitude:=imu', '-o', str(out)]) == 0
     errors = summary_of(out)['errors']
     end, fix = errors['/odom laid on the start'][-1], errors['/fix, /vel'][-1]
-    # the plane of the map curves away by 1e-7 m in a metre
+    # The plane of the map deviates by 1e-7 m in a metre.
     assert abs(end['horizontal_m'] - fix['horizontal_m']) < 1e-6
     assert abs(end['vertical_m'] - fix['vertical_m']) < 1e-6
     assert abs(end['speed_m_s'] - fix['speed_m_s']) < 1e-6
@@ -225,7 +229,7 @@ def test_the_odometry_is_laid_on_the_start(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_twist_with_covariance_is_the_same_velocity(storage, tmp_path, capsys):
-    """Either type of message gives the same numbers."""
+    """Both types of message give the same numbers."""
     _, motion = motion_of('motion.kind:=sinusoids')
     ends = []
     for name in (TWIST, COVARIANCE_TWIST):
@@ -247,7 +251,7 @@ IMU_ONLY = dict(t_ns=np.arange(1000) * 20_000_000, omega=np.zeros((1000, 3)),
 
 
 def test_stamps_that_were_never_set_give_way_to_the_times_of_logging(tmp_path, capsys):
-    """Said in the notes."""
+    """This is stated in the notes."""
     bag = write_bag(tmp_path / 'bag', {('/imu', IMU): resting(stamps=np.zeros(1000))})
     assert main(['navigate', str(bag), '-o', str(tmp_path / 'out'), '-p',
                  'initial.position:=given', '-p', 'initial.heading:=given', '-p',
@@ -256,7 +260,7 @@ def test_stamps_that_were_never_set_give_way_to_the_times_of_logging(tmp_path, c
 
 
 def test_a_solution_is_not_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old one intact; --force replaces a navigation only."""
+    """Exit code 2, the old one stays; --force replaces only a navigation."""
     bag = write_bag(tmp_path / 'bag', {('/imu', IMU): resting()})
     arguments = ['navigate', str(bag), '-o', str(tmp_path / 'out'), '-p',
                  'initial.position:=given', '-p', 'initial.heading:=given', '-p',

@@ -1,4 +1,4 @@
-"""The command navigate on recordings with something odd: the right value, or the way past it."""
+"""The command navigate on odd recordings: the right value, or a parameter that accepts them."""
 
 from dataclasses import replace
 import json
@@ -25,7 +25,7 @@ def at_rest(f=FORCE + NOISE[0], omega=NOISE[1], t_ns=T_NS, **changes):
 
 @pytest.fixture
 def navigated(tmp_path, capsys):
-    """Return a function that runs navigate on topics and returns exit code and what was said."""
+    """Return a function that runs navigate on topics and returns exit code and messages."""
     def run(topics, *assignments):
         path = tmp_path / 'bag'
         if not path.exists():
@@ -44,7 +44,7 @@ def notes_of(summary):
     return '; '.join(summary['notes'])
 
 
-# Fixes that are no position.
+# Fixes that are not a position.
 
 def fixes(**changes):
     """Return 20 s of fixes at 1 Hz at 55 N 37 E."""
@@ -91,14 +91,14 @@ def test_fixes_that_are_no_position_are_dropped_with_a_count_and_a_reason(case, 
     (with_status(fixes(), range(20), -2), '/fix: 20 of 20 fixes dropped: 20 of unknown status'),
     ([], '/fix has no message')])
 def test_a_topic_without_a_usable_fix_says_why(messages, sentence, navigated):
-    """It is not said that there is no NavSatFix."""
+    """The message does not claim that there is no NavSatFix."""
     said = navigated({('/imu', IMU): at_rest(), ('/fix', FIX): messages})
     assert f'the latitude is unknown, for {sentence}' in said
     assert 'no NavSatFix' not in said
 
 
 def test_fixes_at_zero_can_be_meant(navigated):
-    """accept.zero_fixes takes them."""
+    """accept.zero_fixes accepts them."""
     bag = {('/imu', IMU): at_rest(),
            ('/fix', FIX): fixes(lat=(slice(None), 0.0), lon=(slice(None), 0.0))}
     assert 'accept.zero_fixes keeps them' in navigated(bag, *HEADED)
@@ -116,12 +116,12 @@ def test_fixes_at_zero_can_be_meant(navigated):
 @pytest.mark.parametrize('start', [HEADED, ('initial.attitude:=given', 'initial.velocity:=given'),
                                    (*HEADED, 'mounting.source:=level')])
 def test_the_mean_specific_force_at_rest_is_judged(f, sentence, start, navigated):
-    """Whatever the start is, an IMU at rest measures gravity."""
+    """For any start an IMU at rest must measure gravity."""
     assert sentence in navigated({('/imu', IMU): at_rest(f + 1e-4 * NOISE[0])}, *GIVEN, *start)
 
 
 def test_a_force_in_g_or_without_gravity_can_be_navigated(navigated):
-    """units.force reads it as it is; alignment.gravity_m_s2 takes it as it is."""
+    """units.force converts it; alignment.gravity_m_s2 accepts it as it is."""
     bag = {('/imu', IMU): at_rest(-FORCE / 9.8 + 1e-4 * NOISE[0])}
     got = navigated(bag, *GIVEN, *HEADED, 'units.force:=g')
     assert 'does it measure gravity instead of specific force' in notes_of(got)
@@ -146,7 +146,7 @@ def test_a_transform_that_is_no_rotation_is_refused_by_name(q, said, navigated):
 
 
 def test_a_transform_of_another_length_is_normalised_and_said(navigated):
-    """A half turn about z of length 3; one elsewhere that is no rotation does no harm."""
+    """Half a turn about z with length 3; an invalid transform elsewhere does no harm."""
     got = navigated({('/imu', IMU): at_rest(), ('/tf_static', TF): tf_messages(T_NS[0], {
         ('base_link', 'imu_link'): (0.0, 0.0, 3.0, 0.0),
         ('base_link', 'camera'): (0.0, 0.0, 0.0, 0.0)})}, *GIVEN, *HEADED)
@@ -158,7 +158,7 @@ def test_a_transform_of_another_length_is_normalised_and_said(navigated):
 # Messages.
 
 def changed(messages, **values):
-    """Return messages, each with other values of its fields, by their number."""
+    """Return messages with some fields changed, by their number."""
     return [(t, replace(content, **{name: value(k) for name, value in values.items()}))
             for k, (t, content) in enumerate(messages)]
 
@@ -167,7 +167,7 @@ MINUS_ONE = np.array([-1.0] + [0.0] * 8)
 
 
 def test_a_covariance_of_minus_one_beside_data_can_be_passed(navigated):
-    """The sentence says that there are numbers, and how they are taken."""
+    """The message says that there are numbers, and how they are accepted."""
     bag = {('/imu', IMU): changed(at_rest(), linear_acceleration_covariance=lambda k: MINUS_ONE)}
     said = navigated(bag, *GIVEN, *HEADED)
     assert '1000 messages have no linear_acceleration; expected both; there are numbers beside ' \
@@ -177,7 +177,7 @@ def test_a_covariance_of_minus_one_beside_data_can_be_passed(navigated):
 
 
 def test_a_first_frame_that_differs_can_be_passed(navigated):
-    """The frame that most messages have is the frame of the IMU."""
+    """The frame of most messages is the frame of the IMU."""
     bag = {('/imu', IMU): at_rest()[3:] + at_rest(frame='')[:3]}
     assert "'imu_link' (997 messages), '' (3 messages); expected one IMU on a topic (accept." \
         in navigated(bag, *GIVEN, *HEADED)
@@ -186,7 +186,7 @@ def test_a_first_frame_that_differs_can_be_passed(navigated):
 
 
 def test_orientations_of_another_length_can_be_taken(navigated):
-    """A norm of 1.27 is said, and normalised where that is meant."""
+    """A norm of 1.27 is reported, and normalised on request."""
     bag = {('/imu', IMU): at_rest(q=np.tile([0.0, 0.0, 0.9, 0.9], (1000, 1)))}
     start = (*GIVEN, 'initial.attitude:=imu', 'initial.velocity:=given')
     assert '1000 orientations are no rotations, the first at 1700000000.000000000 s has the ' \
@@ -196,7 +196,7 @@ def test_orientations_of_another_length_can_be_taken(navigated):
 
 
 def test_a_reading_beyond_any_sensor_is_dropped_and_said(navigated):
-    """3.2e6 m/s^2 and 2e4 rad/s, one each."""
+    """3.2e6 m/s^2 and 2e4 rad/s, one each, are dropped and reported."""
     f, omega = FORCE.copy(), NOISE[1].copy()
     f[500, 0], omega[700, 2] = 3.2e6, -2e4
     got = navigated({('/imu', IMU): at_rest(f, omega)}, *GIVEN, *HEADED)
@@ -207,7 +207,7 @@ def test_a_reading_beyond_any_sensor_is_dropped_and_said(navigated):
 
 
 def test_readings_that_are_zero_in_turns_are_recognised(navigated):
-    """A driver that sends rate and force in turns; filled, the IMU is at rest."""
+    """A driver that sends rate and force alternately; filled, the IMU is at rest."""
     f, omega = FORCE + NOISE[0], NOISE[1].copy()
     f[1::2], omega[::2] = 0.0, 0.0
     bag = {('/imu', IMU): at_rest(f, omega)}
@@ -221,7 +221,7 @@ def test_readings_that_are_zero_in_turns_are_recognised(navigated):
 # Stamps.
 
 def test_one_stamp_in_all_messages_is_named_and_the_log_time_offered(navigated):
-    """1499 repeated stamps are not 1499 out of order."""
+    """1499 repeated stamps are not reported as 1499 out of order."""
     bag = {('/imu', IMU): at_rest(stamps=np.full(1000, 5))}
     said = navigated(bag, *GIVEN, *HEADED)
     assert '0 out of order, and 999 with the stamp of the one before, 0.000000005 s' in said
@@ -231,7 +231,7 @@ def test_one_stamp_in_all_messages_is_named_and_the_log_time_offered(navigated):
 
 
 def test_repeated_stamps_are_dropped_or_spread(navigated):
-    """Stamps of 40 ms resolution at 50 Hz."""
+    """Stamps with a resolution of 40 ms at 50 Hz."""
     bag = {('/imu', IMU): at_rest(stamps=T_NS // 40_000_000 * 40_000_000)}
     got = navigated(bag, *GIVEN, *HEADED)
     assert (got['figures']['repeated'], got['figures']['out_of_order']) == (500, 0)
@@ -241,7 +241,7 @@ def test_repeated_stamps_are_dropped_or_spread(navigated):
 
 
 def test_stamps_that_go_back_say_where_and_offer_the_log_time(navigated):
-    """Seconds that are counted late: 5 samples of every second are a second back."""
+    """Late seconds: 5 samples of every second are one second back."""
     stamps = T_NS - np.where(T_NS % 10 ** 9 < 100_000_000, 10 ** 9, 0)
     bag = {('/imu', IMU): at_rest(stamps=stamps)}
     said = navigated(bag, *GIVEN, *HEADED)
@@ -252,7 +252,7 @@ def test_stamps_that_go_back_say_where_and_offer_the_log_time(navigated):
 
 
 def test_nanoseconds_of_more_than_a_second_are_named(navigated):
-    """They are added to the seconds, as the sum of both is meant."""
+    """They are added to the seconds."""
     def late(content):
         stamp = content.header.stamp
         if stamp.sec % 2 == 0:
@@ -267,7 +267,7 @@ def test_nanoseconds_of_more_than_a_second_are_named(navigated):
 
 
 def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
-    """An alignment that takes the whole record is seen in its sentence."""
+    """An alignment that uses the whole record is mentioned in the refusal."""
     said = navigated({('/imu', IMU): resting()}, *GIVEN, 'initial.heading:=given')
     assert 'fewer than 10 samples behind the start at 19.980000000 s' in said
     assert 'Found on the way: 1000 samples of bag /imu in 19.980 s' in said
@@ -275,7 +275,7 @@ def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
 
 
 def test_a_bag_of_ros_1_is_named(tmp_path, capsys):
-    """Neither 'no bag' nor a traceback."""
+    """The message names ROS 1; no traceback."""
     (tmp_path / 'run.bag').write_bytes(b'#ROSBAG V2.0\n' + bytes(100))
     for words in (['info'], ['navigate', '-o', str(tmp_path / 'out')]):
         assert main([words[0], str(tmp_path / 'run.bag'), *words[1:]]) == 2

@@ -1,9 +1,9 @@
 """
-The command navigate on data that no one here recorded; what it prints is what such sensors give.
+The command navigate on recorded data of other people; the errors are those of such sensors.
 
-Nothing is tuned: the parameters are mounting and frames, as those who published the data state
-them, and where to begin.  There is no truth to hold the errors to, so the bounds are those of free
-inertial navigation with the biases that the record itself shows, and the rest is printed.
+Nothing is tuned: the parameters are mounting and frames as published with the data, and the start.
+There is no truth, so the bounds are those of free inertial navigation with the biases that the
+record itself shows; the rest is printed.
 """
 
 import json
@@ -19,10 +19,9 @@ from ins_sim.core.attitude.angles import to_compass
 # From the public launch file that plays this bag, robot_localization's
 # test/test_ekf_localization_node_bag1.test: the IMU "was intentionally rotated +90 degrees about
 # the X axis, then rotated (extrinsically) -90 degrees about the Z axis", and a static transform
-# from base_link to imu_link with roll 90, pitch 0, yaw -90 deg.  The data agree as far as they
-# tell: gravity is on +y.
+# from base_link to imu_link with roll 90, pitch 0, yaw -90 deg. The data agree: gravity is on +y.
 HUSKY = ['mounting.rpy_deg:=[90.0, 0.0, -90.0]']
-# forward, right, down: half a turn about forward
+# Forward, right, down: half a turn about forward.
 FRD = ['mounting.rpy_deg:=[180.0, 0.0, 0.0]']
 
 
@@ -50,18 +49,19 @@ def grown(t_s, bias_rad_s, tilt_rad, g=9.8):
 
 def test_husky_from_its_standstill(shared_data, tmp_path, capsys):
     """
-    It starts on the move; the one standstill of 10 s is found, and the course of the fix taken.
+    It starts on the move; the only standstill of 10 s is found, and the course of the fix is used.
 
-    Odometry at the standstill: 0 m/s.  Bounds: the errors stay below those of 0.1 deg/s and 2 deg
-    (gyro noise, vibration at 30 Hz, a robot on a slope); the heading against the wheels within
-    20 deg over 150 s.
+    Odometry at the standstill: 0 m/s. Bounds: errors below those of 0.1 deg/s and 2 deg (gyro
+    noise,
+    vibration at 30 Hz, a robot on a slope); the heading against the wheels within 20 deg over 150
+    s.
     """
     out = tmp_path / 'out'
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', out, *HUSKY)
     shown(capsys, 'husky, aligned at rest', summary)
     figures = summary['figures']
     assert 8.0 < figures['stationary_s'] < 12.0
-    # odometry stands still from 236.5 to 247 s of the record
+    # Odometry is at rest from 236.5 to 247 s of the record.
     assert 236.0 < summary['start_ns'] * 1e-9 - 1432235498.0 < 248.0
     assert abs(figures['roll_deg']) < 5.0 and abs(figures['pitch_deg']) < 5.0
     wheels = summary['errors']['/husky_velocity_controller/odom laid on the start']
@@ -72,9 +72,9 @@ def test_husky_from_its_standstill(shared_data, tmp_path, capsys):
 
 def test_husky_levelled_without_a_word_on_its_mounting(shared_data, tmp_path, capsys):
     """
-    Gravity on +y: mounting.source level finds the turn about x; only its yaw must be given.
+    Gravity on +y: mounting.source level finds the rotation about x; only its yaw must be given.
 
-    Against the mounting as stated: the slope of the ground at the standstill, 5 deg at most.
+    Compared with the stated mounting: the slope of the ground at the standstill, 5 deg at most.
     """
     from ins_sim.core.attitude import angles, quaternion
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out',
@@ -87,7 +87,7 @@ def test_husky_levelled_without_a_word_on_its_mounting(shared_data, tmp_path, ca
 
 
 def test_husky_as_if_its_imu_lay_flat(shared_data, tmp_path, capsys):
-    """Without its mounting it seems to lie on its side, which is said."""
+    """Without its mounting it seems to lie on its side, and a message says so."""
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out')
     capsys.readouterr()
     assert abs(summary['figures']['roll_deg']) > 80.0
@@ -106,10 +106,10 @@ def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsy
 
 def test_the_uav_on_the_ground(shared_data, tmp_path, capsys):
     """
-    90 s of the circuit flight, still on the ground; from 57 s on it moves as if it were carried.
+    90 s of the circuit flight on the ground; from 57 s on it moves as if it were carried.
 
-    Its course is then not its heading, and the bag cannot tell; only the errors until then
-    mean something: below those of the gyro's warm-up, 0.2 deg/s, and 0.5 deg of tilt.
+    Its course is then not its heading, and the bag cannot show this; only errors until then are
+    meaningful: below those of the gyro's warm-up, 0.2 deg/s, and 0.5 deg of tilt.
     """
     summary = navigated(shared_data / 'rosbags' / 'umn_thor_fl75_first90s_sqlite3',
                         tmp_path / 'out')
@@ -121,10 +121,12 @@ def test_the_uav_on_the_ground(shared_data, tmp_path, capsys):
 
 def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
     """
-    Forward, right, down: gravity is on -z, and the rates are those of the reference's attitude.
+    Forward, right, down: gravity is on -z, and the rates are those of the attitude of the
+    reference.
 
     Correlation of each axis with the reference, by increments between its stamps: above 0.9 with
-    the right sign for the road vehicle, above 0.8 for the UAV, whose filter corrects its attitude.
+    the
+    right sign for the road vehicle, above 0.8 for the UAV, whose filter corrects its attitude.
     """
     from scipy.spatial.transform import Rotation
     folder = shared_data / 'imu_ref'
@@ -143,7 +145,7 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
         summed = np.cumsum(flu.omega * steps, axis=0)
         own = np.diff([np.interp(t_ns, imu.t_ns, s) for s in summed.T], axis=1).T
         for axis in range(3):
-            # the filter's resets of heading on the ground are no rotation
+            # The filter's heading resets on the ground are no rotation.
             real = np.linalg.norm(turn, axis=1) < 0.1
             assert np.corrcoef(turn[real, axis], own[real, axis])[0, 1] > least
 
@@ -153,8 +155,9 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     """
     Given initial values at 200 s, airborne, after the climb; errors until 320 s.
 
-    Bound: gyro bias of 0.3 deg/s, as the standstill on the ground shows it, and 2 deg of tilt
-    (the reference is an on-board estimate that is corrected at 1 Hz).
+    Bound: gyro bias of 0.3 deg/s, as at the standstill on the ground, and 2 deg of tilt (the
+    reference
+    is an on-board estimate that is corrected at 1 Hz).
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     track = csv_imu.read_reference(flight)[0]
@@ -178,7 +181,7 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     for row in rows[:3]:
         assert row['horizontal_m'] < grown(row['after_s'], math.radians(0.3), math.radians(2.0))
         assert row['tilt_deg'] < 2.0 + 0.3 * row['after_s']
-    # the reference itself, asked for its state there, gives the same start
+    # The state of the reference at this time gives the same start.
     other = navigated(imu, tmp_path / 'reference', *common, 'initial.attitude:=reference')
     capsys.readouterr()
     assert abs(other['errors'][track.name][0]['horizontal_m'] - rows[0]['horizontal_m']) < 1e-3
@@ -188,7 +191,7 @@ def test_the_road_vehicle_beside_a_fibre_optic_ins(shared_data, tmp_path, capsys
     """
     MEMS at 100 Hz in a car, started at 11 m/s from the reference: biases 0.1 deg/s, tilt 1 deg.
 
-    Heading and tilt are held to the same bias.
+    Heading and tilt have bounds from the same bias.
     """
     folder = shared_data / 'imu_ref'
     summary = navigated(folder / 'fogmems_imu.csv.gz', tmp_path / 'out', *FRD,
@@ -203,7 +206,7 @@ def test_the_road_vehicle_beside_a_fibre_optic_ins(shared_data, tmp_path, capsys
 
 
 def test_a_car_that_never_stops_is_refused(shared_data, tmp_path, capsys):
-    """No standstill: one sentence with what was found."""
+    """Without a standstill one message describes the best window."""
     folder = shared_data / 'imu_ref'
     assert main(['navigate', str(folder / 'fogmems_imu.csv.gz'), '-o', str(tmp_path / 'out'), '-p',
                  f'reference.path:={folder / "fogmems_fogins_reference.csv"}']) == 2

@@ -1,4 +1,4 @@
-"""The command line offline: outputs, exit codes, sentences, and nothing half-written."""
+"""The command line offline: outputs, exit codes, messages, and complete files only."""
 
 import json
 
@@ -12,7 +12,7 @@ from ins_sim.report.runs import page
 
 
 def test_simulate_writes_a_run(tmp_path, capsys):
-    """Arrays, parameters, summary and a figure that is a picture; the parameters run again."""
+    """Arrays, parameters, summary and a figure; the parameters can be used again."""
     out = tmp_path / 'run'
     arguments = ['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=5.0']
     assert main([*arguments, '-o', str(out)]) == 0
@@ -33,7 +33,7 @@ def test_simulate_writes_a_run(tmp_path, capsys):
 
 
 def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys):
-    """The column of the paper appears for the hour of motion 2 and not for another run."""
+    """The column of the paper appears only for the hour of motion 2."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=5.0', '-o',
                  str(tmp_path / 'run'), '--no-twin']) == 0
     assert 're-derived' not in capsys.readouterr().out
@@ -43,7 +43,7 @@ def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys)
 
 
 def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old run intact; --force replaces a run, and only a run."""
+    """Exit code 2, the old run stays; --force replaces a run, and only a run."""
     out = tmp_path / 'run'
     arguments = ['simulate', '-p', 'duration_s:=1.0', '-o', str(out)]
     assert main(arguments) == 0
@@ -60,7 +60,7 @@ def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
 
 
 def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
-    """What breaks in the middle leaves no folder that could be taken for a run."""
+    """A failure in the middle leaves no folder that could be taken for a run."""
     def fail(*arguments):
         raise OSError(28, 'No space left on device')
 
@@ -83,7 +83,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
 @pytest.mark.parametrize('verb', ['simulate', 'predict'])
 def test_bad_input_is_one_sentence_and_exit_code_2(verb, arguments, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and nothing is a traceback."""
+    """Nothing is written, and there is no traceback."""
     monkeypatch.chdir(tmp_path)
     assert main([verb, *arguments]) == 2
     error = capsys.readouterr().err
@@ -93,7 +93,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(verb, arguments, sentence, tm
 
 
 def test_an_unknown_verb_is_exit_code_2(capsys):
-    """Argparse says what is known."""
+    """argparse lists the known verbs."""
     with pytest.raises(SystemExit) as exit_:
         main(['simulat'])
     assert exit_.value.code == 2
@@ -102,7 +102,7 @@ def test_an_unknown_verb_is_exit_code_2(capsys):
 
 @pytest.mark.parametrize('verb', ['simulate', 'allan', 'demo'])
 def test_a_wrong_option_shows_the_usage_of_its_verb(verb, capsys):
-    """Not that of the command, which has none of the options."""
+    """The usage is that of the verb, not that of the command without these options."""
     with pytest.raises(SystemExit) as stopped:
         main([verb, '--colour'])
     said = capsys.readouterr().err
@@ -111,7 +111,7 @@ def test_a_wrong_option_shows_the_usage_of_its_verb(verb, capsys):
 
 
 def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
-    """The cells and the limits are held in test_tuned_gyro; here they reach the person."""
+    """Cells and limits are tested in test_tuned_gyro; here their output is."""
     assert main(['dtg-study', '-o', str(tmp_path / 'study')]) == 0
     shown = capsys.readouterr().out
     for text in ('9.9777', '9.8140', '129.4 to 337.4 Hz', '9.65', '[rad/s]'):
@@ -137,7 +137,7 @@ def test_dtg_report(capsys):
 
 
 def test_compare_orientation(capsys):
-    """One table of the three."""
+    """One table of the three algorithms."""
     assert main(['compare-orientation', *LATE_MOTION_2_WORDS, '-p',
                  'duration_s:=20.0']) == 0
     text = capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Verbs list and describe: whatever is shipped is listed, whatever can be set is described."""
+"""Verbs list and describe: all shipped files are listed, all parameters described."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ NAMES = sorted(path.stem for path in (ROOT / 'config').glob('*.yaml'))
 
 
 def listed(*words, capsys):
-    """Return {name: line} of what list prints, and the headings."""
+    """Return {name: line} of the output of list, and the headings."""
     assert main(['list', *words]) == 0
     lines = capsys.readouterr().out.splitlines()
     rows = [line.split(maxsplit=1) for line in lines if line.startswith(' ')]
@@ -46,7 +46,7 @@ def test_lists_by_kind(capsys):
 
 
 def test_the_verbs_that_are_studies_are_those_of_the_command():
-    """By the name of their files."""
+    """The listed studies are the verbs, by the names of their files."""
     rooms = {name for name, verb in command.VERBS.items() if '.studies.' in verb.__name__}
     assert {name for name, _ in listing.study_verbs()} == rooms
     assert all(main.HELP == words for name, words in listing.study_verbs()
@@ -54,7 +54,7 @@ def test_the_verbs_that_are_studies_are_those_of_the_command():
 
 
 def test_lines_fit_into_a_terminal():
-    """Folded at 80 columns, the words one below the other."""
+    """Folded at 80 columns, with aligned text."""
     files = shipped_files.shipped_files()
     parts = [(shipped_files.HEADS[kind], [(file.name, file.words) for file in files[kind]])
              for kind in listing.KINDS]
@@ -66,7 +66,7 @@ def test_lines_fit_into_a_terminal():
 
 
 def test_every_parameter_is_described():
-    """Each with its default and words, for every node and verb that has it."""
+    """Each with its default and description, for every node and verb that has it."""
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
             text = '\n'.join(describe.described(name))
@@ -76,7 +76,7 @@ def test_every_parameter_is_described():
 
 
 def test_every_section_of_the_shipped_files_has_a_reader():
-    """A new study is to be known by describe too."""
+    """A new study must be known by describe too."""
     for name in NAMES:
         for node, key, _ in shipped_files.shipped_file(name).values:
             assert node == '**' or key in flatten(READERS[node]), (name, node, key)
@@ -84,7 +84,7 @@ def test_every_section_of_the_shipped_files_has_a_reader():
 
 @pytest.mark.parametrize('name', NAMES)
 def test_every_shipped_file_is_described(name):
-    """Its comment, and each parameter that it sets, with its words."""
+    """Its comment, and each parameter that it sets, with its description."""
     text = '\n'.join(describe.described(name))
     file = shipped_files.shipped_file(name)
     assert str(resources.config(name)) in text and all(line in text for line in file.head)
@@ -92,7 +92,7 @@ def test_every_shipped_file_is_described(name):
 
 
 def test_a_group(capsys):
-    """Unit, bounds, default, choices, who has it, and what can be set while a node runs."""
+    """Unit, bounds, default, choices, its nodes, and what can be set while a node runs."""
     assert main(['describe', 'gyro.errors']) == 0
     said = capsys.readouterr().out
     assert said.startswith('gyro.errors  (imu_sensor, strapdown)\n    Errors of the gyro triad.')
@@ -117,7 +117,7 @@ def test_other_names(name, first, inside, capsys):
 
 
 def test_without_a_name_the_groups_are_described(capsys):
-    """With the nodes that have them."""
+    """With their nodes."""
     assert main(['describe']) == 0
     said = capsys.readouterr().out
     assert 'gyro  (imu_sensor)' in said and '\nmotion  (motion_generator, imu_sensor' in said
@@ -132,7 +132,7 @@ def test_without_a_name_the_groups_are_described(capsys):
     ('x' * 5000, '(5000 characters) is not a parameter'), ('', "'' is not a parameter"),
     ('gyro.', "the nearest known one is 'gyro'"), ('\x1b[2J', 'is not a parameter')])
 def test_unknown_names(name, sentence, capsys):
-    """One sentence, exit code 2."""
+    """One message, exit code 2."""
     assert main(['describe', name]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and '\x1b' not in error
@@ -146,6 +146,6 @@ def test_an_unknown_kind(capsys):
 
 
 def test_files_of_the_repository_are_those_that_are_found():
-    """The listing reads the folder that simulate reads."""
+    """The listing reads the same folder as simulate."""
     assert resources.config_names() == NAMES
     assert Path(resources.config(NAMES[0])).parent == ROOT / 'config'

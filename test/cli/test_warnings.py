@@ -1,4 +1,4 @@
-"""What is said on the way: of a recorded motion by every verb and node, and no word of NumPy."""
+"""Warnings: those about a recorded motion from every verb and node, and none of NumPy."""
 
 import warnings
 
@@ -17,7 +17,7 @@ SCATTER = 'second differences of its positions scatter'
 
 @pytest.fixture
 def rounded(tmp_path):
-    """Return the words that name a recording of positions rounded to 1e-6 degrees, 10 Hz."""
+    """Return the arguments for a recording with positions rounded to 1e-6 degrees, 10 Hz."""
     t = np.arange(200) * 0.1
     path = write(tmp_path / 'rounded.csv', t, lat=55.0 + 1e-5 * t ** 1.3, lon=37.0 + 2e-5 * t,
                  digits='.6f')
@@ -27,7 +27,7 @@ def rounded(tmp_path):
 
 @pytest.mark.parametrize('verb', ['simulate', 'predict', 'convert'])
 def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path, capsys):
-    """Once, whichever verb flies it."""
+    """One warning, whichever verb uses it."""
     words = [word for a in rounded for word in ('-p', a)]
     more = {'simulate': ['-o', str(tmp_path / 'run')], 'predict': [],
             'convert': [str(tmp_path / 'rounded.csv'), str(tmp_path / 'bag')]}[verb]
@@ -38,7 +38,7 @@ def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path,
 
 
 def test_a_node_that_flies_a_recording_says_it(rounded):
-    """The generator by its source of truth, an IMU with source motion by reading its own."""
+    """The generator logs it, and an IMU with source motion that reads the recording itself."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = parameter_files.read([], rounded)
     for fly in (lambda: TruthSource(chosen.motion_generator),
@@ -48,7 +48,7 @@ def test_a_node_that_flies_a_recording_says_it(rounded):
 
 
 def test_what_numpy_says_never_reaches_a_user(capsys, monkeypatch):
-    """Sentences of ours are told; "invalid value encountered" and the like are not."""
+    """Our messages are printed; "invalid value encountered" and the like are not."""
     told = []
     with warnings.catch_warnings():
         warnings.simplefilter('always')

@@ -1,4 +1,4 @@
-"""Bags that are no motion: each is refused in one sentence."""
+"""Bags that cannot be a motion are refused with one message."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def two_namespaces(path):
 
 
 def changed(function, only=topics.TRUTH, length_s=10.0):
-    """Return a writer of a bag whose window is changed."""
+    """Return a writer of a bag with a changed window."""
     return lambda path: record(path, {'motion.kind': 'sinusoids'}, length_s, only=only,
                                change=function)
 
@@ -70,13 +70,13 @@ def other_stamps(window):
 
 
 def wrong_type(path):
-    """Write an Imu that is named truth/odometry."""
+    """Write an Imu with the name truth/odometry."""
     with BagWriter(path) as bag:
         bag.add_topic('truth/odometry', topics.IMU)
 
 
 def wrong_fix(path):
-    """Write a truth with a string where the fix belongs."""
+    """Write a truth with a string in place of the fix."""
     with BagWriter(path) as bag:
         for topic in (topics.TRUTH_ODOMETRY, topics.TRUTH_ATTITUDE):
             bag.add_topic(topic.name, topic.type_name)
@@ -117,7 +117,9 @@ def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path
 
 
 def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
-    """What is not in all topics is left out: one sample is no gap, a second is; cut keeps on."""
+    """
+    Samples missing in a topic are left out: one is no gap, a second is; on_gap cut continues.
+    """
     def lose(window):
         window[topics.TRUTH_FIX] = [np.delete(x, slice(900, 960), axis=0)
                                     for x in window[topics.TRUTH_FIX]]
@@ -126,7 +128,7 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
     record(tmp_path / 'bag', MOTION_2, 30.0, change=lose)
     chosen = recorded(tmp_path / 'bag', MOTION_2, **{'motion.recording.on_gap': 'cut'})
     motion = read_motion(chosen.motion_generator)
-    # the first stamp of all three is 0.02 s, the last before the gap 8.99 s
+    # The first stamp of all three is 0.02 s, the last before the gap 8.99 s.
     assert motion.zero_ns == 3_020_000_000 and motion.end_s == pytest.approx(8.99 - 3.0 - 3.02)
     assert 'gaps' in motion.warnings[0]
 

@@ -1,4 +1,4 @@
-"""Places anywhere on Earth: the origin of a map frame, and longitudes over the 180th meridian."""
+"""Positions anywhere on Earth: the origin of a map frame, and longitudes at the 180th meridian."""
 
 import math
 
@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 
 
 def flown(path, latitude, longitude, *names):
-    """Write the bag of 20 s of racetrack from a place; names: topics, all where there are none."""
+    """Write the bag of 20 s of racetrack from a position; names: topics, all if empty."""
     words = [f'datum.latitude_deg:={latitude}', f'datum.longitude_deg:={longitude}',
              'motion.kind:=racetrack', 'duration_s:=20.0', 'rate_hz:=20.0']
     given = [word for a in words for word in ('-p', a)]
@@ -39,7 +39,7 @@ def apart_m(poses, latitude, longitude):
 
 @pytest.mark.parametrize('others', ([], ['truth/odometry', 'truth/fix']))
 def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_path, capsys):
-    """The datum is that of the fix beside it, or of another solution; 90 km off by the default."""
+    """The datum comes from the fix or another solution beside it; the default is 90 km off."""
     names = others or ['ins/fix']
     flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry', *names)
     target = tmp_path / 'flight.csv'
@@ -47,12 +47,12 @@ def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_pa
     said = capsys.readouterr().out
     assert 'origin of the frame of /ins/odometry is at 55, 37 deg' in said
     assert ('by /truth/fix' if others else 'by /ins/fix') in said
-    # The solution starts on the truth, and rounding of 1e-9 m is all that is between.
+    # The solution starts at the truth; only rounding of 1e-9 m is in between.
     assert apart_m(read_poses(target), 55.0, 37.0) < 1e-6
 
 
 def test_no_datum_is_assumed(tmp_path, capsys):
-    """Without a fix the origin has to be given; then it is used, which is said."""
+    """Without a fix the origin must be given; then it is used, with a note."""
     flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry')
     words = ['convert', str(tmp_path / 'bag'), str(tmp_path / 'x.csv'), '--topic', 'ins/odometry']
     capsys.readouterr()
@@ -67,7 +67,7 @@ def test_no_datum_is_assumed(tmp_path, capsys):
 
 
 def test_the_default_datum_can_be_meant(tmp_path, capsys):
-    """Whoever flew from the default place says so, against a fix of another place as well."""
+    """A parameter accepts it, also against a fix at another position."""
     flown(tmp_path / 'bag', 55.75, 37.62, 'ins/odometry')
     flown(tmp_path / 'other', 55.0, 37.0)
     origin = ['-p', 'motion.recording.origin:=datum']
@@ -81,7 +81,7 @@ def test_the_default_datum_can_be_meant(tmp_path, capsys):
 
 
 def test_a_flight_in_degrees_has_no_origin(tmp_path):
-    """What would not be used is refused."""
+    """A value that would be ignored is refused."""
     (tmp_path / 'x.csv').write_text('t_s\n')
     values = {'motion.recording.origin': 'datum'}
     with pytest.raises(ValueError, match='origin is datum, but .*x.csv is no bag; expected fix'):
@@ -89,7 +89,7 @@ def test_a_flight_in_degrees_has_no_origin(tmp_path):
 
 
 def test_an_origin_that_wanders_is_refused(tmp_path):
-    """A fix that is none of the odometry beside it tells no origin."""
+    """A fix that does not belong to the odometry gives no origin."""
     def shifted(window):
         window[topics.TRUTH_FIX][1][-1, 0] += 1e-3
 
@@ -101,13 +101,15 @@ def test_an_origin_that_wanders_is_refused(tmp_path):
 
 @pytest.mark.parametrize('longitude', (179.999, -179.999))
 def test_a_flight_over_the_180th_meridian_is_read_again(longitude, tmp_path, capsys):
-    """Longitudes published are within +-180 degrees, and the bag is a motion, either direction."""
+    """
+    Published longitudes are within +-180 degrees, and the bag is a motion, in both directions.
+    """
     flown(tmp_path / 'bag', 60.0, longitude)
     with open_bag(tmp_path / 'bag') as bag:
         for name in ('/truth/fix', '/ins/fix'):
             degrees = bag.arrays(name, ('longitude',))['longitude']
             assert np.abs(degrees).max() <= 180.0
-            # The racetrack begins northwards and turns to the East.
+            # The racetrack starts northwards and turns to the East.
             assert (degrees.min() < 0.0 < degrees.max()) == (longitude > 0.0)
     values = {'motion.kind': 'racetrack', 'datum.latitude_deg': 60.0,
               'datum.longitude_deg': longitude}
@@ -115,7 +117,7 @@ def test_a_flight_over_the_180th_meridian_is_read_again(longitude, tmp_path, cap
     x = read_motion(recorded(tmp_path / 'bag', values).motion_generator).at(t_ns)
     y = read_motion(settings(values).motion_generator).at(t_ns + 3 * SECOND)
     east, north, _ = ellipsoid.offset(y.lat, y.lon, y.height, (x.lat, x.lon, x.height))
-    # Splines of degree 5 through 20 Hz; degrees of 16 digits are 1e-9 m.
+    # Splines of degree 5 through 20 Hz; degrees with 16 digits are 1e-9 m.
     assert max(np.abs(east).max(), np.abs(north).max()) < 1e-6
     assert np.abs(x.v_n - y.v_n).max() < 1e-5
     capsys.readouterr()
@@ -130,7 +132,7 @@ def westwards(path):
 
 
 def test_a_flight_west_over_the_180th_meridian(tmp_path):
-    """The longitude goes on from -180 to 180; read again it goes on without a jump."""
+    """The longitude jumps from -180 to 180; read again it is continuous."""
     chosen = westwards(tmp_path / 'bag')
     with open_bag(tmp_path / 'bag') as bag:
         degrees = bag.arrays('/truth/fix', ('longitude',))['longitude']

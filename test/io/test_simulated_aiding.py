@@ -1,4 +1,4 @@
-"""The bag of simulate --aided: the topics of all six nodes, as they publish them."""
+"""The bag of simulate --aided has the topics of all six nodes, as they publish them."""
 
 import re
 
@@ -50,7 +50,7 @@ def messages(bag, topic):
 
 
 def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
-    """To the bit: what the node packs of the same solution, one message at a time."""
+    """To the bit: the node packs the same solution, one message at a time."""
     chosen, free, solution = run
     navigator = chosen.aided_navigator
     frame, route = MapFrame(navigator.datum, navigator.earth.rotation), GreatCircleRoute.of_points(
@@ -83,7 +83,7 @@ def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
 
 
 def test_the_fixes_come_back(run, bag_path):
-    """Record and pair of messages give the fix again; the velocity stands mid-window."""
+    """Record and pair of messages give the fix again; the velocity is stamped at mid-window."""
     chosen, _, solution = run
     with open_bag(bag_path) as bag:
         stamps, records = messages(bag, topics.METER_RECORD)
@@ -105,7 +105,7 @@ def test_the_fixes_come_back(run, bag_path):
     for fix, own in zip(found, solution.gnss_fixes):
         assert fix.t_ns == own.t_ns and fix.status == own.status
         if own.valid:
-            # through degrees and variances and back: a few roundings
+            # Through degrees and variances and back: a few roundings.
             assert fix.v_n == own.v_n
             for field in ('lat', 'lon', 'position_sigma', 'velocity_sigma'):
                 assert getattr(fix, field) == pytest.approx(getattr(own, field), rel=1e-15)
@@ -113,10 +113,11 @@ def test_the_fixes_come_back(run, bag_path):
 
 def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, capsys):
     """
-    What a live navigator makes of these messages is what the bag says of it.
+    A live navigator computes from these messages the solution in the bag.
 
-    Only the truth, which starts the solution and is its altimeter, goes through the map frame:
-    1e-8 m there, and what the filter makes of it.
+    Only the truth, which starts the solution and is its altimeter, passes through the map frame:
+    1e-8 m
+    there, and its effect on the filter.
     """
     chosen, _, solution = run
     stream, pairs = AidedStream(chosen.aided_navigator), GnssPairs(EPOCH_NS, 0)
@@ -164,7 +165,7 @@ def test_topics_order_and_every_reader(run, bag_path, capsys):
         ours = [(name, t_ns, bytes(data)) for name, t_ns, data in bag.messages()]
     times = [t_ns for _, t_ns, _ in ours]
     assert times == sorted(times)
-    # a window ends there, and a fix is due
+    # A window ends there, and a fix is due.
     at = [name for name, t_ns, _ in ours if t_ns == EPOCH_NS + 10 * 10**9]
     assert at == [name for name in NAMES[1:] if name != '/velocity_meter/velocity']
     with AnyReader([bag_path]) as reader:
@@ -210,7 +211,7 @@ def test_the_command_writes_the_bag(tmp_path, capsys):
 
 
 def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
-    """As the node: aided/sigma/* stay silent, covariances are unknown."""
+    """As for the node: aided/sigma/* is silent, covariances are unknown."""
     path = tmp_path / 'bag'
     assert command(tmp_path, '--bag', str(path),
                    flight=('duration_s:=5.0', 'filter:=conventional')) == 0
@@ -224,7 +225,7 @@ def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
 
 
 def test_what_is_refused(tmp_path, capsys):
-    """Topics of the three nodes need --aided; an interrupted bag is not there."""
+    """Topics of the three nodes need --aided."""
     assert main(['simulate', '-p', 'duration_s:=5.0', '-o', str(tmp_path / 'run'), '--bag',
                  str(tmp_path / 'bag'), '--topics', 'aided/fix']) == 2
     said = capsys.readouterr().err
@@ -245,7 +246,7 @@ def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch):
 @pytest.mark.parametrize('storage, compression', [('mcap', 'none'), ('mcap', 'zstd'),
                                                   ('sqlite3', 'none')])
 def test_blocks_of_messages_of_any_length(storage, compression, tmp_path):
-    """Between blocks of one length, unsorted and empty ones: every byte, by log time."""
+    """Among blocks of equal length, unsorted and empty ones: every byte, by log time."""
     rng = np.random.default_rng(1)
     texts = np.empty(300, dtype=object)
     texts[:] = [ENCAPSULATION + rng.bytes(int(n)) for n in rng.integers(1, 3000, 300)]

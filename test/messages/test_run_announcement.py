@@ -1,4 +1,4 @@
-"""sim/run: what the generator announces comes back, and what nobody should send is refused."""
+"""sim/run: the announcement is restored, and invalid ones are refused."""
 
 from dataclasses import replace
 

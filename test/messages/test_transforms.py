@@ -1,4 +1,4 @@
-"""Transforms: bytes by the definition of tf2_msgs, and what the frames of a vehicle mean."""
+"""Transforms: bytes by the definition of tf2_msgs, and the frames of a vehicle."""
 
 from ins_sim.messages import placements, topics
 from ins_sim.messages.transforms import (AT_PARENT, first_stamp, pose_between, read_rotations,
@@ -17,7 +17,7 @@ POSE = (1.0, -2.0, 3.5, 0.5, -0.5, 0.5, 0.5)
 @pytest.mark.parametrize('parent, child', [('map', 'base_link'), ('a', 'ab'), ('uav1/map', 'abc'),
                                            ('abcd', 'abcde'), ('odom', 'x')])
 def test_bytes_are_those_of_the_definition(parent, child):
-    """rosbags packs the same message to the same bytes; ours reads both."""
+    """rosbags packs the same message to the same bytes; our reader reads both."""
     data = TransformWriter((parent, child)).pack(1735689600123456789, POSE)
     message = STORE.deserialize_cdr(data, topics.TRANSFORMS)
     one, = message.transforms
@@ -33,7 +33,7 @@ def test_bytes_are_those_of_the_definition(parent, child):
 
 
 def test_several_transforms_of_one_instant():
-    """Names of any length between them: rosbags packs the same bytes."""
+    """With names of any length rosbags packs the same bytes."""
     pairs = ('map', 'odom'), ('uav1/odom', 'uav1/base_link'), ('a', 'b')
     poses = [(float(k), *POSE[1:]) for k in range(3)]
     data = TransformWriter(*pairs).pack(10**9 + 5, *poses)
@@ -70,7 +70,7 @@ def test_what_stands_fixed():
     meter = build(VelocityMeterSettings, {'antennas.mounting_yaw_arcmin': 60.0})
     parent, child, pose = placements.meter_mounting(meter)
     assert (parent, child) == ('base_link', 'velocity_meter_link')
-    # forward of the antennas lies 1 deg left of forward of the vehicle
+    # Forward of the antennas is 1 deg left of forward of the vehicle.
     forward = Rotation.from_quat(pose[3:]).apply([1.0, 0.0, 0.0])
     assert np.allclose(forward, [np.cos(np.pi / 180), np.sin(np.pi / 180), 0.0], atol=1e-15)
     assert placements.imu_mounting(None) == ('base_link', 'imu_link', AT_PARENT)
