@@ -24,8 +24,7 @@ class Argument:
     An argument of a launch file.
 
     kind: str, float or bool; for the last two '' means None (not given). choices: allowed values,
-    if
-    there are few. default: None if the argument is required.
+    if there are few. default: None if the argument is required.
     """
 
     name: str

@@ -34,10 +34,8 @@ class Plan:
     The processes that are started, and their parameters.
 
     processes: see ``graph``; files: paths of parameter files, in order; defaults: {parameter:
-    value}
-    below these; overrides: {node name: {parameter: value}} above these; namespace: of the nodes;
-    said:
-    messages for the user.
+    value} below these; overrides: {node name: {parameter: value}} above these; namespace: of the
+    nodes; said: messages for the user.
     """
 
     processes: tuple

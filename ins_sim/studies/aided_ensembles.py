@@ -32,8 +32,7 @@ class Consistency(NamedTuple):
     NEES and NIS over runs.
 
     nees: ChiSquareSums (m, core.aiding.consistency.BLOCKS) at the instants of the statistics;
-    fixes:
-    {source: FixSums} of the aiding instruments.
+    fixes: {source: FixSums} of the aiding instruments.
     """
 
     nees: ChiSquareSums
@@ -57,8 +56,7 @@ class AidedEnsembleResult:
     Statistics of many runs of the aided chain.
 
     errors: EnsembleResult of the aided solution, whose attitude error is that of q_nb, each in its
-    own
-    n; consistency: Consistency; refused: pairs of an excluded run and the reason.
+    own n; consistency: Consistency; refused: pairs of an excluded run and the reason.
     """
 
     errors: EnsembleResult

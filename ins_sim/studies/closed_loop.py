@@ -31,8 +31,7 @@ class Published:
     Expected results of a case; None if not stated.
 
     beta_deg: half the range of the sideslip over the last 30 %, 0 for less than QUIET_DEG;
-    frequency:
-    rad/s; swing_m: half the range of z; end_m: z at the end.
+    frequency: rad/s; swing_m: half the range of z; end_m: z at the end.
     """
 
     beta_deg: float
@@ -144,8 +143,7 @@ def case_settings(settings, case):
     Return the AidedSimulationSettings of a LoopCase.
 
     settings: all settings that do not depend on the case. k_z is realised by an elliptical beam,
-    which
-    the meter supports in both modes.
+    which the meter supports in both modes.
     """
     base, meter, navigator = settings.simulation, settings.velocity_meter, settings.aided_navigator
     generator = base.motion_generator
@@ -198,8 +196,7 @@ def study_loop(settings):
     Return the LateralLoop of AidedSimulationSettings.
 
     Raises ValueError for loops that the study does not cover: an autopilot that does not return to
-    the
-    leg, a command limit of zero, or a control period that differs from the meter's cycle.
+    the leg, a command limit of zero, or a control period that differs from the meter's cycle.
     """
     generator = settings.simulation.motion_generator
     loop, rate_hz = lateral_loop(generator), settings.velocity_meter.rate_hz

@@ -22,10 +22,8 @@ class EnsembleErrors:
     t_ns (m,); count (m,): number of runs that have not diverged; mean, sigma, rms: {name of a
     quantity: (m, 3)}, attitude rad, velocity m/s, position m; percentiles: (p, m, 3) each, for
     PERCENTS; horizontal_rms (m,) and horizontal_percentiles (p, m): of the horizontal magnitude;
-    cep:
-    {percent: (m,)} radii about the true position that contain this fraction of the runs, from mean
-    and
-    covariance, m.
+    cep: {percent: (m,)} radii about the true position that contain this fraction of the runs, from
+    mean and covariance, m.
     """
 
     t_ns: np.ndarray

@@ -27,8 +27,8 @@ class EnsemblePlan:
     Definition of an ensemble: runs of SimulationSettings, and the instants of the statistics.
 
     settings: their run is the first one; runs: their number; instants: number of instants, evenly
-    from
-    the start of the strapdown to the end, both included. Raises ValueError for invalid numbers.
+    from the start of the strapdown to the end, both included. Raises ValueError for invalid
+    numbers.
     """
 
     settings: Any

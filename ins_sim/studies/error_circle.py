@@ -33,12 +33,10 @@ def error_circle(mean, covariance, part):
     Notes
     -----
     The covariance is rotated to its principal axes, and the probability of the circle is
-    integrated
-    across the shorter one (Groves, "Principles of GNSS, Inertial, and Multisensor Integrated
-    Navigation Systems", 2nd ed., 2013, section B.2.4, covers equal sigmas). For zero mean and axis
-    ratios 1, 0.5, 0.2 the radii are 1.17741, 0.87042, 0.70585 (CEP50) and 2.44775, 2.03586,
-    1.97041
-    (CEP95) of the longer sigma.
+    integrated across the shorter one (Groves, "Principles of GNSS, Inertial, and Multisensor
+    Integrated Navigation Systems", 2nd ed., 2013, section B.2.4, covers equal sigmas). For zero
+    mean and axis ratios 1, 0.5, 0.2 the radii are 1.17741, 0.87042, 0.70585 (CEP50) and 2.44775,
+    2.03586, 1.97041 (CEP95) of the longer sigma.
     """
     shape = np.shape(mean)[:-1]
     mean = np.asarray(mean, dtype=float).reshape(-1, 2)

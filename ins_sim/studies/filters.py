@@ -37,11 +37,9 @@ class FilterFlight:
 
     error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN if
     unknown), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
-    and
-    its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
-    instants of
-    the processed fixes of the velocity meter; refused: number of rejected fixes, and the last
-    reason.
+    and its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
+    instants of the processed fixes of the velocity meter; refused: number of rejected fixes, and
+    the last reason.
     """
 
     t_s: np.ndarray
@@ -82,8 +80,7 @@ def fly_filters(settings, cases, run):
     Return the FilterFlight of each FilterCase on one flight.
 
     settings: AidedSimulationSettings; run: is added to their seeds. The readings of the IMU, and
-    the
-    fixes for each length of window, are computed once. Raises ValueError as the stages do.
+    the fixes for each length of window, are computed once. Raises ValueError as the stages do.
     """
     settings = run_settings(settings, run)
     generator = settings.simulation.motion_generator
@@ -101,8 +98,7 @@ def cases_of(filters=None, cycles=(1000,)):
     Return the FilterCases of a comparison.
 
     filters: names, None for all; cycles: of a window, the first for all filters, the others only
-    for
-    the eskf.
+    for the eskf.
     """
     for n in cycles:
         if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 100000:

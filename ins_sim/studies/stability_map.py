@@ -57,8 +57,7 @@ class MapCurves:
     Limits of k_z over the gains (n,) of a MapPanel.
 
     linear (n,): by the linear theory; flown {z at the start, m: (n,)}: by reduced flights. Both
-    are at
-    most MOST_K_Z, and 0 if the loop is unstable without any error.
+    are at most MOST_K_Z, and 0 if the loop is unstable without any error.
     """
 
     gains: np.ndarray

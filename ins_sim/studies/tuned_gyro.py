@@ -75,8 +75,7 @@ def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages
     Advance a rocking base; out: roll by Poisson and by the Euler vector from step ``first`` on.
 
     top: amplitude of the rate, rad/s, with the angular frequency rate_rad_s; turned: arrangement
-    of
-    the gyros; gains_1 to x_2: constants and states of both rotors (``rotor_step``).
+    of the gyros; gains_1 to x_2: constants and states of both rotors (``rotor_step``).
     """
     c, theta, u_end = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0), (top, 0.0, 0.0)
     for k in range(steps):
@@ -160,10 +159,8 @@ def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution
     Return the lowest and the highest speed about the nominal one at which RK4 decays, Hz.
 
     The speed is changed from the nominal one by resolution_hz until RK4 grows, and the limit is
-    found
-    by bisection in that interval; None on a side without a limit between low_hz and high_hz.
-    Raises
-    ValueError if RK4 grows at the nominal speed.
+    found by bisection in that interval; None on a side without a limit between low_hz and high_hz.
+    Raises ValueError if RK4 grows at the nominal speed.
     """
     def decays(hz):
         return rk4_radius(parameters, hz, step_s) < 1.0

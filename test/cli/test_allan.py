@@ -32,8 +32,7 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
 
     From seed to seed B scatters by 13 % and K by 20 %, and one may hide the other: the root mean
     square of three records is compared with the bounds. Pulses are five times those of the preset,
-    so
-    that every record shows them.
+    so that every record shows them.
     """
     found = []
     for seed in (1, 2, 3):

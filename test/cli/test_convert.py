@@ -36,14 +36,11 @@ def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     """
     The bag contains the values of the CSV file: positions to the bit, angles to rounding.
 
-    A quaternion is computed from angles, and angles from it, within 16 roundings of 2^-53. The
-    second
-    bag is made from the spline through the first: its positions are those of the samples to one
-    rounding of 180 deg (2.9e-14) and of 1e4 m. At its samples a cubic spline errs by h^4 / 180 of
-    the
-    fifth derivative in the rate, of 25, 6, 5 deg at 1/7, 1/5, 1/6 Hz, twice for the products of
-    the
-    angles; the force has six standard deviations of two roundings of the longitude.
+    Angles and quaternion are converted within 16 roundings of 2^-53. The second bag is made from
+    the spline through the first: its positions are those of the samples to one rounding of 180 deg
+    (2.9e-14) and of 1e4 m. At its samples a cubic spline errs by h^4 / 180 of the fifth derivative
+    in the rate, of 25, 6, 5 deg at 1/7, 1/5, 1/6 Hz, twice for the products of the angles; the
+    force has six standard deviations of two roundings of the longitude.
     """
     motion = record(tmp_path / 'bag', FLIGHT, 20.0)
     flight, second, last = tmp_path / name, tmp_path / 'second', tmp_path / f'last_{name}'

@@ -51,8 +51,7 @@ def test_a_signal_amid_imports(verb, tmp_path):
     During imports of the command line or of the verb: exit code 130, one message, nothing remains.
 
     A verb that ends by itself within the time for which the import delays the signal has its own
-    exit
-    code: a refusal, or that of a node.
+    exit code: a refusal, or that of a node.
     """
     own = {'record': 0, 'play': 0}.get(verb, 2 if 'absent' in str(WORDS.get(verb)) else 130)
     for at, number in ((3, 'SIGINT'), (60, 'SIGTERM')):

@@ -66,8 +66,8 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
     Attitude from the orientation in the messages, mounting from two links of /tf_static.
 
     Bound: the truncation error of the trapezoidal rule falls with the square of the step, so that
-    the
-    error at 100 Hz is 4/3 of its excess over that at 200 Hz; fourth-order terms get a hundredth.
+    the error at 100 Hz is 4/3 of its excess over that at 200 Hz; fourth-order terms get a
+    hundredth.
     """
     _, motion = motion_of('motion.kind:=sinusoids')
     _, recorded = truth_topics(motion, 20.0, start_ns=EPOCH)
@@ -187,10 +187,8 @@ def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
     MEMS: no gyrocompass; bias from the standstill, heading 70 deg from the course of the fix.
 
     The heading bound is the random walk of the rate noise, 1e-3 rad/s at 50 Hz over the 27 s to 20
-    m,
-    plus the bias error after 20 s of averaging: sqrt(27 / 50) 1e-3 + 27 1e-3 / sqrt(1000), three
-    times,
-    0.27 deg.
+    m, plus the bias error after 20 s of averaging: sqrt(27 / 50) 1e-3 + 27 1e-3 / sqrt(1000),
+    three times, 0.27 deg.
     """
     out = tmp_path / 'out'
     assert main(['navigate', str(car(tmp_path)), '-o', str(out)]) == 0

@@ -52,9 +52,8 @@ def test_husky_from_its_standstill(shared_data, tmp_path, capsys):
     It starts on the move; the only standstill of 10 s is found, and the course of the fix is used.
 
     Odometry at the standstill: 0 m/s. Bounds: errors below those of 0.1 deg/s and 2 deg (gyro
-    noise,
-    vibration at 30 Hz, a robot on a slope); the heading against the wheels within 20 deg over 150
-    s.
+    noise, vibration at 30 Hz, a robot on a slope); the heading against the wheels within 20 deg
+    over 150 s.
     """
     out = tmp_path / 'out'
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', out, *HUSKY)
@@ -125,8 +124,7 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
     reference.
 
     Correlation of each axis with the reference, by increments between its stamps: above 0.9 with
-    the
-    right sign for the road vehicle, above 0.8 for the UAV, whose filter corrects its attitude.
+    the right sign for the road vehicle, above 0.8 for the UAV, whose filter corrects its attitude.
     """
     from scipy.spatial.transform import Rotation
     folder = shared_data / 'imu_ref'
@@ -156,8 +154,7 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     Given initial values at 200 s, airborne, after the climb; errors until 320 s.
 
     Bound: gyro bias of 0.3 deg/s, as at the standstill on the ground, and 2 deg of tilt (the
-    reference
-    is an on-board estimate that is corrected at 1 Hz).
+    reference is an on-board estimate that is corrected at 1 Hz).
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     track = csv_imu.read_reference(flight)[0]

@@ -28,12 +28,10 @@ def bounds(steps, length_s):
     Return bounds for the difference of two runs due to rounding: position, m, and drift, rad/s.
 
     The quaternions of a sample round by u = 2^-53 a component, which rotates by 2 u; for both runs
-    and
-    the step this is less than 8 u a sample, a random walk of W = 8 u sqrt(N). The slope of a
-    signal
-    within W is below 3 W / T, and a tilt of W moves the position by at most g W T^2 / 2. The
-    latitude of
-    either strapdown rounds by 2 u at every step: four standard deviations of that walk.
+    and the step this is less than 8 u a sample, a random walk of W = 8 u sqrt(N). The slope of a
+    signal within W is below 3 W / T, and a tilt of W moves the position by at most g W T^2 / 2.
+    The latitude of either strapdown rounds by 2 u at every step: four standard deviations of that
+    walk.
     """
     walk = 8.0 * 2.0 ** -53 * math.sqrt(steps)
     place = 4.0 * math.sqrt(2.0 * steps / 12.0) * 2.0 ** -53 * 6.4e6
@@ -46,8 +44,7 @@ def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
     The errors of a run with delays agree with those on the truth of 100 Hz re-read from a bag.
 
     The attitude at a sample minus the delay tau errs by tau^2 h^2 / 24 of its fourth derivative,
-    at
-    most 2e-14 rad here: the rest is rounding (``bounds``).
+    at most 2e-14 rad here: the rest is rounding (``bounds``).
     """
     values, length_s = STUDIES[name], 300.0
     original = settings(values, start_s=PAD_S, duration_s=length_s)
@@ -75,10 +72,8 @@ def test_between_the_samples_the_attitude_errs_by_the_fourth_order(rate_hz, tmp_
     Cubic Hermite: h^4 / 384 of the fourth derivative of the rotation vector, aggressive flight.
 
     Its components are those of the angles, 25, 6 and 5 deg at 1/7, 1/5 and 1/6 Hz, and of the
-    turns of
-    the path; twice their sum covers the products of the angles. The rotation spline through
-    attitudes
-    alone has the same order, and end effects.
+    turns of the path; twice their sum covers the products of the angles. The rotation spline
+    through attitudes alone has the same order, and end effects.
     """
     values = {'motion.kind': 'aggressive'}
     motion = record(tmp_path / 'bag', values, 60.0, rate_hz)

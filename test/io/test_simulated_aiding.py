@@ -116,8 +116,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
     A live navigator computes from these messages the solution in the bag.
 
     Only the truth, which starts the solution and is its altimeter, passes through the map frame:
-    1e-8 m
-    there, and its effect on the filter.
+    1e-8 m there, and its effect on the filter.
     """
     chosen, _, solution = run
     stream, pairs = AidedStream(chosen.aided_navigator), GnssPairs(EPOCH_NS, 0)

@@ -36,8 +36,7 @@ def test_instant_samples_converge_with_the_square_of_the_step(capsys):
     The trapezoidal rule is of second order: half the step gives a quarter of the error.
 
     The order is estimated from 50, 100, 200 and 400 Hz over 20 s of six sinusoids; it must be 2
-    within
-    0.15, which allows for the fourth-order terms at the coarsest step.
+    within 0.15, which allows for the fourth-order terms at the coarsest step.
     """
     position, turn = np.array([end_errors(run(*recorded(stamps(r))))
                                for r in (50.0, 100.0, 200.0, 400.0)]).T
@@ -58,8 +57,7 @@ def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
     steps.
 
     The error of the trapezoidal rule over steps dt_k is bounded by C sum(dt_k^3). C is taken from
-    the
-    uniform 100 Hz run, times ten, because signed errors cancel there and need not do so here.
+    the uniform 100 Hz run, times ten, because signed errors cancel there and need not do so here.
     """
     t_ns = stamps(100.0)
     uniform, _ = end_errors(run(*recorded(t_ns)))
@@ -76,8 +74,7 @@ def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_inst
     For w = a + b t, f = c + d t means and instants give the same cross products in the increments.
 
     The previous and the present interval differ in length, so that the scaling of the previous
-    mean is
-    tested. Both are exact to third order in dt; they differ by rounding.
+    mean is tested. Both are exact to third order in dt; they differ by rounding.
     """
     a, b, c, d = np.random.default_rng(4).standard_normal((4, 3))
     before, now = 0.013, 0.007
@@ -126,8 +123,7 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
     An upward accelerometer bias, at rest: the free channel falls, the damped one keeps the height.
 
     The third-order loop has no final offset, because its integrator compensates the bias. Free: b
-    t^2 / 2
-    within the effect of the gravity gradient, 1 + (2 g / R) t^2 / 12.
+    t^2 / 2 within the effect of the gravity gradient, 1 + (2 g / R) t^2 / 12.
     """
     lat, b = 0.7, 0.01
     g = ellipsoid.gravity(math.sin(lat), 0.0)

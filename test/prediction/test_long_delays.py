@@ -93,10 +93,8 @@ def test_histories_of_every_output_are_predicted(output, model, history):
     5 ms on all channels and 7 ms on one accelerometer stay within the bound of the prediction.
 
     A frozen history ends within an interval of the grid, 12.5 ms, in which the rotations due to
-    both
-    delays at 1.1 rad/s are assumed to grow evenly: at most g times 13 mrad times 12.5 ms, a
-    velocity
-    error that adds up over a minute.
+    both delays at 1.1 rad/s are assumed to grow evenly: at most g times 13 mrad times 12.5 ms, a
+    velocity error that adds up over a minute.
     """
     values = {**MOTION_2, 'gyro.delay_us.x': 5e3, 'gyro.delay_us.y': 5e3, 'gyro.delay_us.z': 5e3,
               'duration_s': 60.0, 'output': output, 'input': output, 'gyro.model': model,

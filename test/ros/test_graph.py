@@ -57,10 +57,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     The solution and its errors agree to 1e-9 relative, besides the rounding of a position.
 
     Truth and solution pass through Cartesian messages: 1 ulp of the radius of the Earth is 1e-9 m,
-    and
-    a position is a sum of a few such terms; an attitude rounds at 1e-15, and its first slope at
-    that
-    over one step.
+    and a position is a sum of a few such terms; an attitude rounds at 1e-15, and its first slope
+    at that over one step.
     """
     same_as_offline(VALUES, lock_step(ros_domain, tmp_path))
 

@@ -19,8 +19,7 @@ def attacked(seed, count):
 
     After every ATTACK the good stream alone must bring all nodes back. A HostileFlight raises a
     Finding for values that are not finite, for too many messages, bytes and lines, and for a node
-    that
-    has ended; an exception out of a callback ends the test.
+    that has ended; an exception out of a callback ends the test.
     """
     with HostileFlight(seed) as flight:
         flight.good(50)

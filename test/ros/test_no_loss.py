@@ -16,8 +16,7 @@ def test_no_solution_is_lost(rate_hz, duration_s, factor, ros_domain, tmp_path):
     From the first solution on, the listener receives every one to the last instant.
 
     Messages sent before DDS discovery are received by no node. Speed and latency of the same runs
-    are
-    printed by benchmarks/live_chain.py.
+    are printed by benchmarks/live_chain.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, (topics.INS_ODOMETRY,))
     parameters = {'rate_hz': float(rate_hz), 'duration_s': float(duration_s),

@@ -135,10 +135,9 @@ def test_delays_are_predicted_on_the_truth_as_flown():
     Twin and prediction for delays of 3, 6, 9 us on a motion with jumps of the command.
 
     The strapdown rotates the velocity increment of an interval by the attitude at its start, while
-    the
-    theory is continuous. The position error is therefore half an interval of exp(-t/0.4) behind, 5
-    ms
-    of 400 at 100 Hz; this falls with the interval. The attitude error has no such part.
+    the theory is continuous. The position error is therefore half an interval of exp(-t/0.4)
+    behind, 5 ms of 400 at 100 Hz; this falls with the interval. The attitude error has no such
+    part.
     """
     off = {}
     for rate_hz in (100.0, 500.0):

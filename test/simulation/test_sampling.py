@@ -90,8 +90,7 @@ def test_orientation_algorithms_agree_to_their_truncation():
     Poisson's equation and the Euler vector by RK4 agree with the exact quaternion on motion 2.
 
     For a constant rate w, RK4 has an angle error of (w dt)^5/120 a step with Poisson's equation,
-    and
-    less with the Euler vector; ten minutes.
+    and less with the Euler vector; ten minutes.
     """
     chosen = settings(MOTION_2, duration_s=600.0)
     results = compare_orientations(chosen, read_motion(chosen.motion_generator))

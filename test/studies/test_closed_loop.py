@@ -46,10 +46,8 @@ def test_the_chain_is_the_reduced_loop(case, bound):
     Sideslip agrees within 1e-5 rad, offset within 1 cm, in 20 s from 100 m.
 
     The reduced loop neglects terms of that size: the Coriolis force on velocity errors of metres
-    per
-    second, 3e-4 m/s^2, and the curvature of the leg. paper_corrected sees both as acceleration
-    errors,
-    ten times as large.
+    per second, 3e-4 m/s^2, and the curvature of the leg. paper_corrected sees both as acceleration
+    errors, ten times as large.
     """
     settings = chosen()
     flight, other = fly_case(settings, case), reduced(study_loop(settings), case)
@@ -102,10 +100,8 @@ def test_the_table(figures):
     Every published row: quiet ones below 0.05 deg, others within 3 %.
 
     The published simulation has the lateral channel alone and is compared with that. The filters
-    aid
-    the forward velocity as well, which damps conventional a little where beta is large: the chain
-    is
-    compared with the reduced flight with both channels.
+    aid the forward velocity as well, which damps conventional a little where beta is large: the
+    chain is compared with the reduced flight with both channels.
     """
     settings = chosen()
     loop = study_loop(settings)

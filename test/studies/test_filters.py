@@ -59,8 +59,7 @@ def test_fifty_minutes_by_every_filter(count, figures):
     The factors for twelve flights are 0.64 and 1.38, for four 0.41 and 1.66. The published "rms
     horizontal error" is taken as that at the end of the flight for every filter. Known deviation:
     window_kf has 0.87 km there; its published 0.5 km is met by the rms over the whole flight,
-    which is
-    tested instead.
+    which is tested instead.
     """
     names = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
     rows, flights = flown(count, FILES, [FilterCase(name, 1000) for name in names])
@@ -117,8 +116,7 @@ def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
     The filter's sigma is within 30 % of the reference (only the names of the grades navigation and
     tactical were given; their values are ours), and the errors of the flights agree with it. Four
     flights are too few for this: their errors lie mostly along one axis, so that they have about
-    half
-    of the degrees of freedom that the bound assumes.
+    half of the degrees of freedom that the bound assumes.
     """
     rows, flights = flown(
         count, ('gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],

@@ -34,11 +34,9 @@ def drift_density(truth, omega_in_n, late):
     """
     Return R (w x D) and R D, (n, 3) each: integrand and boundary term of the attitude error.
 
-    The reading has the error -D', so that the attitude error grows by
-    nu = -R D' = -d/dt(R D) + R (w_nb x D), where R is rotated by the rate of b relative to n.
-    Bogdanov and Fomichev (2018) use the inertial rate here and so neglect the rotation of the
-    Earth
-    (docs/theory/prediction.md).
+    The reading has the error -D', so that the attitude error grows by nu = -R D' = -d/dt(R D) + R
+    (w_nb x D), where R is rotated by the rate of b relative to n. Bogdanov and Fomichev (2018) use
+    the inertial rate here and so neglect the rotation of the Earth (docs/theory/prediction.md).
 
     Parameters
     ----------
@@ -48,8 +46,7 @@ def drift_density(truth, omega_in_n, late):
         Rate of n relative to i, in n (n, 3), rad/s.
     late : ndarray
         Rotations D that the channels x, y, z have not reported yet (n, 3), rad. To first order in
-        the
-        delays T they are T w, with the rate w of b relative to i.
+        the delays T they are T w, with the rate w of b relative to i.
     """
     omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
     density = np.stack(quaternion.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)),
@@ -122,10 +119,8 @@ class PairAttitudeError:
 
     The rotors are propagated over the rates of the motion; the mean rate of a step is computed by
     Simpson's rule. motion: the motion of the run; gyro: settings.Gyro; tau: delays (3,), s;
-    start_s:
-    first instant, s of motion time; step_s: interval between instants, s; held_ns: motion time
-    before
-    which the channels see the rate of that time, or None.
+    start_s: first instant, s of motion time; step_s: interval between instants, s; held_ns: motion
+    time before which the channels see the rate of that time, or None.
     """
 
     def __init__(self, motion, gyro, tau, start_s, step_s, held_ns=None):
@@ -220,10 +215,8 @@ def two_axis_resonances(motion, tau):
     Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
 
     The resonance psi' = 2 gamma' is equation (19) of Bogdanov and Fomichev (2018), who do not
-    mention
-    the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x, y, z, s;
-    tau1
-    of the paper is that of y, tau3 that of z.
+    mention the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x, y,
+    z, s; tau1 of the paper is that of y, tau3 that of z.
     """
     if motion.kind != 'two_axis':
         return []

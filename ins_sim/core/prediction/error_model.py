@@ -44,8 +44,7 @@ class ErrorModel:
 
         The inputs have the shape (n per_step + 1, ...); their first instant is the last one of the
         previous block. beta: attitude error without the effect of the rotation of n; df_n: error
-        of the
-        specific force in n, m/s^2.
+        of the specific force in n, m/s^2.
         """
         sin, cos = elementary.sincos(truth.lat)
         r_n, r_e = ellipsoid.radii(sin)
@@ -104,8 +103,7 @@ def advance_errors(y, omega_in, f_n, force, turn, pull, h):
     Advance the slow state by one step of h seconds with RK4.
 
     y: gamma (3), p_E, p_N, s_E, s_N. The others are means over the step: omega_in (3), f_n (3),
-    the
-    horizontal force, the rotation of beta (3), and the gravity gradient on E and on N.
+    the horizontal force, the rotation of beta (3), and the gravity gradient on E and on N.
     """
     row = (*omega_in, *f_n, *force, *turn, *pull)
     k1 = _rate(y, row)

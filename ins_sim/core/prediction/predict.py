@@ -72,8 +72,7 @@ def predict(settings, motion, collect=Collected) -> Prediction:
         The motion of settings.motion_generator.
     collect : callable or None
         See ``core.simulation.inertial``. With None the histories are not computed, and t_s,
-        attitude
-        and position of the result are None.
+        attitude and position of the result are None.
 
     Returns
     -------
@@ -204,8 +203,7 @@ class _FineRun:
 
         turned, far: largest attitude error, rad, and position error, m. The second-order part of a
         rotation is half of it times the position error that it causes; in addition, position
-        errors are
-        measured along parallels and meridians (``_along_parallels``).
+        errors are measured along parallels and meridians (``_along_parallels``).
         """
         angle = far / ellipsoid.MEAN_RADIUS
         return 0.5 * far * (turned + angle * (1.0 + 2.0 * self._steepest))
@@ -215,9 +213,8 @@ class _FineRun:
         Return a bound of the second-order drift, rad/s.
 
         The rotation vector of an attitude error that grows by e grows by e + error x e / 2; the
-        second
-        term is the area that the error sweeps. turned: largest attitude error, rad, for the next
-        order.
+        second term is the area that the error sweeps. turned: largest attitude error, rad, for the
+        next order.
         """
         return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)
 

@@ -18,8 +18,8 @@ class AidedResult:
 
     judged: a JudgedFix for every fix, in the order of arrival; faults: a message for each fault;
     velocity_fixes, gnss_fixes: output of the instruments, if ``simulate_aided`` ran them; notes:
-    the
-    result of ``note`` at each output instant, or None; diverged: whether a solution has diverged.
+    the result of ``note`` at each output instant, or None; diverged: whether a solution has
+    diverged.
     """
 
     truth: Truth
@@ -57,8 +57,7 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     Run the aided navigator over the blocks of ``with_truth``.
 
     Faults are handled according to on_fault: the solution starts anew from the truth, or
-    ValueError
-    is raised.
+    ValueError is raised.
 
     Parameters
     ----------

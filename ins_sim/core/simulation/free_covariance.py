@@ -32,8 +32,7 @@ class StartSigmas(NamedTuple):
     Standard deviations at the start.
 
     position, velocity: of each axis, m and m/s; tilt, azimuth: rad; gyro_bias: of each axis,
-    rad/s, or
-    None for that of the settings.
+    rad/s, or None for that of the settings.
     """
 
     position: float
@@ -94,8 +93,8 @@ def disagreement(settings, stated):
     Return a text on how an IMU differs from the one that StrapdownSettings describe, or ''.
 
     stated: variances of a sample by axis in its messages, (rad/s)^2 and (m/s^2)^2. They differ if
-    the
-    standard deviations differ by a factor of two or more; variances of a perfect IMU are ignored.
+    the standard deviations differ by a factor of two or more; variances of a perfect IMU are
+    ignored.
     """
     for unit, name, said, known, least in zip(('rad/s', 'm/s^2'), ('gyro', 'accelerometer'),
                                               stated, sigmas_of(settings), ALMOST_EXACT):
@@ -115,9 +114,8 @@ class PublishedCovariance(NamedTuple):
     All contain the square of the error that is the same in every run.
 
     pose: (36) of position (m) and attitude (rad) about the axes of map, row by row; velocity: (9)
-    of
-    the velocity in b, in the axes of n; rate: (9) of the angular velocity in b; place: (9) of the
-    position in East, North, Up.
+    of the velocity in b, in the axes of n; rate: (9) of the angular velocity in b; place: (9) of
+    the position in East, North, Up.
     """
 
     t_ns: int

@@ -41,8 +41,7 @@ class SteeringChain:
     IMU and strapdown, and, with aiding, velocity meter, GNSS and aided navigator.
 
     These are the stages of ``simulate`` and ``simulate_aided``, and the solutions have the same
-    bits.
-    Stages that do not influence the steering solution are left out.
+    bits. Stages that do not influence the steering solution are left out.
 
     Parameters
     ----------

@@ -23,9 +23,8 @@ class GuidedResult:
     How a guided motion was steered, at the control instants.
 
     estimates: what the autopilot received; states: of the vehicle; notes: a message for each kind
-    of
-    event; counts: pairs of the reason for which the autopilot did not steer, or 'limited', and the
-    number of such control instants.
+    of event; counts: pairs of the reason for which the autopilot did not steer, or 'limited', and
+    the number of such control instants.
     """
 
     estimates: SteeringEstimates
@@ -49,8 +48,7 @@ def fly(settings, motion, aided=None, progress=None):
         None.
     aided : AidedSimulationSettings, optional
         If given, the aided solution steers, unless guidance.topic is that of the strapdown;
-        without
-        it the strapdown solution steers.
+        without it the strapdown solution steers.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
 
@@ -58,8 +56,7 @@ def fly(settings, motion, aided=None, progress=None):
     ------
     ValueError
         If the run ends after the last turning point, or if the control instants of the motion are
-        not
-        samples; and as the stages do.
+        not samples; and as the stages do.
     """
     if not isinstance(motion, GuidedMotion):
         return None

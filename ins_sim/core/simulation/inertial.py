@@ -33,8 +33,7 @@ class SimulationResult:
     One offline run: truth, solution and errors at the output instants.
 
     imu: all readings; twin: errors of the same run with all delays zero, or None; faults: a
-    message
-    for each gap at which the strapdown started anew.
+    message for each gap at which the strapdown started anew.
     """
 
     truth: Truth
@@ -119,9 +118,8 @@ def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
 
     Yield (truth, states, errors) records of the output instants of each block. A gap is handled
     according to on_fault: the strapdown starts anew from the truth and a message is appended to
-    the
-    list faults, or ValueError is raised. covariance: a FreeCovariance that is propagated beside
-    it.
+    the list faults, or ValueError is raised. covariance: a FreeCovariance that is propagated
+    beside it.
     """
     strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:
@@ -178,8 +176,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
         Called with the fraction done.
     collect : callable
         Called once for each history; returns an object that takes the blocks and gives the whole,
-        such
-        as Collected, which keeps it in memory.
+        such as Collected, which keeps it in memory.
 
     Returns
     -------
@@ -233,8 +230,7 @@ def withheld_readings(settings):
     Return the number of readings at the end of a run that wait for truth that never arrives.
 
     A channel with negative delay reads the future; on a stream of truth its last readings would
-    need
-    truth from after the end.
+    need truth from after the end.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     if sensor.source != 'stream':

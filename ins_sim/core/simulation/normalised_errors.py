@@ -37,8 +37,7 @@ class ErrorNormaliser:
         Return NEES and degrees of freedom, (n, BLOCKS), at the output instants of an AidedResult.
 
         Its notes are FilterNotes. At the first instant the errors are the drawn ones; NEES is NaN
-        and the
-        degrees of freedom are 0 there.
+        and the degrees of freedom are 0 there.
         """
         errors = result.errors
         columns = (errors.attitude.tolist(), errors.velocity.tolist(), errors.position.tolist())

@@ -26,10 +26,8 @@ class BesideRuns:
     Errors of an ensemble that is compared with a budget, at m instants.
 
     runs: their number; diverged: numbers of the excluded runs; t_s (m,): time since the start of
-    the
-    navigation, s; count (m,): number of runs; mean (m, 9), covariance (m, 9, 9): attitude,
-    velocity
-    and position, East, North, Up.
+    the navigation, s; count (m,): number of runs; mean (m, 9), covariance (m, 9, 9): attitude,
+    velocity and position, East, North, Up.
     """
 
     runs: int
@@ -47,8 +45,7 @@ class ComparedQuantity:
 
     name: one of COMPARED; t_s (n,); numbers (n,): indices of the instants in the budget; budget,
     ensemble (n,): rms, or standard deviation for a single axis; low, high (n,): interval that
-    contains
-    their ratio for 99.9 % of ensembles; linear (n,): whether linear theory applies.
+    contains their ratio for 99.9 % of ensembles; linear (n,): whether linear theory applies.
     """
 
     name: str
@@ -114,10 +111,8 @@ def rms_scatter(covariance, mean, count):
     Return the relative standard deviation of the rms of a vector over some runs, (n,).
 
     covariance (n, a, a) and mean (n, a) of the vector; count: number of runs. The square of the
-    length
-    has the variance 2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random
-    Variables",
-    1992).
+    length has the variance 2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random
+    Variables", 1992).
     """
     square = np.trace(covariance, axis1=1, axis2=2) + np.square(mean).sum(axis=1)
     variance = (2.0 * np.square(covariance).sum(axis=(1, 2))
@@ -148,9 +143,8 @@ def compared(budget, beside):
     Return the ComparedQuantities of BesideRuns and a LinearBudget at their common instants.
 
     The budget is that of ``without_start``. Quantities without random errors, such as the height
-    if
-    the vertical channel follows the truth, are left out, and so is the start. Raises ValueError if
-    there is no common instant.
+    if the vertical channel follows the truth, are left out, and so is the start. Raises ValueError
+    if there is no common instant.
     """
     if beside.count.max() < 2:
         raise ValueError(f'the ensemble has {beside.count.max()} run that counts; expected at '

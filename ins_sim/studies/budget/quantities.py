@@ -43,8 +43,7 @@ class Shares:
 
     random (sources, n): variances; mean (sources, n, axes): errors of the fixed sources; fixed
     (sources, n): contribution of each of these to the square of their sum, which may be negative;
-    rms
-    (n,): square root of the total.
+    rms (n,): square root of the total.
     """
 
     random: np.ndarray
@@ -79,8 +78,7 @@ def second_order(budget):
 
     It is the larger one of the azimuth error, rad, and of the horizontal error times tan(latitude)
     divided by the radius of the Earth: the rotation of the computed axes. Linear theory is
-    accurate to
-    about this fraction of the error.
+    accurate to about this fraction of the error.
     """
     azimuth = shares(budget, QUANTITIES['azimuth']).rms
     far = shares(budget, QUANTITIES['horizontal']).rms

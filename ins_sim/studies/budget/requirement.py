@@ -35,8 +35,7 @@ class Requirement:
     A requirement on an error: a statistic of a quantity is at most a limit at a time.
 
     text: as given; quantity: one of QUANTITIES; statistic: one of STATISTICS; limit: in SI; t_s:
-    time
-    since the start of the navigation, s.
+    time since the start of the navigation, s.
     """
 
     text: str
@@ -52,8 +51,7 @@ class Improvement:
     The required improvement of one source.
 
     factor: for its error, or None if the others alone exceed the requirement; values: of the
-    parameter
-    then, by axis; without: value of the requirement without this source, in SI.
+    parameter then, by axis; without: value of the requirement without this source, in SI.
     """
 
     source: ErrorSource
@@ -68,12 +66,9 @@ class RequirementAnswer:
     The improvements that would meet a Requirement.
 
     found: present value, in SI; met: whether it meets the requirement; alone: Improvements of
-    single
-    sources, sufficient ones first, then in the order of the value without the source; random:
-    factor
-    by which all random errors must shrink, None if the fixed ones alone exceed the requirement or
-    if
-    it is met; everything: factor for all errors.
+    single sources, sufficient ones first, then in the order of the value without the source;
+    random: factor by which all random errors must shrink, None if the fixed ones alone exceed the
+    requirement or if it is met; everything: factor for all errors.
     """
 
     requirement: Requirement

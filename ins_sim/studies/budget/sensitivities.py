@@ -14,10 +14,8 @@ class Sensitivity:
     The change of an error with one parameter, of all axes or of one.
 
     axis: 'x', 'y', 'z', or '' for all; value: of the parameter, in its unit; alone: error due to
-    the
-    source alone for a unit of the parameter (for a lag, at its bandwidth); slope: d rms / d
-    parameter;
-    both in SI of the quantity divided by the unit of the parameter.
+    the source alone for a unit of the parameter (for a lag, at its bandwidth); slope: d rms / d
+    parameter; both in SI of the quantity divided by the unit of the parameter.
     """
 
     source: ErrorSource
@@ -32,8 +30,7 @@ def sensitivities(budget, quantity, k):
     Return the Sensitivities of a Quantity in a LinearBudget at the instant with index k.
 
     A parameter with equal axes is changed on all of them. Otherwise a random source is changed
-    axis by
-    axis, and a fixed one in proportion, per unit of its largest axis.
+    axis by axis, and a fixed one in proportion, per unit of its largest axis.
     """
     found, axes = [], list(quantity.axes)
     made = shares(budget, quantity)

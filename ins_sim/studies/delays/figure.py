@@ -62,8 +62,7 @@ class DelayFigure:
     A figure to be drawn.
 
     name: of its files; shows: DelayFigureSettings; simulation: SimulationSettings of its runs;
-    motion:
-    a recorded one, or None if the settings define it; notes: messages about it.
+    motion: a recorded one, or None if the settings define it; notes: messages about it.
     """
 
     name: str

@@ -33,13 +33,10 @@ class RatesMap:
     Mean horizontal drift of motion 2 over a time, rad/s.
 
     span_s: averaging time; psi_rates (n,), gamma_rates (m,): middles of the cells, rad/s; largest
-    (m,
-    n): largest drift in each cell; lines: numbers k of the resonance lines psi' = k gamma';
+    (m, n): largest drift in each cell; lines: numbers k of the resonance lines psi' = k gamma';
     near_psi_rates, near_gamma_rates, near: a second map of the drift (not the largest one) near
-    the
-    rates of the settings; detunings, across: drift over the detuning; half_width: detuning at
-    which
-    the drift is half as large, rad/s, or None if it is not in the range.
+    the rates of the settings; detunings, across: drift over the detuning; half_width: detuning at
+    which the drift is half as large, rad/s, or None if it is not in the range.
     """
 
     span_s: float
@@ -61,9 +58,8 @@ class RockingMap:
     Mean drift of motion 1, rad/s.
 
     azimuth_deg (n,), elevation_deg (m,): direction of the rocking axis in the body, from forward
-    to
-    the left, and upwards; size (m, n): magnitude of the drift; psi_deg (k,), drift (k, 3): East,
-    North, Up, over psi for a level axis.
+    to the left, and upwards; size (m, n): magnitude of the drift; psi_deg (k,), drift (k, 3):
+    East, North, Up, over psi for a level axis.
     """
 
     azimuth_deg: np.ndarray
@@ -134,8 +130,7 @@ class TwoAxisDrift:
         Return the largest |mean| in cells of rates, rad/s.
 
         Each cell is width rad/s of psi' wide. It is evaluated at its middle and at the points in
-        it that
-        are nearest to the resonance lines, which are narrower than any cell.
+        it that are nearest to the resonance lines, which are narrower than any cell.
         """
         found = np.abs(self.mean(psi_rate, gamma_rate))
         for k in self.lines:
@@ -184,10 +179,8 @@ def rocking_map(settings, psi_deg):
     Return the RockingMap of SimulationSettings with motion rocking about a level axis.
 
     psi_deg: directions of the runs; the curve covers their range in steps of one degree and
-    includes
-    them. With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times R0 (n x T
-    n);
-    all other terms are odd in kappa.
+    includes them. With w = kappa' n the mean of R (w x T w) is that of kappa'^2 cos(kappa) times
+    R0 (n x T n); all other terms are odd in kappa.
     """
     motion, tau = settings.motion_generator.motion, delays_s(settings)
     rocking = motion.rocking

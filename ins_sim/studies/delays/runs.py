@@ -25,10 +25,8 @@ class ErrorFigures:
     Summary of an error history.
 
     drift (3,): least-squares slope of the inertial attitude error, East, North, Up, rad/s;
-    mean_drift
-    (3,): its growth over the run divided by the time, rad/s; largest (3,): largest |position
-    error|
-    East, North, Up, m.
+    mean_drift (3,): its growth over the run divided by the time, rad/s; largest (3,): largest
+    |position error| East, North, Up, m.
     """
 
     drift: np.ndarray
@@ -42,9 +40,8 @@ class DelaySensitivity:
     Error due to one second of delay of each gyro channel, by the linear theory.
 
     position (n, 2, 3): East and North error, m/s, at the instants of the run, for the delays of x,
-    y,
-    z; drift (3, 3): slope of the attitude error East, North, Up, 1/s^2, for the delays of x, y, z;
-    largest (2, 3): largest |position|, m/s.
+    y, z; drift (3, 3): slope of the attitude error East, North, Up, 1/s^2, for the delays of x, y,
+    z; largest (2, 3): largest |position|, m/s.
     """
 
     position: np.ndarray
@@ -60,12 +57,9 @@ class DelayRun:
     t_s (n,): at most MOST_INSTANTS instants since the start of the navigation; track (n, 3): true
     latitude and longitude, rad, and height, m; angles (n, 2): computed minus true latitude and
     longitude, rad; predicted_angles (n, 2); apart (n, 3): position error minus that of the twin,
-    East,
-    North, Up, m; predicted (n, 3): the same by the linear theory; measured: ErrorFigures of the
-    run,
-    with its position error minus that of the twin; twin, prediction: ErrorFigures of the twin and
-    of
-    the theory; sensitivity: DelaySensitivity or None.
+    East, North, Up, m; predicted (n, 3): the same by the linear theory; measured: ErrorFigures of
+    the run, with its position error minus that of the twin; twin, prediction: ErrorFigures of the
+    twin and of the theory; sensitivity: DelaySensitivity or None.
     """
 
     settings: SimulationSettings
@@ -86,8 +80,7 @@ def fly_run(settings, motion=None, with_sensitivity=False):
     Simulate and predict a run of SimulationSettings and return the DelayRun.
 
     motion: a recorded one, or None for that of the settings; with_sensitivity: whether to predict
-    the
-    error of each channel alone too.
+    the error of each channel alone too.
     """
     generator = settings.motion_generator
     motion = motion or make_motion(generator.motion, generator.datum, generator.earth)

@@ -71,8 +71,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     test_graph.
 
     Then the same bits follow with the nodes started in another order on a busy machine, and once
-    more
-    when the generator goes back to sample 0 in between.
+    more when the generator goes back to sample 0 in between.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', NODES)
     settings = chosen_settings({**VALUES, 'source': 'stream'})

@@ -23,8 +23,7 @@ def test_real_time_loses_nothing(ros_domain, tmp_path):
     Each topic is complete from its first message to the last instant.
 
     Messages sent before DDS discovery are received by no node. Ten minutes of the same, and the
-    CPU
-    time of each node, are printed by benchmarks/live_aided.py.
+    CPU time of each node, are printed by benchmarks/live_aided.py.
     """
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, HEARD)
     awaited = topics.IMU_RAW, topics.INS_ODOMETRY, topics.AIDED_ODOMETRY, topics.GNSS_FIX

@@ -54,8 +54,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     Command, truth and solution agree to the rounding of Cartesian messages; twice the same bits.
 
     A position is a sum of a few terms of the radius of the Earth, each rounded to 1e-9 m; the
-    command
-    changes by 0.0125 rad/m times that, and the solution follows the changed truth.
+    command changes by 0.0125 rad/m times that, and the solution follows the changed truth.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', ORDER)
     run = ins_sim.simulate_aided(

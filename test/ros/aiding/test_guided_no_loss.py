@@ -23,8 +23,7 @@ def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path
     logged.
 
     The vehicle starts 100 m to the right of the leg, and the eskf with perfect instruments knows
-    its
-    position. Messages sent before DDS discovery are received by no node.
+    its position. Messages sent before DDS discovery are received by no node.
     """
     chain = Chain(ros_domain, tmp_path)
     listener = Listener(ros_domain, HEARD, later=topics.GUIDANCE)

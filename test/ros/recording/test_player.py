@@ -96,8 +96,8 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
     Messages are spread over the time in which they were recorded, and /clock with them.
 
     A player that does not wait would send a second of messages within milliseconds. On a busy
-    machine
-    the first ones may be late and others follow at once; up to half of them is accepted here.
+    machine the first ones may be late and others follow at once; up to half of them is accepted
+    here.
     """
     path = mixed_bag(tmp_path / 'bag')
     talker = Talker(ros_domain)

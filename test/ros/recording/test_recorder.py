@@ -221,8 +221,7 @@ def test_stamps_of_two_clocks(talker, chain, tmp_path):
     6000 messages in a burst up to the end: every one is in the bag or counted as lost.
 
     One topic is stamped since boot, the other since 1970; a split of ten seconds of either clock
-    gives
-    one file.
+    gives one file.
     """
     boot, wall = talker.imu('boot'), talker.imu('wall')
     recorder = chain.start_verb('record', 'boot', 'wall', '-o', tmp_path / 'bag',

@@ -25,8 +25,7 @@ def test_nothing_is_lost_at_1_khz(ros_domain, tmp_path):
     Twelve topics in real time: no gap in the numbers of the publishers or in the stamps.
 
     Samples before discovery are not counted; from the first recorded one of a topic on, all are
-    there,
-    to the last. Ten minutes of the same, and the CPU time, are printed by
+    there, to the last. Ten minutes of the same, and the CPU time, are printed by
     benchmarks/live_recorder.py.
     """
     chain, path = Chain(ros_domain, tmp_path), tmp_path / 'bag'

@@ -39,8 +39,7 @@ def check_prediction(run):
     The attitude slope agrees within 1e-4 + (w dt)^2/4, the position within 1e-2.
 
     A detuned drift nu rotates; the rotation vector then also grows about Up by half its product
-    with
-    nu, and is at most 2 nu / detuning.
+    with nu, and is at most 2 nu / detuning.
     """
     motion = run.settings.motion_generator.motion
     sine = np.sin(np.radians(abs(motion.theta_deg)))

@@ -43,8 +43,7 @@ def test_twelve_seeds_of_the_fog_on_the_diagonal():
     The mean of twelve seeds is within 0.15 us of the truth, and the scatter is the stated one.
 
     The 36 squares of error over sigma are within 99.9 % of chi-square, also if the angle random
-    walk
-    is unknown.
+    walk is unknown.
     """
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 600.0)
     truth = 1e-6 * SET_US + model_lags([record], chosen.imu_sensor.gyro.errors)

@@ -69,8 +69,7 @@ def test_the_diagonal_is_best_and_speed_helps():
     Only two of the motions give three delays, and the diagonal is eleven times better.
 
     Sigma is proportional to the inverse of the amplitude and of the square of the frequency; the
-    mean
-    over a sampling interval reduces it by sin(x)/x, x = pi f dt.
+    mean over a sampling interval reduces it by sin(x)/x, x = pi f dt.
     """
     worst = {name: foreseen(name) for name in CASES}
     three = {name: found.worst for name, found in worst.items() if not any(found.refused)}

@@ -27,10 +27,8 @@ def test_all_errors_come_out_as_they_were_set(output):
     Delays of 5 ms, -0.3 ms and 1 us are found together with all other errors.
 
     An axis misaligned by 0.4 mrad towards one that is 5.3 ms later or earlier sees 2.1 us of it:
-    the
-    linear model neglects this product. The rates change by 0.02 in this time; 0.4 mrad times that
-    is
-    neglected too.
+    the linear model neglects this product. The rates change by 0.02 in this time; 0.4 mrad times
+    that is neglected too.
     """
     record, chosen = ideal({**THREE_ANGLES, **ERRORS, **DELAYS, 'output': output}, 60.0)
     found = estimate_triad([read(record, chosen, 0)]).channels

@@ -62,8 +62,7 @@ class NoiseErrors:
         Advance by one interval.
 
         transition: (9, 9); noise: TriadNoise; bias: response to constant errors (9, 3); length_s:
-        length
-        of the interval, s; lane: its number in the noise.
+        length of the interval, s; lane: its number in the noise.
         """
         ahead = moved(transition, self._with)
         cross = ahead[:, :, np.newaxis] * noise.start[:, np.newaxis, :, :, lane]

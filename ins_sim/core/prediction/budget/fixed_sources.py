@@ -66,12 +66,9 @@ class _Lag:
 
     The output lacks x/w of the integral of the input u for a first-order lag, and sqrt(2) x/w +
     x'/w^2 for a Butterworth lag (``discrete_lag``), w = 2 pi f. The lag is driven by the mean of
-    the
-    input over each sampling period. After a steady rise of u its state x is therefore u - L u',
-    where
-    L exceeds 1/w by about half a period, and x' = v u'. At the first sample the lag is settled: x
-    is
-    the first reading, and x' = 0.
+    the input over each sampling period. After a steady rise of u its state x is therefore u - L
+    u', where L exceeds 1/w by about half a period, and x' = v u'. At the first sample the lag is
+    settled: x is the first reading, and x' = 0.
     """
 
     def __init__(self, errors, triad, settings, motion):

@@ -33,9 +33,8 @@ class Responses(NamedTuple):
     Responses at the ends of n intervals.
 
     transition (9, 9, n): to the errors at the start; constants: of each triad (9, 9, n), columns
-    as in
-    ``TimeLanes.by_error``; fixed (9, f, n): to errors that are the same in every run; noise: one
-    TriadNoise for each triad.
+    as in ``TimeLanes.by_error``; fixed (9, f, n): to errors that are the same in every run; noise:
+    one TriadNoise for each triad.
     """
 
     transition: np.ndarray
@@ -147,8 +146,7 @@ def interval_responses(lanes, spin, held, damping, processes, fixed):
         For accelerometers and gyros: (MarkovProcesses, random walks).
     fixed : ndarray
         Means in n (steps, 6, f, n) of the f errors of accelerometers and gyros that are the same
-        in
-        every run.
+        in every run.
     """
     alive = [k for k in range(GROWING) if not (held and k in UP)]
     places = alive.index(3)

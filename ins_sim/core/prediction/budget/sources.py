@@ -34,13 +34,11 @@ class ErrorSource:
     One source of errors.
 
     key: name of the parameter; label: description; unit: unit of the parameter; values: values of
-    the
-    three axes in this unit, or (value,) for all; si: the same in SI; fixed: whether the error is
-    the
-    same in every run; triad: ACCELEROMETER, GYRO, or None for the start; kind: name of the
-    coefficient
-    in TriadModel, or of the initial error; inverse: whether the error decreases when the parameter
-    grows, as that of a lag with its bandwidth (otherwise it is proportional to the parameter).
+    the three axes in this unit, or (value,) for all; si: the same in SI; fixed: whether the error
+    is the same in every run; triad: ACCELEROMETER, GYRO, or None for the start; kind: name of the
+    coefficient in TriadModel, or of the initial error; inverse: whether the error decreases when
+    the parameter grows, as that of a lag with its bandwidth (otherwise it is proportional to the
+    parameter).
     """
 
     key: str

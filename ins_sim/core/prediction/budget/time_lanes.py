@@ -64,8 +64,8 @@ class TimeLanes:
         Return the means (steps, 3, n), in n, of the errors of a triad that lags behind.
 
         late: the part of the integral of the input that has not been reported yet, in b, one
-        vector for
-        each instant. The error of the reading is minus its derivative (``drift_density``).
+        vector for each instant. The error of the reading is minus its derivative
+        (``drift_density``).
         """
         if self._omega_in is None:
             truth = self.truth
@@ -85,8 +85,7 @@ class TimeLanes:
         Return the means (steps, 3, 9, n), in n, of the errors due to unit constants.
 
         reading: components of the input of a triad in b. Columns: biases, scale factors and
-        misalignments
-        (rotations from the body axes to those of the triad) of the axes x, y, z.
+        misalignments (rotations from the body axes to those of the triad) of the axes x, y, z.
         """
         x, y, z = reading
         c = self.c
