@@ -1,9 +1,9 @@
 """Write the reference pages of the site from the code; ``docs/conf.py`` calls `write_pages`."""
 
-from . import command_line, parameters, python_api
+from . import command_line, exit_codes, files, interfaces, parameters, python_api
 
 # One module for each kind of page.
-KINDS = (parameters, command_line, python_api)
+KINDS = (interfaces, parameters, command_line, python_api, files, exit_codes)
 
 
 def pages():

@@ -9,7 +9,7 @@ from ins_sim.cli.main import parser, VERBS
 from .markdown import code, contents, NO_VALUE, page, table, text
 
 INTRODUCTION = '''\
-`ins_sim VERB --help` prints the same.
+`ins_sim VERB --help` prints the same. See also the [exit codes](exit_codes.md).
 '''
 WIDTH = '80'
 USAGE = 'usage: '

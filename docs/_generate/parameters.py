@@ -35,7 +35,7 @@ def _page(name, cls):
     kind = 'verb' if name in VERBS else 'node'
     title = name.replace('_', '-') if kind == 'verb' else name
     fields, groups = flatten(cls), groups_of(cls)
-    lines = []
+    lines = [f'Parameters of the {kind} {_link(name, title, kind)}.', '']
     for group in ('', *groups):
         own = {full: f for full, f in fields.items() if full.rpartition('.')[0] == group}
         if group:
