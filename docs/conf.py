@@ -18,7 +18,9 @@ release = version = import_module('ins_sim').__version__
 
 extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinx.ext.mathjax', 'sphinx.ext.napoleon']
 source_suffix = {'.md': 'markdown', '.rst': 'restructuredtext'}
-exclude_patterns = ['figures', '_generate']
+# The files behind the first two are put here by rosdoc2.
+exclude_patterns = ['figures', '_generate', 'index.rst', '__*.rst', 'README.md',
+                    'CONTRIBUTING.md', 'CHANGELOG.rst']
 html_theme = 'sphinx_rtd_theme'
 html_title = f'ins_sim {release}'
 html_static_path = ['_static']
@@ -37,9 +39,21 @@ napoleon_google_docstring = False
 def setup(app):
     """Write the reference pages before Sphinx looks for its sources."""
     import_module('_generate').write_pages(Path(app.srcdir) / 'reference' / 'generated')
-    app.connect('autodoc-process-docstring', keep_bars)
+    app.connect('autodoc-process-docstring', protect, priority=400)
+    app.connect('autodoc-process-docstring', restore, priority=600)
 
 
-def keep_bars(app, what, name, thing, options, lines):
-    """Keep vertical bars in docstrings: |x| is a magnitude, not a substitution."""
+# Stands for a colon while napoleon, with the priority 500, reads a docstring.
+COLON = '\ue000'
+
+
+def protect(app, what, name, thing, options, lines):
+    """Keep bars, for |x| is no substitution, and colons, before which napoleon sees a type."""
     lines[:] = [line if '``' in line else line.replace('|', '\\|') for line in lines]
+    if what in ('attribute', 'property'):
+        lines[:] = [line.replace(':', COLON) for line in lines]
+
+
+def restore(app, what, name, thing, options, lines):
+    """Put the colons back."""
+    lines[:] = [line.replace(COLON, ':') for line in lines]

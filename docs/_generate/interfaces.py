@@ -10,7 +10,7 @@ from ins_sim.messages.topic_contents import CONTENTS
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten
 
-from .markdown import code, contents, NO_VALUE, page, table, text
+from .markdown import code, contents, page, table, text
 
 NODES = '''\
 `ros2 run ins_sim NAME` starts a node; see also the [services](services.md), the
@@ -85,12 +85,13 @@ def _service(service):
 def _topics():
     for topic, words in CONTENTS.items():
         yield from (f'## {topic.name}', '', text(words), '')
-        rows = [('type', code(topic.type_name)),
-                ('frame', ', child '.join(map(code, topic.frames)) or NO_VALUE),
-                ('quality of service', text(quality(topic)))]
-        rows += [(title, _users(topic, kind)) for title, kind in (
-            ('published by', 'publishes'), ('subscribed to by', 'subscribes'))]
-        yield from table(('', ''), rows)
+        yield f'* Type: {code(topic.type_name)}'
+        if topic.frames:
+            yield f'* Frame: {", child ".join(map(code, topic.frames))}'
+        yield f'* Quality of service: {text(quality(topic))}'
+        yield from (f'* {title}: {_users(topic, kind)}' for title, kind in (
+            ('Published by', 'publishes'), ('Subscribed to by', 'subscribes')))
+        yield ''
 
 
 def _users(topic, kind):
@@ -99,8 +100,8 @@ def _users(topic, kind):
         return 'all nodes'
     names = [(name, use.condition) for name, one in INTERFACES.items()
              for use in getattr(one, kind) if use.topic == topic]
-    return '; '.join(_node_link(name) + (f' ({text(condition)})' if condition else '')
-                     for name, condition in names) or NO_VALUE
+    return ', '.join(_node_link(name) + (f' ({text(condition)})' if condition else '')
+                     for name, condition in names) or 'no node of this package'
 
 
 def node_exit_codes(name):

@@ -42,7 +42,9 @@ def _page(name, cls):
             lines += [f'{"##" if "." not in group else "###"} {group}', '',
                       text(first_sentence(sentence_of(groups[group]))), '']
         if own:
-            lines += table(HEAD, [_row(full, f, full in cls.SETTABLE) for full, f in own.items()])
+            # The class lets the style sheet fold the table on a narrow screen.
+            lines += [':::{container} parameters', '', *table(HEAD, [
+                _row(full, f, full in cls.SETTABLE) for full, f in own.items()]), ':::', '']
     return page(f'Parameters of {title}', *lines)
 
 
