@@ -4,7 +4,7 @@ import re
 
 SPECIAL = re.compile(r'([\\`*_{}\[\]<>|$#])')
 # What is shown as code inside a sentence: options, dotted names, names of files.
-CODE = re.compile(r'(?<![\w.`/-])(--?[a-z][a-z-]*\w|~/\w+|[a-z]\w*(?:\.[a-z]\w*)+|\w+_\w+)'
+CODE = re.compile(r'(?<![\w.`/-])(--[a-z][a-z-]*\w|-[a-z]|~/\w+|[a-z]\w*(?:\.[a-z]\w*)+|\w+_\w+)'
                   r'(?![\w`])')
 NO_VALUE = '–'
 
