@@ -6,6 +6,7 @@ rosdoc2 copies this folder elsewhere and puts the package on ``sys.path`` itself
 
 from importlib import import_module
 from pathlib import Path
+import re
 import sys
 
 HERE = Path(__file__).resolve().parent
@@ -39,17 +40,32 @@ napoleon_google_docstring = False
 def setup(app):
     """Write the reference pages before Sphinx looks for its sources."""
     import_module('_generate').write_pages(Path(app.srcdir) / 'reference' / 'generated')
+    app.connect('doctree-read', set_dashes)
     app.connect('autodoc-process-docstring', protect, priority=400)
     app.connect('autodoc-process-docstring', restore, priority=600)
 
 
+def set_dashes(app, doctree):
+    """Set a dash between the name of an argument and its description, as smartquotes would."""
+    for text in list(doctree.findall(lambda node: isinstance(node, str) and node == ' -- ')):
+        text.parent.replace(text, type(text)(' – '))
+
+
+# A page that a docstring cites.
+PAGE = re.compile(r'(?<!`)\bdocs/([\w/]+)\.md')
 # Stands for a colon while napoleon, with the priority 500, reads a docstring.
 COLON = '\ue000'
 
 
 def protect(app, what, name, thing, options, lines):
-    """Keep bars, for |x| is no substitution, and colons, before which napoleon sees a type."""
-    lines[:] = [line if '``' in line else line.replace('|', '\\|') for line in lines]
+    """
+    Prepare a docstring: pages that it cites become links.
+
+    Bars are kept, because |x| is not a substitution, and so are colons, because napoleon takes
+    what stands before the first colon of a property for its type.
+    """
+    lines[:] = [line if '``' in line else PAGE.sub(r':doc:`\g<0> </\1>`',
+                                                   line.replace('|', '\\|')) for line in lines]
     if what in ('attribute', 'property'):
         lines[:] = [line.replace(':', COLON) for line in lines]
 

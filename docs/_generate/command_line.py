@@ -23,8 +23,9 @@ def pages():
     found = {f'command_line/{name}.md': _page(name, one) for name, one in parsers.items()}
     rows = [(f'[{code(name)}](command_line/{name}.md)', text(verb.HELP))
             for name, verb in VERBS.items()]
-    found['command_line.md'] = page('Command line', INTRODUCTION, *table(('verb', 'what it does'),
-                                    rows), *contents(f'command_line/{name}' for name in parsers))
+    found['command_line.md'] = page(
+        'Command line', INTRODUCTION, *table(('verb', 'what it does'), rows),
+        *contents(f'{name} <command_line/{name}>' for name in parsers))
     return found
 
 
@@ -51,7 +52,8 @@ def _page(name, one):
             (code(_name(action)), _help(action, one)) for action in placed])]
     if named:
         lines += ['## Options', '', *table(('option', 'default', 'meaning'), [
-            (_option(action), _default(action), _help(action, one)) for action in named])]
+            (_option(action), _default(action), _help(action, one)) for action in named],
+            'options')]
     return page(f'ins_sim {name}', *lines)
 
 

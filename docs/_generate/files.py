@@ -41,7 +41,7 @@ def _file(file):
         lines += table(('for', 'parameter', 'value', 'meaning'), [
             ('all nodes' if node == EVERY_NODE else code(node), code(key), _value(value),
              text(_meaning(node, key))) for node, key, value in file.values])
-    return page(f'config/{file.name}.yaml', *lines)
+    return page(f'{file.name}.yaml', *lines)
 
 
 def _value(value):

@@ -53,7 +53,7 @@ def _node(name, one):
         if uses:
             lines += [f'## {title}', '', *table(('topic', 'type', 'when'), [
                 (_topic_link(use.topic, '../'), code(use.topic.type_name),
-                 text(use.condition) or 'always') for use in uses])]
+                 text(use.condition) or 'always') for use in uses], 'uses')]
     if one.services:
         lines += ['## Services', '', *table(('service', 'type', 'what it does'), [
             _service(service) for service in one.services])]

@@ -21,10 +21,18 @@ def code(words):
     return f'`{words}`'.replace('|', '\\|')
 
 
-def table(head, rows):
-    """Return the lines of a table; head and cells are Markdown."""
-    return [f'| {" | ".join(head)} |', f'|{"---|" * len(head)}',
-            *(f'| {" | ".join(row)} |' for row in rows), '']
+def table(head, rows, kind=''):
+    """
+    Return the lines of a table; head and cells are Markdown.
+
+    A table of more than two columns folds on a narrow screen, by its class in the style sheet;
+    kind: a further class, which gives the columns labels there.
+    """
+    lines = [f'| {" | ".join(head)} |', f'|{"---|" * len(head)}',
+             *(f'| {" | ".join(row)} |' for row in rows), '']
+    if len(head) < 3:
+        return lines
+    return [f':::{{container}} fold {kind}'.rstrip(), '', *lines, ':::', '']
 
 
 def page(title, *lines):

@@ -26,7 +26,7 @@ def pages():
              str(len(flatten(cls)))) for name, cls in READERS.items()]
     found['parameters.md'] = page(
         'Parameters', INTRODUCTION, *table(('read by', 'kind', 'parameters'), rows),
-        *contents(f'parameters/{name}' for name in READERS))
+        *contents(f'{name} <parameters/{name}>' for name in READERS))
     return found
 
 
@@ -42,9 +42,8 @@ def _page(name, cls):
             lines += [f'{"##" if "." not in group else "###"} {group}', '',
                       text(first_sentence(sentence_of(groups[group]))), '']
         if own:
-            # The class lets the style sheet fold the table on a narrow screen.
-            lines += [':::{container} parameters', '', *table(HEAD, [
-                _row(full, f, full in cls.SETTABLE) for full, f in own.items()]), ':::', '']
+            lines += table(HEAD, [_row(full, f, full in cls.SETTABLE)
+                                  for full, f in own.items()], 'parameters')
     return page(f'Parameters of {title}', *lines)
 
 
