@@ -1,9 +1,10 @@
 """Write the reference pages of the site from the code; ``docs/conf.py`` calls `write_pages`."""
 
-from . import command_line, exit_codes, files, interfaces, parameters, python_api
+from . import (command_line, exit_codes, files, interfaces, launch_files, parameters,
+               python_api)
 
 # One module for each kind of page.
-KINDS = (interfaces, parameters, command_line, python_api, files, exit_codes)
+KINDS = (interfaces, parameters, launch_files, command_line, python_api, files, exit_codes)
 
 
 def pages():

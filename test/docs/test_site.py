@@ -16,6 +16,7 @@ from urllib.parse import unquote, urlsplit
 import ins_sim
 from ins_sim.cli.known_settings import READERS
 from ins_sim.cli.main import VERBS
+from ins_sim.launching.arguments import REPLAY, SIMULATION
 from ins_sim.messages.interfaces import INTERFACES
 from ins_sim.messages.topic_contents import CONTENTS
 from ins_sim.resources import config_names
@@ -42,10 +43,14 @@ def built(tmp_path_factory):
     # A copy, as rosdoc2 makes one: the build writes its reference pages into its source.
     shutil.copytree(ROOT / 'docs', folder / 'docs',
                     ignore=shutil.ignore_patterns('generated', '__pycache__'))
+    # The site is built without ROS, as on a machine that has none.
+    (folder / 'without').mkdir()
+    (folder / 'without' / 'rclpy.py').write_text("raise RuntimeError('rclpy was imported')\n")
+    path = os.pathsep.join([str(folder / 'without'), str(ROOT)])
     ended = subprocess.run(
         [sys.executable, '-m', 'sphinx', '-W', '--keep-going', '-q', '-b', 'html',
          str(folder / 'docs'), str(folder / 'html')], capture_output=True, text=True,
-        env={**os.environ, 'PYTHONPATH': str(ROOT)})
+        env={**os.environ, 'PYTHONPATH': path})
     return folder / 'html', ended
 
 
@@ -185,6 +190,15 @@ def test_every_verb_has_a_page(verb, site):
             assert word in ('-h', '--help') or any(word in cell.split() or f'{word},' in cell
                                                    for cell in first), word
     assert f'command_line/{verb}.html"' in read(site / GENERATED / 'command_line.html')
+
+
+def test_every_launch_argument_is_described(site):
+    """The page of the launch files has each argument of each shipped file."""
+    names = [row[0] for row in Tables(read(site / GENERATED / 'launch_files.html')).rows if row]
+    assert names == [argument.name for argument in (*SIMULATION, *REPLAY)]
+    shipped = {path.name for path in (ROOT / 'launch').glob('*.launch.py')}
+    headings = set(re.findall('<h2>([^<]+)<', read(site / GENERATED / 'launch_files.html')))
+    assert headings == shipped
 
 
 def test_every_node_topic_service_and_file_has_its_entry(site):
