@@ -82,5 +82,5 @@ lock:
 		--output-file requirements.lock setup.py
 
 clean:
-	rm -rf .venv .venv.lock build dist install log *.egg-info .pytest_cache .hypothesis
+	rm -rf docs/reference/generated .venv .venv.lock build dist install log *.egg-info .pytest_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -12,7 +12,31 @@ import sys
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 IMPORTING = '<frozen importlib._bootstrap>'
 AGAIN_S = 0.002
+
+# The exit codes of the command and of the nodes.
+OK = 0
+FAILED = 1
+BAD_INPUT = 2
+FAULT = 3
+CONSUMER = 4
 INTERRUPTED = 130
+# {code: meaning} of the command; its verbs record and play are nodes.
+COMMAND_CODES = {
+    OK: 'Success.',
+    FAILED: 'A run failed: in demo a node did not start or ended with an error.',
+    BAD_INPUT: 'Bad input: an unknown option, a parameter out of range, a file that is missing or '
+               'cannot be read, a folder that exists already, or too little memory. One sentence '
+               'on standard error says what was expected.',
+    INTERRUPTED: 'Interrupted by Ctrl-C or SIGTERM.'}
+# {code: meaning} of a node.
+NODE_CODES = {
+    OK: 'The run has ended, or SIGINT or SIGTERM ended the node.',
+    BAD_INPUT: 'Bad parameters, arguments or input files, or ROS 2 cannot be imported. The node '
+               'has not started.',
+    FAULT: 'A fault ended the node: a gap, a backwards stamp or a bad message with on_fault stop; '
+           'in recorder a full disk; in player a bag that is damaged.',
+    CONSUMER: 'In lock-step a consumer of pacing.required (or --lock-step) has not acknowledged '
+              'for pacing.timeout_s (or --timeout).'}
 
 
 def command():
@@ -39,7 +63,7 @@ def command():
 def end_at_once():
     """Let signals end this process with code 0, until a node that imports has its own handlers."""
     for number in SIGNALS:
-        signal.signal(number, lambda *_: os._exit(0))
+        signal.signal(number, lambda *_: os._exit(OK))
 
 
 def _interrupt(number, frame):

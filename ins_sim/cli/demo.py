@@ -6,6 +6,7 @@ from pathlib import Path
 import sys
 
 from . import arguments
+from ins_sim.entry import FAILED
 
 HELP = 'run the three nodes over DDS and show the result'
 DESCRIPTION = ('Start the three nodes, run them in lock-step, record their topics into a bag and '
@@ -52,7 +53,7 @@ def run(chosen):
             _part(name, settings, folder / name, console)
         except RuntimeError as error:
             print(f'ins_sim demo: {name}: {error}', file=sys.stderr)
-            return 1
+            return FAILED
     return 0
 
 

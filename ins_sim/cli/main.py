@@ -7,7 +7,7 @@ from . import (convert, demo, describe, export, info, listing, navigate, play, p
                simulate)
 from ins_sim import __version__
 from ins_sim.core.numerics.sentences import tell_warnings
-from ins_sim.entry import command, INTERRUPTED
+from ins_sim.entry import BAD_INPUT, command, INTERRUPTED
 from ins_sim.settings import shown
 from ins_sim.visible_text import visible
 from .studies import (allan, budget, compare_filters, compare_orientation, delay_study, dtg_report,
@@ -64,11 +64,11 @@ def main(arguments=None):
         return VERBS[chosen.verb].run(chosen)
     except (ValueError, OSError) as error:
         _say(chosen.verb, shown.cut(' '.join(str(error).splitlines()), LONGEST))
-        return 2
+        return BAD_INPUT
     except MemoryError as error:
         why = f' ({shown.cut(str(error))})' if str(error) else ''
         _say(chosen.verb, f'there is not enough memory{why}; expected a smaller input')
-        return 2
+        return BAD_INPUT
     except KeyboardInterrupt:
         _say(chosen.verb, 'interrupted; only what is named above was written')
         return INTERRUPTED

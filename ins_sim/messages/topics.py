@@ -127,7 +127,7 @@ GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
 # of another simulator, for truth_adapter; any frames
 OTHER_ODOMETRY = Topic('odom', ODOMETRY, ('odom', 'base_link'))
 ACK = Topic('sim/ack', HEADER)
-STATUS = Topic('sim/status', STRING)
+STATUS = Topic('sim/status', STRING, latched=True)
 # what the generator announces, see run_announcement
 RUN = Topic('sim/run', DIAGNOSTICS, latched=True)
 CLOCK_TOPIC = Topic('/clock', CLOCK)

@@ -8,7 +8,7 @@ from functools import partial
 from importlib import import_module
 import sys
 
-from ins_sim.entry import end_at_once
+from ins_sim.entry import BAD_INPUT, end_at_once
 
 # executable: (module in ``nodes``, class)
 NODES = {
@@ -65,7 +65,7 @@ def main(words):
         given = f'unknown node {words[0]!r}; ' if words and words[0] != '--help' else ''
         print(f'{given}usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '
               f'{", ".join(NODES)}', file=sys.stderr)
-        return 2
+        return BAD_INPUT
     return run_node(words[0], words)
 
 

@@ -3,6 +3,7 @@
 import sys
 
 from ins_sim import resources
+from ins_sim.entry import BAD_INPUT, OK
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten
 from ins_sim.visible_text import visible
@@ -10,7 +11,6 @@ from ins_sim.visible_text import visible
 ROS_ARGS, ROS_END, FILE_FLAG = '--ros-args', '--', '--params-file'
 INSIDE, OUTSIDE, BOUND = range(3)
 HELP = ('-h', '--help')
-BAD = 2
 
 
 def answer(name, words):
@@ -22,12 +22,12 @@ def answer(name, words):
     others = _others(words)
     if any(word in HELP for word in others):
         print('\n'.join(_help_lines(name)))
-        return 0
+        return OK
     if others:
         print(f'{name}: unknown argument {visible(others[0])}; expected ROS arguments behind '
               f'{ROS_ARGS}, such as -p NAME:=VALUE (--help lists the parameters)',
               file=sys.stderr)
-        return BAD
+        return BAD_INPUT
     return None
 
 

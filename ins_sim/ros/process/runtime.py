@@ -13,13 +13,12 @@ import gc
 import signal
 import sys
 
+from ins_sim import entry
 from ins_sim.visible_text import visible
 from ..transport.repairs import drain_publishers, use_profile
 
-EXIT_OK = 0
-EXIT_PARAMETERS = 2
-EXIT_FAULT = 3
-EXIT_CONSUMER = 4
+EXIT_OK, EXIT_PARAMETERS = entry.OK, entry.BAD_INPUT
+EXIT_FAULT, EXIT_CONSUMER = entry.FAULT, entry.CONSUMER
 # the alarm: a signal of the command line that came amid its imports
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 POLL_S = 0.2
