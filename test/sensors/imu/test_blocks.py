@@ -144,7 +144,7 @@ def test_rotors_that_run_away_lose_no_reading():
 
         pair.settle = settle
     readings, index, fault = pushed(single, truth)
-    with pytest.raises(StreamFault, match='the rotors of the gyros have run away') as raised:
+    with pytest.raises(StreamFault, match='the rotors of the gyros have diverged') as raised:
         imu.advance(truth)
     assert str(raised.value) == str(fault) and raised.value.index == index and 1 < index < 99
     assert as_list(raised.value.readings) == listed(readings)

@@ -115,7 +115,7 @@ def test_rotors_that_run_away_are_a_fault():
         s = settings(values, duration_s=200.0, source='motion')
         motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
                              s.motion_generator.earth)
-        with pytest.raises(StreamFault, match='the rotors of the gyros have run away at') as fault:
+        with pytest.raises(StreamFault, match='the rotors of the gyros have diverged at') as fault:
             list(imu_blocks(s, motion))
     assert fault.value.restart
 
