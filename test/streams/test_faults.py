@@ -144,13 +144,13 @@ def test_a_lost_truth_is_told_from_another_rate(navigator, truth):
     for k in (4, 5):
         navigator.push_truth(*truth(k)[1])
     navigator.push_imu(3 * DT, *truth(3)[0][2:])
-    assert 'that sample of the truth was lost, as where a node cannot keep up and a queue runs ' \
-           'over: expected a lower rate_hz' in str(navigator.faults.pop())
+    assert 'that truth sample was lost, probably because a node cannot keep up and a queue ' \
+           'overflowed: expected a lower rate_hz' in str(navigator.faults.pop())
     navigator.reset()
     navigator.push_imu(4 * DT, *truth(4)[0][2:])
     navigator.push_imu(5 * DT - DT // 8, *truth(5)[0][2:])
     assert 'expected a truth rate that is a multiple of the IMU rate, both from the same start: ' \
-           'rate_hz must go together in all nodes' in str(navigator.faults.pop())
+           'rate_hz must be consistent in all nodes' in str(navigator.faults.pop())
 
 
 def test_another_rate_names_rate_hz(navigator, truth):

@@ -115,7 +115,7 @@ def test_a_grid_of_a_stray_is_left():
     check(steady, None)
     # a reading may be of the past, or late by negative delays
     check(steady, 2 * DT)
-    with pytest.raises(StreamFault, match='goes on 0.009999999 s beside the instants') as raised:
+    with pytest.raises(StreamFault, match='is 0.009999999 s off the instants') as raised:
         check(steady, 5 * DT + 1)
     assert raised.value.restart
     # twice and half as fast: every second sample, or reading, is one of the grid
