@@ -107,7 +107,7 @@ def test_jitter_strays_repeats_and_gaps():
     assert np.setdiff1d(states.t_ns, said.t_ns) == t_ns[1701]
     said.solved = [s for s in said.solved if s.t_ns != t_ns[1700]]
     same_bits(said, states[states.t_ns != t_ns[1701]])
-    for part in ('holds what is no number', 'repeats the stamp', 'goes back from',
+    for part in ('holds NaN or infinity', 'repeats the stamp', 'goes back from',
                  'ahead of its time', 'bridged by straight lines'):
         assert said.has(part), part
     # the first one where two samples of the standstill are left out
