@@ -82,7 +82,7 @@ def test_statistics_that_have_travelled_are_the_same():
     np.testing.assert_array_equal(both.statistics.histogram, whole.statistics.histogram)
     np.testing.assert_array_equal(both.horizontal.histogram, whole.horizontal.histogram)
     np.testing.assert_allclose(both.statistics.mean, whole.statistics.mean, rtol=1e-9, atol=1e-15)
-    with pytest.raises(ValueError, match='do not go together'):
+    with pytest.raises(ValueError, match='cannot be joined'):
         joined(parts[::-1])
 
 
