@@ -39,9 +39,7 @@ class PlaceFix(NamedTuple):
 
 
 class FixTrack:
-    """
-    Fixes in the order of their stamps; a fix with an earlier stamp than the last is ignored.
-    """
+    """Fixes in the order of their stamps; a fix older than the last one is ignored."""
 
     def __init__(self):
         self.fixes, self._new = deque(maxlen=MOST), deque(maxlen=MOST)
