@@ -57,6 +57,14 @@ def increments_of(state, readings, first, dt, spin, integrated):
     Write rotation vector and velocity increment of a sample, and its integrals, into the state.
 
     Return whether the next step is a small one for all runs and no sines must be recomputed.
+
+    Parameters
+    ----------
+    state : NUMBERS rows of LANES, flat
+    readings, first : omega and f as in ``advance``, and the index where this sample begins
+    dt : length of the interval, s
+    spin : rotation rate of the Earth, rad/s
+    integrated : whether readings are integrals of the rate (output ``integrated``)
     """
     small, limit = 0, mechanization.TURN / (0.5 * dt)
     for lane in range(LANES):

@@ -25,7 +25,11 @@ NOISE = 'philox4x64-10 box-muller, version 2'
 
 
 def indexed_noise(seed, run, name, width=None, block=BLOCK):
-    """Return the stream of that name; streams of other names, runs or seeds are independent."""
+    """
+    Return the IndexedNoise of a name; streams of other names, runs or seeds are independent.
+
+    For the parameters see `IndexedNoise`.
+    """
     return IndexedNoise(seed, run, name, width, block)
 
 

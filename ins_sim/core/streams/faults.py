@@ -81,6 +81,12 @@ def check_interval(name, t_ns, last_ns, expected_ns):
 
     A sample with a repeated stamp is dropped; a backwards stamp, a gap or another rate needs a
     restart.
+
+    Parameters
+    ----------
+    name : name of the stream, for the message
+    t_ns, last_ns : stamps of this sample and of the one before, ns
+    expected_ns : expected step, ns
     """
     step = t_ns - last_ns
     if is_regular(step, expected_ns):

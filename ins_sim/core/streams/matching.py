@@ -86,7 +86,15 @@ class MatchedStreams:
         return []
 
     def push_imu(self, t_ns, omega, f):
-        """Take the IMU sample of stamp t_ns (motion time)."""
+        """
+        Take an IMU sample and return the outputs that become possible.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega : mean angular rate, rad/s
+        f : mean specific force, m/s^2
+        """
         check_finite('imu', t_ns, omega, f)
         if self._repeat is not None and t_ns == self._repeat[0]:
             return self._repeat[1]

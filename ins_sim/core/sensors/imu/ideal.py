@@ -104,7 +104,14 @@ class Triads:
         return ImuSamples(t_ns, omega, _picked(u, self._accel))
 
     def instant(self, t_ns, omega, f):
-        """Return omega, f and parity (or None) for the rate and specific force of one instant."""
+        """
+        Return omega, f and parity (or None) of the first sample, which has no interval before it.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega, f : angular rate (rad/s) and specific force (m/s^2) at that instant
+        """
         if self.pair is None:
             return omega, f, None
         rate, parity = self.pair.first(t_ns, omega, f)

@@ -189,6 +189,12 @@ def white_variance(settings, dt_s, name=''):
     Return the variance that is published with a sample, by axis, (rad/s)^2 or (m/s^2)^2.
 
     It is that of the noise, unless the setting reported_sigma is not negative; then its square.
+
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
+    dt_s : sampling period, s
+    name : prefix of the keys in messages
     """
     model = triad_model(settings, dt_s, name)
     return reported_variance(noise_variance(model, dt_s), model.reported_sigma)

@@ -194,7 +194,15 @@ def pass_lag(lag, start, u):
 
 
 def count_pulses(increment, quantum, per_dt):
-    """Return the reading of the whole pulses in an increment, and the remainder."""
+    """
+    Return the reading of the whole pulses in an increment, and the remainder.
+
+    Parameters
+    ----------
+    increment : integral of the input plus the last remainder, rad or m/s
+    quantum : weight of a pulse, rad or m/s
+    per_dt : reciprocal of the sampling period, 1/s
+    """
     pulses = increment / quantum + 0.5
     if abs(pulses) < WHOLE:
         pulses = math.floor(pulses) * 1.0

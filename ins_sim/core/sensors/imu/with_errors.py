@@ -75,7 +75,14 @@ class InstrumentErrors:
         self.gyro.state, self.accelerometer.state = before.gyro.state, before.accelerometer.state
 
     def step(self, t_ns, omega, f):
-        """Return omega, f of the instrument for the readings of the ideal IMU at time t_ns."""
+        """
+        Return omega and f with errors.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega, f : reading of the ideal IMU, rad/s and m/s^2
+        """
         index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
         return (self.gyro.step(index, omega, f, t_s),
                 self.accelerometer.step(index, f, f, t_s))

@@ -116,7 +116,15 @@ class GyroPair:
         self.gyros[0].state, self.gyros[1].state = state
 
     def inject(self, channel, bias_rad_s=0.0, scale=1.0):
-        """Let a channel (name or index) read its rate times scale, plus bias_rad_s."""
+        """
+        Inject a fault: the channel reads its rate times scale, plus a bias.
+
+        Parameters
+        ----------
+        channel : index 0 to 3, or one of CHANNELS
+        bias_rad_s : rad/s
+        scale : 1 for none, 0 for a dead channel
+        """
         if channel in CHANNELS:
             channel = CHANNELS.index(channel)
         if channel not in range(4):

@@ -167,6 +167,11 @@ def delay_velocity(a, b, geometry):
     Return the speeds by delays: along the trace of X1 in the plane of motion, and along Z1, m/s.
 
     Equation (3), which is exact: kappa a/(a^2 + b^2), and -s2 kappa b/(a^2 + b^2).
+
+    Parameters
+    ----------
+    a, b : as `slowness` returns them, s/m
+    geometry : Geometry
     """
     scale = geometry.kappa / (a * a + b * b)
     return scale * a, -geometry.s2 * scale * b

@@ -53,7 +53,15 @@ def _piece(start, end):
 
 
 def quintic(h, p0, v0, a0, p1, v1, a1):
-    """Return c0...c5 of the quintic with given values and first two derivatives at both ends."""
+    """
+    Return c0...c5 of the quintic with given values and first two derivatives at both ends.
+
+    Parameters
+    ----------
+    h : length of the interval, s
+    p0, v0, a0 : position (m), velocity and acceleration at its start
+    p1, v1, a1 : the same at its end
+    """
     n = 1.0 / h
     half = 0.5 * a0
     dp = (p1 - p0 - h * (v0 + h * half)) * n * n * n
