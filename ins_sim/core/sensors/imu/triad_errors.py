@@ -109,9 +109,9 @@ class TriadErrors:
     @property
     def at_once(self):
         """
-        Return (geometry, response, AdditiveNoise) if the triad carries nothing, otherwise None.
+        Return (geometry, response, AdditiveNoise) if the triad has noise and no further term.
 
-        A reading is then the result of ``respond`` with the first two, plus the noise.
+        A reading is then ``respond`` with the first two, plus the noise. Otherwise return None.
         """
         if self._noise is None or any((self._by_force, self._by_temperature, self._lags,
                                        self._most, self._quantum)):
