@@ -1,7 +1,7 @@
 """
 The linear model of a gyro channel, and the sums over a record that least squares needs.
 
-A channel i with delay tau and errors of bias, scale factor and sensitive axis reads
+A channel i with delay tau and errors of bias, scale factor and sensitive axis reads::
 
     y_i = w_i - tau w_i' + s w_i + m_ij w_j + m_ik w_k + a |w_i| + b,
 

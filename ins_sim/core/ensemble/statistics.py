@@ -109,7 +109,7 @@ class ErrorStatistics:
         return both
 
     def arrays(self, name):
-        """Return {name_...: array}; of the histogram only the bins that are not empty."""
+        """Return ``{name_...: array}``; of the histogram only the bins that are not empty."""
         filled = np.flatnonzero(self.histogram)
         return {f'{name}_count': self.moments.count, f'{name}_mean': self.moments.mean,
                 f'{name}_comoment': self.moments.comoment, f'{name}_bins': filled,

@@ -51,14 +51,14 @@ def run(loop, count, inputs, out, plain=None):
 
     Parameters
     ----------
-    loop : function (*inputs, out) of a module of this package
+    loop : function ``(*inputs, out)`` of a module of this package
         It reads its array inputs and writes out by index, as flat sequences. Plain Python passes
         lists, the compiled copy flat views; the bits are the same.
     count : number of samples
     inputs : tuple of arrays, tuples, numbers and None
     out : C-contiguous array of float
-    plain : function (*inputs, out) of whole arrays with the same bits, to be used instead of the
-        loop if that is not compiled
+    plain : function ``(*inputs, out)`` of whole arrays with the same bits, to be used instead of
+        the loop if that is not compiled
 
     """
     fast = compiled_if_it_pays(loop, count)

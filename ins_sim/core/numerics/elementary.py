@@ -52,7 +52,7 @@ def float_as_number(condition):
 
 
 def sine_cosine_kernel(r):
-    """Return sin r and cos r for |r| <= pi/4."""
+    """Return sin r and cos r for r from -pi/4 to pi/4."""
     z = r * r
     s = r + r * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (
         -1.98412698298579493134e-04 + z * (2.75573137070700676789e-06 + z * (
@@ -144,7 +144,7 @@ def general_atan2(y, x):
 
 
 def arc_tangent_rest(t):
-    """Return arctan t - t for |t| <= 0.66."""
+    """Return arctan t - t for t from -0.66 to 0.66."""
     z = t * t
     p = z * ((((-8.750608600031904122785e-01 * z - 1.615753718733365076637e+01) * z
                - 7.500855792314704667340e+01) * z - 1.228866684490136173410e+02) * z

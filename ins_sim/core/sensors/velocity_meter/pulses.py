@@ -4,7 +4,7 @@ Mode ``signal`` of the velocity meter: the field at three antennas and its corre
 A frozen random field, complex and Gaussian, moves past the phase centres r_i with the velocity v
 in the plane of motion. Lengths are in units of the correlation length L = lambda/(4 pi
 sigma_theta) of each axis, and the field itself decays over the time T_d. Signals i and j with a
-time difference t then have the correlation
+time difference t then have the correlation::
 
     R_ij(t) = exp(-|r_i - r_j - v t|^2/2 - t^2/(2 T_d^2))
             = G_ij exp(-w^2 (t - t_i + t_j)^2/2),   w^2 = |v|^2 + 1/T_d^2,  t_i = r_i.v/w^2

@@ -179,7 +179,7 @@ def delay_velocity(a, b, geometry):
 
 def sideslip(r12, r23, a, b, geometry, tan_alpha):
     """
-    Return the sideslip beta by amplitudes (equation 5), rad, or None if |sine| > 1.
+    Return the sideslip beta by amplitudes (equation 5), rad, or None for a sine beyond 1.
 
     sin(2 beta) = s2 (R12 - R23)/(2 X0 Y0 (a^2 + b^2)) with X0 cos(alpha) for X0 and a_K for a;
     k_b is 1 for either kappa.

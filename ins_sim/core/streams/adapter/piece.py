@@ -55,8 +55,9 @@ def rate_of(phi, phi_rate):
     """
     Return the body rate, rad/s, for a rotation vector phi (rad) and its derivative (rad/s).
 
-    w = phi' - (1 - cos a) / a^2 phi x phi' + (a - sin a) / a^3 phi x (phi x phi'), a = |phi|
-    (right Jacobian of SO(3); docs/theory/external_truth.md).
+    By the right Jacobian of SO(3) (docs/theory/external_truth.md), with a the length of phi::
+
+        w = phi' - (1 - cos a) / a^2 phi x phi' + (a - sin a) / a^3 phi x (phi x phi')
     """
     a2 = phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2]
     if a2 < SMALL2:
