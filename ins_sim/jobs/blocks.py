@@ -3,8 +3,8 @@
 from collections import deque
 from concurrent.futures import CancelledError, FIRST_COMPLETED, wait
 
-# Attempts to compute a block whose worker ends before the study is given up. During the last one
-# no other block is running, so that this block is certainly the cause.
+# Number of attempts to compute a block whose worker ends. During the last one no other block is
+# running, so that this block is certainly the cause.
 ATTEMPTS = 3
 # Blocks submitted for each that is computed at a time: the next one already waits at the worker.
 AHEAD = 2
@@ -46,7 +46,7 @@ def run_blocks(work, blocks, executor, store=None, progress=None):
         if store is not None and number in store:
             done[number] = store.load(number)
             if done[number] is None:
-                # damaged on disk
+                # The file is damaged; compute the block again.
                 queue.waiting.appendleft(number)
                 del done[number]
         while number not in done:

@@ -17,11 +17,22 @@ COUNT_S = 5.0
 
 class Cluster:
     """
-    A Dask cluster, which itself computes the block of a dead worker on another one.
+    A Dask cluster; it recomputes the blocks of a dead worker on another one by itself.
 
-    address: of its scheduler, such as tcp://host:8786.  LOST: the error of a future whose workers
-    have ended several times; width: number of threads.  Raises ValueError if the cluster cannot
-    be reached, has no worker, or has other versions of Python, NumPy or ins_sim.
+    Parameters
+    ----------
+    address : address of the scheduler, such as tcp://host:8786
+
+    Attributes
+    ----------
+    LOST : the error of a future whose workers have ended several times
+    width : number of threads
+
+    Raises
+    ------
+    ValueError
+        If the cluster cannot be reached, has no worker, or has other versions of Python, NumPy or
+        ins_sim.
     """
 
     def __init__(self, address):
@@ -53,7 +64,7 @@ class Cluster:
             with warnings.catch_warnings():
                 # _check_versions compares the versions and refuses other ones.
                 warnings.simplefilter('ignore')
-                # A client of no address at all would wait for itself when it is deleted.
+                # A Client with an empty address would block when it is deleted.
                 distributed.comm.get_address_host_port(self._address)
                 self._client = distributed.Client(self._address, timeout=CONNECT_S,
                                                   set_as_default=False)
@@ -109,13 +120,13 @@ class Cluster:
 
 
 def own_versions():
-    """Return {name: version} of the programs on which the numbers depend."""
+    """Return {name: version} of the software that determines the numbers."""
     return {'Python': '.'.join(platform.python_version_tuple()[:2]), 'NumPy': np.__version__,
             'ins_sim': __version__}
 
 
 def _check_versions(client, address, workers):
-    """Raise ValueError where the scheduler or one of some workers does not have our versions."""
+    """Raise ValueError if the scheduler or one of these workers has other versions than ours."""
     packages = client.get_versions(check=False)
     _check_packages(f'the scheduler at {address}', packages['scheduler'])
     for worker in workers:

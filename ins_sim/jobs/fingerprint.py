@@ -15,8 +15,12 @@ def fingerprint(settings, **inputs):
     """
     Return {name: value} of everything that determines the numbers of a study, for ``BlockStore``.
 
-    settings: {name of a node: its settings}; inputs: everything else, such as the number of runs.
-    Of a recorded motion the content of the file counts.  Values are JSON types.
+    Values are JSON types. For a recorded motion the content of the file is included.
+
+    Parameters
+    ----------
+    settings : {name of a node: its settings}
+    inputs : everything else, such as the number of runs
     """
     found = {'ins_sim': __version__, 'noise': NOISE, **inputs}
     for node, group in settings.items():
@@ -29,9 +33,10 @@ def fingerprint(settings, **inputs):
 
 def array_digest(arrays):
     """
-    Return the SHA-256, hexadecimal, of {name: array}: of names, types, shapes and bytes.
+    Return the SHA-256 of {name: array} as hexadecimal text.
 
-    A column on disk, which may be longer than memory, is read block by block.
+    It covers names, types, shapes and bytes. Columns on disk, which may exceed the memory, are
+    read block by block.
     """
     total = sha256()
     for name, array in sorted(arrays.items()):

@@ -30,7 +30,10 @@ class LocalProcesses:
     """
     Local processes, which end when this process ends.
 
-    LOST: the error of a future whose process has ended; width: number of processes.
+    Attributes
+    ----------
+    LOST : the error of a future whose process has ended
+    width : number of processes
     """
 
     LOST = (BrokenProcessPool,)

@@ -152,7 +152,7 @@ def test_a_32_bit_clock_that_wraps_is_unwrapped(unit_ns, name):
     t_ns = period - 10 * step + 7 * unit_ns + np.arange(60) * step
     wrapped, said = unwrap_clock(t_ns % period)
     assert np.array_equal(wrapped, t_ns)
-    assert f'32 bits of {name}) begins again 1 times' in said
+    assert f'32 bits of {name}) wraps around 1 times' in said
     back = np.array([0, 10, 20, 5, 30]) * step
     assert unwrap_clock(back) == (pytest.approx(back), '')
 

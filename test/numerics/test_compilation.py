@@ -1,4 +1,4 @@
-"""Compiled copies of plain functions, and what is said where they cannot be had."""
+"""Compiled copies of plain functions, and the messages if they are not available."""
 
 import logging
 import os
@@ -23,7 +23,7 @@ def numba():
 
 
 def python(script, **environment):
-    """Return what a new process writes to standard error and output."""
+    """Return standard error and output of a new process."""
     done = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True,
                           env={**os.environ, **environment}, check=False)
     assert done.returncode == 0, done.stderr
@@ -105,7 +105,7 @@ def test_another_source_has_another_folder(numba, tmp_path, monkeypatch):
 
 
 def fill(first, values, out):
-    """Sum up: out[k] = first + values[0] + ... + values[k]."""
+    """Compute cumulative sums: out[k] = first + values[0] + ... + values[k]."""
     for k in range(len(values)):
         first = first + values[k]
         out[k] = first

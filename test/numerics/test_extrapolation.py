@@ -1,4 +1,4 @@
-"""The step by extrapolation: its order, and polynomials, which it integrates exactly."""
+"""The extrapolated step: its order, and its exactness for polynomials."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 
 
 def test_the_order_is_eight():
-    """A pendulum of harmonic motion: half the step leaves 2^-9 of the error of one step."""
+    """The order is eight: half the step leaves 2^-9 of the error of one step for an oscillator."""
     def rates(t, y):
         return y[1], -y[0]
 
@@ -20,6 +20,6 @@ def test_the_order_is_eight():
 
 
 def test_polynomials_are_integrated_exactly():
-    """Up to the seventh degree, to rounding."""
+    """Polynomials up to the seventh degree are integrated exactly, to rounding."""
     x, = extrapolated_step(lambda t, y: (8.0 * t ** 7 - 3.0 * t * t,), 1.0, (2.0,), 1.5)
     assert x == pytest.approx(2.0 + 2.5 ** 8 - 1.0 - 2.5 ** 3 + 1.0, rel=1e-14)

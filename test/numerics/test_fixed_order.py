@@ -1,4 +1,4 @@
-"""Small matrices in a fixed order against SciPy, mpmath and their definitions."""
+"""Small matrices in a fixed order of operations, against SciPy, mpmath and their definitions."""
 
 import math
 
@@ -13,7 +13,7 @@ from ins_sim.core.numerics.fixed_order import (applied, balance, dot, exponentia
 
 
 def draws(count, size=1.0):
-    """Yield pairs of random square matrices of 1 to 7 rows, real and complex in turn."""
+    """Yield pairs of random square matrices with 1 to 7 rows, alternately real and complex."""
     rng = np.random.default_rng(4)
     for k in range(count):
         n = int(rng.integers(1, 8))
@@ -23,14 +23,14 @@ def draws(count, size=1.0):
 
 
 def test_products():
-    """To rounding; one of both may be real, and they need not be square."""
+    """Products are right to rounding for real, complex and mixed, also rectangular matrices."""
     for a, b in draws(40):
         for left, right in ((a, b), (a.real, b), (a, b[:, :1].real), (a[:1], b)):
             np.testing.assert_allclose(product(left, right), left @ right, rtol=0, atol=1e-14)
 
 
 def test_sums_are_taken_in_the_order_of_the_indices():
-    """Bit for bit those of a loop over floats."""
+    """Products have the bits of a loop over floats in the order of the indices."""
     for a, b in draws(20):
         expected = [[complex(*_one(row, column)) for column in b.T.tolist()]
                     for row in a.tolist()]
@@ -38,7 +38,7 @@ def test_sums_are_taken_in_the_order_of_the_indices():
 
 
 def _one(row, column):
-    """Return the sums of the four products of real parts."""
+    """Return the sums of the four products of real and imaginary parts."""
     sums = [0.0] * 4
     for k, (p, q) in enumerate(zip(row, column)):
         p, q = complex(p), complex(q)
@@ -48,7 +48,7 @@ def _one(row, column):
 
 
 def test_solutions():
-    """Of vectors and matrices; a zero on the diagonal is not taken as pivot."""
+    """``solve`` is right for vectors and matrices, also with a zero on the diagonal."""
     for a, b in draws(40):
         for right in (b, b[:, 0]):
             residual = np.abs(a @ solve(a, right) - right).max()
@@ -59,9 +59,10 @@ def test_solutions():
 @pytest.mark.parametrize('size', [1e-3, 0.1, 1.0, 5.0, 20.0])
 def test_exponentials_against_mpmath(size):
     """
-    Within 2e-15 times the norm of the matrix: each halving doubles the rounding errors.
+    The matrix exponential has errors below 2e-15 times the norm of the matrix.
 
-    Relative to the largest element, or to 1 where all are smaller.
+    Each halving doubles the rounding errors. Errors are relative to the largest element, or to 1
+    if all are smaller.
     """
     worst = scipy_worst = 0.0
     with mpmath.workdps(60):
@@ -78,7 +79,7 @@ def test_exponentials_against_mpmath(size):
 
 
 def test_balance():
-    """Powers of two, after which no row differs much from its column."""
+    """``balance`` returns powers of two after which rows and columns have similar sizes."""
     a = np.array(((1.0, 1e6, 0.0), (1e-7, 2.0, 1e-3), (0.0, 1e4, 3.0)))
     scale = balance(a)
     assert np.array_equal(np.frexp(scale)[0], [0.5] * 3)
@@ -90,7 +91,7 @@ def test_balance():
 
 
 def test_magnitudes():
-    """Of numbers and arrays."""
+    """``magnitude`` is right for numbers and arrays."""
     assert magnitude(3.0 - 4.0j) == 5.0
     assert magnitude(np.array([3.0 - 4.0j, 1.0j])).tolist() == [5.0, 1.0]
 
@@ -99,7 +100,7 @@ def test_magnitudes():
                                      (20, 2, 2), (20, 20, 20), (1, 300, 2), (6, 20, 6),
                                      (2, 40, 1)])
 def test_real_products_are_sums_in_the_order_of_the_index(n, m, q):
-    """Bit for bit those of a loop in Python, whatever the sizes and the layout."""
+    """Real products have the bits of a Python loop for all sizes and memory layouts."""
     draw = np.random.default_rng(n + m + q)
     a, b = draw.normal(size=(n, m)), draw.normal(size=(q, m)).T
     expected = np.zeros((n, q))
@@ -113,7 +114,7 @@ def test_real_products_are_sums_in_the_order_of_the_index(n, m, q):
 
 
 def test_lengths():
-    """Of a vector and of rows, to the bit of a sum from left to right."""
+    """``length`` of a vector and of rows has the bits of a sum from left to right."""
     rows = np.random.default_rng(1).normal(size=(50, 11))
     expected = []
     for row in rows.tolist():
@@ -127,7 +128,7 @@ def test_lengths():
 
 @pytest.mark.parametrize('size', range(1, 7))
 def test_symmetric_solutions_are_those_of_lapack(size):
-    """Within rounding: a hundred times the condition number at most."""
+    """Symmetric systems are solved as by LAPACK, within 100 ulp times the condition number."""
     draw = np.random.default_rng(size)
     a = draw.normal(size=(size, size))
     s, b = a @ a.T + 0.1 * np.eye(size), draw.normal(size=(size, 3))
@@ -137,13 +138,13 @@ def test_symmetric_solutions_are_those_of_lapack(size):
 
 
 def test_a_singular_matrix_is_refused():
-    """A pivot of zero raises LinAlgError, as LAPACK does."""
+    """A singular matrix raises LinAlgError, as with LAPACK."""
     with pytest.raises(np.linalg.LinAlgError, match='singular'):
         solve(np.ones((2, 2)), np.ones((2, 1)))
 
 
 def test_positive_definite_matrices_are_told_from_others():
-    """Correlations beyond one, zeros and NaN are not; nearly singular ones are."""
+    """Nearly singular matrices are positive definite; correlations above 1, 0, NaN are not."""
     draw = np.random.default_rng(3)
     for size in (1, 2, 8, 20):
         a = draw.normal(size=(size, size))

@@ -1,4 +1,4 @@
-"""Normal numbers of Philox words: the words of NumPy, one set of bits, and their distribution."""
+"""Normal numbers from Philox words: NumPy's words, one set of bits, right distribution."""
 
 import math
 
@@ -22,7 +22,7 @@ def test_arrays_and_floats_have_the_same_bits():
 
 @pytest.mark.parametrize('count', [4, 12, 768])
 def test_compiled_numbers_have_the_bits_of_those_of_numpy(count):
-    """The compiled generator makes its own words."""
+    """Compiled code computes the words itself and gives the bits of those from NumPy."""
     fast = compilation.compiled(normals.fill)
     if fast is None:
         pytest.skip('Numba is not installed')
@@ -33,14 +33,14 @@ def test_compiled_numbers_have_the_bits_of_those_of_numpy(count):
 
 
 def test_one_counter_makes_the_words_of_numpy():
-    """Philox in plain Python, on words that wrap."""
+    """Philox in plain Python, with wrap-around, gives the words of NumPy."""
     with np.errstate(over='ignore'):
         found = normals.philox(normals.U64(7), normals.U64(11), normals.U64(1), *KEY)
     assert [int(w) for w in found] == words(11, 28, kind=1)[24:].tolist()
 
 
 def test_the_numbers_are_normal():
-    """Of 1.2 million: Kolmogorov-Smirnov at 1e-6, moments and tails within 5 standard errors."""
+    """1.2 million numbers: Kolmogorov-Smirnov at 1e-6, moments and tails within 5 sigma."""
     z = indexed_noise(1, 0, 'x', 3).normals(0, 400_000).ravel()
     n, tail = len(z), 2.0 * stats.norm.sf(4.0)
     figures = stats.kstest(z, 'norm').pvalue, stats.skew(z), stats.kurtosis(z), np.sum(abs(z) > 4)
@@ -53,9 +53,9 @@ def test_the_numbers_are_normal():
 
 
 def test_the_ends_of_the_uniform_numbers_are_finite():
-    """The least and the largest word: no infinite radius."""
+    """The smallest and the largest word give finite normal numbers."""
     ends = np.array([0, 0, 2 ** 64 - 1, 2 ** 64 - 1], dtype=np.uint64)
     found = normals.of_words(ends)
     assert np.isfinite(found).all() and found[:2].tolist() == [0.0, 0.0]
-    # the largest radius: 1 - u is 2^-52
+    # The largest radius: 1 - u is 2^-52.
     assert math.hypot(*found[2:]) == pytest.approx(math.sqrt(2.0 * 52.0 * math.log(2.0)))

@@ -16,7 +16,7 @@ from ins_sim.settings.node import EPOCH_S
 import numpy as np
 import pytest
 
-# WMM2025 test values, NCEI: year, height km, latitude and longitude deg, X, Y, Z in nT
+# WMM2025 test values, NCEI: year, height km, latitude and longitude deg, X, Y, Z in nT.
 PUBLISHED = [(2025.0, 0.0, 80.0, 0.0, 6521.6, 145.9, 54791.5),
              (2025.0, 0.0, 0.0, 120.0, 39677.8, -109.6, -10580.2),
              (2025.0, 0.0, -80.0, 240.0, 6117.5, 15751.9, -52022.5),
@@ -26,7 +26,7 @@ PUBLISHED = [(2025.0, 0.0, 80.0, 0.0, 6521.6, 145.9, 54791.5),
 
 @pytest.mark.parametrize('year, height, lat, lon, north, east, down', PUBLISHED)
 def test_the_field_is_the_published_one(year, height, lat, lon, north, east, down):
-    """To the digit that is published, in East, North, Up and tesla."""
+    """The magnetic field has the published WMM2025 values to the last digit, in ENU and tesla."""
     pytest.importorskip('pygeomag')
     field = magnetic_field.magnetic_field(year)
     found = field(math.radians(lat), math.radians(lon), 1e3 * height)
@@ -34,7 +34,7 @@ def test_the_field_is_the_published_one(year, height, lat, lon, north, east, dow
 
 
 def test_a_missing_model_is_said_in_one_sentence(monkeypatch):
-    """Which package is missing, and what brings it."""
+    """If the magnetic model is missing, one sentence names the package and how to get it."""
     monkeypatch.setitem(sys.modules, 'pygeomag', None)
     magnetic_field._model.cache_clear()
     with pytest.raises(ValueError, match='magnetometer.publish is true and pygeomag cannot be '
@@ -47,18 +47,18 @@ def test_a_missing_model_is_said_in_one_sentence(monkeypatch):
     (0.0, 101325.0), (1000.0, 89874.6), (11000.0, 22632.06), (20000.0, 5474.889),
     (32000.0, 868.0187), (47000.0, 110.9063), (51000.0, 66.93887), (71000.0, 3.956420)])
 def test_the_pressure_is_that_of_the_standard_atmosphere(height, expected):
-    """To the digits of the table; higher up it only falls, lower down it only rises."""
+    """The pressure is that of the U.S. Standard Atmosphere 1976 to the digits of the table."""
     assert pressure(height) == pytest.approx(expected, rel=1e-6)
     assert pressure(height - 1.0) > pressure(height) > pressure(height + 1.0)
 
 
 def test_there_is_a_pressure_everywhere():
-    """From the deepest datum to the highest, a number above zero."""
+    """The pressure is positive from the deepest datum to the highest."""
     assert 0.0 < pressure(1e6) < pressure(9e4) < pressure(-500.0) < 1.08e5
 
 
 def test_each_run_has_noise_of_its_own():
-    """The same run the same, another run another, of both sensors."""
+    """Magnetometer and barometer repeat their noise for the same run and differ for other runs."""
     settings = [build(ImuSensorSettings, {'run': run}) for run in (0, 1, 1)]
     for make in (Barometer, lambda s: Magnetometer(s, east)):
         zero, one, again = (np.ravel(make(s).due(0)).tolist() for s in settings)
@@ -71,7 +71,7 @@ def east(lat, lon, height):
 
 
 def test_noise_is_by_index_and_seed():
-    """The first sample of each period, whatever came before; a repeated one is the same."""
+    """The first sample of each period is used; its noise depends on index and seed only."""
     values = {'magnetometer.rate_hz': 20.0, 'barometer.rate_hz': 10.0, 'seed': 3}
     settings = build(ImuSensorSettings, values)
     turned = quaternion.exponential((0.0, 0.0, 0.5 * math.pi))
@@ -87,7 +87,7 @@ def test_noise_is_by_index_and_seed():
         readings.append(found)
     assert readings[0] == readings[1] and len(readings[0]) == 4000
     rows = np.array(list(readings[0].values()))
-    # forward is north: east is to the right, and left is the second axis
+    # Forward is north, so east is to the right, and the second axis is to the left.
     assert rows.mean(axis=0) == pytest.approx([0.0, -5e-5, 0.0], abs=6e-9)
     assert rows.std(axis=0) == pytest.approx([1e-7] * 3, rel=0.05)
     barometer, other = Barometer(settings), Barometer(build(ImuSensorSettings,
@@ -99,7 +99,11 @@ def test_noise_is_by_index_and_seed():
 
 
 def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypatch):
-    """At their own rates, with their variances, once each; a perfect one states a small one."""
+    """
+    The bag of a run contains both sensors at their own rates, with their variances.
+
+    A perfect sensor reports a small variance.
+    """
     monkeypatch.setattr(environment, 'magnetic_field', lambda year: east)
     path = tmp_path / 'bag'
     assert main(['simulate', '--params-file', 'racetrack', '--no-twin', '-p', 'duration_s:=100.0',
@@ -111,7 +115,7 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
         field, air = (bag.arrays(topic.name) for topic in (topics.IMU_MAG, topics.IMU_PRESSURE))
         data, raw = (bag.arrays(topic.name) for topic in (topics.IMU_DATA, topics.IMU_RAW))
         odometry = bag.arrays('ins/odometry')
-    # the truth comes every 10 ms: the first of each 25 ms
+    # The truth arrives every 10 ms; the first sample in each 25 ms is used.
     assert (field['stamp_ns'][:5] - 10**9 * EPOCH_S).tolist() == [
         0, 30_000_000, 50_000_000, 80_000_000, 100_000_000]
     assert len(field) == 4001 and len(air) == 501
@@ -119,7 +123,7 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
     assert field['magnetic_field_covariance'] == pytest.approx(
         np.tile(np.diag([1e-14] * 3).ravel(), (4001, 1)), rel=1e-12)
     assert (air['variance'] == 1e-4).all() and np.ptp(air['fluid_pressure']) < 1e-3
-    # the IMU with the orientation of the INS, and its covariance
+    # The IMU with the orientation of the INS, and its covariance.
     for name in ('angular_velocity', 'linear_acceleration', 'linear_acceleration_covariance'):
         assert np.array_equal(data[name], raw[name])
     assert np.array_equal(data['orientation'], odometry['orientation'])
@@ -128,7 +132,7 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
 
 
 def test_live_nodes_send_the_bytes_of_the_bag(ros_domain, tmp_path, monkeypatch):
-    """The same seed and motion: the same messages, live and offline."""
+    """Live nodes and the offline bag have identical messages for the same seed and motion."""
     pytest.importorskip('rclpy')
     from support.hostile.flight import HostileFlight, NODES
     monkeypatch.setattr(environment, 'magnetic_field', lambda year: east)

@@ -1,4 +1,4 @@
-"""GNSS: its errors have their distributions, its antenna its place, its fixes their instants."""
+"""GNSS: distributions of the errors, position of the antenna, instants of the fixes."""
 
 import math
 
@@ -26,7 +26,7 @@ REST = (math.radians(55.75), math.radians(37.62), 150.0, (0.0,) * 3, (0.0, 0.0, 
 
 
 def gnss(values=None):
-    """Return a Gnss of {dotted name: value}."""
+    """Return a Gnss with these {dotted name: value}."""
     return Gnss(build(GnssSettings, values or {}))
 
 
@@ -38,7 +38,7 @@ def truth_of(kind, t_ns, **more):
 
 
 def samples(truth):
-    """Return [(t_ns, truth)] as push takes them."""
+    """Return [(t_ns, truth)] with the arguments of ``push``."""
     return [(t_ns, (lat, lon, height, v_n, q_nb, rate_on_earth(lat, q_nb, omega, 7.292115e-5)))
             for t_ns, lat, lon, height, v_n, q_nb, omega in zip(*(
                 getattr(truth, name).tolist() for name in ('t_ns', 'lat', 'lon', 'height', 'v_n',
@@ -53,7 +53,7 @@ def errors_at_rest(receiver, n):
 
 
 def test_white_noise_has_its_variances(figures):
-    """20000 fixes: chi-square at 1e-6 in every axis; lag one and cross correlations at 5 sigma."""
+    """White noise of 20000 fixes passes chi-square at 1e-6 and is uncorrelated within 5 sigma."""
     n = 20000
     noise, slip = (1.5, 2.0, 4.0), (0.05, 0.06, 0.1)
     errors = np.concatenate(errors_at_rest(gnss({
@@ -74,10 +74,11 @@ def test_white_noise_has_its_variances(figures):
 
 def test_drift_has_its_correlation_time():
     """
-    Autocorrelation exp(-lag/T) at five lags within 5 standard errors (Bartlett's formula).
+    The drift has the autocorrelation exp(-lag/T) at five lags within 5 standard errors.
 
-    The variance of n samples of a Gauss-Markov process has the relative error
-    sqrt(2 (1 + a^2) / (n (1 - a^2))), a being the correlation of neighbours.
+    The standard errors are those of Bartlett's formula. The variance of n samples of a Gauss-
+    Markov process has the relative error sqrt(2 (1 + a^2) / (n (1 - a^2))), where a is the
+    correlation of neighbouring samples.
     """
     n, time = 60000, 30.0
     sigma = np.array([2.0, 1.0, 3.0])
@@ -104,11 +105,11 @@ def test_drift_has_its_correlation_time():
 @pytest.mark.parametrize('kind', ['two_axis', 'racetrack'])
 def test_the_antenna_moves_as_its_positions_do(kind):
     """
-    Velocity of the antenna against central differences of its positions 10 ms apart.
+    The velocity of the antenna equals central differences of its positions 10 ms apart.
 
-    Their error is h^2/6 times the third derivative of the position: w^3 l of the lever arm at
-    at most 2 rad/s, and at most 1 m/s^3 of the flight; beside 2e-9 m of rounding over 2 h, and
-    the curvature of the Earth, v l / R = 4e-4 m/s in a flight.
+    Their error is h^2/6 times the third derivative of the position: at most w^3 l with 2 rad/s for
+    the lever arm, and 1 m/s^3 for the flight. To this come 2e-9 m of rounding over 2 h, and in
+    flight the curvature of the Earth, v l / R = 4e-4 m/s.
     """
     lever, h = np.array([4.0, -3.0, 12.0]), 0.01
     receiver = gnss({**PERFECT, 'lever_arm_m': tuple(lever.tolist()), 'gnss.rate_hz': 100.0})
@@ -130,12 +131,12 @@ def test_the_antenna_moves_as_its_positions_do(kind):
     assert np.abs(np.linalg.norm(v - truth.v_n, axis=1) - cross).max() < 1e-12
     apart = [np.linalg.norm(position_error(f.lat, f.lon, f.height, *p)) for f, p in zip(
         fixes, zip(truth.lat.tolist(), truth.lon.tolist(), truth.height.tolist()))]
-    # the places are 1e-9 m apart in a double
+    # Neighbouring doubles of a position are 1e-9 m apart.
     assert np.abs(np.array(apart) - norm).max() < 1e-8
 
 
 def test_outages_by_schedule_and_by_hand():
-    """A fix at the start of an outage is none, at its end it is one; there always is one."""
+    """Fixes are invalid from the start of an outage, inclusive, to its end, exclusive."""
     receiver = gnss({'outages.start_s': (3.0, 7.5), 'outages.end_s': (5.0, 8.5),
                      'gnss.latency_ms': 120.0})
     receiver.force_outage(False)
@@ -152,19 +153,19 @@ def test_outages_by_schedule_and_by_hand():
     assert {fix.status for fix in got.values()} == {VALID, 'outage'}
     assert all(math.isnan(x) for x in (got[3].lat, got[3].lon, got[3].height, *got[3].v_n))
     assert all(fix.arrival_ns == t * SECOND + 120_000_000 for t, fix in got.items())
-    # what comes after an outage is what would have come without
+    # A fix after an outage is the same as without the outage.
     assert got[11] == gnss({'gnss.latency_ms': 120.0}).fix(11 * SECOND, REST)
 
 
 def test_a_jump_moves_the_position_alone():
-    """By its offset, to the rounding of a place, from its start until its end."""
+    """A jump moves the position by its offset between start and end, and not the velocity."""
     offset = (100.0, -50.0, 7.0)
     receiver = gnss({'jump.start_s': 5.0, 'jump.end_s': 8.0, 'jump.offset_m': offset})
     plain = gnss()
     for t in range(12):
         fix, other = receiver.fix(t * SECOND, REST), plain.fix(t * SECOND, REST)
         moved = position_error(fix.lat, fix.lon, fix.height, other.lat, other.lon, other.height)
-        # the offset is laid on by the radii at the truth, the noise (10 m) away
+        # The offset is applied with the radii at the truth; the noise (10 m) is elsewhere.
         expected = offset if 5 <= t < 8 else (0.0, 0.0, 0.0)
         assert np.abs(np.subtract(moved, expected)).max() < 100.0 * 30.0 / 6.3e6
         assert fix.v_n == other.v_n and fix.position_sigma == other.position_sigma
@@ -172,7 +173,7 @@ def test_a_jump_moves_the_position_alone():
 
 
 def test_reported_sigmas():
-    """Those of the errors, root sum of squares of noise and drift, unless others are given."""
+    """Reported sigmas are the root sum square of noise and drift unless they are set."""
     fix = gnss({'errors.position_noise_m': (3.0, 3.0, 6.0), 'errors.position_drift_m':
                 (4.0, 0.0, 8.0)}).fix(0, REST)
     assert fix.position_sigma == (5.0, 3.0, 10.0) and fix.velocity_sigma == (0.05, 0.05, 0.1)
@@ -192,7 +193,7 @@ WHOLE = gnss(FULL).advance(FLIGHT)
 @settings(max_examples=20, deadline=None)
 @given(cuts=st.lists(st.integers(0, 2001), max_size=5), order=st.randoms())
 def test_any_cutting_in_any_order_gives_the_same_bits(cuts, order):
-    """A fix depends on seed and index alone: whole, in pieces, the pieces in any order."""
+    """A fix depends on seed and index only: whole, in pieces, in any order, with the same bits."""
     edges = [0, *sorted(cuts), 2001]
     pieces = list(zip(edges, edges[1:]))
     order.shuffle(pieces)
@@ -203,7 +204,7 @@ def test_any_cutting_in_any_order_gives_the_same_bits(cuts, order):
 
 
 def test_the_stream_gives_the_bits_of_the_block():
-    """From the start, from the middle, denser than expected; other runs and seeds differ."""
+    """The stream gives the bits of the block, from any start and with denser truth."""
     assert len(WHOLE) == 101
     for first, values in ((0, {}), (777, {}), (0, {'rate_hz': 50.0})):
         receiver, got = gnss({**FULL, **values}), []
@@ -215,14 +216,14 @@ def test_the_stream_gives_the_bits_of_the_block():
 
 
 def test_over_the_date_line():
-    """The longitude stays within half a turn."""
+    """A longitude across the date line stays within half a turn."""
     receiver = gnss({'jump.end_s': 10.0, 'jump.offset_m': (1000.0, 0.0, 0.0)})
     fix = receiver.fix(SECOND, (0.5, math.radians(179.999), *REST[2:]))
     assert -math.pi < fix.lon < math.radians(-179.98)
 
 
 def test_the_first_sample_may_be_repeated():
-    """Lock-step repeats sample 0, and is answered by the same fix."""
+    """A repeated first sample, as in lock-step, is answered with the same fix."""
     receiver = gnss()
     first = receiver.push(0, REST)
     assert len(first) == 1 and receiver.push(0, REST) == first
@@ -241,7 +242,7 @@ NAN = (math.nan, *REST[1:])
     ((0, REST), 'truth jumps back from 0.010000000 s to 0.000000000 s', True),
 ])
 def test_bad_samples_are_refused(sample, sentence, restart):
-    """A sentence each; after a reset the sample is the first."""
+    """A bad sample raises a fault of one sentence; after a reset the next one is the first."""
     receiver = gnss()
     receiver.push(0, REST)
     receiver.push(DT, REST)
@@ -254,7 +255,7 @@ def test_bad_samples_are_refused(sample, sentence, restart):
 
 
 def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
-    """Truth at 130 Hz has no sample at 10 Hz."""
+    """Truth at 130 Hz has no sample at the instants of 10 Hz fixes and is refused."""
     receiver, step = gnss({'gnss.rate_hz': 10.0}), 7_692_308
     with pytest.raises(StreamFault, match='over 0.100000000 s; expected a sample there'):
         for k in range(20):
@@ -286,6 +287,6 @@ def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
     ({'outages.start_s': (math.inf,), 'outages.end_s': (1.0,)}, 'expected a finite number'),
 ])
 def test_bad_settings_are_one_sentence(values, sentence):
-    """Each names the key, the value and what was expected."""
+    """Each error about settings names the key, the value and the expectation."""
     with pytest.raises(ValueError, match=sentence):
         gnss(values)

@@ -1,4 +1,4 @@
-"""Bad samples in the streams: each is said in one sentence, and nothing is integrated over it."""
+"""Bad samples in the streams are reported in one sentence, and nothing is integrated over them."""
 
 import math
 import pickle
@@ -20,7 +20,7 @@ DT = period_ns(100.0)
 
 @pytest.fixture
 def truth():
-    """Return a function of k: the arguments of push of truth sample k, and of push_truth."""
+    """Return a function of k: arguments of ``push`` and of ``push_truth`` for sample k."""
     s = settings(MOTION_2).motion_generator
     motion, frame = make_motion(s.motion, s.datum, s.earth), MapFrame(s.datum, True)
 
@@ -36,7 +36,7 @@ def truth():
 
 @pytest.fixture(params=['stream', 'motion'])
 def imu(request):
-    """Return the IMU, on the stream and on the closed form."""
+    """Return the IMU on the stream or on the closed form."""
     return imu_of(settings(MOTION_2, source=request.param))
 
 
@@ -56,7 +56,7 @@ def refused(push, sample, sentence, restart):
 
 
 def test_first_sample_may_be_repeated(imu, truth):
-    """Lock-step sends sample 0 until all have answered; the answer is the same each time."""
+    """A repeated first sample, as lock-step sends it, is answered the same each time."""
     first = imu.push(*truth(0)[0])
     assert [r[0] for r in first] == [0]
     assert imu.push(*truth(0)[0]) == first
@@ -64,7 +64,7 @@ def test_first_sample_may_be_repeated(imu, truth):
 
 
 def test_nan_is_dropped(imu, truth):
-    """The sample is refused, the stage goes on with the next."""
+    """A sample with NaN is refused, and the stage continues with the next."""
     imu.push(*truth(0)[0])
     t, q, w, f = truth(1)[0]
     for bad in ((t, q, (math.nan, 0.0, 0.0), f), (t, q, w, (0.0, math.inf, 0.0))):
@@ -73,7 +73,7 @@ def test_nan_is_dropped(imu, truth):
 
 
 def test_stream_refuses_gaps_jumps_rates_and_norms(truth):
-    """Gap, backwards stamp, another rate: restart.  Repeat, norm: dropped."""
+    """A gap, backwards stamp or other rate needs a restart; a repeat or wrong norm is dropped."""
     imu = make_imu(settings(MOTION_2, source='stream').imu_sensor)
     for k in range(3):
         imu.push(*truth(k)[0])
@@ -89,7 +89,7 @@ def test_stream_refuses_gaps_jumps_rates_and_norms(truth):
 
 
 def test_motion_source_refuses_a_jump_back(truth):
-    """The closed form only needs stamps that rise."""
+    """With source motion only the stamps must rise; a jump back is refused."""
     imu = imu_of(settings(MOTION_2))
     imu.push(*truth(0)[0])
     imu.push(*truth(5)[0])
@@ -97,7 +97,7 @@ def test_motion_source_refuses_a_jump_back(truth):
 
 
 def test_truth_that_turns_too_far_is_refused(truth):
-    """Between two samples the attitude must be told from its rate."""
+    """Truth that turns too far between two samples is refused, because attitude is ambiguous."""
     imu = make_imu(settings(MOTION_2, source='stream').imu_sensor)
     t, q, w, f = truth(0)[0]
     imu.push(t, q, w, f)
@@ -106,7 +106,7 @@ def test_truth_that_turns_too_far_is_refused(truth):
 
 @pytest.fixture
 def navigator(truth):
-    """Return a navigator that has taken samples 0 to 2."""
+    """Return a navigator that has processed samples 0 to 2."""
     navigator = Navigator(settings(MOTION_2).strapdown)
     for k in range(3):
         navigator.push_truth(*truth(k)[1])
@@ -115,7 +115,7 @@ def navigator(truth):
 
 
 def test_navigator_refuses_bad_imu_samples(navigator, truth):
-    """NaN and repeats are dropped; gaps, jumps and another rate call for a restart."""
+    """IMU samples with NaN or repeats are dropped; gaps, jumps and other rates need a restart."""
     w, f = truth(3)[0][2:]
     refused(navigator.push_imu, (3 * DT, (math.nan, 0.0, 0.0), f), 'imu at 0.030000000 s', False)
     refused(navigator.push_imu, (2 * DT, w, f), 'imu repeats the stamp', False)
@@ -127,7 +127,7 @@ def test_navigator_refuses_bad_imu_samples(navigator, truth):
 
 
 def test_navigator_refuses_bad_truth(navigator, truth):
-    """NaN and wrong norm are dropped; a truth of another grid is named."""
+    """Truth with NaN or wrong norm is dropped; other stamps than the IMU's are reported."""
     t, r, q, v = truth(3)[1]
     refused(navigator.push_truth, (t, (math.nan, 0.0, 0.0), q, v), 'expected finite', False)
     refused(navigator.push_truth, (t, r, (0.0, 0.0, 0.0, 0.5), v), 'norm 0.5', False)
@@ -140,27 +140,27 @@ def test_navigator_refuses_bad_truth(navigator, truth):
 
 
 def test_a_lost_truth_is_told_from_another_rate(navigator, truth):
-    """Overload is said as such; only readings between the samples are of another rate."""
+    """A lost truth sample is reported as overload, readings between samples as another rate."""
     for k in (4, 5):
         navigator.push_truth(*truth(k)[1])
     navigator.push_imu(3 * DT, *truth(3)[0][2:])
-    assert 'that sample of the truth was lost, as where a node cannot keep up and a queue runs ' \
-           'over: expected a lower rate_hz' in str(navigator.faults.pop())
+    assert 'that truth sample was lost, probably because a node cannot keep up and a queue ' \
+           'overflowed: expected a lower rate_hz' in str(navigator.faults.pop())
     navigator.reset()
     navigator.push_imu(4 * DT, *truth(4)[0][2:])
     navigator.push_imu(5 * DT - DT // 8, *truth(5)[0][2:])
     assert 'expected a truth rate that is a multiple of the IMU rate, both from the same start: ' \
-           'rate_hz must go together in all nodes' in str(navigator.faults.pop())
+           'rate_hz must be consistent in all nodes' in str(navigator.faults.pop())
 
 
 def test_another_rate_names_rate_hz(navigator, truth):
-    """An IMU at twice the rate."""
+    """The message for an IMU at twice the rate names rate_hz."""
     refused(navigator.push_imu, (2 * DT + DT // 2, *truth(3)[0][2:]),
             'expected steps of 0.01 s: rate_hz must be the same in the node that sends it', True)
 
 
 def test_navigator_starts_anew_after_a_jump_back(navigator, truth):
-    """After reset the same samples give the same output: nothing of the past is left."""
+    """After a jump back and a reset the same samples give the same output."""
     navigator.reset()
     w, f = truth(0)[0][2:]
     navigator.push_truth(*truth(0)[1])
@@ -173,14 +173,14 @@ def test_navigator_starts_anew_after_a_jump_back(navigator, truth):
 
 
 def test_seconds_are_exact_text():
-    """Nanoseconds are never lost, nor the sign."""
+    """``seconds`` gives every nanosecond and the sign as exact text."""
     assert seconds(1) == '0.000000001 s'
     assert seconds(-1_500_000_000) == '-1.500000000 s'
     assert seconds(1_700_000_000_123_456_789) == '1700000000.123456789 s'
 
 
 def test_a_fault_crosses_from_process_to_process():
-    """Sentence and restart survive pickling, as from a worker of an ensemble."""
+    """A StreamFault keeps message and restart when pickled, as between processes."""
     for restart in (False, True):
         fault = pickle.loads(pickle.dumps(StreamFault('what happened', restart)))
         assert (str(fault), fault.restart) == ('what happened', restart)

@@ -1,4 +1,4 @@
-"""Two streams, IMU and truth, whichever is ahead: the same solution, and the same faults."""
+"""The streams of IMU and truth give the same solution and faults, whichever is ahead."""
 
 from functools import lru_cache
 
@@ -12,7 +12,7 @@ import pytest
 from support import studies
 
 DT = 10_000_000
-# what the first run lacks of its 40 samples of the IMU; the second run has 20
+# Indices missing from the 40 IMU samples of the first run; the second run has 20 samples.
 LOST = (7, 8, 20, 38)
 GAPS = [f'imu has a gap from {a / 100:.9f} s to {b / 100:.9f} s; expected steps of 0.01 s'
         for a, b in ((6, 9), (19, 21), (37, 39))]
@@ -21,7 +21,7 @@ BACK = 'imu jumps back from 0.390000000 s to 0.000000000 s; expected rising stam
 
 @lru_cache(maxsize=None)
 def streams():
-    """Return [(push, arguments)] of the IMU and of the truth, 40 samples each."""
+    """Return [(push, arguments)] for 40 samples of the IMU and of the truth."""
     s = studies.settings(studies.MOTION_2).motion_generator
     truth = make_motion(s.motion, s.datum, s.earth).at(np.arange(40) * DT)
     poses = MapFrame(s.datum, True).pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
@@ -34,7 +34,7 @@ def streams():
 
 
 def run(order, imu, truth):
-    """Push as a node does, the IMU where order holds True; return outputs and faults."""
+    """Push as a node does, the IMU where order is True; return outputs and faults."""
     navigator, outputs, faults = Navigator(studies.settings(studies.MOTION_2).strapdown), [], []
     left = {True: list(imu), False: list(truth)}
     for of_imu in (*order, *(True,) * len(imu), *(False,) * len(truth)):
@@ -54,7 +54,7 @@ def run(order, imu, truth):
 
 
 def with_gaps():
-    """Return the streams with the samples LOST."""
+    """Return the streams without the samples LOST."""
     imu, truth = streams()
     return [e for k, e in enumerate(imu) if k not in LOST], truth
 
@@ -67,7 +67,7 @@ ORDER = st.lists(st.booleans(), min_size=80, max_size=80)
 @example(order=[True] * 80)
 @example(order=[False] * 80)
 def test_gaps_are_where_they_are(order):
-    """What waits for its truth when the gap comes is solved: nothing is lost, each gap is said."""
+    """Samples that wait for truth before a gap are still solved, and each gap is reported."""
     imu, truth = with_gaps()
     expected, faults = run([False] * 80, imu, truth)
     assert [o[0] // DT for o in expected] == [k for k in range(40) if k not in LOST]
@@ -81,9 +81,10 @@ def test_gaps_are_where_they_are(order):
 @example(order=[False] * 80)
 def test_a_run_after_a_jump_back_is_whole(order):
     """
-    Of the run before there is as much as had its truth, and of the new one everything.
+    After a jump back the new run is complete, in any order of the streams.
 
-    Both streams have begun the first run before one of them can end it.
+    Of the earlier run there is as much as had its truth. Both streams have begun the first run
+    before one of them ends it.
     """
     imu, truth = with_gaps()
     start = [True, False] * 2
@@ -96,7 +97,7 @@ def test_a_run_after_a_jump_back_is_whole(order):
 
 
 def test_truth_that_does_not_follow_a_jump_back():
-    """Samples wait for it; whoever waits no longer joins the streams anew."""
+    """If the truth does not follow a jump back, samples wait until the streams are rejoined."""
     imu, truth = streams()
     navigator = Navigator(studies.settings(studies.MOTION_2).strapdown)
     for (_, sample), (_, pose) in zip(imu[:30], truth[:30]):

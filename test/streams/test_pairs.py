@@ -1,4 +1,4 @@
-"""Pairs of two streams by their stamps, whichever is ahead."""
+"""Pairing of two streams by their stamps, whichever is ahead."""
 
 from itertools import chain
 
@@ -8,7 +8,7 @@ from ins_sim.core.streams.pairs import StampPairs
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(1, 3), st.integers(1, 3))
 def test_every_common_instant_is_paired_once(order, every_first, every_second):
-    """In whatever order they come, as long as the queue holds what waits."""
+    """Every common instant is paired once, in any order, if the queue is long enough."""
     pairs, found, sent = StampPairs(1000), [], [0, 0]
     turns = chain(order, [True] * 60, [False] * 120)
     for is_first in turns:
@@ -25,7 +25,7 @@ def test_every_common_instant_is_paired_once(order, every_first, every_second):
 
 
 def test_a_stream_that_jumps_back_begins_anew():
-    """What the first run has left is not paired with the second; a repeated value is."""
+    """After a jump back, values of the first run are not paired with those of the second."""
     pairs = StampPairs(10)
     assert not pairs.waiting
     assert pairs.push_first(5, 'a') == [] and pairs.waiting

@@ -1,4 +1,4 @@
-"""Stray samples: told from restarts, so that no stream is waited for that need not come."""
+"""Stray samples are distinguished from restarts, so that no stream waits for the other."""
 
 from ins_sim.core.navigation.live import Navigator
 from ins_sim.core.sensors.imu.stream import make_imu
@@ -15,7 +15,7 @@ DT = 10_000_000
 
 
 def test_what_the_last_stamps_say():
-    """One ahead or of the past, after which the stream goes on; or a jump."""
+    """The last two stamps distinguish a stray ahead, a stray of the past, and a jump."""
     stamps = LastStamps()
     assert not any(stamps.take(t) for t in (1, 2, 3, 1000))
     assert stamps.was_ahead(4) and not stamps.was_ahead(2) and not stamps.was_ahead(3)
@@ -23,7 +23,7 @@ def test_what_the_last_stamps_say():
     assert not stamps.was_ahead(5) and not stamps.take(0)
     assert not stamps.was_of_the_past(1) and stamps.was_of_the_past(5)
     assert stamps.take(5) and not stamps.take(6)
-    # a restart: what follows is of the new run
+    # A restart: the following stamps belong to the new run.
     assert not any(stamps.take(t) for t in (0, 1, 2))
     assert not stamps.was_of_the_past(3)
 
@@ -43,7 +43,7 @@ def samples(count):
 @pytest.mark.parametrize('stray', ['push_imu', 'push_truth'])
 @pytest.mark.parametrize('shift', [100, -100, 1, -1], ids='{:+d}'.format)
 def test_one_stray_costs_a_few_samples(stray, shift, lead):
-    """Ahead or of the past, of either stream: it is solved again within 10 samples."""
+    """A stray of either stream, ahead or of the past, costs at most 10 samples."""
     imu, truth = samples(400)
     navigator, outputs, faults = Navigator(studies.settings(studies.MOTION_2).strapdown), [], []
 
@@ -63,7 +63,7 @@ def test_one_stray_costs_a_few_samples(stray, shift, lead):
         push('push_imu', imu[k])
         if k == 200:
             of = {'push_imu': imu[k], 'push_truth': truth[k + lead]}[stray]
-            # not at the instant of another sample
+            # Not at the instant of another sample.
             push(stray, (of[0] + shift * DT + DT // 2, *of[1:]))
     solved = [t // DT for t, *_ in outputs]
     assert solved[-89:] == list(range(211, 300)) and solved[:200] == list(range(200))
@@ -71,7 +71,7 @@ def test_one_stray_costs_a_few_samples(stray, shift, lead):
 
 
 def push_all(imu, stamps):
-    """Return the readings of an IMU at rest of some stamps, and its faults."""
+    """Return the readings of an IMU at rest at these stamps, and its faults."""
     readings, faults = [], []
     for t_ns in stamps:
         sample = (t_ns, (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 9.8))
@@ -86,7 +86,7 @@ def push_all(imu, stamps):
 
 @pytest.mark.parametrize('source', ['stream', 'motion'])
 def test_no_push_computes_more_than_a_bounded_number_of_readings(source):
-    """Two strays a long time apart, first or amid the stream, are a gap by rate_hz."""
+    """Two strays far apart in time, at the start or later, are refused as a gap by rate_hz."""
     s = studies.settings(studies.MOTION_2, source=source)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -104,7 +104,7 @@ def test_no_push_computes_more_than_a_bounded_number_of_readings(source):
 
 
 def test_a_grid_of_a_stray_is_left():
-    """A steady stream beside the instants of the readings; jitter and other rates are none."""
+    """A steady stream off the readings' instants is reported; jitter and other rates are not."""
     def check(stamps, reading_ns, dt_ns=DT):
         grid = SampleGrid(dt_ns)
         for t_ns in stamps:
@@ -113,15 +113,15 @@ def test_a_grid_of_a_stray_is_left():
     steady = [k * DT for k in range(5, 100)]
     check(steady, 5 * DT)
     check(steady, None)
-    # a reading may be of the past, or late by negative delays
+    # A reading may be of the past, or late because of negative delays.
     check(steady, 2 * DT)
-    with pytest.raises(StreamFault, match='goes on 0.009999999 s beside the instants') as raised:
+    with pytest.raises(StreamFault, match='is 0.009999999 s off the instants') as raised:
         check(steady, 5 * DT + 1)
     assert raised.value.restart
-    # twice and half as fast: every second sample, or reading, is one of the grid
+    # At twice and half the rate every second sample, or reading, is on the grid.
     check([k * DT // 2 for k in range(5, 100)], 5 * DT)
     check([k * 2 * DT for k in range(5, 100)], 5 * DT)
-    # with jitter no ten steps are equal, and at 70 Hz no sample need be one of the grid
+    # With jitter no ten steps are equal, and at 70 Hz samples need not be on the grid.
     check([t + k % 7 for k, t in enumerate(steady)], 5 * DT + 1)
     check([k * 14_285_714 for k in range(100)], 5 * DT + 1)
     check(steady[:STEADY], 5 * DT + 1)

@@ -1,4 +1,4 @@
-"""A record of gyros under a known motion, and the rates that the motion would have given."""
+"""A record of gyros under a known motion, and the rates that perfect gyros would have read."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from ins_sim.core.motion.motion import Motion
 from ins_sim.core.sensors.imu.increments import NODES, rotation_increment, WEIGHTS
 from ins_sim.core.timeseries.histories import ImuSamples
 
-# Readings of which at least so many are needed: ten for each block of ``channel_sums``.
+# Smallest number of readings: ten for each block of ``channel_sums``.
 FEWEST = 640
 
 
@@ -22,12 +22,12 @@ class BenchRecord:
     Attributes
     ----------
     name : what it is called in messages
-    imu : ImuSamples; t_ns are motion times, omega the mean rates over the interval before, rad/s
+    imu : ImuSamples; t_ns are motion times, omega mean rates over the interval before them, rad/s
     dt_ns : sampling period, ns
     motion : Motion
     datum, earth : settings of the place of the bench
-    output : ``rotation_vector`` or ``integrated``, what a reading is (ImuSensorSettings.output)
-    white : density of the white noise by axis, rad/sqrt(s), the angle random walk; 0 = not known
+    output : rotation_vector or integrated, the kind of a reading (ImuSensorSettings.output)
+    white : density of the white noise by axis (angle random walk), rad/sqrt(s); 0 if not known
     """
 
     name: str
@@ -42,10 +42,10 @@ class BenchRecord:
 
 def usable(record):
     """
-    Return a BenchRecord without readings that do not serve, and notes, sentences on these.
+    Return a BenchRecord without unusable readings, and notes, sentences about what was left out.
 
-    The first reading is left out, which may be the rate of an instant, and what lies outside a
-    recorded motion. Raises ValueError where fewer than FEWEST are left.
+    The first reading is left out, because it may be the rate at an instant, and so are readings
+    outside a recorded motion. Raises ValueError if fewer than FEWEST readings are left.
     """
     imu, notes = record.imu, []
     finite = np.isfinite(imu.omega).all(axis=1)
@@ -75,7 +75,7 @@ def usable(record):
 
 
 class TrueRates:
-    """The rates that perfect gyros would read, of the motion of a BenchRecord."""
+    """The rates that perfect gyros would read under the motion of a BenchRecord."""
 
     def __init__(self, record):
         self._motion, self._dt_ns = record.motion, record.dt_ns
@@ -87,10 +87,10 @@ class TrueRates:
 
     def at(self, t_ns):
         """
-        Return the mean rates over the intervals that end at instants, rad/s.
+        Return the mean rates (n, 3), rad/s, over the intervals that end at t_ns (n,) int64.
 
-        t_ns (n,) int64; result (n, 3). Of the output ``rotation_vector`` the rotation vector of
-        the interval over its length, of ``integrated`` the mean of the rate (three Gauss nodes).
+        For the output ``rotation_vector`` this is the rotation vector of the interval divided by
+        its length, for ``integrated`` the mean of the rate (three Gauss nodes).
         """
         if self._integrated:
             rates = [self._motion.at(t_ns + round(self._dt_ns * (node - 1.0))).omega_ib_b

@@ -1,4 +1,4 @@
-"""The least squares of a gyro channel over the sums of one or several records."""
+"""The least-squares solution for a gyro channel from the sums of one or several records."""
 
 from dataclasses import dataclass
 import math
@@ -8,12 +8,12 @@ import numpy as np
 from ins_sim.core.numerics.fixed_order import applied, dot, product, solve, total
 from .channel_sums import BIAS, BLOCKS, COLUMNS, DELAY, SCALE
 
-# What is known beforehand, standard deviations: of scale factor, asymmetry and
-# misalignments, and of a delay, s, which only keeps the equations regular.
+# A-priori standard deviations: of scale factor, asymmetry and misalignments, and of a delay, s;
+# the latter only keeps the equations regular.
 PRIOR, PRIOR_DELAY = 1e-3, 1.0
-# Readings without noise have that of rounding, rad/s.
+# Noise assumed for readings without noise, from rounding, rad/s.
 LEAST_NOISE = 1e-13
-# The standard normal distribution lies below it with 99.9 %.
+# 99.9 % point of the standard normal distribution.
 ONE_IN_A_THOUSAND = 3.0902
 
 
@@ -24,14 +24,14 @@ class ChannelFit:
 
     Attributes
     ----------
-    values (m,) : delay less that of the linearisation (s), scale factor, misalignments towards the
-        next two axes (rad), asymmetry of the scale factor, and the bias in every record (rad/s)
-    covariance (m, m) : of the values, by the noise given
-    scattered (m, m) : the same by the scatter of the residuals over the blocks
-    information (m, m) : of the readings alone
-    prior (m,) : of what is known beforehand, 1 / sigma^2
-    ratio : variance of the delay by the residuals over that by the noise
-    blocks : how many blocks ``ratio`` is of
+    values : (m,) delay minus that of the linearisation (s), scale factor, misalignments towards
+        the next two axes (rad), asymmetry of the scale factor, and bias in each record (rad/s)
+    covariance : (m, m) covariance of the values for the assumed noise
+    scattered : (m, m) the same from the scatter of the residuals over the blocks
+    information : (m, m) information of the readings alone
+    prior : (m,) a-priori information, 1 / sigma^2
+    ratio : variance of the delay from the residuals divided by that from the noise
+    blocks : number of blocks from which ``ratio`` is computed
     """
 
     values: np.ndarray
@@ -44,27 +44,27 @@ class ChannelFit:
 
     @property
     def delay_sigma(self):
-        """Standard deviation of the delay by the noise given, s."""
+        """Standard deviation of the delay for the assumed noise, s."""
         return math.sqrt(self.covariance[DELAY, DELAY])
 
     @property
     def told_by_prior(self):
-        """Part of the variance of the delay that scale factor and misalignments have, 0 to 1."""
+        """Fraction (0 to 1) of the delay's variance due to the priors of the other errors."""
         row, others = self.covariance[DELAY], slice(SCALE, BIAS)
         known = dot(row[others] * row[others], self.prior[others])
         return float(known / row[DELAY])
 
     @property
     def limit(self):
-        """What ``ratio`` exceeds once in a thousand times if the noise is as given."""
-        # Wilson and Hilferty (1931): the cube root of a chi-square is nearly normal.
+        """Value that ``ratio`` exceeds once in a thousand times if the noise is as assumed."""
+        # Wilson and Hilferty (1931): the cube root of a chi-square variable is nearly normal.
         part = 2.0 / (9.0 * self.blocks)
         root = 1.0 - part + ONE_IN_A_THOUSAND * math.sqrt(part)
         return root * root * root
 
 
 def prior_of(records):
-    """Return the information of what is known beforehand, (5 + records,)."""
+    """Return the a-priori information, (5 + records,)."""
     prior = np.zeros(BIAS + records)
     prior[DELAY] = 1.0 / (PRIOR_DELAY * PRIOR_DELAY)
     prior[SCALE:BIAS] = 1.0 / (PRIOR * PRIOR)
@@ -72,7 +72,14 @@ def prior_of(records):
 
 
 def information_of(sums, noise):
-    """Return the information (m, m) of records; sums: ChannelSums, noise: rad/s a sample."""
+    """
+    Return the information matrix (m, m) of several records.
+
+    Parameters
+    ----------
+    sums : ChannelSums of each record
+    noise : standard deviation of a sample in each record, rad/s
+    """
     found = np.zeros((BIAS + len(sums), BIAS + len(sums)))
     for k, (one, sigma) in enumerate(zip(sums, noise)):
         at = _places(k)
@@ -89,9 +96,12 @@ def covariance_of(information):
 
 def fit_channel(sums, noise):
     """
-    Return the ChannelFit of the ChannelSums of every record.
+    Return the ChannelFit from the ChannelSums of each record.
 
-    noise (records,): standard deviation of the noise of a sample in each, rad/s.
+    Parameters
+    ----------
+    sums : ChannelSums of each record
+    noise : (records,) standard deviation of a sample in each record, rad/s
     """
     prior, information = prior_of(len(sums)), information_of(sums, noise)
     right = np.zeros(len(prior))
@@ -126,8 +136,8 @@ def residual_noise(sums, values):
 
 
 def fit_by_residuals(sums):
-    """Return the ChannelFit, and the noise (records,), whose weights are of the residuals."""
-    # The first weights are those of readings that are all noise: too low, which does no harm.
+    """Return the ChannelFit weighted by its own residuals, and that noise (records,), rad/s."""
+    # The first weights treat the readings as pure noise: they are too low, which is harmless.
     noise = residual_noise(sums, np.zeros(BIAS + len(sums)))
     for _ in range(4):
         found = fit_channel(sums, noise)
@@ -140,5 +150,5 @@ def _between(covariance, middle):
 
 
 def _places(record):
-    """Return where the columns of a record are among the values."""
+    """Return the indices of the columns of a record among the values."""
     return [*range(COLUMNS - 1), BIAS + record]

@@ -1,16 +1,16 @@
 """
-The linear model of a gyro channel, and the sums that least squares need of a record.
+The linear model of a gyro channel, and the sums over a record that least squares needs.
 
-A channel i that is late by tau, and whose bias, scale factor and sensitive axis are off, reads
+A channel i with delay tau and errors of bias, scale factor and sensitive axis reads::
 
     y_i = w_i - tau w_i' + s w_i + m_ij w_j + m_ik w_k + a |w_i| + b,
 
-w: the mean true rates over the sampling interval, w_i' their derivative (Titterton and Weston,
-section 11.2, and the term of delay of Bogdanov and Fomichev 2018). The asymmetry a of the scale
-factor is there because it would pass for a bias under a motion to and fro. The model is linear in
-all that is unknown; where the delay is not small beside the period of the motion, w is taken at
-t - tau for the delay found so far (Gauss and Newton). The noise of a rate is white where the angle
-is a random walk, so that the readings need no other whitening.
+where w are the mean true rates over the sampling interval and w_i' their derivative (Titterton and
+Weston, section 11.2, and the delay term of Bogdanov and Fomichev 2018). The asymmetry a of the
+scale factor is included, because under an oscillating motion it would be mistaken for a bias. The
+model is linear in all unknowns. If the delay is not small compared with the period of the motion,
+w is taken at t - tau for the delay found so far (Gauss-Newton iteration). An angle random walk is
+white noise of the rate, so the readings need no further whitening.
 """
 
 from dataclasses import dataclass
@@ -24,18 +24,18 @@ from .bench_record import TrueRates
 DELAY, SCALE, NEXT, LAST, ASYMMETRY, BIAS = range(6)
 COLUMNS = 6
 AXES = 'xyz'
-# Sums are kept of so many blocks of a record: their scatter tells how white the residuals are.
+# Number of blocks of a record; the scatter of their sums tells how white the residuals are.
 BLOCKS = 64
-# Readings whose true rates are in memory at once.
+# Number of readings whose true rates are in memory at once.
 AT_ONCE = 16384
-# Half the interval over which rates are differentiated, ns; errors are (w h)^2 / 6 of it.
+# Half the interval for numerical derivatives of rates, ns; the relative error is (w h)^2 / 6.
 STEP_NS = 2000
-# Intervals of the rate's derivative over which residuals are shown.
+# Number of intervals of the rate's derivative over which residuals are shown.
 BINS = 24
 
 
 def other_axes(axis):
-    """Return the two axes beside one, in the order of the columns NEXT and LAST."""
+    """Return the other two axes, in the order of the columns NEXT and LAST."""
     return (axis + 1) % 3, (axis + 2) % 3
 
 
@@ -44,11 +44,16 @@ class ChannelSums:
     """
     Sums of one channel over a record, unweighted.
 
-    normal (BLOCKS, 6, 6), right (BLOCKS, 6), square (BLOCKS,), count (BLOCKS,): of a'a, a'z, z'z
-    and 1, a the columns of the model, z the reading less the true rate; bins (BINS, 8): of 1, z
-    and a over intervals of the derivative; most: its greatest size, rad/s^2; turning: sum
-    over readings and axes of the squared rates less their means, (rad/s)^2; t_s (BLOCKS,): middles
-    of the blocks, s.
+    Let a be the columns of the model and z the reading minus the true rate.
+
+    Attributes
+    ----------
+    normal, right, square, count : (BLOCKS, 6, 6), (BLOCKS, 6), (BLOCKS,), (BLOCKS,) sums of a'a,
+        a'z, z'z and 1 over each block
+    bins : (BINS, 8) sums of 1, z and a over intervals of the derivative of the rate
+    most : greatest absolute derivative, rad/s^2
+    turning : sum over readings and axes of the squared rates minus their means, (rad/s)^2
+    t_s : (BLOCKS,) middles of the blocks, s
     """
 
     normal: np.ndarray
@@ -65,8 +70,12 @@ def channel_sums(record, axis, late_ns, most=0.0):
     """
     Return the ChannelSums of a BenchRecord for one axis.
 
-    late_ns: delay about which the model is linear, ns; most: greatest derivative in ``bins``,
-    rad/s^2, 0 = no bins.
+    Parameters
+    ----------
+    record : BenchRecord
+    axis : 0, 1 or 2
+    late_ns : delay about which the model is linearised, ns
+    most : greatest derivative in ``bins``, rad/s^2; 0 for no bins
     """
     rates, imu = TrueRates(record), record.imu
     edges = np.arange(BLOCKS + 1) * len(imu) // BLOCKS

@@ -1,4 +1,4 @@
-"""Delays, biases, scale factors and misalignments of a gyro triad from records on a bench."""
+"""Delays, biases, scale factors and misalignments of a gyro triad from bench records."""
 
 from dataclasses import dataclass
 import math
@@ -12,47 +12,46 @@ from .channel_sums import AXES, BIAS, channel_sums, DELAY, LAST, other_axes, SCA
 from .separability import unobservable, weak_directions
 
 BY_WALK, BY_RESIDUALS = 'angle random walk', 'residuals'
-# A scale factor, or an axis, that is off by more is of another motion.
+# A scale factor error or misalignment above this shows that the motion is another one.
 FOREIGN = 0.3
-# Of rates that vary by less a scale factor is not told, rad/s.
+# A scale factor cannot be found from rates that vary by less, rad/s.
 SLOW = 1e-3
-# Records of one instrument do not differ by so many standard deviations.
+# Largest difference between records of one instrument, in standard deviations.
 APART = 6.0
-# A delay that is found again within this needs no other linearisation, s; with a derivative of the
-# rate below this nothing turns, rad/s^2.
+# Change of a delay, s, below which it need not be linearised again; and derivative of the rate,
+# rad/s^2, below which nothing turns.
 SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
-# Linearisations of a delay, and the longest delay that is looked for, s.
+# Largest number of linearisations of a delay, and longest delay that is searched for, s.
 PASSES, LONGEST_S = 10, 1.0
 
 
 class NotObservable(ValueError):
-    """The motion of the records shows no delay of any channel."""
+    """Raised if the motion of the records does not show the delay of any channel."""
 
 
 @dataclass(frozen=True, eq=False)
 class ChannelEstimate:
     """
-    What was found of one gyro channel.
+    The estimate for one gyro channel.
 
     Attributes
     ----------
     axis : 'x', 'y' or 'z', of FLU
-    values (m,) : delay and lag (s), scale factor, misalignments towards ``towards`` (rad),
-        asymmetry of the scale factor, and the mean bias in every record (rad/s)
-    covariance (m, m) : of the values
-    towards : the axes towards which the sensitive axis is turned by the misalignments
+    values : (m,) delay and lag (s), scale factor, misalignments towards ``towards`` (rad),
+        asymmetry of the scale factor, and mean bias in each record (rad/s)
+    covariance : (m, m) covariance of the values
+    towards : the axes towards which misalignments turn the sensitive axis
     refused : why the delay is not observable, or ''
-    weights : BY_WALK or BY_RESIDUALS, what the standard deviations are from
-    ratio, limit : variance of the delay by the residuals over that by the angle random walk, and
-        what it exceeds once in a thousand times; ratio is 1 where the walk is not known
-    noise, left (records,) : standard deviation of a sample that was assumed, and rms of the
-        residuals, rad/s
-    weak : arrays (m,), combinations of the values that the readings do not tell
+    weights : BY_WALK or BY_RESIDUALS, the source of the standard deviations
+    ratio, limit : variance of the delay from the residuals divided by that from the angle random
+        walk, and the value it exceeds once in a thousand times; ratio is 1 for an unknown walk
+    noise, left : (records,) assumed standard deviation of a sample, and rms residuals, rad/s
+    weak : arrays (m,), combinations of the values that the readings do not determine
     change : greatest derivative of the rate, rad/s^2
-    blocks : for every record, middles (n,), s, of its blocks, and their mean residuals over the
-        standard deviation that is expected of them
-    bins : derivative of the rate, rad/s^2, reading less all but the delay, residual, and its
-        standard deviation, rad/s, (n,) each
+    blocks : for each record, middles of its blocks (n,), s, and their mean residuals divided by
+        the expected standard deviation
+    bins : (n,) each: derivative of the rate (rad/s^2), reading minus everything but the delay,
+        residual, and its standard deviation (rad/s)
     """
 
     axis: str
@@ -89,11 +88,15 @@ class ChannelEstimate:
 @dataclass(frozen=True, eq=False)
 class TriadEstimate:
     """
-    What was found of a gyro triad.
+    The estimate for a gyro triad.
 
-    channels: ChannelEstimates; records: names of the records; notes: sentences; lags (3,): what
-    the bandwidth of the instrument makes of a delay, s, NaN where the motion shows none, or None
-    where no bandwidth is known.
+    Attributes
+    ----------
+    channels : ChannelEstimates
+    records : names of the records
+    notes : sentences
+    lags : (3,) apparent delay due to the bandwidth of the instrument, s; NaN if the motion does
+        not show it; None if no bandwidth is known
     """
 
     channels: tuple
@@ -104,17 +107,16 @@ class TriadEstimate:
 
 def estimate_triad(records):
     """
-    Return the TriadEstimate of BenchRecords of one gyro triad.
+    Return the TriadEstimate from BenchRecords of one gyro triad.
 
-    The delay, the scale factor and the misalignments are the same in all records, each of which
-    has a bias of its own.
+    Delay, scale factor and misalignments are common to all records; each record has its own bias.
 
     Raises
     ------
     ValueError
-        In one sentence where a record is too short or is not of the motion that is given.
+        If a record is too short or does not belong to the given motion.
     NotObservable
-        Where the records show the delay of no channel.
+        If the records do not show the delay of any channel.
     """
     kept, notes = [], []
     for record in records:
@@ -126,26 +128,26 @@ def estimate_triad(records):
         raise NotObservable('delays are not observable in this motion: '
                             + '; '.join(c.refused for c in channels))
     notes += [f'{c.axis}: the residuals scatter {math.sqrt(c.ratio):.3g} times as much as the '
-              'angle random walk says: the standard deviations are those of the residuals'
+              'angle random walk predicts; the standard deviations are those of the residuals'
               for c in channels if c.weights == BY_RESIDUALS and c.ratio > c.limit]
     return TriadEstimate(channels, tuple(r.name for r in records), tuple(notes))
 
 
 def noise_of(records, axis):
-    """Return the standard deviations of samples by the angle random walk, (records,) rad/s."""
+    """Return the standard deviation of a sample from the angle random walk, (records,) rad/s."""
     return np.array([r.white[axis] / math.sqrt(r.dt_ns * 1e-9) for r in records])
 
 
 def _channel(records, axis):
-    """Return the ChannelEstimate of an axis; its delay is linearised until it stands still."""
+    """Return the ChannelEstimate of an axis; its delay is linearised until it converges."""
     walk, dt_s = noise_of(records, axis), min(r.dt_ns for r in records) * 1e-9
     late_ns, change, settled = 0, 0.0, False
     for _ in range(PASSES):
         sums = [channel_sums(r, axis, late_ns, change) for r in records]
         seen, change = change, max(LEAST_CHANGE, *(s.most for s in sums))
         if not settled:
-            # Far from the delay the residuals are of the linearisation, not of noise: weights as
-            # weak as these keep them from being fitted by what the priors hold.
+            # Far from the delay the residuals come from the linearisation, not from noise. Weights
+            # as weak as these keep the fit from using the parameters that the priors hold.
             weak = residual_noise(sums, np.zeros(BIAS + len(sums)))
             fit = fit_channel(sums, np.maximum(walk, weak))
             noise = walk if walk.all() else residual_noise(sums, fit.values)
@@ -177,10 +179,10 @@ def _names(records):
 
 def _check_motion(records, axis, fit, sums):
     """
-    Raise ValueError where the readings are of another motion.
+    Raise ValueError if the readings belong to another motion.
 
-    Where the residuals are large the priors hold scale factor and axes; the regression of the
-    readings on the rate alone shows then that these have nothing in common.
+    With large residuals the priors hold scale factor and misalignments. The regression of the
+    readings on the rate alone then shows that the two are unrelated.
     """
     off = fit.values[SCALE:LAST + 1].tolist()
     k = max(range(len(off)), key=lambda place: abs(off[place]))
@@ -196,7 +198,7 @@ def _check_motion(records, axis, fit, sums):
 
 
 def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
-    """Raise ValueError where a record alone gives another delay than all together."""
+    """Raise ValueError if a record alone gives another delay than all records together."""
     for record, one, sigma in zip(records, sums, noise):
         alone = fit_channel([one], [sigma])
         off = float(alone.values[DELAY] - fit.values[DELAY])
@@ -209,7 +211,7 @@ def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
 
 
 def _alone(sums):
-    """Return the regression of reading less rate on the rate, 0 where it is not told."""
+    """Return the regression of (reading - rate) on the rate; 0 if it is not significant."""
     both = rate = left = count = 0.0
     for one in sums:
         n = float(np.add.reduce(one.count))
@@ -240,7 +242,7 @@ def _estimate(axis, late_ns, sums, fit, noise, walk_known, refused, most):
 
 
 def _block_residuals(sums, record, values):
-    """Return the mean residuals of the blocks of a record, rad/s."""
+    """Return the mean residual of each block of a record, rad/s."""
     x = np.append(values[:BIAS], values[BIAS + record])
     row = sums.normal[:, BIAS, :]
     expected = row[:, 0] * x[0]
@@ -250,7 +252,7 @@ def _block_residuals(sums, record, values):
 
 
 def _bins(sums, values, late_s, noise):
-    """Return what ``ChannelEstimate.bins`` holds; the delay is left in the second."""
+    """Return the arrays of ``ChannelEstimate.bins``."""
     count = with_delay = left = weight = change_sum = 0.0
     for k, (one, sigma) in enumerate(zip(sums, noise)):
         x = np.append(values[:BIAS], values[BIAS + k])

@@ -1,4 +1,4 @@
-"""The standard deviations that a motion of a bench would give to delays, without any reading."""
+"""The standard deviations of delays that a bench motion would give, computed without readings."""
 
 from dataclasses import dataclass
 
@@ -21,16 +21,23 @@ class ForeseenDelays:
 
     @property
     def worst(self):
-        """The largest standard deviation of a delay that shows, s, or None."""
+        """The largest standard deviation of an observable delay, s, or None."""
         shown = [s for s, why in zip(self.sigmas, self.refused) if not why]
         return max(shown, default=None)
 
 
 def planned_record(name, motion, datum, earth, white, rate_hz, start_s, duration_s):
     """
-    Return the BenchRecord of a motion, without readings.
+    Return the BenchRecord of a planned motion, without readings.
 
-    white (3,): angle random walk, rad/sqrt(s). Raises ValueError where it is too short.
+    Parameters
+    ----------
+    name : used in messages
+    motion : Motion
+    datum, earth : settings of the place of the bench
+    white : (3,) angle random walk, rad/sqrt(s)
+    rate_hz : sampling rate, Hz
+    start_s, duration_s : motion time of the start, and length, s; ValueError if too short
     """
     dt_ns = round(1e9 / rate_hz)
     count = int(duration_s * 1e9 / dt_ns)
@@ -44,7 +51,7 @@ def planned_record(name, motion, datum, earth, white, rate_hz, start_s, duration
 
 
 def foresee(records):
-    """Return the ForeseenDelays of BenchRecords that are planned."""
+    """Return the ForeseenDelays for planned BenchRecords."""
     sigmas, refused = [], []
     for axis in range(3):
         sums = [channel_sums(record, axis, 0) for record in records]

@@ -1,4 +1,4 @@
-"""The lag that the bandwidth of a gyro adds to its delay, by the model of the instrument."""
+"""The apparent delay of a gyro due to its bandwidth, from the model of the instrument."""
 
 from dataclasses import fields, replace
 
@@ -21,10 +21,10 @@ def estimate_with_lag(records, errors):
 
 def model_lags(records, errors):
     """
-    Return by how much the bandwidth of GyroErrors makes the channels late under a motion, s.
+    Return the apparent delays of the channels due to the bandwidth of GyroErrors, (3,) s.
 
-    It is what ``estimate_triad`` finds of readings without any other error, for BenchRecords of
-    the same motion; (3,), NaN for a channel of which the motion shows no delay.
+    This is the result of ``estimate_triad`` for BenchRecords of the same motion whose readings
+    have no other error; NaN for a channel whose delay the motion does not show.
     """
     lag = GyroErrors(**{f.name: getattr(errors, f.name) for f in fields(GyroErrors)
                         if f.name in BANDWIDTH})

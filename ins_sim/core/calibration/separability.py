@@ -1,4 +1,4 @@
-"""What the motion of a record cannot tell: delays that do not show, and what looks alike."""
+"""The limits of a record: delays that its motion does not show, and unknowns that look alike."""
 
 import math
 
@@ -8,21 +8,28 @@ from ins_sim.core.numerics.units import DEG
 from .channel_fit import PRIOR
 from .channel_sums import AXES, BIAS, DELAY, LAST, other_axes, SCALE
 
-# A delay whose sigma is longer than this part of the sampling period has not been measured.
+# A delay whose sigma exceeds this fraction of the sampling period has not been measured.
 COARSE = 0.1
 
-# Turns of the Jacobi method; some matrices of 6 need 8.
+# Largest number of sweeps of the Jacobi method; some matrices of size 6 need 8.
 SWEEPS = 50
-# A part of a direction that is smaller than this is not named.
+# Components of a direction below this fraction of the largest are not named.
 NAMED = 0.2
 
 
 def unobservable(axis, fit, change, dt_s):
     """
-    Return why the readings do not tell the delay of a channel, a sentence without its end, or ''.
+    Return why the readings do not determine the delay of a channel, or ''.
 
-    axis: 0, 1, 2; fit: ChannelFit; change: greatest derivative of its rate, rad/s^2; dt_s:
-    sampling period, s. It is told by the priors where they make more than half of its variance.
+    The reason is a sentence without its end. A delay is not determined if the priors contribute
+    more than half of its variance.
+
+    Parameters
+    ----------
+    axis : 0, 1 or 2
+    fit : ChannelFit
+    change : greatest derivative of the rate, rad/s^2
+    dt_s : sampling period, s
     """
     name, sigma = AXES[axis], fit.delay_sigma
     if fit.told_by_prior > 0.5:
@@ -41,12 +48,16 @@ def unobservable(axis, fit, change, dt_s):
 
 def weak_directions(fit, sums):
     """
-    Return combinations of the values of a channel that the readings tell less of than the priors.
+    Return the combinations of values about which the readings tell less than the priors.
 
-    fit: ChannelFit; sums: its ChannelSums. The result is a tuple of arrays (m,) in the units of
-    ``ChannelFit.values``, with zeros for what hardly takes part. Values are measured by what is
-    known of them beforehand. A delay has no such measure and takes the one with which it errs as
-    much as a misalignment of 1e-3, and so does a bias.
+    The result is a tuple of arrays (m,) in the units of ``ChannelFit.values``; small components
+    are set to zero. Values are scaled by their a-priori standard deviation. Delay and bias have
+    none; they are scaled to cause the same error as a misalignment of 1e-3.
+
+    Parameters
+    ----------
+    fit : ChannelFit
+    sums : ChannelSums of the records
     """
     count = float(np.add.reduce(np.concatenate([one.count for one in sums])))
     rate = math.sqrt(max(_total(one.turning for one in sums), 0.0) / count)
@@ -64,7 +75,7 @@ def weak_directions(fit, sums):
 
 
 def _echelon(rows):
-    """Return rows that span what the given ones do, each with zeros where another has its one."""
+    """Return rows with the same span in echelon form: each has zeros at the pivots of others."""
     rows = rows.copy()
     for k in range(len(rows)):
         place = int(np.argmax(np.abs(rows[k:])))
@@ -86,10 +97,10 @@ def _total(values):
 
 def eigenvectors(a):
     """
-    Return eigenvalues (m,) and eigenvectors, columns (m, m), of a symmetric matrix.
+    Return eigenvalues (m,) and eigenvectors, columns of (m, m), of a symmetric matrix.
 
-    By the cyclic method of Jacobi (Golub and Van Loan, section 8.5), whose bits are those of
-    + - * / sqrt alone.
+    Cyclic Jacobi method (Golub and Van Loan, section 8.5). It uses only + - * / sqrt, so its bits
+    are the same on every machine.
     """
     a, v = a.copy(), np.eye(len(a))
     for _ in range(SWEEPS):

@@ -1,4 +1,4 @@
-"""Runs of the whole aided chain side by side: the truth and the ideal readings are made once."""
+"""Many runs of the whole aided chain; truth and ideal readings are computed once for all."""
 
 from collections import deque
 
@@ -24,13 +24,23 @@ from ins_sim.core.timeseries.histories import NavStates
 
 def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
     """
-    Return the AidedFlights of runs of AidedSimulationSettings that have the same motion.
+    Return the AidedFlights of several runs on the same motion.
 
-    The solution of run k is, to the bit, that of ``simulate`` and ``simulate_aided`` of the
-    settings with_run(k).
-    wanted_ns (m,): motion times of the outputs, each taken at the first sample from then on;
-    progress: called with the fraction done.  Raises ValueError where the settings do not fit; a
-    run that is refused on the way is not.
+    The solution of run k has the same bits as ``simulate`` and ``simulate_aided`` give for
+    ``settings.with_run(k)``.
+
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+    motion : Motion
+    runs : numbers of the runs
+    wanted_ns : (m,) motion times of the outputs, ns; each is taken at the next sample
+    progress : function that is called with the fraction done, or None
+
+    Raises
+    ------
+    ValueError
+        If the settings are inconsistent. A failure during a run is recorded in its AidedFlight.
     """
     simulation = settings.simulation
     check_length(simulation.motion_generator, motion)
@@ -53,14 +63,14 @@ def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
 @paused_in_blocks
 def _rounds(settings, motion, recent):
     """
-    Yield blocks of the ideal ImuSamples, each with the Truth for the other instruments since.
+    Yield blocks of ideal ImuSamples, each with the Truth for the other instruments since the last.
 
-    The truth is that of the generator's instants up to the end of the block, in a list of parts.
-    What is left in the end comes with no samples.  recent: RecentTruth of the motion.
+    The truth is a list of parts, at the instants of the generator up to the end of the block. The
+    rest of it comes at the end with an empty block. recent: RecentTruth of the motion.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     truths, rest, ideal = truth_blocks(generator, recent), None, None
-    # The IMU on a motion asks for more than the truth at its samples.
+    # An IMU with source motion needs more than the truth at its samples.
     source = motion if sensor.source == 'motion' else recent
     for ideal in ideal_blocks(settings, source):
         found, rest = _until(truths, rest, int(ideal.t_ns[-1]))
@@ -70,7 +80,7 @@ def _rounds(settings, motion, recent):
 
 
 def _until(truths, rest, end_ns):
-    """Return the Truth up to an instant, in a list of parts, and what was read beyond it."""
+    """Return a list of parts of the Truth up to an instant, and what was read beyond it."""
     parts = []
     while True:
         if rest is None:
@@ -92,9 +102,9 @@ class AidedFlight:
     Attributes
     ----------
     run : number of the run
-    result : AidedResult once it has finished, with the FilterNote of each output instant; None of
-        a run that was refused
-    refused : why, in a sentence, or ''
+    result : AidedResult with the FilterNote of each output instant, after ``finish``; None for a
+        run that failed
+    refused : reason of the failure, a sentence, or ''
 
     """
 
@@ -118,11 +128,11 @@ class AidedFlight:
         self._span_ns = navigator.window.cycles * dt_ns
         self._outputs = WantedInstants(wanted_ns, dt_ns)
         self._chain = AidedChain(navigator, note_of, self._outputs)
-        # Blocks whose fixes are not all known yet, and fixes that no block has been given.
+        # Blocks that still wait for fixes, and fixes that belong to no block yet.
         self._held, self._fixes = deque(), []
 
     def advance(self, ideal, truth):
-        """Take ideal ImuSamples, and the truth for the other instruments in a list of parts."""
+        """Take ideal ImuSamples and a list of parts of the truth for the other instruments."""
         if self.refused:
             return
         try:
@@ -133,7 +143,7 @@ class AidedFlight:
             self._refuse(error)
 
     def finish(self):
-        """Fly what is left."""
+        """Process the remaining blocks and complete the result."""
         if self.refused:
             return
         try:
@@ -170,7 +180,7 @@ class AidedFlight:
         self._fixes += [(fix.arrival_ns, source, fix) for fix in fixes]
 
     def _known_until(self, end_ns):
-        """Return whether all fixes are there that may arrive up to an instant."""
+        """Return whether all fixes that arrive up to an instant are known."""
         return (self._strapdown is None or self._ins_ns >= end_ns
                 or self._truth_ns >= end_ns + WAIT_NS + self._span_ns)
 
@@ -181,9 +191,9 @@ class AidedFlight:
 
     @property
     def numbers(self):
-        """Return the numbers (n,) of the wanted instants which the result has."""
+        """Return the indices (n,) of the wanted instants that the result contains."""
         return self._outputs.numbers(self.result.errors.t_ns)
 
     def nees(self):
-        """Return NEES and degrees of freedom at the output instants, (n, BLOCKS)."""
+        """Return NEES and its degrees of freedom at the output instants, (n, BLOCKS) each."""
         return self._normaliser.of(self.result)

@@ -1,9 +1,9 @@
 """
 Sums of NEES and NIS over runs, at each instant.
 
-At one instant the runs are independent, so that the sum over them is chi-square with the sum of
-their degrees of freedom. Over time the errors of one run are not independent, and nothing is
-summed. Sums are taken run after run and merged in the order of the groups of runs.
+At one instant the runs are independent, so the sum over them has a chi-square distribution whose
+degrees of freedom are the sum of theirs. Errors of one run at different times are correlated and
+are not summed. Sums are taken run by run and merged in the order of the groups of runs.
 """
 
 from typing import NamedTuple
@@ -14,9 +14,13 @@ import numpy as np
 
 class ChiSquareSums(NamedTuple):
     """
-    Sums over runs of what is chi-square if a filter is consistent; all arrays of one shape.
+    Sums over runs of a quantity that is chi-square distributed if the filter is consistent.
 
-    count: runs; total: sum of their squares; freedom: sum of their degrees of freedom.
+    Attributes
+    ----------
+    count : number of runs
+    total : sum of the squares
+    freedom : sum of the degrees of freedom; all three are arrays of one shape
     """
 
     count: np.ndarray
@@ -25,20 +29,24 @@ class ChiSquareSums(NamedTuple):
 
     @property
     def mean(self):
-        """Return the mean over the runs, NaN where there is none."""
+        """Return the mean over the runs, NaN without a run."""
         return self.total / np.where(self.count > 0, self.count, np.nan)
 
     @property
     def expected(self):
-        """Return what the mean would be of a consistent filter, NaN where there is no run."""
+        """Return the mean that a consistent filter would have, NaN without a run."""
         return self.freedom / np.where(self.count > 0, self.count, np.nan)
 
 
 def sums_of(squares, freedoms):
     """
-    Return the ChiSquareSums of squares (m, runs, n) and their degrees of freedom.
+    Return the ChiSquareSums over runs.
 
-    A square that is not finite, or without a degree of freedom, is left out.
+    Values that are not finite, or without a degree of freedom, are left out.
+
+    Parameters
+    ----------
+    squares, freedoms : (m, runs, n) values and their degrees of freedom
     """
     valid = np.isfinite(squares) & (freedoms > 0)
     instants, runs, width = squares.shape
@@ -52,17 +60,20 @@ def sums_of(squares, freedoms):
 
 
 def merged_sums(a, b):
-    """Return the ChiSquareSums of the runs of both."""
+    """Return the ChiSquareSums of two sets of runs together."""
     return ChiSquareSums(*(one + other for one, other in zip(a, b)))
 
 
 class FixSums(NamedTuple):
     """
-    What the filters did with the fixes of one instrument, at the instants of the fixes.
+    What the filters did with the fixes of one instrument, at the k instants of the fixes.
 
-    t_ns (k,), ascending; sums: ChiSquareSums (k,) of the NIS of the fixes that were weighed,
-    whether taken or not; taken, refused (k,): how many runs took the fix, and how many did not
-    though it was valid.
+    Attributes
+    ----------
+    t_ns : (k,) instants in ascending order, ns
+    sums : ChiSquareSums (k,) of the NIS of the fixes that were tested, used or not
+    taken : (k,) number of runs that used the fix
+    refused : (k,) number of runs that did not use the fix although it was valid
     """
 
     t_ns: np.ndarray
@@ -72,7 +83,7 @@ class FixSums(NamedTuple):
 
 
 def fix_sums(runs, source):
-    """Return the FixSums of a source; runs: of each the list of its JudgedFix."""
+    """Return the FixSums of a source; runs: a list of JudgedFix for each run."""
     none = np.empty(0, dtype=np.int64)
     found = FixSums(none, ChiSquareSums(none, np.empty(0), none), none, none)
     for judged in runs:
@@ -90,7 +101,7 @@ def fix_sums(runs, source):
 
 
 def merged_fixes(a, b):
-    """Return the FixSums of the runs of both."""
+    """Return the FixSums of two sets of runs together."""
     t_ns = np.union1d(a.t_ns, b.t_ns)
 
     def both(one, other):

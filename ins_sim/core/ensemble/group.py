@@ -1,4 +1,4 @@
-"""A group of at most 16 runs, which go through the strapdown side by side."""
+"""A group of at most 16 runs that go through the strapdown side by side."""
 
 from dataclasses import replace
 
@@ -16,18 +16,21 @@ from . import lanes
 from .lanes import LANES
 from .sensing import SensedTriad
 
-# Errors of a run: attitude, rad, velocity, m/s, and position, m, each East, North, Up.
+# Number of errors: attitude (rad), velocity (m/s) and position (m), each East, North, Up.
 ERRORS = 9
-# Samples that are taken at once: their readings, of 16 runs, take 0.8 MB.
+# Number of samples processed at once; their readings in 16 runs take 0.8 MB.
 PIECE = 1024
 
 
 class Group:
     """
-    Runs with the same truth and ideal readings.
+    Runs with the same truth and the same ideal readings.
 
-    settings: SimulationSettings; runs: their numbers, at most 16; initial: function of the number
-    of a run that returns its Initial errors, or None for those of the settings.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    runs : numbers of the runs, at most 16
+    initial : function (number of a run) -> its Initial errors, or None for those of the settings
     """
 
     def __init__(self, settings, runs, initial=None):
@@ -57,16 +60,22 @@ class Group:
         return tuple(run for run, lost in zip(self.runs, self._lost) if lost)
 
     def wait(self, imu):
-        """Take ideal samples before the start of the strapdown: lags settle meanwhile."""
+        """Take ideal samples from before the start of the strapdown, so that lags settle."""
         for part in _pieces(imu.t_ns // self._dt_ns):
             self._sense(imu[part])
 
     def advance(self, imu, t_ns, truth, picked):
         """
-        Take samples, the first of all starting the strapdown; return errors at the picked ones.
+        Take samples and return the errors (m, runs, ERRORS) at the picked ones.
 
-        imu: ImuSamples of the ideal instrument; t_ns: their instants; truth: Truth then; picked:
-        numbers of samples.  Errors (m, runs, ERRORS), NaN of a run that has diverged.
+        The first sample of all starts the strapdown. Errors of a diverged run are NaN.
+
+        Parameters
+        ----------
+        imu : ImuSamples of the ideal instrument
+        t_ns : instants of the samples, ns
+        truth : Truth at these instants
+        picked : (m,) indices of samples
         """
         solved = [self._advance(imu[part], t_ns[part], truth[part],
                                 picked[(picked >= part.start) & (picked < part.stop)] - part.start)
@@ -99,7 +108,7 @@ class Group:
         return solved
 
     def _sense(self, imu):
-        """Return the readings (n, 6, LANES); lanes without a run have those of the first."""
+        """Return the readings (n, 6, LANES); unused lanes get those of the first run."""
         readings = np.empty((len(imu), 6, LANES))
         t_s, first = imu.t_ns * 1e-9, int(imu.t_ns[0]) // self._dt_ns
         for triad, values, rows in ((self._gyro, imu.omega, readings[:, 0:3]),
@@ -123,7 +132,7 @@ class Group:
         self._state, self._navigators = state, None
 
     def _set_aside(self):
-        """Mark runs that have diverged; their lanes go on as copies of one that has not."""
+        """Mark diverged runs; their lanes continue as copies of a run that has not diverged."""
         off = ~np.isfinite(self._state[:lanes.CARRIED]).all(axis=0)
         self._lost |= off
         if off.any() and not self._lost.all():
@@ -148,9 +157,9 @@ class Group:
 
     def final(self, truth):
         """
-        Return the solutions at the last sample and their errors, NaN of the lost.
+        Return the solutions at the last sample and their errors, NaN for diverged runs.
 
-        truth: Truth then.  Solutions (runs, SOLVED): lat, lon, height, v_n, q_nb.
+        truth: Truth at that sample. Solutions (runs, SOLVED): lat, lon, height, v_n, q_nb.
         """
         solved = self._solved()
         solved[:, self._lost] = np.nan
@@ -160,7 +169,7 @@ class Group:
 
 
 def _sensed(triads, column):
-    """Return the SensedTriad of TriadErrors, or None of perfect ones."""
+    """Return the SensedTriad of TriadErrors, or None if all of them are perfect."""
     if all(triad is None or triad.perfect for triad in triads):
         return None
     return SensedTriad(triads, column)
@@ -168,9 +177,9 @@ def _sensed(triads, column):
 
 def _pieces(index):
     """
-    Return slices of samples of consecutive indices.
+    Return slices of samples with consecutive indices.
 
-    They end where blocks of random numbers do, so that few of these are made twice.
+    Slices end where blocks of random numbers do, so that few blocks are computed twice.
     """
     pieces = []
     for run in consecutive(index):

@@ -1,10 +1,10 @@
 """
 The strapdown of 16 runs side by side, in lanes.
 
-The state is one flat array: entry ``i * LANES + l`` is number i of run l, so that the compiler
-takes several runs in one instruction. The step is that of the single run, function by function.
-A step that is not a small one for every run, or at which the sines are computed anew, is done run
-by run by ``mechanization.advance``, as in the single run; so each lane has the bits of its run.
+The state is one flat array: entry ``i * LANES + l`` is number i of run l, so that the compiler can
+process several runs in one instruction. The step is that of the single run, function by function.
+If a step is not a small one for every run, or if sines must be recomputed, it is done run by run
+with ``mechanization.advance``, as in the single run. Each lane therefore has the bits of its run.
 """
 
 from ins_sim.core.attitude import integration, quaternion
@@ -13,23 +13,26 @@ from ins_sim.core.navigation.increments import fixed_rate_increments, integrals
 from ins_sim.core.navigation.whole_run import SOLVED
 
 LANES = 16
-# Numbers of a run: PLACE, q_ib, and the integrals of the last sample; then the increments of the
-# present one.
+# Rows of the state of a run: PLACE, q_ib, the integrals of the last sample (up to CARRIED), and
+# the increments of the present sample.
 PLACES, CARRIED, NUMBERS = 22, 32, 38
 
 
 def advance(state, spin, start_ns, last_ns, channel, damping, gravity, integrated, t_ns, readings,
             height, v_u, picked, out):
     """
-    Advance 16 runs over samples; return the state.
+    Advance 16 runs over n samples; return the state.
 
-    state : NUMBERS rows of LANES
-    spin, start_ns, channel, damping, gravity, integrated, height, v_u : as of ``whole_run.solve``
-    last_ns : instant of the state
-    readings : of each sample, omega and f, six rows of LANES
-    picked : indices of the samples whose solution is written, in ascending order, and last an
+    Parameters
+    ----------
+    state : NUMBERS rows of LANES, flat
+    spin, start_ns, channel, damping, gravity, integrated, height, v_u : see ``whole_run.solve``
+    last_ns : instant of the state, ns
+    t_ns : (n,) instants of the samples, ns
+    readings : omega and f of each sample, six rows of LANES, flat
+    picked : indices of the samples whose solution is written, in ascending order, followed by an
         index that no sample has
-    out : of each picked sample, SOLVED rows of LANES
+    out : SOLVED rows of LANES for each picked sample, flat
     """
     p = 0
     for k in range(len(t_ns)):
@@ -51,9 +54,17 @@ def advance(state, spin, start_ns, last_ns, channel, damping, gravity, integrate
 
 def increments_of(state, readings, first, dt, spin, integrated):
     """
-    Write rotation vector and velocity increment of a sample, and its integrals.
+    Write rotation vector and velocity increment of a sample, and its integrals, into the state.
 
-    Return whether the next step is a small one for all runs, and none is to be renewed.
+    Return whether the next step is a small one for all runs and no sines must be recomputed.
+
+    Parameters
+    ----------
+    state : NUMBERS rows of LANES, flat
+    readings, first : omega and f as in ``advance``, and the index where this sample begins
+    dt : length of the interval, s
+    spin : rotation rate of the Earth, rad/s
+    integrated : whether readings are integrals of the rate (output ``integrated``)
     """
     small, limit = 0, mechanization.TURN / (0.5 * dt)
     for lane in range(LANES):
@@ -83,7 +94,7 @@ def increments_of(state, readings, first, dt, spin, integrated):
 
 
 def small_steps(state, dt, spin, channel, reference, gravity):
-    """Do the step of every run, where it is a small one for all."""
+    """Do the step of every run; it must be a small one for all of them."""
     for lane in range(LANES):
         place, q, phi, delta_v = lane_of(state, lane)
         place = mechanization.small_step(place, quaternion.rotate(q, delta_v), dt, spin, channel,
@@ -93,7 +104,7 @@ def small_steps(state, dt, spin, channel, reference, gravity):
 
 
 def any_step(state, lane, dt, spin, earth_angle, channel, reference, gravity):
-    """Do the step of one run, whatever it is."""
+    """Do the step of one run, of any size."""
     place, q, phi, delta_v = lane_of(state, lane)
     place = mechanization.advance(place, q, delta_v, dt, spin, earth_angle, channel, reference,
                                   gravity)
@@ -127,7 +138,7 @@ def put(s, i, place, q):
 
 
 def write_solved(state, out, first):
-    """Write latitude, longitude, height, velocity and q_ib of every run."""
+    """Write latitude, longitude, height, velocity and q_ib of every run into out."""
     for lane in range(LANES):
         i = first + lane
         for row in range(6):

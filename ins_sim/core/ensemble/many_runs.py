@@ -1,4 +1,4 @@
-"""Many runs of one simulation: the same truth, other random numbers and initial errors."""
+"""Many runs of one simulation: the same truth, different random numbers and initial errors."""
 
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
@@ -23,14 +23,25 @@ NO_OUTPUT = ('the runs have no navigation output; expected duration_s longer tha
 
 def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     """
-    Return the EnsembleResult of runs of SimulationSettings.
+    Return the EnsembleResult of many runs.
 
-    Run k is ``simulate`` of ``settings.with_run(k)``, to the bit.  motion: that of
-    settings.motion_generator; runs: range of numbers; instants_s: motion times of the statistics,
-    each taken at the first sample from then on that has a solution; threads: how many work at
-    once, which changes no bit; initial: function of the number of a run that returns its Initial
-    errors, by default those of the settings.  Settings that do not go side by side are simulated
-    run by run.  Raises ValueError as ``simulate`` does.
+    Run k has the same bits as ``simulate`` gives for ``settings.with_run(k)``. Settings for which
+    runs cannot go side by side are simulated run by run.
+
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : the motion of settings.motion_generator
+    runs : range of numbers of runs
+    instants_s : motion times of the statistics, s; each is taken at the first sample from then on
+        that has a solution
+    threads : number of threads, which does not change the bits
+    initial : function (number of a run) -> its Initial errors, or None for those of the settings
+
+    Raises
+    ------
+    ValueError
+        As ``simulate`` does.
     """
     check_runs(settings, motion)
     wanted = np.unique(np.round(1e9 * np.asarray(instants_s, dtype=float)).astype(np.int64))
@@ -65,10 +76,10 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
 @paused_in_blocks
 def _navigated(settings, motion):
     """
-    Yield blocks of ideal readings.
+    Yield blocks of ideal readings with what the strapdown needs.
 
-    With each the number of its first sample at which the strapdown runs, and of the samples from
-    there on the instants and the Truth.
+    Each comes with the index of its first sample at which the strapdown runs, and with the
+    instants and the Truth of the samples from there on.
     """
     clock = SampleClock(settings.strapdown, period_ns(settings.strapdown.rate_hz))
     start_ns = None
@@ -81,10 +92,10 @@ def _navigated(settings, motion):
 
 
 def check_runs(settings, motion):
-    """Raise ValueError where SimulationSettings on a motion name no run of finite length."""
+    """Raise ValueError if SimulationSettings do not define runs of finite length on a motion."""
     generator, after_s = settings.motion_generator, settings.strapdown.initial.after_s
     if generator.motion.kind == 'guided':
-        # it gets its length as it is steered
+        # A guided motion only gets its length while it is steered.
         motion.length_s(generator.start_s, generator.duration_s)
     else:
         check_length(generator, motion)
@@ -95,10 +106,10 @@ def check_runs(settings, motion):
 
 def in_lanes(settings):
     """
-    Return whether runs of SimulationSettings go side by side.
+    Return whether runs of SimulationSettings can go side by side.
 
-    Not tuned gyros, of which each run steps its rotors, nor what has samples at other instants in
-    each run, nor the other kinds of orientation, nor a motion that each run steers.
+    They cannot with tuned gyros, whose rotors are stepped in each run; with samples whose instants
+    differ between runs; with other orientation methods than quaternion; and with guided motions.
     """
     sensor, strapdown = settings.imu_sensor, settings.strapdown
     sampler = Sampler(sensor.sampling, sensor.seed, 0, 'sampling', period_ns(sensor.rate_hz))

@@ -1,4 +1,4 @@
-"""Runs of an ensemble that do not go side by side: each is flown by itself."""
+"""Runs of an ensemble that cannot go side by side: each is simulated by itself."""
 
 from dataclasses import replace
 
@@ -15,16 +15,21 @@ from .result import ErrorTally
 
 def simulate_each(settings, motion, runs, wanted_ns, initial=None):
     """
-    Return the EnsembleResult of runs as ``many_runs.simulate_runs`` does, run after run.
+    Return the EnsembleResult of runs simulated one after the other; see ``simulate_runs``.
 
-    wanted_ns (m,): the instants of the statistics, whole ns.  A run whose stamps move, or that
-    loses samples, has instants of its own: its first solution from the wanted one on counts, or
-    the last one of all.  A guided motion is steered by the solution of each run.
+    A run with jitter of the stamps, or with lost samples, has its own instants: its first solution
+    from the wanted instant on counts, or its last one of all. A guided motion is steered by the
+    solution of each run.
+
+    Parameters
+    ----------
+    settings, motion, runs, initial : see ``many_runs.simulate_runs``
+    wanted_ns : (m,) int64 instants of the statistics, ns
     """
     generator = settings.motion_generator
     begin_ns = round(1e9 * generator.start_s) + round(1e9 * settings.strapdown.initial.after_s)
     end_ns = round(1e9 * (generator.start_s + generator.duration_s))
-    # what is asked for before the start is the start
+    # An instant before the start counts as the start.
     wanted_ns = np.unique(np.maximum(wanted_ns[wanted_ns <= end_ns], begin_ns))
     flights = [_Flight(wanted_ns) for _ in runs]
     for run, flight in zip(runs, flights):
@@ -44,7 +49,7 @@ def simulate_each(settings, motion, runs, wanted_ns, initial=None):
 
 
 class _Flight:
-    """One run: its errors at the wanted instants, NaN where it was lost, and its end."""
+    """One run: its errors at the wanted instants (NaN if it failed) and at its end."""
 
     def __init__(self, wanted_ns):
         self._wanted_ns, self._taken = wanted_ns, 0
@@ -53,7 +58,7 @@ class _Flight:
         self.lost, self.restarts = False, 0
 
     def follow(self, settings, motion):
-        """Fly."""
+        """Simulate the run."""
         faults = []
         try:
             fly(settings, motion)
@@ -63,7 +68,7 @@ class _Flight:
                 if self.lost:
                     break
         except StreamFault:
-            # rotors that run away, or a solution at which no navigator can go on
+            # The rotors of tuned gyros diverged, or a navigator cannot continue.
             self.lost = True
         self.lost = self.lost or not np.isfinite(self.final_errors).all()
         if self.lost:

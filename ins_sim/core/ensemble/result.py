@@ -1,4 +1,4 @@
-"""What is kept of many runs, and how the results of blocks of them become one."""
+"""The result of many runs, and how results of several blocks of runs are joined."""
 
 from dataclasses import dataclass, replace
 
@@ -8,21 +8,25 @@ from ins_sim.core.navigation.whole_run import SOLVED
 from .group import ERRORS
 from .statistics import ErrorStatistics
 
-# Of these columns the horizontal size is taken: attitude, velocity, position, East and North.
+# Columns (East, North) of attitude, velocity and position, for the horizontal size.
 HORIZONTAL = ((0, 1), (3, 4), (6, 7))
 
 
 @dataclass(frozen=True, eq=False)
 class EnsembleResult:
     """
-    What is kept of many runs.
+    The result of many runs.
 
-    runs: their numbers; t_ns (m,): the instants of the statistics; statistics: of the errors of
-    attitude (rad), velocity (m/s) and position (m), nine columns; horizontal: of the sizes of
-    their horizontal parts, three columns; final (runs, 10): the solutions at the end, latitude,
-    longitude, height, v_n, q_nb; final_errors (runs, 9); diverged: the numbers of the runs that
-    did not stay finite, which count no further; restarted: pairs of a run and how often its
-    strapdown started anew from the truth, after gaps.
+    Attributes
+    ----------
+    runs : numbers of the runs
+    t_ns : (m,) instants of the statistics, ns
+    statistics : ErrorStatistics of attitude (rad), velocity (m/s) and position (m), nine columns
+    horizontal : ErrorStatistics of the sizes of their horizontal parts, three columns
+    final : (runs, 10) solutions at the end: latitude, longitude, height, v_n, q_nb
+    final_errors : (runs, 9) errors at the end
+    diverged : numbers of the runs with values that are not finite; they are left out from then on
+    restarted : pairs (run, number of restarts of its strapdown from the truth after gaps)
     """
 
     runs: range
@@ -35,7 +39,7 @@ class EnsembleResult:
     restarted: tuple = ()
 
     def arrays(self):
-        """Return {name: array} of the whole result: what travels, and what is kept on disk."""
+        """Return {name: array} of the whole result, as passed between processes and stored."""
         return {'runs': np.array([self.runs.start, self.runs.stop]), 't_ns': self.t_ns,
                 **self.statistics.arrays('errors'), **self.horizontal.arrays('horizontal'),
                 'final': self.final, 'final_errors': self.final_errors,
@@ -44,7 +48,7 @@ class EnsembleResult:
 
 
 def of_arrays(arrays):
-    """Return the EnsembleResult of ``EnsembleResult.arrays``."""
+    """Return the EnsembleResult from the arrays of ``EnsembleResult.arrays``."""
     return EnsembleResult(
         range(*arrays['runs'].tolist()), arrays['t_ns'],
         ErrorStatistics.of_arrays(arrays, 'errors'),
@@ -54,10 +58,9 @@ def of_arrays(arrays):
 
 def joined(results):
     """
-    Return the EnsembleResult of the runs of some, each going on where the one before ends.
+    Return the EnsembleResult of several results for consecutive runs.
 
-    They are taken one after the other, in their order.  Raises ValueError where they do not
-    follow each other or are of different instants.
+    Raises ValueError if the runs are not consecutive, or the instants differ.
     """
     whole, final, final_errors, diverged, restarted = None, [], [], (), ()
     for part in results:
@@ -68,7 +71,7 @@ def joined(results):
                             statistics=whole.statistics.joined(part.statistics),
                             horizontal=whole.horizontal.joined(part.horizontal))
         else:
-            raise ValueError(f'runs {whole.runs} and {part.runs} do not go together; expected '
+            raise ValueError(f'runs {whole.runs} and {part.runs} cannot be joined; expected '
                              'consecutive runs with the same instants')
         final.append(part.final)
         final_errors.append(part.final_errors)
@@ -78,14 +81,14 @@ def joined(results):
 
 
 class ErrorTally:
-    """The statistics of errors at m instants in the making."""
+    """Accumulates the statistics of errors at m instants."""
 
     def __init__(self, instants):
         self._errors = ErrorStatistics(instants, ERRORS)
         self._horizontal = ErrorStatistics(instants, len(HORIZONTAL))
 
     def add(self, first, errors):
-        """Add the errors (m, runs, ERRORS) of a group of runs from instant number first on."""
+        """Add the errors (m, runs, ERRORS) of a group of runs, from instant ``first`` on."""
         self._errors.add(first, errors)
         self._horizontal.add(first, horizontal_of(errors))
 
@@ -93,8 +96,12 @@ class ErrorTally:
         """
         Return the EnsembleResult.
 
-        t_ns: the instants that were reached; final, final_errors: arrays of the groups of runs, in
-        their order.
+        Parameters
+        ----------
+        runs : numbers of the runs
+        t_ns : instants that were reached, ns
+        final, final_errors : arrays of the groups of runs, in their order
+        diverged, restarted : see EnsembleResult
         """
         return EnsembleResult(
             runs, np.array(t_ns, dtype=np.int64), self._errors.first(len(t_ns)),
@@ -104,7 +111,7 @@ class ErrorTally:
 
 
 def horizontal_of(errors):
-    """Return the horizontal sizes (..., 3) of errors (..., ERRORS): attitude, velocity, place."""
+    """Return the horizontal sizes (..., 3) of attitude, velocity and position errors."""
     return np.stack([np.sqrt(errors[..., east] * errors[..., east]
                              + errors[..., north] * errors[..., north])
                      for east, north in HORIZONTAL], axis=-1)

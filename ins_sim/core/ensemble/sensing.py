@@ -1,9 +1,8 @@
 """
-The readings of one triad of 16 runs, in lanes.
+The readings of one triad in 16 runs, in lanes.
 
-Where a triad has constant errors, white noise and processes only, the readings of all runs are
-made by one compiled loop; its operations are those of ``TriadErrors``. All else is computed run
-by run.
+If a triad has only constant errors, white noise and processes, one compiled loop makes the
+readings of all runs, with the operations of ``TriadErrors``. Anything else is computed run by run.
 """
 
 import numpy as np
@@ -18,7 +17,10 @@ class SensedTriad:
     """
     One triad of a group of runs.
 
-    triads: TriadErrors of each run; column: 0 of gyros, 3 of accelerometers.
+    Parameters
+    ----------
+    triads : TriadErrors of each run
+    column : 0 for gyros, 3 for accelerometers
     """
 
     def __init__(self, triads, column):
@@ -31,9 +33,14 @@ class SensedTriad:
 
     def read(self, first, values, forces, t_s, readings):
         """
-        Write the readings of consecutive samples, first being the index of the first one.
+        Write the readings of n consecutive samples.
 
-        values, forces (n, 3) and t_s (n,): as of ``TriadErrors.advance``; readings (n, 6, LANES).
+        Parameters
+        ----------
+        first : index of the first sample
+        values, forces : (n, 3), see ``TriadErrors.advance``
+        t_s : (n,) motion times, s
+        readings : (n, 6, LANES)
         """
         if self._constants is None:
             self._read_each(first, values, forces, t_s, readings)
@@ -52,14 +59,14 @@ class SensedTriad:
                         (self._column, first, values, *self._constants, others), readings, plain)
 
     def _read_each(self, first, values, forces, t_s, readings):
-        """Make the readings run by run."""
+        """Compute the readings run by run."""
         for lane, triad in enumerate(self._triads):
             readings[:, self._column:self._column + 3, lane] = triad.advance(first, values,
                                                                              forces, t_s)
 
 
 def _constants(found):
-    """Return the constants of ``read_lanes``, or None where runs have different terms."""
+    """Return the constants of ``read_lanes``, or None if the runs have different terms."""
     geometry, response, noise = zip(*found)
     if len({(g is None, r is None) for g, r in zip(geometry, response)}) > 1:
         return None
@@ -73,7 +80,7 @@ def _constants(found):
 
 
 def _filled(terms):
-    """Return the terms of all lanes in a flat array, or None."""
+    """Return the terms of all lanes as a flat array, or None."""
     if terms[0] is None:
         return None
     rows = np.array([np.ravel(term) for term in terms])
@@ -82,15 +89,19 @@ def _filled(terms):
 
 def read_lanes(column, first, values, fixed, white, keys, geometry, response, others, out):
     """
-    Write the readings of 16 runs.  Compiled only, as ``normals.fill`` is.
+    Write the readings of 16 runs; for compiled code only, see ``normals.fill``.
 
-    values : three a sample
-    fixed : of each lane three biases
+    Parameters
+    ----------
+    column : first of the three rows of out that are written
+    first : index of the first sample
+    values : flat, three per sample
+    fixed : flat, three biases per lane
     white : three standard deviations, or None
-    keys : of each lane the key of its white noise
-    geometry, response : of each lane 9 and 12 numbers, as of ``respond``, or None
-    others : of each lane, of each process, rows of three, or None
-    out : of each sample six rows of LANES; the rows from index column on are written
+    keys : flat, key of the white noise of each lane, two words
+    geometry, response : flat, 9 and 12 numbers per lane, see ``respond``; or None
+    others : flat, per lane and process three numbers for each sample; or None
+    out : flat, six rows of LANES per sample
     """
     count, done = len(values) // 3, 0
     row = 3 * BLOCK
@@ -126,7 +137,7 @@ def with_white(white, bias, z, i):
 
 
 def with_others(others, a, b, c, lane, k, count):
-    """Return noise plus the processes of a lane, if any, one after the other."""
+    """Return noise plus the processes of a lane, if any, added one after the other."""
     if others is None:
         return a, b, c
     number = len(others) // (3 * count * LANES)
@@ -145,7 +156,7 @@ def nine_of(rows, i):
 
 
 def twelve_of(rows, i):
-    """Return twelve entries of a flat sequence from number i in threes, or None."""
+    """Return twelve entries of a flat sequence from index i, in threes; None if rows is None."""
     if rows is None:
         return None
     return (three_of(rows, i), three_of(rows, i + 3), three_of(rows, i + 6),

@@ -1,17 +1,16 @@
 """
 Running statistics of errors: count, mean, co-moments, and histograms for percentiles.
 
-Runs come in groups. A group has moments of its own, which are merged in the order of the groups
-(Chan, Golub and LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample
-Variances", 1979), so that the last bits do not depend on which group is computed first. All sums
-are taken run after run.
+Runs come in groups. The moments of each group are merged in the order of the groups (Chan, Golub
+and LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample Variances", 1979), so
+the last bits do not depend on which group is finished first. All sums are taken run by run.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-# Bins of a histogram: one below the least size, PARTS to each power of two, one above.
+# Bins of a histogram: one below 2^LEAST, PARTS for each power of two, and one above.
 LEAST, GREATEST, PARTS = -60, 40, 32
 EDGES = np.concatenate([np.ldexp(1.0 + np.arange(PARTS) / PARTS, e)
                         for e in range(LEAST, GREATEST + 1)])
@@ -22,7 +21,11 @@ class Moments(NamedTuple):
     """
     Moments of n quantities at m instants.
 
-    count (m,); mean (m, n); comoment (m, n, n): sums of products of deviations from the mean.
+    Attributes
+    ----------
+    count : (m,) number of samples
+    mean : (m, n)
+    comoment : (m, n, n) sums of products of deviations from the mean
     """
 
     count: np.ndarray
@@ -31,7 +34,7 @@ class Moments(NamedTuple):
 
 
 def moments_of(samples):
-    """Return the Moments of samples (m, runs, n); a run with a NaN or infinity is left out."""
+    """Return the Moments of samples (m, runs, n); samples with NaN or infinity are left out."""
     instants, runs, width = samples.shape
     valid = np.isfinite(samples).all(axis=2)
     count, total = np.zeros(instants, dtype=np.int64), np.zeros((instants, width))
@@ -47,7 +50,7 @@ def moments_of(samples):
 
 
 def merged(a, b):
-    """Return the Moments of the samples of both."""
+    """Return the Moments of two sets of samples together."""
     count = a.count + b.count
     per = 1.0 / np.maximum(count, 1)
     off = b.mean - a.mean
@@ -59,7 +62,7 @@ def merged(a, b):
 
 
 def bins_of(samples):
-    """Return the numbers of the bins of finite samples; those of NaN mean nothing."""
+    """Return the indices of the bins of finite samples; the index for NaN is meaningless."""
     return np.searchsorted(SIGNED_EDGES, samples, side='right')
 
 
@@ -70,7 +73,7 @@ class ErrorStatistics:
     Attributes
     ----------
     moments : Moments over all runs
-    histogram : (m, n, bins) numbers of runs; bin k lies below SIGNED_EDGES[k]
+    histogram : (m, n, bins) numbers of runs; bin k holds values below SIGNED_EDGES[k]
 
     """
 
@@ -80,7 +83,7 @@ class ErrorStatistics:
         self.histogram = np.zeros((instants, width, len(SIGNED_EDGES) + 1), dtype=np.int32)
 
     def add(self, first, samples):
-        """Add samples (m, runs, n) of the instants from number first on."""
+        """Add samples (m, runs, n) at m instants beginning with index ``first``."""
         part = slice(first, first + len(samples))
         found = merged(Moments(*(a[part] for a in self.moments)), moments_of(samples))
         for whole, new in zip(self.moments, found):
@@ -92,21 +95,21 @@ class ErrorStatistics:
                   1)
 
     def first(self, instants):
-        """Return the statistics of so many instants from the first."""
+        """Return the statistics of the first ``instants`` instants."""
         part = ErrorStatistics(0, self.mean.shape[1])
         part.moments = Moments(*(a[:instants] for a in self.moments))
         part.histogram = self.histogram[:instants]
         return part
 
     def joined(self, other):
-        """Return the statistics of the runs of both, those of other coming later."""
+        """Return the statistics of the runs of both; the runs of other come after these."""
         both = ErrorStatistics(0, self.mean.shape[1])
         both.moments = merged(self.moments, other.moments)
         both.histogram = self.histogram + other.histogram
         return both
 
     def arrays(self, name):
-        """Return {name_...: array}; of the histogram only the bins that are not empty."""
+        """Return ``{name_...: array}``; of the histogram only the bins that are not empty."""
         filled = np.flatnonzero(self.histogram)
         return {f'{name}_count': self.moments.count, f'{name}_mean': self.moments.mean,
                 f'{name}_comoment': self.moments.comoment, f'{name}_bins': filled,
@@ -114,7 +117,7 @@ class ErrorStatistics:
 
     @classmethod
     def of_arrays(cls, arrays, name):
-        """Return the statistics of ``arrays``."""
+        """Return the statistics from the arrays of ``arrays``."""
         made = cls(*arrays[f'{name}_mean'].shape)
         made.moments = Moments(*(arrays[f'{name}_{part}'] for part in Moments._fields))
         made.histogram.ravel()[arrays[f'{name}_bins']] = arrays[f'{name}_in_bins']
@@ -132,28 +135,28 @@ class ErrorStatistics:
 
     @property
     def covariance(self):
-        """Return the covariances (m, n, n), by count - 1; NaN of fewer than two runs."""
+        """Return the covariances (m, n, n), divisor count - 1; NaN for fewer than two runs."""
         less = np.where(self.count > 1, self.count - 1.0, np.nan)
         return self.moments.comoment / less[:, None, None]
 
     @property
     def rms(self):
-        """Return the root mean squares (m, n); NaN of no run."""
+        """Return the root mean squares (m, n); NaN without a run."""
         diagonal = np.diagonal(self.moments.comoment, axis1=1, axis2=2)
         with np.errstate(invalid='ignore', divide='ignore'):
             return np.sqrt(diagonal / self.count[:, None] + self.mean * self.mean)
 
     @property
     def sigma(self):
-        """Return the standard deviations (m, n), by count - 1; NaN of fewer than two runs."""
+        """Return standard deviations (m, n), divisor count - 1; NaN for fewer than two runs."""
         return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
 
     def percentile(self, percent):
         """
-        Return the values (m, n) below which so many percent of the runs lie.
+        Return the values (m, n) below which the given percentage of the runs lies.
 
-        Linear inside a bin, so within the width of a bin: a part in 32 of the value at most.
-        The bin about zero is zero.
+        The value is interpolated within a bin, so its error is at most the width of a bin, 1/32 of
+        the value. The bin around zero gives zero.
         """
         below = np.cumsum(self.histogram, axis=2)
         wanted = 0.01 * percent * self.count[:, None]

@@ -1,1 +1,1 @@
-"""Tools without physics: Taylor series, noise by index, instants, units, names in tables."""
+"""Tools without physics: Taylor series, noise by sample index, instants, units, and others."""

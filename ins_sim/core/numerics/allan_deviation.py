@@ -20,10 +20,10 @@ def overlapping_deviation(samples, factors):
     -------
     array (m,), in the unit of the samples
     """
-    # Subtracting the mean does not change the result, but keeps the digits of the sum.
+    # Subtracting the mean does not change the result but keeps the sums small and accurate.
     integral = np.concatenate([[0.0], np.cumsum(samples - np.mean(samples))])
     deviation = np.empty(len(factors))
-    # Fresh memory for each difference would take longer than the arithmetic.
+    # One buffer for all differences: allocating memory would take longer than the arithmetic.
     memory = np.empty(len(integral))
     for k, m in enumerate(factors):
         difference = memory[2 * m:]

@@ -1,12 +1,12 @@
 """
-Compiled copies of plain functions, by Numba where it is installed.
+Compiled copies of plain functions, made by Numba where it is installed.
 
 The sources stay plain Python: ``compiled`` copies a function and every function of the package
-that it calls, found through the names it uses, and compiles the copies. Nothing is compiled with
-fast mathematics, so that a compiled function gives the bits of the plain one.
+that it calls, found through the names it uses, and compiles the copies. Fast mathematics is never
+enabled, so a compiled function gives the same bits as the plain one.
 
 Compiled code is kept in the user's cache folder. Numba alone would not notice that a function in
-another file has changed, so the folder is named by a digest of all that the copies are made of.
+another file has changed, so the folder is named by a digest of everything that is compiled.
 """
 
 from contextlib import contextmanager
@@ -28,37 +28,37 @@ from .compile_cache import cache_folder
 
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
-# What a compiled copy calls in place of a function of floats, arrays and Series.
+# Functions of floats, arrays and Series, and what a compiled copy calls instead.
 REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
             elementary.as_number: elementary.float_as_number,
             elementary.times_power_of_two: elementary.float_times_power_of_two,
             elementary.sincos: elementary.general_sincos,
             elementary.atan2: elementary.general_atan2}
-# A loop is run in plain Python until it has taken so many samples in this process: to load Numba
-# and compiled code takes as long as that.
+# A loop runs in plain Python until it has processed this many samples in this process: loading
+# Numba and compiled code takes as long as that.
 PLAIN_SAMPLES = 8192
-# Where Numba is loaded already, the code of one more loop takes this part of it.
+# If Numba is already loaded, the threshold for one more loop is this fraction of PLAIN_SAMPLES.
 PART_OF_CODE = 0.125
 _taken, _broken = {}, set()
-# Numba's folder of the cache is set for the whole process while a copy is made.
+# Numba's cache folder is a setting of the whole process, which is changed while a copy is made.
 _copying = RLock()
 _plain_only = ContextVar('plain_only', default=False)
 
 
 def run(loop, count, inputs, out, plain=None):
     """
-    Run a loop over count samples, compiled if that pays; return what it returns.
+    Run a loop over count samples, compiled if that pays, and return its result.
 
     Parameters
     ----------
-    loop : function (*inputs, out) of a module of this package
-        It reads arrays among its inputs and writes into out, flat sequences, by index. Plain
-        Python gets lists in their place, the compiled copy flat views; the bits are the same.
+    loop : function ``(*inputs, out)`` of a module of this package
+        It reads its array inputs and writes out by index, as flat sequences. Plain Python passes
+        lists, the compiled copy flat views; the bits are the same.
     count : number of samples
     inputs : tuple of arrays, tuples, numbers and None
     out : C-contiguous array of float
-    plain : function (*inputs, out) of whole arrays, with the same bits, to be run instead of the
-        loop in plain Python
+    plain : function ``(*inputs, out)`` of whole arrays with the same bits, to be used instead of
+        the loop if that is not compiled
 
     """
     fast = compiled_if_it_pays(loop, count)
@@ -74,7 +74,7 @@ def run(loop, count, inputs, out, plain=None):
 
 
 def with_globals(loop, name, **others):
-    """Return a copy of a loop under another name that calls other functions in place of some."""
+    """Return a copy of a loop with a new name, in which some functions are replaced by others."""
     copy = FunctionType(loop.__code__, {**loop.__globals__, **others}, name, loop.__defaults__)
     copy.__module__, copy.__qualname__ = loop.__module__, name
     return copy
@@ -82,9 +82,9 @@ def with_globals(loop, name, **others):
 
 def compiled_if_it_pays(loop, count):
     """
-    Return the compiled copy of a loop that is to take count samples more, or None.
+    Return the compiled copy of a loop that has count more samples to process, or None.
 
-    Where it cannot be compiled after all, the loop itself is called, which takes arrays as well.
+    If compilation fails later, the loop itself is called, which accepts arrays as well.
     """
     _taken[loop] = _taken.get(loop, 0) + count
     enough = PLAIN_SAMPLES * (PART_OF_CODE if 'numba' in sys.modules else 1.0)
@@ -107,7 +107,7 @@ def compiled_if_it_pays(loop, count):
 
 @contextmanager
 def plain_only():
-    """Let ``run`` stay with plain Python meanwhile: a live node must not stop to compile."""
+    """Keep ``run`` in plain Python within this context: a live node must not stop to compile."""
     token = _plain_only.set(True)
     try:
         yield
@@ -119,8 +119,8 @@ def compiled(function):
     """
     Return the compiled copy of a function of a module of this package, or None without Numba.
 
-    Functions that it calls must be functions of modules of this package too, of floats, tuples
-    and arrays. A copy is compiled at its first call with new types, and kept in a cache.
+    The functions that it calls must belong to modules of this package too, and take floats, tuples
+    and arrays. A copy is compiled at its first call with new types, and cached on disk.
     """
     with _copying:
         if numba() is None or function in _broken:
@@ -135,13 +135,13 @@ def _compiled(function):
 
 @lru_cache(maxsize=None)
 def numba():
-    """Return the module Numba, or None where it is missing or cannot be used, saying so once."""
+    """Return the module Numba; if it is missing or unusable, warn once and return None."""
     try:
         import numba as found
         from numba.core import event
     except ModuleNotFoundError as error:
         if error.name == 'numba':
-            LOG.warning('Numba is not installed: loops run in plain Python, slower and with the '
+            LOG.warning('Numba is not installed: loops run in plain Python, slower but with the '
                         "same numbers (pip install 'ins_sim[fast]')")
         else:
             _say_plain(error)
@@ -156,9 +156,10 @@ def numba():
 
 def _spare_linear_algebra():
     """
-    Load Numba's array functions without SciPy's linear algebra, which takes 0.2 s.
+    Load Numba's array functions without SciPy's linear algebra, which would take 0.2 s.
 
-    Numba imports it there only to know whether it exists, and again where compiled code needs it.
+    Numba imports the latter only to find out whether it exists, and again where compiled code
+    needs it.
     """
     name = 'scipy.linalg.cython_blas'
     if name in sys.modules or 'numba.np.arraymath' in sys.modules:
@@ -175,19 +176,19 @@ def _spare_linear_algebra():
 
 def _say_plain(error):
     first = (str(error).strip().splitlines() or [''])[0]
-    LOG.warning('Numba cannot be used here (%s: %s): loops run in plain Python, slower and with '
+    LOG.warning('Numba cannot be used here (%s: %s): loops run in plain Python, slower but with '
                 'the same numbers', type(error).__name__, first)
 
 
 def _announcer(event):
-    """Return a listener that says when a function of this package is compiled."""
+    """Return a listener that logs the compilation of functions of this package."""
     class Announcer(event.Listener):
         depth = 0
 
         def on_start(self, started):
             function = started.data['dispatcher'].py_func
             if self.depth == 0 and _ours(function.__module__):
-                LOG.warning('compiling %s: once for this version on this machine, some seconds',
+                LOG.warning('compiling %s: once for this version on this machine, a few seconds',
                             function.__name__)
             self.depth += 1
 
@@ -198,7 +199,7 @@ def _announcer(event):
 
 
 class _Graph:
-    """The copies of a function and of all that it calls."""
+    """The copies of a function and of all functions that it calls."""
 
     def __init__(self, jit):
         self._jit, self._copies = jit, {}
@@ -206,7 +207,7 @@ class _Graph:
                                      sys.version_info[:3])).encode(), digest_size=8)
 
     def copy(self, function, entry=False):
-        """Return the compiled copy of a function; entry: keep its code in the cache."""
+        """Return the compiled copy of a function; with entry its code is cached on disk."""
         function = REPLACED.get(function, function)
         if not isinstance(function, FunctionType):
             return function
@@ -224,7 +225,7 @@ class _Graph:
         return self._copies[function]
 
     def _copied(self, value, attributes):
-        """Return what stands in a copy for a global value of which these attributes are used."""
+        """Return the counterpart, in a copy, of a global whose listed attributes are used."""
         if isinstance(value, FunctionType) and _ours(value.__module__):
             return self.copy(value)
         if isinstance(value, ModuleType) and _ours(value.__name__):
@@ -256,7 +257,7 @@ def _ours(name):
 
 
 def _references(code):
-    """Return {global name: the attributes that are read of it} of code."""
+    """Return {global name: set of the attributes used of it} for a code object."""
     found, last = {}, None
     for instruction in dis.get_instructions(code):
         if instruction.opname == 'LOAD_GLOBAL':
@@ -271,6 +272,6 @@ def _references(code):
 
 
 def _written(code):
-    """Return all of code that decides what it does."""
+    """Return everything in a code object that determines its behaviour."""
     return (code.co_code, code.co_names, code.co_varnames,
             [_written(c) if isinstance(c, CodeType) else c for c in code.co_consts])

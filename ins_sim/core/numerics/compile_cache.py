@@ -1,4 +1,4 @@
-"""The folder in which Numba keeps compiled code."""
+"""The folder in which compiled code is cached."""
 
 from functools import lru_cache
 import logging
@@ -10,7 +10,7 @@ LOG = logging.getLogger('ins_sim')
 
 def cache_folder(digest):
     """
-    Return the folder for code whose sources have this digest, or None where none can be written.
+    Return the folder for code whose sources have this digest, or None if none is writable.
 
     It lies in XDG_CACHE_HOME or ~/.cache, so that a read-only installation has one too.
     """
@@ -29,5 +29,5 @@ def cache_folder(digest):
 
 @lru_cache(maxsize=None)
 def _say_no_folder():
-    LOG.warning('no cache folder can be written, neither in XDG_CACHE_HOME nor in ~/.cache: '
-                'loops are compiled anew by every process')
+    LOG.warning('no cache folder can be written, neither in XDG_CACHE_HOME nor in ~/.cache: every '
+                'process compiles its loops again')

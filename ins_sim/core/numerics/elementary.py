@@ -1,11 +1,10 @@
 """
-Elementary functions whose bits are the same on every machine.
+Elementary functions with the same bits on every machine.
 
-They are polynomials in + - * / and square roots, which IEEE 754 fixes to the last bit, unlike the
-sine of a C library or of NumPy, which choose their loops by the processor. Every function takes a
+They are polynomials in + - * / and square roots, whose results IEEE 754 fixes to the last bit. The
+sine of a C library or of NumPy, in contrast, may differ between processors. Every function takes a
 float or an array and does the same operations on both; in compiled loops it takes floats. There
-are no branches: a choice is a product with a comparison, so that the compiler can put several
-runs side by side into one register.
+are no branches: a choice is a product with a comparison, so that the compiler can vectorise it.
 
 Errors are below 1.5 units in the last place (ulp) unless a function states more (test_elementary
 compares with mpmath). Coefficients: Sun Microsystems fdlibm 5.3 (sin, cos, exp, log) and
@@ -16,17 +15,17 @@ import math
 
 import numpy as np
 
-# x + ROUND - ROUND is x rounded to an integer, ties to even, for |x| below 2^51
+# x + ROUND - ROUND is x rounded to an integer, ties to even, for |x| below 2^51.
 ROUND = 6755399441055744.0
-# below it an angle has less than half a quarter turn
+# Angles below this, rad, need no reduction by quarter turns.
 SHORT = 0.785
 TWO_OVER_PI = 0.6366197723675814
-# pi/2 in three parts of 33 bits, whose products with integers below 2^20 are exact
+# pi/2 in three parts of 33 bits, whose products with integers below 2^20 are exact.
 HALF_PI_1, HALF_PI_2, HALF_PI_3 = (1.5707963267341256, 6.077100506303966e-11,
                                    2.0222662487959506e-21)
-# pi/4 in two parts; three times the first is exact
+# pi/4 in two parts; three times the first is exact.
 QUARTER_PI_1, QUARTER_PI_2 = 0.7853981633974456, 2.7193112105566926e-15
-# tangent up to which an angle is taken from the axis
+# Up to this tangent an angle is computed relative to the axis, above it relative to the diagonal.
 FLAT = 0.66
 LN_2_1, LN_2_2 = 0.6931471803691238, 1.9082149292705877e-10
 ONE_OVER_LN_2 = 1.4426950408889634
@@ -48,12 +47,12 @@ def as_number(condition):
 
 
 def float_as_number(condition):
-    """Return ``as_number`` of one comparison, in the form that compilers turn into a selection."""
+    """Return ``as_number`` of one comparison, in a form that compilers turn into a selection."""
     return 1.0 if condition else 0.0
 
 
 def sine_cosine_kernel(r):
-    """Return sin r and cos r for |r| <= pi/4."""
+    """Return sin r and cos r for r from -pi/4 to pi/4."""
     z = r * r
     s = r + r * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (
         -1.98412698298579493134e-04 + z * (2.75573137070700676789e-06 + z * (
@@ -71,18 +70,18 @@ def sincos(x):
     """
     Return sin x and cos x.
 
-    Within 2.5 ulp from 10 to 1.6e6 rad; beyond, the rounding of the reduction is added, which is
-    at most that of x itself.
+    Errors are within 2.5 ulp from 10 to 1.6e6 rad. Beyond, the rounding of the reduction is added,
+    which is at most that of x itself.
     """
     if isinstance(x, float) and -SHORT < x < SHORT:
-        # what general_sincos comes to, in a third of the time
+        # Same result as general_sincos, in a third of the time.
         s, c = sine_cosine_kernel(x)
         return s + 0.0, c
     return general_sincos(x)
 
 
 def general_sincos(x):
-    """Return ``sincos`` without a choice by the size of x."""
+    """Return sin x and cos x without a shortcut for small x."""
     k = (x * TWO_OVER_PI + ROUND) - ROUND
     s, c = sine_cosine_kernel(((x - k * HALF_PI_1) - k * HALF_PI_2) - k * HALF_PI_3)
     return quarters_on(s, c, k)
@@ -96,8 +95,8 @@ def sincos_of_quarters(x):
 
 
 def quarters_on(s, c, k):
-    """Return sine and cosine of an angle k quarter turns further on."""
-    # k = 2 half + odd, and the halves change both signs
+    """Return sine and cosine of an angle plus k quarter turns, from its sine and cosine."""
+    # k = 2 half + odd; each half turn changes both signs.
     half = ((k - 0.5) * 0.5 + ROUND) - ROUND
     odd = k - 2.0 * half
     even = 1.0 - odd
@@ -107,36 +106,36 @@ def quarters_on(s, c, k):
 
 
 def sin(x):
-    """Return sin x, as of ``sincos``."""
+    """Return sin x; for the errors see ``sincos``."""
     return sincos(x)[0]
 
 
 def cos(x):
-    """Return cos x, as of ``sincos``."""
+    """Return cos x; for the errors see ``sincos``."""
     return sincos(x)[1]
 
 
 def atan2(y, x):
     """Return the angle of the point (x, y) from the x axis, -pi to pi; zero at the origin."""
     if isinstance(x, float) and isinstance(y, float) and 0.0 < y < FLAT * x:
-        # what general_atan2 comes to, in half the time
+        # Same result as general_atan2, in half the time.
         t = y / x
         return t + arc_tangent_rest(t)
     return general_atan2(y, x)
 
 
 def general_atan2(y, x):
-    """Return ``atan2`` without a choice by the size of x and y."""
+    """Return ``atan2`` without a shortcut for small angles."""
     a, b = abs(y), abs(x)
     steep = as_number(a > b)
-    # exact: each of them is either a or b
+    # Exact, because each of them is either a or b.
     low, high = a * (1.0 - steep) + b * steep, b * (1.0 - steep) + a * steep
-    # above FLAT the angle is taken from the diagonal
+    # Above FLAT the angle is computed relative to the diagonal.
     near = as_number(low > FLAT * high)
     over = high + near * low
     t = (low - near * high) / (over + as_number(over == 0.0))
     r = t + arc_tangent_rest(t)
-    # eighths of a turn between the axis and t, and the sense in which t counts from there
+    # Eighths of a turn from the axis to the reference direction, and the sign of t from there.
     eighths, sense = near + steep * (2.0 - 2.0 * near), 1.0 - steep * 2.0
     back = as_number(x < 0.0)
     eighths, sense = eighths + back * (4.0 - 2.0 * eighths), sense * (1.0 - back * 2.0)
@@ -145,7 +144,7 @@ def general_atan2(y, x):
 
 
 def arc_tangent_rest(t):
-    """Return arctan t - t for |t| <= 0.66."""
+    """Return arctan t - t for t from -0.66 to 0.66."""
     z = t * t
     p = z * ((((-8.750608600031904122785e-01 * z - 1.615753718733365076637e+01) * z
                - 7.500855792314704667340e+01) * z - 1.228866684490136173410e+02) * z
@@ -164,7 +163,7 @@ def times_power_of_two(x, k):
 
 
 def float_times_power_of_two(x, k):
-    """Return x 2^k of floats; x where k is no number."""
+    """Return x 2^k for floats; x if k is NaN."""
     return math.ldexp(x, int(k)) if k == k else x
 
 
@@ -236,5 +235,5 @@ def log1p(x):
 
 
 def shorter_turn(x):
-    """Return an angle less whole turns, so that it is within pi (of some turns: to rounding)."""
+    """Return an angle minus whole turns, within +-pi (to rounding for several turns)."""
     return x - ((x * (0.5 / math.pi) + ROUND) - ROUND) * (2.0 * math.pi)

@@ -1,11 +1,11 @@
-"""Elementary functions of long arrays, by compiled loops where they pay; the same bits."""
+"""Elementary functions of long arrays, by compiled loops where that pays; the same bits."""
 
 import numpy as np
 
 from . import elementary
 from .compilation import run
 
-# So many values in NumPy take as long as one sample of a loop in plain Python.
+# Number of values that NumPy processes in the time of one loop sample in plain Python.
 SAMPLE = 64
 
 
@@ -32,25 +32,25 @@ def log1p(x):
 
 
 def fill_sincos(x, out):
-    """Write all sines, then all cosines."""
+    """Write the sines of x into the first half of out, the cosines into the second."""
     for k in range(len(x)):
         out[k], out[len(x) + k] = elementary.sincos(x[k])
 
 
 def fill_tanh(x, out):
-    """Write the hyperbolic tangents."""
+    """Write the hyperbolic tangents of x into out."""
     for k in range(len(x)):
         out[k] = elementary.tanh(x[k])
 
 
 def fill_atan2(y, x, out):
-    """Write the angles."""
+    """Write the angles of the points (x, y) into out."""
     for k in range(len(x)):
         out[k] = elementary.atan2(y[k], x[k])
 
 
 def fill_log1p(x, out):
-    """Write the logarithms."""
+    """Write ln(1 + x) into out."""
     for k in range(len(x)):
         out[k] = elementary.log1p(x[k])
 

@@ -1,23 +1,28 @@
-"""One step of an ordinary differential equation by extrapolation, in a fixed order of sums."""
+"""One step of an ordinary differential equation by extrapolation, with a fixed order of sums."""
 
-# How often the step is divided; the order is twice as many.
+# Numbers of parts into which the step is divided; the order is twice the count of them.
 DIVISIONS = (2, 4, 6, 8)
 
 
 def extrapolated_step(rates, t, y, h):
     """
-    Return the state a step later, of eighth order.
+    Return the state one step later, to eighth order.
 
     Modified midpoint rule over 2, 4, 6 and 8 parts, extrapolated in the square of their length
     (Gragg 1965; Hairer, Norsett and Wanner, "Solving Ordinary Differential Equations I",
     section II.9).
 
-    rates: function of t and y that returns y', floats; t: start; y: tuple of floats; h: step.
+    Parameters
+    ----------
+    rates : function of t and y that returns y', a tuple of floats
+    t : start of the step
+    y : state at the start, a tuple of floats
+    h : length of the step
     """
     start, rows = rates(t, y), []
     for n in DIVISIONS:
         rows.append(_midpoint(rates, t, y, start, h, n))
-    # Neville's scheme, in place: rows[k] is what the divisions up to k say together.
+    # Neville's scheme, in place: rows[k] becomes the extrapolation from the divisions up to k.
     for order in range(1, len(rows)):
         for k in range(len(rows) - 1, order - 1, -1):
             ratio = DIVISIONS[k] / DIVISIONS[k - order]
@@ -27,7 +32,7 @@ def extrapolated_step(rates, t, y, h):
 
 
 def _midpoint(rates, t, y, start, h, n):
-    """Return the state after n steps of the midpoint rule, smoothed; start: y' at t."""
+    """Return the smoothed state after n steps of the midpoint rule; start is y' at t."""
     d = h / n
     last, now = y, tuple(a + d * r for a, r in zip(y, start))
     for k in range(1, n):

@@ -1,9 +1,9 @@
 """
-Small matrices, and lengths of vectors, in a fixed order of operations.
+Small matrices, and lengths of vectors, with a fixed order of operations.
 
-BLAS and LAPACK choose their loops by the processor, and sums then round differently. Here sums
-are taken in the order of the indices, and complex numbers are multiplied in real arithmetic, so
-that the bits are the same on every machine.
+BLAS and LAPACK choose their loops by the processor, so that sums round differently. Here sums are
+taken in the order of the indices, and complex numbers are multiplied in real arithmetic; the bits
+are therefore the same on every machine.
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 
 from . import elementary
 
-# Terms of the Taylor series of a matrix whose row sums are at most 1/2: what is left is 2e-17.
+# Number of terms of the Taylor series for row sums of at most 1/2; the remainder is 2e-17.
 TERMS = 15
 
 
@@ -28,14 +28,14 @@ def product(a, b):
 
 def _real_product(a, b):
     if len(a) == b.shape[1] == 1:
-        # a single sum would be taken in parts
+        # NumPy would split a single sum into partial sums.
         return np.array(((dot(a[0], b[:, 0]),),))
-    # In this layout a sum over the first axis adds whole matrices, one after the other.
+    # In this memory layout a sum over the first axis adds whole matrices one after the other.
     return np.add.reduce(np.multiply(a.T[:, :, np.newaxis], b[:, np.newaxis, :], order='C'))
 
 
 def lane_product(a, b):
-    """Return the products (i, k, n) of the matrices a (i, j, n) and b (j, k, n), lane by lane."""
+    """Return the products (i, k, n) of n pairs of matrices, a (i, j, n) and b (j, k, n)."""
     found = a[:, 0, np.newaxis] * b[0]
     term = np.empty_like(found)
     for j in range(1, len(b)):
@@ -45,12 +45,12 @@ def lane_product(a, b):
 
 
 def applied(a, x):
-    """Return a x of a real matrix (n, m) and a vector (m,)."""
+    """Return the product of a real matrix (n, m) and a vector (m,)."""
     return _real_product(a, np.asarray(x)[:, np.newaxis])[:, 0]
 
 
 def dot(a, b):
-    """Return the sum of the products of two real vectors (m,), a float."""
+    """Return the scalar product of two real vectors (m,), a float."""
     total = 0.0
     for x, y in zip(a.tolist(), b.tolist()):
         total += x * y
@@ -63,12 +63,12 @@ def length(vectors):
 
 
 def magnitude(z):
-    """Return the size of a complex number or of each in an array."""
+    """Return the absolute value of a complex number, or of each in an array."""
     return elementary.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 def real_form(a):
-    """Return the real matrix that does to (real, imaginary, ...) what a complex one does."""
+    """Return the real matrix equivalent to a complex one, acting on (real, imaginary, ...)."""
     found = np.empty((2 * a.shape[0], 2 * a.shape[1]))
     found[::2, ::2] = found[1::2, 1::2] = a.real
     found[1::2, ::2], found[::2, 1::2] = a.imag, -a.imag
@@ -76,15 +76,16 @@ def real_form(a):
 
 
 def complex_form(a):
-    """Return the complex matrix of which a is the ``real_form``."""
+    """Return the complex matrix whose ``real_form`` is a."""
     return a[::2, ::2] + 1j * a[1::2, ::2]
 
 
 def solve(a, b):
     """
-    Return x with a x = b, vectors or matrices b, real or complex: elimination with pivots.
+    Return x with a x = b by Gaussian elimination with pivoting.
 
-    Raises numpy.linalg.LinAlgError where a is singular.
+    b is a vector or matrix; both may be real or complex. Raises numpy.linalg.LinAlgError if a is
+    singular.
     """
     if np.iscomplexobj(a) or np.iscomplexobj(b):
         b = np.asarray(b, dtype=complex)
@@ -115,10 +116,10 @@ def is_positive_definite(a):
 
 def balance(a):
     """
-    Return the powers of two s for which a[i, j] s[j] / s[i] has rows like its columns.
+    Return powers of two s such that a[i, j] s[j] / s[i] has rows and columns of similar size.
 
-    Osborne's iteration (Parlett and Reinsch 1969): the errors of what is computed of a matrix
-    grow with its largest elements.
+    Osborne's iteration (Parlett and Reinsch 1969). Rounding errors of the matrix exponential grow
+    with the largest elements, which balancing reduces.
     """
     sizes = np.abs(a.real) + np.abs(a.imag)
     np.fill_diagonal(sizes, 0.0)
@@ -138,9 +139,9 @@ def balance(a):
 
 def exponential(a):
     """
-    Return e^a of a matrix, real or complex: scaling and squaring of its Taylor series.
+    Return e^a of a real or complex matrix, by scaling and squaring of its Taylor series.
 
-    Errors are relative to 1 or, where it is larger, the largest element.
+    Errors are relative to 1 or to the largest element, whichever is larger.
     """
     if np.iscomplexobj(a):
         return complex_form(exponential(real_form(a)))
@@ -149,7 +150,7 @@ def exponential(a):
     largest = total(np.abs(a.T)).max()
     halvings = max(0, math.frexp(largest)[1] + 1)
     a = a * math.ldexp(1.0, -halvings)
-    # e^a - 1 keeps the digits of what is small beside 1
+    # Compute e^a - 1, which keeps the digits of elements that are small compared with 1.
     less_one = a / TERMS
     for k in range(TERMS - 1, 0, -1):
         less_one = (a + product(a, less_one)) / k
@@ -159,7 +160,7 @@ def exponential(a):
 
 
 def total(rows):
-    """Return the sum over the first axis of an array or of a list, in its order."""
+    """Return the sum over the first axis of an array or list, added in order."""
     total = rows[0]
     for row in rows[1:]:
         total = total + row

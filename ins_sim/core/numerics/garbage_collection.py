@@ -1,9 +1,9 @@
 """
-The cyclic garbage collector of Python, switched off while a block of a run is computed.
+Python's cyclic garbage collector, switched off while a block of a run is computed.
 
-The loops over samples make many small tuples and no cycles; the collector would walk them again
-and again (12-29 % of the CPU time). Between two blocks it is on, so that whatever else the program
-makes is collected.
+The loops over samples make many small tuples and no cycles, and the collector would traverse them
+repeatedly (12-29 % of the CPU time). Between two blocks it is on, so that garbage of the rest of
+the program is collected.
 """
 
 from functools import wraps
@@ -13,10 +13,10 @@ import threading
 
 class CollectorPause:
     """
-    Context manager: the collector is off inside.
+    Context manager that switches the collector off inside.
 
     One object serves nested blocks and several threads: the first to enter switches the collector
-    off, and the last to leave restores what it was before.
+    off, and the last to leave restores its earlier state.
     """
 
     def __init__(self):
@@ -40,7 +40,7 @@ collector_paused = CollectorPause()
 
 
 def paused_in_blocks(make_blocks):
-    """Decorate a generator of blocks: the collector is off while it makes one, on in between."""
+    """Decorate a generator of blocks: the collector is off while a block is computed."""
     @wraps(make_blocks)
     def blocks(*arguments, **named):
         made = make_blocks(*arguments, **named)

@@ -1,23 +1,22 @@
-"""What a table names by 'module:name', such as a motion or a filter in a file of one's own."""
+"""Import of objects given as 'module:name' in a table, such as a user's own motion or filter."""
 
 from importlib import import_module
 
 
 def located(location, entry):
     """
-    Import and return what a location 'module:name' names.
+    Import and return the object at a location 'module:name'.
 
     Parameters
     ----------
     location : str
     entry : str
-        The entry of the table that holds it, for the sentence: 'motion.kind circle'.
+        The entry of the table that has this location, for messages: 'motion.kind circle'.
 
     Raises
     ------
     ValueError
-        In one sentence, where there is no such module or name. An error inside the module is its
-        own.
+        If there is no such module or name. Errors raised inside the module are passed on.
     """
     module, colon, name = location.partition(':')
     if not (module and colon and name):
@@ -27,10 +26,10 @@ def located(location, entry):
     except ModuleNotFoundError as error:
         if error.name is None or not f'{module}.'.startswith(f'{error.name}.'):
             raise
-        raise ValueError(f'{entry} is at {location!r} in its table, and there is no module '
+        raise ValueError(f'{entry} is at {location!r} in its table, but there is no module '
                          f'{error.name}; expected its file in a folder of PYTHONPATH') from error
     try:
         return getattr(found, name)
     except AttributeError as error:
-        raise ValueError(f'{entry} is at {location!r} in its table, and module {module} has no '
+        raise ValueError(f'{entry} is at {location!r} in its table, but module {module} has no '
                          f'{name}; expected module:name') from error

@@ -1,10 +1,10 @@
 """
-Random numbers as pure functions of (seed, run, name) and the sample's index.
+Random numbers as pure functions of (seed, run, name) and the index of the sample.
 
-A stream holds normals and uniforms by index, in blocks of a counter-based generator (Philox;
-Salmon et al., SC11, 2011), so that the number of a sample does not depend on what was asked
-before: not on cutting, loss, restart, worker, nor on other streams.  ``processes`` makes
-Gauss-Markov processes and random walks of them.
+A stream gives normal and uniform numbers by index. They are computed in blocks by a counter-based
+generator (Philox; Salmon et al., SC11, 2011), so the numbers of a sample do not depend on earlier
+calls: neither on cutting, loss, restart or worker, nor on other streams. ``processes`` makes
+Gauss-Markov processes and random walks from them.
 """
 
 from hashlib import blake2b
@@ -15,26 +15,34 @@ from . import normals
 from .compilation import run
 
 BLOCK = 256
-# So many normal numbers in plain Python take as long as one sample of a loop.
+# Number of normal numbers that take as long in plain Python as one sample of a loop.
 SAMPLE = 64
-# So many numbers are made faster by floats than by arrays.
+# Up to this count, numbers are computed faster one by one than with arrays.
 FEW = 64
 NORMAL, _UNIFORM = np.uint64(0), np.uint64(1)
-# The generator of the normal numbers, named in the manifest of a run: other numbers, other name.
+# Name of the generator in the manifest of a run; it changes whenever the numbers change.
 NOISE = 'philox4x64-10 box-muller, version 2'
 
 
 def indexed_noise(seed, run, name, width=None, block=BLOCK):
-    """Return the Stream of that name; different names, runs and seeds are independent."""
+    """
+    Return the IndexedNoise of a name; streams of other names, runs or seeds are independent.
+
+    For the parameters see `IndexedNoise`.
+    """
     return IndexedNoise(seed, run, name, width, block)
 
 
 class IndexedNoise:
     """
-    Standard normals and uniforms by sample index.
+    Standard normal and uniform numbers by sample index.
 
-    width: how many numbers a sample has: None for one float, else a list of that length.  block:
-    samples computed at once; numbers depend on it, so one name has one width and one block.
+    Parameters
+    ----------
+    seed, run, name : identify the stream
+    width : count of numbers per sample, returned as a list; None for a single float
+    block : number of samples computed at once; the numbers depend on it, so each name must always
+        be used with the same width and block
     """
 
     def __init__(self, seed, run, name, width=None, block=BLOCK):
@@ -48,7 +56,7 @@ class IndexedNoise:
         self._normals = self._uniforms = ()
 
     def normal(self, index):
-        """Return the standard normal number, or the list of them, of a sample."""
+        """Return the standard normal number of a sample, or the list of them."""
         block, row = divmod(index, self._block)
         if block != self._normals_of:
             self._normals = self.normal_block(block).tolist()
@@ -56,7 +64,7 @@ class IndexedNoise:
         return self._normals[row]
 
     def uniform(self, index):
-        """Return the number in [0, 1), or the list of them, of a sample."""
+        """Return the uniform number in [0, 1) of a sample, or the list of them."""
         block, row = divmod(index, self._block)
         if block != self._uniforms_of:
             self._uniforms = self.uniform_block(block).tolist()
@@ -76,7 +84,7 @@ class IndexedNoise:
         return self.normal_blocks(block, 1)
 
     def normal_blocks(self, first, blocks):
-        """Return the normals of blocks from first, (blocks * block,) or with width columns."""
+        """Return the normals of consecutive blocks from first on, (n,) or (n, width)."""
         check_block(first)
         whole = whole_counters(self._count)
         made = np.empty((blocks, whole))
@@ -85,7 +93,7 @@ class IndexedNoise:
         return made[:, :self._count].reshape(blocks * self._block, *self._shape[1:])
 
     def _fill(self, _, __, kind, first, blocks, count, out):
-        """Write what ``normals.fill`` writes, by operations on arrays, or on a few floats."""
+        """Do the same as ``normals.fill`` with arrays, or number by number for few numbers."""
         words = np.stack([self._words(first + b, int(kind), count) for b in range(blocks)])
         if out.size <= FEW:
             out[:] = np.reshape(normals.of_word_list(words.ravel().tolist()), out.shape)
@@ -100,12 +108,12 @@ class IndexedNoise:
         check_block(first)
         words = np.concatenate([self._words(first + b, int(_UNIFORM), self._count)
                                 for b in range(blocks)])
-        # the upper 53 bits, as NumPy does
+        # The upper 53 bits, as NumPy uses them.
         uniforms = (words >> np.uint64(11)).astype(np.float64) * 2.0 ** -53
         return uniforms.reshape(blocks * self._block, *self._shape[1:])
 
     def _words(self, block, kind, count):
-        """Return count words; the low word of the counter counts inside the block."""
+        """Return ``count`` random words; the lowest word of the counter counts within a block."""
         counter = self._state['state']['counter']
         counter[0], counter[1], counter[2] = 0, block, kind
         self._philox.state = self._state
@@ -113,27 +121,31 @@ class IndexedNoise:
 
 
 def key_of(seed, run_number, name):
-    """Return the key of a stream, two words uint64."""
+    """Return the key of a stream, two uint64 words."""
     text = repr((int(seed), int(run_number), str(name)))
     return np.frombuffer(blake2b(text.encode(), digest_size=16).digest(), '<u8')
 
 
 def whole_counters(count):
-    """Return how many numbers whole counters make, four each, for so many."""
+    """Return count rounded up to a multiple of four, the numbers that one counter gives."""
     return -(-count // 4) * 4
 
 
 def check_block(block):
-    """Raise ValueError for a block of samples before the first."""
+    """Raise ValueError for a block before sample 0."""
     if block < 0:
         raise ValueError(f'the sample index lies in block {block}; expected an index >= 0')
 
 
 def cut(blocks_of, length, first, count):
     """
-    Return the samples first to first + count - 1 out of blocks.
+    Return the samples first to first + count - 1, cut out of blocks.
 
-    blocks_of: function (first block, blocks) -> samples; length: samples of a block.
+    Parameters
+    ----------
+    blocks_of : function (first block, number of blocks) -> samples
+    length : number of samples in a block
+    first, count : range of samples
     """
     block = first // length
     samples = blocks_of(block, (first + count - 1) // length + 1 - block)

@@ -1,23 +1,23 @@
 """
-Standard normal numbers of a counter-based generator, the same bits on every machine.
+Standard normal numbers of a counter-based generator, with the same bits on every machine.
 
-The words are those of Philox4x64-10 (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3",
-SC11, 2011), as numpy.random.Philox gives them. Words 2 j and 2 j + 1 of a block make the normal
-numbers 2 j and 2 j + 1 (Box and Muller 1958) by elementary functions. Arrays take the words of
-NumPy; compiled loops compute them.
+The random words are those of Philox4x64-10 (Salmon et al., "Parallel Random Numbers: As Easy as 1,
+2, 3", SC11, 2011), the same as numpy.random.Philox gives. Words 2 j and 2 j + 1 of a block give
+the normal numbers 2 j and 2 j + 1 (Box and Muller 1958), by the elementary functions of this
+package. Array operations take the words from NumPy; compiled loops compute them.
 """
 
 import numpy as np
 
 from . import elementary
 
-# 2^-52: the upper 52 bits of a word become a number in [0, 1)
+# 2^-52, which maps the upper 52 bits of a word to [0, 1).
 UNIT = 2.220446049250313e-16
 U64 = np.uint64
 S12, S32, S52, M32 = U64(12), U64(32), U64(52), U64(0xFFFFFFFF)
-# of a float: the bits of the mantissa, and those of the exponents of 1 and of 1/2
+# Bits of a float: mask of the mantissa, and the exponents of 1 and of 1/2.
 MANTISSA, ONE, HALF = U64(0xFFFFFFFFFFFFF), U64(0x3FF0000000000000), U64(0x3FE0000000000000)
-# multipliers of the two products of a round, in halves and whole, and what is added to the key
+# Multipliers of the two products of a round, whole and in halves, and the increments of the key.
 A0, A1 = U64(0xD2E7470EE14C6C93), U64(0xCA5A826395121157)
 A0_LOW, A0_HIGH = U64(0xE14C6C93), U64(0xD2E7470E)
 A1_LOW, A1_HIGH = U64(0x95121157), U64(0xCA5A8263)
@@ -28,9 +28,12 @@ ROUNDS = 10
 
 def normal_pair(radius, angle):
     """
-    Return two normal numbers of two independent uniform ones in [0, 1), floats or arrays.
+    Return two independent normal numbers from two uniform ones, floats or arrays (Box-Muller).
 
-    r = sqrt(-2 ln(1 - radius)); angle: part of a whole turn.
+    Parameters
+    ----------
+    radius : in [0, 1); gives r = sqrt(-2 ln(1 - radius))
+    angle : in [0, 1), a fraction of a turn
     """
     r = elementary.sqrt(-2.0 * elementary.log(1.0 - radius))
     s, c = elementary.sincos_of_quarters(4.0 * angle)
@@ -38,7 +41,7 @@ def normal_pair(radius, angle):
 
 
 def of_words(words):
-    """Return the normal numbers (..., n) of words (..., n) uint64, n even."""
+    """Return the normal numbers (..., n) from words (..., n) uint64, n even."""
     uniform = (words >> S12).astype(np.float64) * UNIT
     normals = np.empty(words.shape)
     normals[..., 0::2], normals[..., 1::2] = normal_pair(uniform[..., 0::2], uniform[..., 1::2])
@@ -46,7 +49,7 @@ def of_words(words):
 
 
 def of_word_list(words):
-    """Return the list of normal numbers of a list of words, integers, of even length."""
+    """Return a list of normal numbers from a list of words (integers) of even length."""
     found = []
     for radius, angle in zip(words[0::2], words[1::2]):
         found.extend(normal_pair((radius >> 12) * UNIT, (angle >> 12) * UNIT))
@@ -54,14 +57,14 @@ def of_word_list(words):
 
 
 def upper_half(a, low, high):
-    """Return the upper 64 bits of the product of a word and a multiplier given in halves."""
+    """Return the upper 64 bits of the product of a word and a multiplier given in two halves."""
     a_low, a_high = a & M32, a >> S32
     t = a_high * low + ((a_low * low) >> S32)
     return a_high * high + (t >> S32) + ((a_low * high + (t & M32)) >> S32)
 
 
 def philox(c0, c1, c2, k0, k1):
-    """Return the four words of a counter (its fourth word zero) and a key, uint64."""
+    """Return the four words for a counter (fourth word zero) and a key; all are uint64."""
     c3 = ZERO
     for _ in range(ROUNDS):
         h0, h1 = upper_half(c0, A0_LOW, A0_HIGH), upper_half(c2, A1_LOW, A1_HIGH)
@@ -72,11 +75,18 @@ def philox(c0, c1, c2, k0, k1):
 
 def fill(k0, k1, kind, first, blocks, count, out):
     """
-    Write the normal numbers of blocks from first, count each, count a multiple of four.
+    Write the normal numbers of consecutive blocks into out.
 
-    k0, k1: the key; kind: third word of the counter.  Compiled only: the bits of numbers are read
-    and written, as ``of_words`` does by operations on arrays.  Each pass is short, so that the
-    compiler takes several numbers at once.
+    For compiled code only, because it reads and writes the bits of floats; ``of_words`` does the
+    same with array operations. Each pass is short, so that the compiler can vectorise it.
+
+    Parameters
+    ----------
+    k0, k1 : key
+    kind : third word of the counter
+    first, blocks : first block and number of blocks
+    count : numbers per block, a multiple of four
+    out : flat (blocks * count,)
     """
     quarter, half = count // 4, count // 2
     words, r, x, y = np.empty(count, U64), np.empty(half), np.empty(half), np.empty(half)
@@ -87,7 +97,7 @@ def fill(k0, k1, kind, first, blocks, count, out):
             words[i], words[quarter + i] = w0, w2
             words[half + i], words[half + quarter + i] = w1, w3
         for i in range(count):
-            # a number from 1 to 2
+            # A float from 1 to 2.
             words[i] = (words[i] >> S12) | ONE
         for i in range(half):
             r[i] = 2.0 - uniform[i]

@@ -1,7 +1,7 @@
 """
-Gauss-Markov processes and random walks as functions of the sample's index.
+Gauss-Markov processes and random walks as functions of the sample index.
 
-They are made of the numbers of ``noise`` by bisection, so that a value depends on its index alone.
+They are built from the numbers of ``noise`` by bisection, so a value depends on its index alone.
 """
 
 from functools import lru_cache
@@ -13,31 +13,34 @@ from . import elementary, normals
 from .compilation import run
 from .noise import BLOCK, check_block, cut, IndexedNoise, NORMAL, whole_counters
 
-# Processes live on the indices 0 to 2**LEVELS: 600 days at 20 kHz.
+# Processes are defined on the indices 0 to 2**LEVELS: 600 days at 20 kHz.
 LEVELS = 40
-# After so many correlation times nothing is left of a process.
+# After this many correlation times the correlation is zero.
 GONE = 700.0
-# The knots, one a block, are made so many in a row.
+# Number of knots computed at once; there is one knot per block.
 KNOTS = 16
 _BLOCK_LEVELS = BLOCK.bit_length() - 1
 
 
 class Processes:
     """
-    Gauss-Markov processes and random walks, each a column, as functions of the sample's index.
+    Gauss-Markov processes and random walks, one per column, as functions of the sample index.
 
-    sigma, time_s, (m,): standard deviation and correlation time of stationary Gauss-Markov
-    processes; where time_s is infinite a random walk from 0 at index 0, sigma being its standard
-    deviation after one second.  dt_s: sampling period.
-
-    Not by recursion, which would need every sample before, but by bisection (Levy's construction
-    of Brownian motion): x_0 and x_N, N = 2**LEVELS, are drawn, and then with d the lowest set bit
-    of k, h = d dt and n_k the normal numbers of index k,
+    A recursion would need every earlier sample. Instead bisection is used (Levy's construction of
+    Brownian motion): x_0 and x_N, N = 2**LEVELS, are drawn. Then, with d the lowest set bit of k,
+    h = d dt and n_k the normal number of index k,
 
         x_k = c_d (x_{k-d} + x_{k+d}) + s_d n_k
 
     Gauss-Markov: c_d = 1/(2 cosh(h/T)), s_d = sigma sqrt(tanh(h/T)); random walk: c_d = 1/2,
-    s_d = sigma sqrt(h/2).  The joint distribution of all samples is the exact one.
+    s_d = sigma sqrt(h/2). The joint distribution of all samples is exact.
+
+    Parameters
+    ----------
+    seed, run, name : identify the stream
+    sigma : (m,) standard deviation of a stationary process; of a random walk after one second
+    time_s : (m,) correlation time, s; infinite for a random walk, which is 0 at index 0
+    dt_s : sampling period, s
     """
 
     def __init__(self, seed, run, name, sigma, time_s, dt_s):
@@ -47,7 +50,7 @@ class Processes:
         self._c, self._s = kept / (1.0 + kept * kept), _spread(half, sigma, time_s)
         width = len(sigma)
         self._inner = IndexedNoise(seed, run, name, width)
-        # the knots, every 256th sample, are called for here and there: one to a block
+        # The knots, every 256th sample, are needed out of order: one sample per block.
         knots = IndexedNoise(seed, run, f'{name}.knots', width, 1)
         ends = knots.normal_block(0)[0], knots.normal_block(1 << (LEVELS - _BLOCK_LEVELS))[0]
         walk = np.isinf(time_s)
@@ -77,7 +80,7 @@ class Processes:
         self._far, self._row = far, row
 
     def _ends(self, first, count):
-        """Return the values (count + 1, m) at the starts of blocks and behind the last."""
+        """Return the values (count + 1, m) at the starts of the blocks and after the last one."""
         def rows(group, groups):
             return np.concatenate([self._row(KNOTS * k) for k in range(group, group + groups)])
 
@@ -90,12 +93,12 @@ class Processes:
         return self.blocks(b, 1)
 
     def blocks(self, first, count):
-        """Return the values of blocks from first, (count * BLOCK, m)."""
+        """Return the values of ``count`` blocks from first on, (count * BLOCK, m)."""
         return self.sums(first, count, self._c.shape[1])
 
     def sums(self, first, count, every):
         """
-        Return sums of the values of blocks from first, (count * BLOCK, every).
+        Return sums of processes over ``count`` blocks from first on, (count * BLOCK, every).
 
         Column k is the sum of the processes k, k + every, k + 2 every and so on, in that order.
         """
@@ -107,7 +110,7 @@ class Processes:
         return found
 
     def _bisect_arrays(self, c, s, ends, _, __, first, count, width, every, out):
-        """Write what ``bisect`` writes, by operations on arrays."""
+        """Do the same as ``bisect`` with array operations."""
         numbers = self._inner.normal_blocks(first, count).reshape(count, BLOCK, width)
         values = between(c, s, ends, numbers).reshape(count * BLOCK, width)
         total = values[:, 0:every]
@@ -122,10 +125,17 @@ class Processes:
 
 def bisect(c, s, ends, k0, k1, first, count, width, every, out):
     """
-    Write sums of the values of Processes between knots, rows of every, as of ``sums``.
+    Write sums of processes between knots into out; for compiled code only, see ``normals.fill``.
 
-    c, s: of each level, rows of width; ends: rows of the knots at the starts of count blocks and
-    behind the last; k0, k1: key of the normal numbers.  Compiled only, as ``normals.fill`` is.
+    Parameters
+    ----------
+    c, s : flat coefficients of each level, ``width`` per level
+    ends : flat values of the knots at the starts of the blocks and after the last one
+    k0, k1 : key of the normal numbers
+    first, count : first block and number of blocks
+    width : number of processes
+    every : number of columns of the sums, see ``Processes.sums``
+    out : flat (count * BLOCK * every,)
     """
     size = BLOCK * width
     z, x = np.empty(whole_counters(size)), np.empty(size + width)
@@ -155,8 +165,11 @@ def between(c, s, ends, numbers):
     """
     Return the values at knots and between them, (count, length, m), by bisection.
 
-    c, s: of each level, from that of neighbours on; ends (count + 1, m): of the knots; numbers:
-    the normal numbers (count, length, m), length a power of two.
+    Parameters
+    ----------
+    c, s : coefficients of each level, beginning with that of neighbouring samples
+    ends : (count + 1, m) values at the knots
+    numbers : (count, length, m) normal numbers; length must be a power of two
     """
     count, length, width = numbers.shape
     x = np.empty((count, length + 1, width))
@@ -169,10 +182,10 @@ def between(c, s, ends, numbers):
 
 
 def _kept(h, time_s):
-    """Return what is left of processes after h, s: exp(-h / T), 1 of random walks."""
+    """Return the correlation over h seconds: exp(-h / T), 1 for random walks."""
     return np.where(h < GONE * time_s, elementary.exp(-np.minimum(h / time_s, GONE)), 0.0)
 
 
 def _spread(h, sigma, time_s):
-    """Return s of half intervals h, s."""
+    """Return the coefficient s for half intervals of h seconds."""
     return sigma * np.sqrt(np.where(np.isinf(time_s), 0.5 * h, elementary.tanh(h / time_s)))

@@ -1,16 +1,19 @@
-"""Warnings for the user: sentences of ours, and no words of a library."""
+"""Warnings for the user: only those of this package, not those of libraries."""
 
 import warnings
 
 
 def tell_warnings(tell):
     """
-    Let each warning that is meant for the user be told; others are left out.
+    Pass each warning that is meant for the user to a function; suppress all others.
 
-    tell: function of a sentence.  Sentences of ours are given by ``warnings.warn`` as UserWarning;
-    RuntimeWarning ("invalid value encountered ...") and what libraries announce for their next
-    versions say nothing to a user: what a value that is not finite leads to is judged where it
-    matters.
+    Warnings of this package are raised by ``warnings.warn`` as UserWarning. A RuntimeWarning
+    ("invalid value encountered ...") or an announcement of a library is of no use to a user;
+    values that are not finite are handled where they matter.
+
+    Parameters
+    ----------
+    tell : function of a sentence
     """
     def show(sentence, category, *_):
         if issubclass(category, UserWarning):

@@ -1,8 +1,8 @@
 """
 Truncated Taylor series in time: exact derivatives of closed-form motions.
 
-A motion is written once, as a pose; its velocities, accelerations and rates follow from the
-series.  Recurrences: Griewank and Walther, "Evaluating Derivatives", 2nd ed., table 13.1-13.2.
+A motion is written once, as a pose; velocities, accelerations and rates follow from the series.
+Recurrences: Griewank and Walther, "Evaluating Derivatives", 2nd ed., table 13.1-13.2.
 """
 
 import numpy as np
@@ -15,7 +15,11 @@ class Series:
     """
     Taylor coefficients c[k] = f^(k)/k! of a function of time at n instants.
 
-    c has shape (order + 1, n).  Operations truncate to the lower order of the two operands.
+    Operations truncate to the lower order of the two operands.
+
+    Attributes
+    ----------
+    c : (order + 1, n)
     """
 
     __slots__ = ('c',)
@@ -40,7 +44,7 @@ class Series:
         return Series(c)
 
     def to_order(self, order):
-        """Return the series cut to a lower order."""
+        """Return the series truncated to a lower order."""
         return type(self)(self.c[:order + 1])
 
     @property
@@ -54,7 +58,7 @@ class Series:
         return Series(self.c[1:] * k)
 
     def integral(self, value):
-        """Return the series whose derivative this is and whose value is given, (n,)."""
+        """Return the integral of the series, with the given value (n,) at the instants."""
         k = np.arange(1, len(self.c) + 1)[:, None]
         first = np.broadcast_to(value, (1,) + self.c.shape[1:])
         return Series(np.concatenate([first, self.c / k]))
@@ -109,10 +113,10 @@ class Series:
 
 class InstantSeries(Series):
     """
-    A Series at one instant, of order 2 at most: c is a tuple of floats.
+    A Series at one instant, of order 2 at most; c is a tuple of floats.
 
-    Its operations are those of Series in the same order, so that the bits are the same; arrays of
-    one element take ten times as long.
+    The operations are those of Series in the same order, so the bits are the same. Arrays with one
+    element would take ten times as long.
     """
 
     __slots__ = ()
@@ -127,7 +131,7 @@ class InstantSeries(Series):
         return InstantSeries((c[1], c[2] * 2) if len(c) == 3 else c[1:])
 
     def integral(self, value):
-        """Return the series whose derivative this is and whose value is given, a float."""
+        """Return the integral of the series, with the given value, a float, at the instant."""
         c = self.c
         return InstantSeries((value, c[0], c[1] / 2) if len(c) > 1 else (value, *c))
 
@@ -268,5 +272,5 @@ def log_cosh(u):
     return (slope * u.derivative()).integral(value)
 
 
-# In compiled loops there are floats only.
+# Compiled loops use floats only.
 REPLACED[sincos] = elementary.general_sincos

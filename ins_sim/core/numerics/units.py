@@ -1,4 +1,4 @@
-"""Units of data sheets in SI."""
+"""Units of data sheets, expressed in SI units."""
 
 import math
 

@@ -1,8 +1,8 @@
 """
-Magnetometer and barometer: what surrounds the vehicle, read at whole periods of motion time.
+Magnetometer and barometer: the field and the air around the vehicle, sampled periodically.
 
-Every error is a function of seed, run and the index of the sample, its motion time over the
-period.
+A sample is due at each whole multiple of the sensor's period in motion time. Its error is a
+function of the seed, the run and the index of the sample (motion time divided by the period).
 """
 
 from ins_sim.core.attitude import quaternion
@@ -15,11 +15,14 @@ NT = 1e-9
 
 class PeriodicSensor:
     """
-    A sensor that takes the first sample of the truth in each of its periods.
+    Base class of a sensor that uses the first truth sample in each of its periods.
 
-    A sample that is repeated is answered again.
+    If that truth sample is repeated, the sensor answers again with the same reading.
 
-    rate_hz: of the sensor; noise: IndexedNoise of its samples.
+    Parameters
+    ----------
+    rate_hz : rate of the sensor, Hz
+    noise : IndexedNoise that gives the noise of sample i
     """
 
     def __init__(self, rate_hz, noise):
@@ -27,7 +30,7 @@ class PeriodicSensor:
         self._index = self._taken_ns = None
 
     def due(self, t_ns):
-        """Return the noise of the sample at motion time t_ns, or None where there is none."""
+        """Return the noise of the sample taken at motion time t_ns, or None if none is due."""
         index = t_ns // self._period_ns
         if index == self._index and t_ns != self._taken_ns:
             return None
@@ -39,7 +42,11 @@ class Magnetometer(PeriodicSensor):
     """
     The magnetometer of ImuSensorSettings.
 
-    field: function (lat rad, lon rad, height m) -> field in East, North, Up, T.
+    Parameters
+    ----------
+    settings : ImuSensorSettings
+    field : function (latitude in rad, longitude in rad, height in m) that returns the magnetic
+        field in east, north, up, T
     """
 
     def __init__(self, settings, field):
@@ -53,7 +60,14 @@ class Magnetometer(PeriodicSensor):
         return self._sigma * self._sigma
 
     def read(self, place, noise):
-        """Return the field in b, T; place: lat, lon, height, v_n, q_nb; noise: of ``due``."""
+        """
+        Return the measured magnetic field in body axes, T.
+
+        Parameters
+        ----------
+        place : latitude (rad), longitude (rad), height (m), velocity, q_nb
+        noise : three standard normal numbers, as ``due`` returns them
+        """
         lat, lon, height, _, q_nb = place
         x, y, z = quaternion.rotate_back(q_nb, self._field(lat, lon, height))
         return (x + self._sigma * noise[0], y + self._sigma * noise[1],
@@ -74,5 +88,5 @@ class Barometer(PeriodicSensor):
         return self._sigma * self._sigma
 
     def read(self, place, noise):
-        """Return the static pressure, Pa, as a tuple; arguments as of ``Magnetometer.read``."""
+        """Return the static pressure, Pa, as a tuple; for place and noise see Magnetometer."""
         return (pressure(place[2]) + self._sigma * noise,)

@@ -1,8 +1,8 @@
 """
 GNSS: position and velocity of the antenna at whole periods of motion time, with their errors.
 
-Every error is a function of seed and the index of the fix, its motion time over the period, so
-that nothing depends on what was asked before.
+The errors of a fix are a function of the seed and of its index (motion time divided by the
+period), so they do not depend on which fixes were computed before.
 """
 
 import math
@@ -17,15 +17,16 @@ from ins_sim.core.streams.faults import check_finite, check_interval, check_unit
 from ins_sim.core.timeseries.fixes import GnssFix, no_gnss_fix, OUTAGE
 from .sensor import Sensor
 
-# m and m/s, of what is reported of errors: a navigator divides by the variance of a fix
+# Smallest reported sigma, m and m/s: a navigator divides by the variance of a fix.
 LEAST_SIGMA = 1e-3
 
 
 class Gnss(Sensor):
     """
-    The GNSS receiver of GnssSettings as a consumer of streamed truth: samples in, fixes out.
+    The GNSS receiver of GnssSettings: takes streamed truth samples and returns fixes.
 
-    Raises ValueError where a fix would lie between samples of the truth.
+    Raises ValueError if the period of the fixes is not a multiple of the truth period, because
+    a fix needs a truth sample at its instant.
     """
 
     def __init__(self, settings):
@@ -58,7 +59,7 @@ class Gnss(Sensor):
         self._alone = False
 
     def change(self, settings):
-        """Take the outages and the jump of other GnssSettings from the next fix on."""
+        """Use the outages and the position jump of these GnssSettings from the next fix on."""
         self._outages = _spans(settings.outages.start_s, settings.outages.end_s)
         jump = settings.jump
         self._jumps = _spans((jump.start_s,), (jump.end_s,)) if any(jump.offset_m) else ()
@@ -72,16 +73,25 @@ class Gnss(Sensor):
         return (self._last_ns // self.period_ns + 1) * self.period_ns
 
     def force_outage(self, forced):
-        """Let no fix be one from now on, or let the schedule decide again."""
+        """Mark every fix invalid (outage) from now on, or return to the scheduled outages."""
         self.forced = forced
 
     def push(self, t_ns, truth):
         """
-        Take one truth sample (motion time) and return the fixes of it, one or none.
+        Take one truth sample and return a list with the fix at its instant, or an empty list.
 
-        truth: lat, lon (rad), height (m), v_n (m/s), q_nb and the rate of b relative to the Earth,
-        resolved in b (rad/s).  Raise StreamFault on NaN, repeated or backwards stamps, gaps and a
-        step over the instant of a fix; the first sample may be repeated, and is answered again.
+        The first sample may be repeated; it is answered again.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        truth : latitude (rad), longitude (rad), height (m), v_n (east, north, up, m/s), q_nb and
+            the angular rate of the body relative to the Earth in body axes (rad/s)
+
+        Raises
+        ------
+        StreamFault
+            On NaN, repeated or backwards stamps, gaps, and a step over the instant of a fix.
         """
         lat, lon, height, v_n, q_nb, rate = truth
         check_finite('truth', t_ns, (lat, lon, height), v_n, q_nb, rate)
@@ -89,7 +99,7 @@ class Gnss(Sensor):
         last_ns = self._last_ns
         first = last_ns is None or (self._alone and t_ns == last_ns)
         if not first:
-            # denser truth than expected does no harm
+            # Truth samples at less than the expected interval are accepted.
             if not 0 < t_ns - last_ns <= self._dt_ns:
                 check_interval('truth', t_ns, last_ns, self._dt_ns)
             due_ns = t_ns // self.period_ns * self.period_ns
@@ -102,9 +112,9 @@ class Gnss(Sensor):
 
     def advance(self, truth):
         """
-        Return the fixes of a Truth record, or of a piece of one, as push gives them one by one.
+        Return the fixes of a Truth record, or of a part of one; same bits as single pushes.
 
-        Raises ValueError for an instant of a fix without a sample, and for NaN.
+        Raises ValueError for NaN and if a fix has no truth sample at its instant.
         """
         index, rest = np.divmod(truth.t_ns, self.period_ns)
         over = np.flatnonzero((np.diff(index) > 0) & ((rest[1:] > 0) | (np.diff(index) > 1)))
@@ -130,10 +140,11 @@ class Gnss(Sensor):
 
     def fix(self, t_ns, truth):
         """
-        Return the fix at t_ns, the instant of one; truth as push takes it.
+        Return the fix at t_ns, which must be a multiple of the period; truth as in ``push``.
 
-        The antenna of the lever arm l is C l from the place of b and moves by C (omega x l)
-        relative to it; velocity and errors are resolved in n at the place of b.
+        For a lever arm l the antenna is at C l from the origin of the body axes and moves with
+        C (omega x l) relative to it. Velocity and errors are resolved in the navigation axes at
+        that origin.
         """
         arrival_ns = t_ns + self.latency_ns
         if self.forced or _inside(t_ns, self._outages):
@@ -156,7 +167,7 @@ class _Errors:
     """Errors of position (m) and velocity (m/s) by the index of the fix."""
 
     def __init__(self, settings, dt_ns):
-        # with the first fix: NumPy's generators cost the start of a node nothing
+        # Imported with the first fix, so that a node does not load NumPy's generators at start.
         from ins_sim.core.numerics.noise import BLOCK, indexed_noise
         from ins_sim.core.numerics.processes import Processes
         errors, seed, run = settings.errors, settings.seed, settings.run
@@ -170,7 +181,7 @@ class _Errors:
                                         (errors.position_drift_time_s,) * 3, dt_ns * 1e-9)
 
     def at(self, index):
-        """Return both errors as tuples by East, North, Up."""
+        """Return the errors of position (m) and velocity (m/s) as (east, north, up) tuples."""
         position, velocity = ([s * n for s, n in zip(sigma, stream.normal(index))]
                               for sigma, stream in zip(self._sigmas, self._streams))
         if self._processes is not None:
@@ -190,5 +201,5 @@ def _inside(t_ns, spans):
 
 
 def _spans(starts, ends):
-    """Return pairs of ns."""
+    """Return pairs (start, end) in ns."""
     return tuple((round(1e9 * start), round(1e9 * end)) for start, end in zip(starts, ends))

@@ -10,11 +10,11 @@ class Sensor:
     """
     Base class of the sensors. A subclass overrides ``reset``, ``push`` and ``samples``.
 
-    Readings are a function of the settings, the seed and motion time, so that neither a restart
-    nor the cutting of the stream into blocks changes them. ``core.numerics.noise.indexed_noise``
-    gives such noise.
+    Readings are functions of the settings, the seed and motion time, so neither a restart nor the
+    cutting of the stream into blocks changes them. ``core.numerics.noise.indexed_noise`` gives
+    noise of this kind.
 
-    The VelocityMeter is no Sensor: it listens to two streams, the truth and the INS, and has a
+    The VelocityMeter is not a Sensor: it needs two streams, the truth and the INS, and has a
     ``push_truth`` and a ``push_ins``.
     """
 
@@ -31,12 +31,12 @@ class Sensor:
         t_ns : int
             Motion time, ns.
         *sample
-            What the sensor needs to know of the motion at that time, as ``samples`` gives it.
+            The quantities of the motion that the sensor needs, as ``samples`` returns them.
 
         Returns
         -------
         list
-            The readings that this sample completes, none, one or several.
+            The readings that this sample completes: zero, one or several.
 
         Raises
         ------
@@ -51,7 +51,7 @@ class Sensor:
 
     def advance(self, truth: Truth) -> Any:
         """
-        Return the readings of a Truth record or of a part of one, those of single pushes.
+        Return the readings of a Truth record or of a part of one; same bits as single pushes.
 
         Parameters
         ----------
@@ -60,6 +60,6 @@ class Sensor:
         Returns
         -------
         list
-            Or a record of arrays, where a sensor has one: ImuSamples of an IMU.
+            A sensor with a record type returns that instead, an IMU for example ImuSamples.
         """
         return [reading for sample in self.samples(truth) for reading in self.push(*sample)]

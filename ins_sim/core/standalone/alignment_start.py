@@ -1,4 +1,4 @@
-"""Coarse self-alignment of a live IMU: a standstill, then position and heading as they come."""
+"""Self-alignment of a live IMU: first a standstill, then position and heading when available."""
 
 import math
 
@@ -19,33 +19,32 @@ from .samples import recorded
 from .standstill_stream import StandstillStream
 from .start import attitude_text, given_place, given_sigmas, Start
 
-# Fixes that lie further apart during a standstill show that it is none, m.
+# Fixes further apart than this, m, show that the vehicle was not at rest.
 MOVED_M = 10.0
-# Of a heading that nobody knows.
+# Standard deviation of an unknown heading, rad.
 UNKNOWN_HEADING = math.pi
-# The axes of odom in which the vehicle looks along x.
+# Heading, rad, of a vehicle that points along the x axis (East) of odom.
 ALONG_X = 0.5 * math.pi
 
 
 class AlignmentStart:
     """
-    Waits for a standstill, then for what gives position and heading.
+    Waits for a standstill, then for the data that give position and heading.
 
     Parameters
     ----------
     settings : StrapdownSettings
-    inputs : StandaloneNavigator, of which ``samples``, ``fixes``, ``field`` and ``declination``
-        are used
+    inputs : StandaloneNavigator, for its ``samples``, ``fixes``, ``field`` and ``declination``
     first_ns : stamp of the first sample, from which the windows of the standstill are counted
-    again : whether given values hold no longer, as behind a gap
-    last_place : where the solution was before it, or None
-    turn : quaternion by which the samples have been levelled already, or None
+    again : whether given values are no longer valid, for example after a gap
+    last_place : last position of the solution before, or None
+    turn : quaternion by which the samples have already been levelled, or None
 
     Attributes
     ----------
-    notes : sentences on what was in the way; the owner empties it
-    refused : the last of those by which it had to begin anew, or ''
-    turn : quaternion by which samples are to be levelled (mounting.source level), or None
+    notes : sentences on what prevented the alignment; the owner removes them
+    refused : the last of them that made the alignment start again, or ''
+    turn : quaternion that levels the samples (mounting.source level), or None
 
     """
 
@@ -68,7 +67,7 @@ class AlignmentStart:
 
     @property
     def state(self):
-        """Return what is waited for."""
+        """What the alignment is waiting for."""
         if self._still is None:
             return (f'at rest for {self._stream.elapsed_s:g} s of at least '
                     f'{self._stream.needed_s:g} s')
@@ -77,7 +76,7 @@ class AlignmentStart:
         return f'waiting for a course: {self._course.state}' if self._course else 'deciding'
 
     def push(self, sample):
-        """Take a sample."""
+        """Take an ImuSample."""
         if self._still is not None:
             self._samples.append(sample)
             return
@@ -92,7 +91,7 @@ class AlignmentStart:
         self.refused = sentences[-1] if sentences else self.refused
 
     def pop(self):
-        """Forget the last sample, which another one replaces; return whether it was possible."""
+        """Remove the last sample, because another one replaces it; return whether it worked."""
         if self._still is None:
             return self._stream.pop()
         if len(self._samples) < 2:
@@ -105,7 +104,7 @@ class AlignmentStart:
         try:
             self._check(still, samples)
         except ValueError as error:
-            self._complain([f'alignment: {error}; nothing is aligned, it begins anew'])
+            self._complain([f'alignment: {error}; the alignment starts again'])
             self._begin()
             return
         if self._levels:
@@ -120,19 +119,19 @@ class AlignmentStart:
         self._inputs.fixes.forget_ways(still.end_ns)
 
     def _check(self, still, samples):
-        """Raise ValueError for a standstill that is none, or no accelerometer in m/s^2."""
+        """Raise ValueError if the vehicle was not at rest or forces are not in m/s^2."""
         without_zeros(recorded(samples[still.first:still.last]), 'refuse', [])
         check_gravity(still.force, self._s.alignment.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
-            raise ValueError('the mean specific force at rest is zero, so that it does not show '
-                             'up')
+            raise ValueError('the mean specific force at rest is zero; expected about 9.8 m/s^2 '
+                             'upwards')
         way, time_s = self._inputs.fixes.moved(still.start_ns, still.end_ns)
         if way > max(MOVED_M, self._s.alignment.speed_m_s * time_s):
             raise ValueError(f'the fixes have moved by {way:.1f} m in the {time_s:.1f} s in which '
-                             'the IMU seemed to be at rest; expected a vehicle that stands')
+                             'the IMU seemed to be at rest; expected a vehicle at rest')
 
     def decide(self):
-        """Return the Start, or None as long as there is none."""
+        """Return the Start, or None if it cannot be decided yet."""
         if self._still is None or not (self._placed or self._find_place()):
             return None
         still, infos = self._still, [self._still.describe()]
@@ -157,14 +156,14 @@ class AlignmentStart:
                      known and self._place is not None, infos, warnings)
 
     def _find_place(self):
-        """Find the position at the end of the standstill; return whether that is decided."""
+        """Find the position at the end of the standstill; return whether the search is over."""
         end_ns, fixes = self._still.end_ns, self._inputs.fixes
         if self._s.initial.position == 'given':
             self._place = self._last_place if self._again else given_place(self._s.initial)
         elif fixes.covers(end_ns) or self._samples[-1].t_ns > end_ns + LONGEST_STEP_S * 1e9:
             self._place = fixes.place(end_ns, near=True)
             if self._place is None:
-                self._reasons.append(f'the position is unknown, for no fix on '
+                self._reasons.append(f'the position is unknown, because no fix on '
                                      f'{self._s.inputs.fix} is within {LONGEST_STEP_S:g} s of the '
                                      'standstill')
         else:
@@ -177,7 +176,7 @@ class AlignmentStart:
         return self._place[0] if self._place else math.radians(self._s.datum.latitude_deg)
 
     def _heading(self, infos):
-        """Return q_nb, sigma, whether it is known and gyrocompassed; None while it may come."""
+        """Return q_nb, sigma, whether known, whether gyrocompassed; None if it may still come."""
         still, wanted = self._still, self._s.initial.heading
         if wanted == 'given' and not self._again:
             sigma = 1e-3 * self._s.initial.azimuth_sigma_mrad
@@ -203,7 +202,7 @@ class AlignmentStart:
         if wanted not in ('auto', 'gyrocompass', 'given'):
             return None
         if not self._spin:
-            self._refuse('the Earth does not turn (earth.rotation)')
+            self._refuse('the Earth does not rotate (earth.rotation)')
             return None
         if self._gyrocompass is None:
             self._gyrocompass = alignment.trusted_gyrocompass(self._still, self._latitude,
@@ -222,8 +221,8 @@ class AlignmentStart:
         if self._course is None:
             self._course = LiveCourse(self._s, self._still, self._place, self._spin)
             self._inputs.infos.append(
-                f'alignment: {"; ".join([*self._reasons, ""])}the heading is to be that of the '
-                f'course of {self._s.inputs.fix}, once it has moved by '
+                f'alignment: {"; ".join([*self._reasons, ""])}the heading will be the course of '
+                f'{self._s.inputs.fix}, once it has moved by '
                 f'{self._s.alignment.course_distance_m:g} m (alignment.course_distance_m)')
         found = self._course.advance(self._samples, fixes, self._inputs.samples.gap_ns)
         if found is None:
@@ -254,7 +253,7 @@ class AlignmentStart:
                 math.radians(self._s.initial.magnetic_sigma_deg), True, False)
 
     def _bias(self, still, q_nb, lat, known, compassed, infos):
-        """Return the gyro bias to take off, or None, and its standard deviation by axis."""
+        """Return the gyro bias to subtract, or None, and its standard deviation by axis."""
         wanted, assumed = (self._s.alignment.gyro_bias,
                            self._s.alignment.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
         figures = math.sqrt(max(sigmas_of(self._s)[0].bias))
@@ -263,22 +262,22 @@ class AlignmentStart:
         bias = alignment.gyro_bias(still, q_nb, lat, self._spin)
         infos.append(alignment.bias_sentence(bias))
         error = float(max(still.rate_error))
-        # The level rate of the Earth has a direction in the vehicle that is not known.
+        # With unknown heading the level component of the Earth rate has an unknown direction.
         return tuple(bias.tolist()), error if known else _joint(error, self._spin * cos(lat))
 
     def _warning(self, heading_known):
-        """Return the warning on a heading or a position that nobody knows."""
-        reasons = '; '.join(self._reasons) or 'nothing gives it'
+        """Return the warning that heading or position is unknown."""
+        reasons = '; '.join(self._reasons) or 'no source for it'
         what, how = ('levelled only, the heading is unknown', 'heading 0 along x, ')
         if heading_known:
             what, how = 'the position is unknown', ''
-        return (f'alignment: {what}: {reasons}. The solution is in odom alone, {how}without '
+        return (f'alignment: {what}: {reasons}. The solution is given in odom only, {how}without '
                 'map -> odom and ins/fix. What would help: initial.position given; '
-                f'initial.heading given; fixes on {self._s.inputs.fix}, of a vehicle that moves; '
+                f'initial.heading given; fixes on {self._s.inputs.fix} while the vehicle moves; '
                 f'a magnetometer on {self._s.inputs.magnetic_field}; or gyros whose '
                 'alignment.gyro_bias_sigma_deg_h is known to be small')
 
 
 def _joint(one, other):
-    """Return the standard deviation of the sum of two errors."""
+    """Return the standard deviation of the sum of two independent errors."""
     return math.sqrt(one * one + other * other)

@@ -1,4 +1,4 @@
-"""The fixes of a live receiver: where the vehicle is, and which way it goes."""
+"""The fixes of a live receiver: position of the vehicle, and its movement between fixes."""
 
 from collections import deque
 import math
@@ -9,14 +9,22 @@ import numpy as np
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.postprocessing.reference import LONGEST_STEP_S, SampledTrack
 
-# Fixes that are kept; a standstill is at most as long.
+# Number of fixes kept; a standstill cannot have more.
 MOST = 10_000
-# Of a fix whose covariance is not known, m.
+# Standard deviation of a fix with unknown covariance, m.
 UNKNOWN_SIGMA_M = 5.0
 
 
 class PlaceFix(NamedTuple):
-    """A fix: stamp, ns; latitude, longitude, rad, height, m; standard deviation, m, or None."""
+    """
+    A position fix.
+
+    Attributes
+    ----------
+    t_ns : stamp, ns
+    lat, lon, height : rad, rad, m
+    sigma : standard deviation of the position, m, or None
+    """
 
     t_ns: int
     lat: float
@@ -31,17 +39,13 @@ class PlaceFix(NamedTuple):
 
 
 class FixTrack:
-    """
-    Fixes in the order of their stamps; later ones that go back are left out.
-
-    heights: (t_ns, height) of those that a damped vertical channel has not taken yet.
-    """
+    """Fixes in the order of their stamps; a fix older than the last one is ignored."""
 
     def __init__(self):
         self.fixes, self._new = deque(maxlen=MOST), deque(maxlen=MOST)
 
     def push(self, fix):
-        """Take a PlaceFix; return whether it was used."""
+        """Take a PlaceFix; return whether it was accepted."""
         if self.fixes:
             last = self.fixes[-1]
             if fix.t_ns <= last.t_ns:
@@ -60,18 +64,18 @@ class FixTrack:
         return self.fixes[-1].t_ns if self.fixes else None
 
     def take_ways(self):
-        """Return (middle, way) of the new ways from fix to fix: stamps, ns; east, north, m."""
+        """Return new (stamp ns at mid-way, (east, north) m) from fix to fix, and forget them."""
         ways = list(self._new)
         self._new.clear()
         return ways
 
     def forget_ways(self, t_ns):
-        """Leave out the ways before a stamp: those of a standstill."""
+        """Forget the movement before a stamp, such as that during a standstill."""
         while self._new and self._new[0][0] < t_ns:
             self._new.popleft()
 
     def covers(self, t_ns):
-        """Return whether nothing that is still to come changes the position at a stamp."""
+        """Return whether the position at a stamp is final, whatever fixes follow."""
         return bool(self.fixes) and self.fixes[-1].t_ns >= t_ns
 
     def _track(self, t_ns):
@@ -83,9 +87,9 @@ class FixTrack:
 
     def place(self, t_ns, near=False):
         """
-        Return latitude, longitude and height at a stamp, or None.
+        Return latitude (rad), longitude (rad) and height (m) at a stamp, or None.
 
-        near: whether the nearest fix within LONGEST_STEP_S serves where none is on either side.
+        near: whether to use the nearest fix within LONGEST_STEP_S if there is none on one side.
         """
         track = self._track(t_ns)
         if track is None:
@@ -101,7 +105,7 @@ class FixTrack:
         return min(known, key=lambda f: abs(f.t_ns - t_ns)).sigma
 
     def moved(self, start_ns, end_ns):
-        """Return how far apart the first and the last fix between two stamps are, m, and s."""
+        """Return distance (m) and time (s) from the first to the last fix between two stamps."""
         inside = [f for f in self.fixes if start_ns <= f.t_ns <= end_ns]
         if len(inside) < 2:
             return 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Headings of an alignment that the gyros cannot give: course of the fixes, magnetic field."""
+"""Headings of an alignment from other sources than the gyros: course of fixes, magnetic field."""
 
 from collections import deque
 import math
@@ -13,25 +13,30 @@ from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.postprocessing.course import CourseSearch
 
-# Of the field of the Earth, T.
+# Limits of the magnetic field of the Earth, T.
 LEAST_FIELD, MOST_FIELD = 2e-5, 7e-5
-# Magnetic samples that are kept.
+# Number of magnetic samples kept.
 MOST = 20_000
 
 
 class LiveCourse:
     """
-    The course of the fixes after a standstill, as ``course.find_course`` finds it in a recording.
+    The heading from the course of the fixes after a standstill.
 
-    A sample is navigated when the fixes have come as far: the way to the next one could still
-    belong to it.
+    It follows ``course.find_course``, which works on a recording. A sample is navigated only when
+    a fix at or after its time has arrived, because the way to that fix could still belong to it.
 
     Parameters
     ----------
     settings : StrapdownSettings
     still : Standstill
-    place : latitude, longitude, rad, height, m
+    place : latitude (rad), longitude (rad), height (m)
     spin : rotation rate of the Earth, rad/s
+
+    Attributes
+    ----------
+    over : whether the search has ended
+    scatter : standard deviation of the heading found, rad
     """
 
     def __init__(self, settings, still, place, spin):
@@ -46,10 +51,13 @@ class LiveCourse:
 
     def advance(self, samples, fixes, gap_ns):
         """
-        Navigate as far as the fixes go; return the heading, rad, and how it was found, or None.
+        Navigate up to the last fix; return the heading (rad) and how it was found, or None.
 
-        samples: all ImuSamples from the end of the standstill on; fixes: FixTrack; gap_ns: the
-        longest step that is no gap, at which the search ends.  ``over`` is set when it is over.
+        Parameters
+        ----------
+        samples : all ImuSamples since the end of the standstill
+        fixes : FixTrack
+        gap_ns : longest step that does not count as a gap, ns; a gap ends the search
         """
         for way in fixes.take_ways():
             self._search.add(*way)
@@ -77,32 +85,40 @@ class LiveCourse:
 
     @property
     def state(self):
-        """Return what is waited for."""
+        """What the search is waiting for."""
         return self._search.describe()
 
 
 class FieldSamples:
-    """The magnetic field in the frame of the IMU, as it comes."""
+    """Collects samples of the magnetic field, in the frame of the IMU."""
 
     def __init__(self):
         self._samples = deque(maxlen=MOST)
 
     def push(self, t_ns, field):
-        """Take a field, T, with the stamp t_ns."""
+        """Take a magnetic field, T, with its stamp."""
         self._samples.append((t_ns, field))
 
     def between(self, start_ns, end_ns):
-        """Return the mean field between two stamps, (3,) T, or None where there is none."""
+        """Return the mean field between two stamps, (3,) T, or None without samples."""
         inside = [field for t_ns, field in self._samples if start_ns <= t_ns <= end_ns]
         return np.array(inside).mean(axis=0) if inside else None
 
 
 def magnetic_heading(field_b, force, declination):
     """
-    Return the heading of a field at rest, rad.
+    Return the heading from the magnetic field at rest, rad.
 
-    field_b, force (3,): mean field, T, and specific force in b; declination: of the field, East
-    of true north, rad.  Raises ValueError, one sentence, for a field that is not the Earth's.
+    Parameters
+    ----------
+    field_b : (3,) mean field in b, T
+    force : (3,) mean specific force in b, m/s^2
+    declination : of the field, east of true north, rad
+
+    Raises
+    ------
+    ValueError
+        If the field is not of the size of the Earth's.
     """
     size = length(field_b)
     if not LEAST_FIELD <= size <= MOST_FIELD:

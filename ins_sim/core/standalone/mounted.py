@@ -1,4 +1,4 @@
-"""How a live IMU sits in the vehicle: by angles, by /tf_static, or levelled at rest."""
+"""The mounting of a live IMU in the vehicle: from angles, from /tf_static, or levelled at rest."""
 
 import math
 
@@ -6,7 +6,7 @@ from ins_sim.core.attitude import angles, quaternion
 from ins_sim.core.postprocessing.mounting import chained_mounting
 from .samples import ImuSample
 
-# So much of the stream waits for /tf_static.
+# How long samples wait for /tf_static, s.
 PATIENCE_S = 2.0
 
 
@@ -24,12 +24,13 @@ class LiveMounting:
     ----------
     settings : MountingAngles
     base : name of the frame of the vehicle
-    has_transforms : whether /tf_static can be heard
+    has_transforms : whether /tf_static can be received
 
     Attributes
     ----------
-    q_bs : quaternion, or None as long as it is not known
-    notes : sentences on where it comes from
+    q_bs : quaternion, or None if not known yet
+    notes : sentences on its source; the owner removes them
+    faults : sentences on what is missing; the owner removes them
 
     """
 
@@ -38,7 +39,7 @@ class LiveMounting:
         self._asks = has_transforms and (
             settings.source == 'tf' or settings.source == 'auto' and not any(settings.rpy_deg))
         if settings.source == 'tf' and not has_transforms:
-            raise ValueError('mounting.source is tf and tf2_msgs cannot be imported; expected '
+            raise ValueError('mounting.source is tf, but tf2_msgs cannot be imported; expected '
                              'mounting.source given with mounting.rpy_deg, or that ROS package '
                              '(apt: ros-jazzy-tf2-msgs)')
         self._transforms, self._first_ns, self._complained = {}, None, False
@@ -59,9 +60,9 @@ class LiveMounting:
 
     def find(self, frame, t_ns):
         """
-        Look for the mounting of a frame, once a sample has the stamp t_ns.
+        Return q_bs for an IMU with this frame, or None if it may still arrive.
 
-        Return q_bs, or None as long as it may come.
+        t_ns is the stamp of the sample that needs it.
         """
         if self.q_bs is not None:
             return self.q_bs
@@ -79,15 +80,15 @@ class LiveMounting:
                     self._complain(str(error))
         elif late and self._settings.source == 'auto':
             self.notes.append(f'mounting: no /tf_static in {PATIENCE_S:g} s, so the frame '
-                              f'{frame!r} of the IMU is taken for {base}: set mounting.rpy_deg if '
-                              'it is turned')
+                              f'{frame!r} of the IMU is assumed to be {base}: set '
+                              'mounting.rpy_deg if the IMU is rotated')
             self._as_given()
         elif late:
-            self._complain(f'/tf_static has brought nothing in {PATIENCE_S:g} s (mounting.source '
-                           f'tf); expected a transform from {base} to {frame!r}')
+            self._complain(f'no message on /tf_static in {PATIENCE_S:g} s (mounting.source tf); '
+                           f'expected a transform from {base} to {frame!r}')
         return self.q_bs
 
     def _complain(self, sentence):
         if not self._complained:
             self._complained = True
-            self.faults.append(f'mounting: {sentence}; nothing is navigated until then')
+            self.faults.append(f'mounting: {sentence}; navigation waits for it')

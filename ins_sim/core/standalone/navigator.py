@@ -1,4 +1,4 @@
-"""The navigator of a live IMU without truth: its readings in, its solutions out."""
+"""The navigator of a live IMU without truth: readings in, solutions out."""
 
 from collections import deque
 import math
@@ -12,32 +12,32 @@ from .running import RunningNavigation
 from .start import CourseStart, GivenStart
 from .vertical_reference import VerticalReference
 
-# Samples that are navigated at once where many wait.
+# Largest number of waiting samples that are navigated at once.
 AT_ONCE = 500
-# In lock-step fixes come before the readings of their time, by its window of samples.
+# Largest lead of a fix over the readings, s; in lock-step fixes arrive up to a window earlier.
 MOST_AHEAD_S = 60.0
 
 
 class StandaloneNavigator:
     """
-    Finds its start, then navigates, as ``core.postprocessing.navigate`` does on a recording.
+    Finds its start, then navigates, like ``core.postprocessing.navigate`` on a recording.
 
     Parameters
     ----------
     settings : StrapdownSettings
     mounting : LiveMounting
-    declination : function (stamp ns, (lat, lon, height)) -> declination of the field, rad, and
-        where it is from
+    declination : function (stamp ns, (lat, lon, height)) -> declination of the magnetic field,
+        rad, and its source
 
     Attributes
     ----------
-    faults, warnings, infos : sentences; the owner empties them
+    faults, warnings, infos : sentences; the owner removes them
     samples : OrderedSamples
     fixes : FixTrack
     field : FieldSamples
     run : RunningNavigation, or None before the start
-    begun : how many navigations have begun
-    gaps : how many gaps there were
+    begun : number of navigations begun
+    gaps : number of gaps
     """
 
     def __init__(self, settings, mounting, declination):
@@ -48,14 +48,14 @@ class StandaloneNavigator:
         self._forget()
 
     def reset(self):
-        """Start anew, as at first."""
+        """Start again from the beginning."""
         self.samples.restart()
         self._forget()
 
     rejoin = reset
 
     def _forget(self, again=False):
-        """Forget solution and start; again: behind a gap, where given values hold no longer."""
+        """Forget solution and start; again: after a gap, when given values are no longer valid."""
         self._last_place = self.run.place if again and self.run is not None else None
         self._again = again
         if not again:
@@ -83,12 +83,12 @@ class StandaloneNavigator:
 
     @property
     def located(self):
-        """Return whether there is a solution, and its odom has a place in map."""
+        """Return whether there is a solution whose position and heading on the map are known."""
         return self.run is not None and self.run.located
 
     @property
     def state(self):
-        """Return what is done now, in a few words."""
+        """What the navigator is doing, in a few words."""
         if self.run is not None:
             return 'navigating' if self.located else 'navigating in odom alone'
         if self._mounting.q_bs is None:
@@ -98,12 +98,12 @@ class StandaloneNavigator:
         return 'waiting for readings' if self._start is None else self._start.state
 
     def push_fix(self, fix):
-        """Take a PlaceFix; return the solutions that it leads to."""
+        """Take a PlaceFix; return the solutions that become possible."""
         ahead_s = 0.0 if self.newest_ns is None else 1e-9 * (fix.t_ns - self.newest_ns)
         if ahead_s > MOST_AHEAD_S:
             self.faults.append(f'a fix on {self._s.inputs.fix} is {ahead_s:.6g} s ahead of the '
-                               f'readings of the imu; expected at most {MOST_AHEAD_S:g} s, and '
-                               'one clock for both; it was dropped')
+                               f'imu readings; expected at most {MOST_AHEAD_S:g} s, and one '
+                               'clock for both; the fix was dropped')
             return []
         if not self.fixes.push(fix):
             return []
@@ -125,9 +125,9 @@ class StandaloneNavigator:
 
     def push_imu(self, t_ns, omega, f, tag=None):
         """
-        Take a reading in the axes of the sensor; return the solutions (Solved) that it leads to.
+        Take a reading in the axes of the sensor; return the solutions that become possible.
 
-        omega, f: tuples, rad/s and m/s^2; tag: given back with the solution.
+        omega (rad/s) and f (m/s^2) are tuples; tag is returned with the solution (Solved).
         """
         outputs = []
         for kind, sample in self.samples.push(t_ns, omega, f, tag):
@@ -165,12 +165,12 @@ class StandaloneNavigator:
 
     def _complain(self):
         if self._again and self._s.initial.source == 'given':
-            self.warnings.append('initial.source is given, which holds no longer behind a gap; '
-                                 'expected ~/reset where the vehicle is in that state again, or '
-                                 'initial.source alignment or fix')
+            self.warnings.append('initial.source is given, but that state is not valid after a '
+                                 'gap; expected a call of ~/reset when the vehicle is in that '
+                                 'state again, or initial.source alignment or fix')
 
     def _took_back(self):
-        """Take the last sample back; return whether that was possible."""
+        """Undo the last sample; return whether that was possible."""
         if self._waiting:
             self._waiting.pop()
             return True
@@ -179,7 +179,7 @@ class StandaloneNavigator:
         return self._start is not None and self._start.pop()
 
     def _bridges(self, sample):
-        """Return whether the gap before a sample is bridged, and say what is done."""
+        """Return whether the gap before a sample is bridged, and report what is done."""
         gap_s, longest_s = 1e-9 * (sample.t_ns - self.newest_ns), self._s.gaps.longest_bridge_s
         self.gaps += 1
         if gap_s <= longest_s:
@@ -204,7 +204,7 @@ class StandaloneNavigator:
         start.notes.clear()
 
     def _decided(self):
-        """Begin to navigate if the start is known; return the solutions."""
+        """Begin to navigate if the start is decided; return the solutions."""
         if self.run is not None or self._start is None or not self.samples.step.known:
             return []
         start = self._start.decide()
@@ -227,7 +227,7 @@ class StandaloneNavigator:
         self.begun += 1
 
     def drain(self, count=AT_ONCE):
-        """Navigate samples that wait, at most so many; return the solutions."""
+        """Navigate at most ``count`` waiting samples; return the solutions."""
         outputs = []
         while self._waiting and count:
             sample, count = self._waiting.popleft(), count - 1
@@ -239,7 +239,7 @@ class StandaloneNavigator:
                 self._complain()
                 return outputs
             if self._published_ns is not None and solved.t_ns <= self._published_ns:
-                # after ~/align the new solution begins where the one before has been
+                # After ~/align the new solution begins at a time already published; skip to it.
                 continue
             self._published_ns = solved.t_ns
             if self._count % self._s.output_every == 0:
@@ -248,30 +248,30 @@ class StandaloneNavigator:
         return outputs
 
     def align(self):
-        """Begin another alignment; return whether, and a sentence."""
+        """Begin another alignment; return whether it began, and a sentence."""
         limits, initial = self._s.alignment, self._s.initial
         if initial.source != 'alignment':
             return False, (f'initial.source is {initial.source}; expected alignment: nothing is '
                            'aligned')
         if self.newest_ns is None:
-            return False, f'nothing comes on {self._s.inputs.imu} to align with'
+            return False, f'no readings on {self._s.inputs.imu} to align with'
         if self.run is None:
             return False, f'an alignment is under way: {self.state}'
         self._realigning = AlignmentStart(self._s, self, self.newest_ns, turn=self._turn)
-        return True, (f'an alignment begins: it takes {limits.shortest_s:g} to '
-                      f'{limits.longest_s:g} s at rest; until then the solution goes on, and if '
-                      'the vehicle moves before, it stays')
+        return True, (f'alignment started: it takes {limits.shortest_s:g} to '
+                      f'{limits.longest_s:g} s at rest; until then the solution continues, and if '
+                      'the vehicle moves before, it is kept')
 
     def _realigned(self, sample):
-        """Give a sample to the alignment that was asked for, if any; return the solutions."""
+        """Give a sample to the alignment requested by ~/align, if any; return the solutions."""
         again = self._realigning
         if again is None:
             return []
         again.push(sample)
         if again.refused:
             self._realigning = None
-            self.warnings.append(f'the alignment asked for by ~/align is given up: '
-                                 f'{again.refused}; the solution goes on as before')
+            self.warnings.append(f'the alignment requested by ~/align was cancelled: '
+                                 f'{again.refused}; the solution continues as before')
             return []
         start = again.decide()
         self._hear(again)

@@ -1,4 +1,4 @@
-"""The order of live samples: what becomes of each by its stamp."""
+"""The order of live samples: which are used, dropped or replaced, judged by their stamps."""
 
 import math
 
@@ -6,9 +6,10 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics.instants import seconds
 from .samples import ImuSample, JUMP, TypicalStep
 
-# Samples that wait for the mounting.
+# Number of samples kept while the mounting is not known.
 MOST_EARLY = 2000
-# Lock-step repeats the first sample until it is answered, which is no fault.
+# Repeats of a stamp before they are reported; in lock-step the first sample is repeated until it
+# is answered.
 MOST_REPEATS = 1000
 
 NEXT, REPLACE, HOLD, RELEASE, DROP, RESTART = range(6)
@@ -16,13 +17,12 @@ NEXT, REPLACE, HOLD, RELEASE, DROP, RESTART = range(6)
 
 class SampleOrder:
     """
-    What becomes of a sample, by its stamp: the fewest possible are dropped of those out of order.
+    Decides by its stamp what happens to a sample, so that as few as possible are dropped.
 
-    NEXT: it follows; REPLACE: it follows the one before the last, whose stamp it repeats or
-    which was ahead of its time;
-    HOLD: it is far ahead, and the next one shows whether time has leapt or this stamp is wrong;
-    RELEASE: time has leapt, the held sample is taken and then this one; DROP; RESTART: time has
-    jumped back for good.
+    NEXT: the sample follows the last one. REPLACE: it replaces the last one, which had the same
+    stamp or one ahead of its time. HOLD: it is far ahead; the next sample shows whether time has
+    leapt or this stamp is wrong. RELEASE: time has leapt; use the held sample and then this one.
+    DROP: drop it. RESTART: time has jumped back for good.
     """
 
     def __init__(self):
@@ -30,7 +30,7 @@ class SampleOrder:
         self._older, self._repeats = [], 0
 
     def judge(self, t_ns, gap_ns):
-        """Return what becomes of the sample of a stamp; gap_ns: the longest step that is none."""
+        """Return the decision for a stamp; gap_ns: longest step that does not count as a gap."""
         last_ns = self._last_ns
         if last_ns is None:
             self._last_ns = t_ns
@@ -60,26 +60,26 @@ class SampleOrder:
         if t_ns > held_ns:
             self._before_ns, self._last_ns = held_ns, t_ns
             return RELEASE
-        # the held one was ahead of its time
+        # The stamp of the held sample was ahead of its time.
         if t_ns - self._last_ns > gap_ns:
             self._held_ns = t_ns
             return HOLD
         return self._follows(t_ns)
 
     def describe(self, t_ns):
-        """Return the sentence on the sample just dropped, or ''."""
+        """Return the message for the sample just dropped, or ''."""
         if t_ns == self._last_ns:
             self._repeats += 1
             return '' if self._repeats < MOST_REPEATS else (
-                f'imu repeats the stamp {seconds(t_ns)} again and again; expected a later one, in '
-                'header.stamp, with every reading')
+                f'imu repeats the stamp {seconds(t_ns)} again and again; expected a later '
+                'header.stamp with every reading')
         return (f'imu goes back from {seconds(self._last_ns)} to {seconds(t_ns)}; expected rising '
                 'stamps; the sample was dropped')
 
 
 class OrderedSamples:
     """
-    Mounts the readings of a live IMU and puts them in order.
+    Rotates the readings of a live IMU to the vehicle axes and puts them in order.
 
     Parameters
     ----------
@@ -90,8 +90,8 @@ class OrderedSamples:
     ----------
     step : TypicalStep
     frame_id : name of the frame of the IMU, which the owner sets
-    faults : sentences on what was dropped; the owner empties it
-    dropped : how many samples
+    faults : sentences on what was dropped; the owner removes them
+    dropped : number of dropped samples
     """
 
     def __init__(self, gaps, mounting):
@@ -100,25 +100,25 @@ class OrderedSamples:
         self.restart()
 
     def restart(self):
-        """Forget what has come."""
+        """Forget all samples."""
         self.step, self._order = TypicalStep(), SampleOrder()
         self._held, self._early, self._last_ns = None, [], None
 
     @property
     def gap_ns(self):
-        """Return the longest step that is no gap."""
+        """Return the longest step that does not count as a gap, ns."""
         return self._gaps.factor * self.step.median_ns if self.step.known else math.inf
 
     def push(self, t_ns, omega, f, tag):
         """
         Take a reading in the axes of the sensor.
 
-        Returns [(kind, ImuSample)]: NEXT; HOLD for one behind a gap; REPLACE for one in whose
-        place another was given before; RESTART for the first behind a jump back.
+        Returns [(kind, ImuSample)] with kind NEXT, HOLD for a sample after a gap, REPLACE for one
+        that replaces an earlier one, or RESTART for the first after a jump back.
         """
         if not all(map(math.isfinite, (*omega, *f))):
-            self._drop(f'imu at {seconds(t_ns)} holds what is no number; expected finite '
-                       'readings; the sample was dropped')
+            self._drop(f'imu at {seconds(t_ns)} holds NaN or infinity; expected finite readings; '
+                       'the sample was dropped')
             return []
         q_bs = self._mounting.find(self.frame_id, t_ns)
         if q_bs is None:
@@ -148,8 +148,8 @@ class OrderedSamples:
         elif fate == REPLACE:
             self._drop(f'imu repeats the stamp {seconds(t_ns)}; expected a later one; the sample '
                        'before was dropped' if t_ns == self._last_ns else
-                       f'imu goes back to {seconds(t_ns)}, behind a sample that was ahead of its '
-                       'time; that one was dropped')
+                       f'imu goes back to {seconds(t_ns)} after a stamp that was ahead of its '
+                       'time; the sample before was dropped')
             self._last_ns = t_ns
             return [(REPLACE, sample)]
         elif fate == RESTART:

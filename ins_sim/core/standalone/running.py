@@ -1,4 +1,4 @@
-"""A navigation without truth from its start on, with its covariance."""
+"""Navigation without truth, from its start on, with its covariance."""
 
 import math
 from typing import NamedTuple
@@ -16,8 +16,13 @@ class Solved(NamedTuple):
     """
     A solution.
 
-    t_ns; state: lat, lon, height, v_n, q_nb; rate: of the body, rad/s, less the bias; tag: what
-    came with the sample; known: PublishedCovariance.
+    Attributes
+    ----------
+    t_ns : stamp, ns
+    state : lat (rad), lon (rad), height (m), v_n (m/s), q_nb
+    rate : angular rate of the body minus the bias, rad/s
+    tag : object that was given with the sample
+    known : PublishedCovariance
     """
 
     t_ns: int
@@ -29,20 +34,20 @@ class Solved(NamedTuple):
 
 class RunningNavigation:
     """
-    Steps a RecordedNavigator and its covariance through the samples from a Start on.
+    Steps a RecordedNavigator and its covariance through the samples since a Start.
 
     Parameters
     ----------
     settings : StrapdownSettings
     start : Start
-    step_ns : typical step of the stamps
+    step_ns : typical step of the stamps, ns
     heights : VerticalReference
 
     Attributes
     ----------
-    frame : MapFrame, of the datum, or of the start where the datum is the default
-    located : as of Start
-    begins_map : whether it is located, and the origin of map is its start
+    frame : MapFrame at the datum, or at the start if the datum is the default
+    located : see Start
+    begins_map : whether the start is located and is the origin of map
     t_ns : stamp of the last sample, or None
 
     """
@@ -76,8 +81,8 @@ class RunningNavigation:
         """
         Take an ImuSample; return the Solved.
 
-        gap_ns: the longest step that is no gap; a longer one is bridged.  Raises ValueError where
-        the solution runs away.
+        gap_ns: longest step that does not count as a gap, ns; a longer one is bridged. Raises
+        ValueError if the solution diverges.
         """
         (t_ns, omega, f, tag), b = sample, self._bias
         omega = omega[0] - b[0], omega[1] - b[1], omega[2] - b[2]
@@ -86,8 +91,8 @@ class RunningNavigation:
             navigator.bridge_next(self._step_ns)
         solution = navigator.step(t_ns, omega, f, self._heights.at(t_ns))
         if not first and (runs_away(solution) or not all(map(math.isfinite, solution[4]))):
-            raise ValueError(f'the solution runs away at {seconds(t_ns)} and ends there: the '
-                             'initial values or the units of the IMU cannot be right')
+            raise ValueError(f'the solution runs away at {seconds(t_ns)} and is stopped: check '
+                             'the initial values and the units of the IMU')
         self._before = self._navigator, self.t_ns
         self._navigator, self.t_ns = navigator, t_ns
         if first:
@@ -98,7 +103,7 @@ class RunningNavigation:
         return Solved(t_ns, solution, omega, tag, self._covariance.shown)
 
     def undo(self):
-        """Go back to before the last sample; return whether that was possible."""
+        """Undo the last sample; return whether that was possible."""
         if self._before is None or self._before[1] is None:
             return False
         self._navigator, self.t_ns = self._before

@@ -6,14 +6,14 @@ import numpy as np
 
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 
-# Steps that are looked at for the typical one.
+# Number of steps from which the typical one is found.
 MOST_STEPS = 1000
-# So many samples in a row that are older than the newest one: the clock has jumped back.
+# Number of consecutive samples older than the newest one after which the clock has jumped back.
 JUMP = 10
 
 
 class ImuSample(NamedTuple):
-    """A sample: stamp, ns; rate, rad/s, and specific force, m/s^2, in b; what came with it."""
+    """A sample: stamp, ns; rate, rad/s, and specific force, m/s^2, in b; tag of the caller."""
 
     t_ns: int
     omega: tuple
@@ -30,9 +30,9 @@ def recorded(samples):
 
 class TypicalStep:
     """
-    The median step of the stamps, of the first MOST_STEPS of them.
+    The median of the first MOST_STEPS steps of the stamps.
 
-    known: whether there are enough of them.
+    ``known`` tells whether there are enough steps.
     """
 
     FEWEST = 10
@@ -48,7 +48,7 @@ class TypicalStep:
 
     @property
     def known(self):
-        """Return whether there are steps enough."""
+        """Return whether there are enough steps."""
         return len(self._steps) >= self.FEWEST
 
     @property

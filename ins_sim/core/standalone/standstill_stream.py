@@ -1,4 +1,4 @@
-"""The search for a standstill in samples that come one by one, as in a recording of all."""
+"""Search for a standstill in samples that arrive one by one, as in a complete recording."""
 
 import numpy as np
 
@@ -6,26 +6,26 @@ from ins_sim.core.postprocessing.standstill import (
     standstill_of, StandstillSearch, together_at, window_length_ns, WindowMoments)
 from .samples import recorded
 
-# After so many windows without a standstill it is said what is in the way.
+# Number of windows without a standstill after which the obstacle is reported.
 SAY_EVERY = 30
 
 
 class StandstillStream:
     """
-    Finds the first standstill; only the samples of the interval under way are kept.
+    Finds the first standstill; keeps only the samples of the present interval.
 
     Parameters
     ----------
     limits : AlignmentSettings
     step : TypicalStep of the samples
     first_ns : stamp of the first sample of the record, from which the windows are counted
-    check : function of the mean specific force (3,) of an interval that is just long enough, which
-        raises ValueError, one sentence, where it is none of a vehicle at rest
+    check : function of the mean specific force (3,) of an interval that has just become long
+        enough; it raises ValueError if a vehicle at rest cannot have that force
 
     Attributes
     ----------
     samples : the ImuSamples that are kept
-    notes : sentences on what was in the way; the owner empties it
+    notes : sentences on obstacles; the owner removes them
 
     """
 
@@ -49,7 +49,7 @@ class StandstillStream:
         return self._put(sample)
 
     def pop(self):
-        """Forget the last sample, which another one replaces; return whether that was possible."""
+        """Remove the last sample, because another one replaces it; return whether it worked."""
         if self._count < 2:
             return False
         self.samples.pop()
@@ -76,7 +76,7 @@ class StandstillStream:
         return found
 
     def _close(self):
-        """End the window under way."""
+        """End the present window; return the Standstill that it completes, or None."""
         samples, step_ns = self.samples, self._step.median_ns
         first, self._count = len(samples) - self._count, 0
         moments = WindowMoments(recorded(samples[first:]), step_ns, self._length_ns)
@@ -92,7 +92,7 @@ class StandstillStream:
         if len(self._search.run) == self._search.needed:
             self._look()
         if under_way and self._search.moved:
-            self.notes.append(f'alignment begins anew: {self._search.moved}')
+            self.notes.append(f'alignment starts again: {self._search.moved}')
             self._search.moved = ''
         elif self._windows % SAY_EVERY == 0 and not self._search.run:
             self.notes.append(f'alignment: {self._search.describe()}; expected a vehicle at rest, '
@@ -101,15 +101,15 @@ class StandstillStream:
         return None
 
     def _look(self):
-        """Begin anew where the force of the interval is none of a vehicle at rest."""
+        """Start the search again if a vehicle at rest cannot have the force of the interval."""
         try:
             self._check(np.mean([w.force for w in self._search.run], axis=0))
         except ValueError as error:
-            self.notes.append(f'alignment: {error}; nothing is aligned, it begins anew')
+            self.notes.append(f'alignment: {error}; the alignment starts again')
             self._search.end()
 
     def _forget_before(self):
-        """Forget the samples before the interval under way."""
+        """Forget the samples before the present interval."""
         samples = self.samples
         kept = self._search.run[0].first if self._search.run else self._base + len(samples)
         del samples[:kept - self._base]

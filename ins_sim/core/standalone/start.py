@@ -1,4 +1,4 @@
-"""The state at which a strapdown without truth begins, and what is known of it."""
+"""The state at which a strapdown without truth starts, and its uncertainty."""
 
 import math
 from typing import NamedTuple
@@ -13,9 +13,9 @@ from ins_sim.core.postprocessing.gravity_check import check_gravity
 from ins_sim.core.postprocessing.reference import LONGEST_STEP_S
 from ins_sim.core.simulation.free_covariance import StartSigmas
 
-# Samples that a start on the move keeps for a fix that comes late, s.
+# Time for which a start on the move keeps samples for a late fix, s.
 KEPT_S = 10.0
-# What the mean specific force of the first readings may differ from gravity by, on the move.
+# On the move, largest difference of the mean specific force of the first readings from gravity.
 MOST_OFF_M_S2 = 6.0
 
 
@@ -23,9 +23,14 @@ class Start(NamedTuple):
     """
     The start of a navigation.
 
-    samples: ImuSamples from the first one on; state: lat, lon, height, v_n, q_nb at the first;
-    bias: (3,) rad/s that is taken off the gyros, or None; sigmas: StartSigmas; located: whether
-    position and heading are known, so that odom has a place in map; infos, warnings: sentences.
+    Attributes
+    ----------
+    samples : ImuSamples since the first one
+    state : lat (rad), lon (rad), height (m), v_n (m/s), q_nb at the first sample
+    bias : (3,) gyro bias to subtract, rad/s, or None
+    sigmas : StartSigmas
+    located : whether position and heading are known, so that odom can be placed on the map
+    infos, warnings : sentences for the log
     """
 
     samples: list
@@ -38,25 +43,25 @@ class Start(NamedTuple):
 
 
 def given_attitude(initial):
-    """Return q_nb of roll, pitch and heading of the settings."""
+    """Return q_nb from roll, pitch and heading of the settings."""
     return tuple(from_compass(*(math.radians(a) for a in (
         initial.roll_deg, initial.pitch_deg, initial.heading_deg)))[0].tolist())
 
 
 def given_place(initial):
-    """Return latitude, longitude, rad, and height, m, of the settings."""
+    """Return latitude (rad), longitude (rad) and height (m) of the settings."""
     return (math.radians(initial.latitude_deg), math.radians(initial.longitude_deg),
             initial.height_m)
 
 
 def attitude_text(q_nb):
-    """Return roll, pitch and heading, deg, and the sentence on them."""
+    """Return roll, pitch and heading, deg, and a text with them."""
     roll, pitch, heading = (math.degrees(float(a)) for a in to_compass(np.array(q_nb)))
     return roll, pitch, f'roll {roll:.3f}, pitch {pitch:.3f}, heading {heading:.3f} deg'
 
 
 def given_sigmas(initial, position=None, azimuth=None):
-    """Return the StartSigmas of the settings, some replaced."""
+    """Return the StartSigmas of the settings, with position (m) and azimuth (rad) replaced."""
     tilt = 1e-3 * initial.tilt_sigma_mrad
     return StartSigmas(initial.position_sigma_m or position or 0.0, initial.velocity_sigma_m_s,
                        tilt, 1e-3 * initial.azimuth_sigma_mrad if azimuth is None else azimuth)
@@ -64,10 +69,16 @@ def given_sigmas(initial, position=None, azimuth=None):
 
 class GivenStart:
     """
-    Begins at the first sample, or with the position of the fixes at the first that they cover.
+    Starts at the first sample; with the position of fixes, at the first sample that they cover.
 
-    settings: StrapdownSettings; fixes: FixTrack, or None where the position is given.  notes,
-    turn: as of AlignmentStart.
+    Parameters
+    ----------
+    settings : StrapdownSettings
+    fixes : FixTrack, or None if the position is given
+
+    Attributes
+    ----------
+    notes, turn : see AlignmentStart
     """
 
     state = 'waiting for fixes'
@@ -78,15 +89,15 @@ class GivenStart:
         self._samples, self.notes, self._weighed = [], [], False
 
     def push(self, sample):
-        """Take a sample."""
+        """Take an ImuSample."""
         self._samples.append(sample)
 
     def pop(self):
-        """Forget the last sample, which another one replaces."""
+        """Remove the last sample, because another one replaces it; return whether it worked."""
         return bool(self._samples) and bool(self._samples.pop())
 
     def decide(self):
-        """Return the Start, or None as long as there is none."""
+        """Return the Start, or None if it cannot be decided yet."""
         initial, place, sigma = self._initial, None, None
         if not self._weighs():
             return None
@@ -105,21 +116,21 @@ class GivenStart:
                      [])
 
     def _weighs(self):
-        """Return whether the first readings have a force that a vehicle can have; say so."""
+        """Return whether the force of the first readings is plausible; report if it is not."""
         if self._weighed or not self._samples:
             return self._weighed
         force = np.array([s.f for s in self._samples]).mean(axis=0)
         try:
             check_gravity(force, MOST_OFF_M_S2)
         except ValueError as error:
-            self.notes.append(f'start: {error}; nothing is begun')
+            self.notes.append(f'start: {error}; navigation does not start')
             self._samples.clear()
         else:
             self._weighed = True
         return self._weighed
 
     def _covered(self):
-        """Return the place at the first sample that has one, and forget those before it."""
+        """Return the position at the first sample that has one; forget those before it."""
         samples, fixes = self._samples, self._fixes
         while samples and fixes.covers(samples[0].t_ns):
             place = fixes.place(samples[0].t_ns)
@@ -133,10 +144,10 @@ class GivenStart:
 
 class CourseStart(GivenStart):
     """
-    Begins on the move, with position, course and velocity of the fixes and a given roll and pitch.
+    Starts on the move: position, course and velocity from fixes, roll and pitch as given.
 
-    Two fixes alignment.course_distance_m apart, within LONGEST_STEP_S, give the course, if the
-    vehicle goes forwards; the last two the velocity.
+    Two fixes at least alignment.course_distance_m apart, within LONGEST_STEP_S, give the course;
+    the vehicle must move forwards. The last two fixes give the velocity.
     """
 
     def __init__(self, settings, fixes):
@@ -145,12 +156,12 @@ class CourseStart(GivenStart):
 
     @property
     def state(self):
-        """Return what is waited for."""
+        """What the start is waiting for."""
         return (f'waiting for fixes {self._distance_m:g} m apart within {LONGEST_STEP_S:g} s '
                 '(alignment.course_distance_m)')
 
     def decide(self):
-        """Return the Start, or None as long as there is none."""
+        """Return the Start, or None if it cannot be decided yet."""
         samples, fixes = self._samples, self._fixes.fixes
         if not self._weighs():
             return None

@@ -1,18 +1,18 @@
-"""The height towards which a live vertical channel without truth is damped."""
+"""The height to which the vertical channel is damped in live navigation without truth."""
 
 from collections import deque
 
 from ins_sim.core.earth.atmosphere import pressure_height
 
-# Heights that wait for the readings of their time.
+# Number of heights kept until the readings of their time arrive.
 MOST = 10_000
 
 
 class VerticalReference:
     """
-    The last height of a stamp up to that of a reading, whichever of both came first.
+    The last height whose stamp is not later than that of a reading; either may arrive first.
 
-    Heights of a barometer are shifted so that the first one is that of the start.
+    Heights of a barometer are shifted so that the first one equals the height of the start.
     """
 
     def __init__(self, by_pressure):

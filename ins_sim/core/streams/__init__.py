@@ -1,5 +1,5 @@
 """
-Live streams of samples: their faults, matching by stamp, restarts, and truth as a motion.
+Live streams of samples: faults, matching by time stamp, restarts, and motion from streamed truth.
 
-A stage raises ``faults.StreamFault`` for a sample that it refuses.
+A stage raises ``faults.StreamFault`` for a sample that it cannot use.
 """

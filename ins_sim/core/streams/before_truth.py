@@ -1,30 +1,31 @@
-"""The motion before the first sample of a stream of truth, for channels that read the past."""
+"""The motion before the first sample of streamed truth, for channels that need the past."""
 
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.rotation_vectors import exponentials
 
-# A delay of more than this part of the step of the truth sees how the motion changes. Below it
-# the rate held errs by half the delay times its change, 5 % of what it changes in a step.
+# With a delay above this fraction of the truth step, the change of the motion is extrapolated.
+# Below it the first value is held, with an error of half the delay times the rate of change: 5 %
+# of the change in one step.
 SHORT = 0.1
-# Farther back than this from the first sample the change is no longer believed, s.
+# The change is not extrapolated further back than this from the first sample, s.
 LINE_S = 0.05
 
 
 class BeforeTruth:
     """
-    The motion before the first sample: continued backwards, or standing still.
+    The motion before the first sample: extrapolated backwards, or at rest.
 
-    Rate and specific force go on for LINE_S along the straight line through the first two samples
-    and are constant before that, so that nothing has to be known of before and nothing is waited
-    for; delays of less than SHORT steps see them held.
+    Rate and specific force follow the straight line through the first two samples for LINE_S and
+    are constant before that. For delays below SHORT steps the first value is held. No knowledge
+    of the earlier motion is needed.
 
     Parameters
     ----------
     first : the first sample (t_ns, q_mb, omega_mb_b, FORCE_M, RATE, FORCE_B)
-    frozen : whether the motion stood still
-    delay_ns : the longest delay of a channel
+    frozen : whether the vehicle was at rest before
+    delay_ns : longest delay of a channel, ns
 
     """
 
@@ -33,7 +34,7 @@ class BeforeTruth:
         self._frozen, self._delay_ns, self._slopes = frozen, delay_ns, None
 
     def take_second(self, sample):
-        """Take the second sample, after which the history is asked for."""
+        """Take the second sample; needed before any value of the past is requested."""
         step_ns = sample[0] - self.first[0]
         if not self._frozen and self._delay_ns > SHORT * step_ns:
             per_s = 1e9 / step_ns
@@ -41,7 +42,7 @@ class BeforeTruth:
                                           for ends in zip(self.first[2:], sample[2:])))
 
     def attitude(self, t_ns):
-        """Return q_mb at an instant not later than the first sample."""
+        """Return q_mb at an instant that is not later than the first sample."""
         first_ns, q = self.first[:2]
         if self._frozen or t_ns == first_ns:
             return q
@@ -68,13 +69,13 @@ class BeforeTruth:
         return found
 
     def _turn(self, s):
-        """Return the rotation vector from the first sample to s seconds (negative) after it."""
+        """Return the rotation vector from the first sample to s seconds after it (s < 0), rad."""
         w = self.first[2]
         if self._slopes is None:
             return w[0] * s, w[1] * s, w[2] * s
         a, square = self._slopes[2], s * s
         half, twelfth = 0.5 * square, square * s / 12.0
-        # The rate w + a s turns by its integral and by the coning of its two parts.
+        # The rotation for the rate w + a s is its integral plus the coning of the two terms.
         c = quaternion.cross(w, a)
         return (w[0] * s + a[0] * half + c[0] * twelfth, w[1] * s + a[1] * half + c[1] * twelfth,
                 w[2] * s + a[2] * half + c[2] * twelfth)
@@ -85,7 +86,7 @@ class BeforeTruth:
                      for w, a in zip(self.first[2], self._slopes[2]))
 
     def value(self, t_ns, field):
-        """Return FORCE_M, RATE or FORCE_B at instants, floats or arrays, before the sample."""
+        """Return FORCE_M, RATE or FORCE_B at instants before the first sample; float or array."""
         value = self.first[field]
         if self._slopes is None:
             return value

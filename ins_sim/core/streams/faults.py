@@ -1,13 +1,13 @@
-"""Faults of a stream of samples, each described in one sentence."""
+"""Faults of a stream of samples; each has a message of one sentence."""
 
 import math
 
 from ins_sim.core.numerics.instants import seconds
 
-# How far an interval may be off the sampling period, as a fraction of it: jitter of the stamps,
-# but no lost sample.
+# Largest deviation of an interval from the sampling period, as a fraction of it: it allows for
+# jitter of the stamps but not for a lost sample.
 INTERVAL_TOLERANCE = 0.2
-# What a stage computes at once: of more sampling periods a step of the truth is a gap.
+# Largest step of the truth in sampling periods; it limits what a stage computes at once.
 MOST_PERIODS = 1000
 # Bounds of the square of the norm of a quaternion.
 UNIT_LOW, UNIT_HIGH = 0.998, 1.002
@@ -15,11 +15,14 @@ UNIT_LOW, UNIT_HIGH = 0.998, 1.002
 
 class StreamFault(ValueError):
     """
-    A sample that a stage refuses.
+    Raised for a sample that a stage cannot use.
 
-    restart: False when the sample was dropped and the stage is intact; True when the stage must
-    be reset before the sample may be given to it again.  index: the number of the sample in the
-    block that was given; readings: those that the samples before it have completed, or None.
+    Attributes
+    ----------
+    restart : False if the sample was dropped and the stage is unaffected; True if the stage must
+        be reset before it can take the sample again
+    index : number of the sample in the block in which it came
+    readings : readings completed by the samples before it, or None
     """
 
     index, readings = 0, None
@@ -29,19 +32,19 @@ class StreamFault(ValueError):
         self.restart = restart
 
     def __reduce__(self):
-        """Let it cross from one process to another."""
+        """Support pickling, so that the fault can be passed to another process."""
         return type(self), (str(self), self.restart)
 
 
 def half_turn_sentence(name, t_ns, rate, interval_s):
-    """Return the sentence on a rate, rad/s, at which an interval of the IMU turns too far."""
+    """Return the message for a rate (rad/s) at which an IMU interval turns half a turn or more."""
     return (f'{name} at {seconds(t_ns)} turns at {rate:.4g} rad/s, {rate * interval_s:.3g} rad in '
             f'an interval of the IMU; expected less than half a turn, {math.pi:.3g} rad: raise '
             f'rate_hz of imu_sensor above {rate / math.pi:.4g} Hz, or set output integrated')
 
 
 def check_finite(name, t_ns, *vectors):
-    """Raise StreamFault (sample dropped) if a vector of floats holds a NaN or an infinity."""
+    """Raise StreamFault (sample dropped) if a vector of floats contains NaN or infinity."""
     for vector in vectors:
         if not math.isfinite(sum(vector)):
             raise StreamFault(f'{name} at {seconds(t_ns)} holds {vector}; expected finite '
@@ -58,12 +61,12 @@ def check_unit(name, t_ns, q):
 
 
 def is_regular(step_ns, expected_ns):
-    """Return whether steps (integers or an array of them) are within INTERVAL_TOLERANCE."""
+    """Return whether steps (an integer or an array) equal expected_ns within the tolerance."""
     return abs(step_ns - expected_ns) <= INTERVAL_TOLERANCE * expected_ns
 
 
 def check_later(name, t_ns, last_ns):
-    """Raise StreamFault unless t_ns is after last_ns; a repeated stamp calls for no restart."""
+    """Raise StreamFault unless t_ns is after last_ns; a repeated stamp needs no restart."""
     if t_ns == last_ns:
         raise StreamFault(f'{name} repeats the stamp {seconds(t_ns)}; expected a later one; the '
                           'sample was dropped', restart=False)
@@ -76,7 +79,14 @@ def check_interval(name, t_ns, last_ns, expected_ns):
     """
     Raise StreamFault unless t_ns follows last_ns by expected_ns within INTERVAL_TOLERANCE.
 
-    A repeated stamp is dropped; a backwards stamp, a gap and another rate call for a restart.
+    A sample with a repeated stamp is dropped; a backwards stamp, a gap or another rate needs a
+    restart.
+
+    Parameters
+    ----------
+    name : name of the stream, for the message
+    t_ns, last_ns : stamps of this sample and of the one before, ns
+    expected_ns : expected step, ns
     """
     step = t_ns - last_ns
     if is_regular(step, expected_ns):
@@ -90,7 +100,7 @@ def check_interval(name, t_ns, last_ns, expected_ns):
 
 
 def check_periods(t_ns, last_ns, shortest_ns, longest_ns):
-    """Raise StreamFault (restart) unless a step of the truth is one that rate_hz may have."""
+    """Raise StreamFault (restart) if a step of the truth is outside the limits for rate_hz."""
     if not shortest_ns <= t_ns - last_ns <= longest_ns:
         raise StreamFault(f'truth steps from {seconds(last_ns)} to {seconds(t_ns)}; expected '
                           f'{shortest_ns * 1e-9:.9g} to {longest_ns * 1e-9:.9g} s, {MOST_PERIODS} '

@@ -1,18 +1,22 @@
-"""The instants of readings, counted from the first sample, and those of the samples behind it."""
+"""Check that the instants of readings agree with the stamps of the stream behind them."""
 
 from ins_sim.core.numerics.instants import seconds
 from .faults import StreamFault
 
-# so many equal steps in a row are no jitter
+# Number of equal steps in a row after which a stream counts as steady.
 STEADY = 10
 
 
 class SampleGrid:
     """
-    Sees that a steady stream goes on between the instants of the readings it has begun.
+    Detects a steady stream whose stamps lie between the instants of the readings.
 
-    That is so where the first sample was not of this stream: a stray one.  dt_ns: period of the
-    readings.
+    The readings begin at the first sample; if that was a stray from another stream, all their
+    instants are wrong.
+
+    Parameters
+    ----------
+    dt_ns : period of the readings, ns
     """
 
     def __init__(self, dt_ns):
@@ -21,7 +25,7 @@ class SampleGrid:
         self._steady = 0
 
     def check(self, t_ns, reading_ns):
-        """Raise StreamFault (restart) for such a sample; reading_ns: of any reading, or None."""
+        """Check a stamp against the instant of any reading (or None); may raise StreamFault."""
         step_ns = None if self._last_ns is None else t_ns - self._last_ns
         self._last_ns = t_ns
         if step_ns != self._step_ns:
@@ -34,6 +38,6 @@ class SampleGrid:
         shorter, longer = sorted((step_ns, self._dt_ns))
         off_ns = (t_ns - reading_ns) % shorter if shorter > 0 else 0
         if off_ns and longer % shorter == 0:
-            raise StreamFault(f'truth at {seconds(t_ns)} goes on {off_ns * 1e-9:.9g} s beside the '
-                              'instants it began with: its first sample was not of this stream',
-                              restart=True)
+            raise StreamFault(f'truth at {seconds(t_ns)} is {off_ns * 1e-9:.9g} s off the '
+                              'instants counted from its first sample, which came from another '
+                              'stream; expected one stream', restart=True)

@@ -1,4 +1,4 @@
-"""Two live streams, IMU and truth, matched by their stamps."""
+"""Matching of two live streams, IMU and truth, by their stamps."""
 
 from collections import deque
 
@@ -7,25 +7,31 @@ from ins_sim.core.numerics.instants import period_ns, seconds
 from .faults import check_finite, check_interval, check_unit, StreamFault
 from .restarts import LastStamps, RestartDetector
 
-# Samples of truth that are kept for the readings to come: 100 s at 100 Hz.
+# Number of truth samples kept for later readings: 100 s at 100 Hz.
 TRUTH_LENGTH = 10_000
 
 
 class MatchedStreams:
     """
-    What a navigator does with live readings of the IMU and the truth of the same stamps.
+    Base class of navigators that take live IMU readings and truth with the same stamps.
 
     A subclass has begin(), which forgets the solution, ``navigates``, and advance(t_ns, omega, f,
-    truth) -> outputs, truth being (lat, lon, height, v_n, q_nb).  settings: with datum, earth
-    and rate_hz; truth_length: of how many samples the truth is kept that waits for the IMU.
+    truth) -> outputs, where truth is (lat, lon, height, v_n, q_nb).
 
-    processed_ns is the motion time of the last IMU sample that was used, or None.
+    The push methods return a list of outputs and raise StreamFault. The first IMU sample may be
+    repeated; it is answered again. The result does not depend on which stream is ahead. If one
+    stream jumps back, samples of the other from before the jump are not matched.
 
-    The push methods return a list of outputs and raise StreamFault; the first IMU sample may be
-    repeated and is answered again.  Nothing depends on which stream is ahead.  A gap behind
-    samples that still wait is no fault of the push, for its turn comes after theirs: ``faults``
-    collects these, and the owner empties it.  When one stream jumps back the samples that the
-    other brings of the time before are not matched.
+    Parameters
+    ----------
+    settings : settings with datum, earth and rate_hz
+    truth_length : number of truth samples that are kept until the IMU sample arrives
+
+    Attributes
+    ----------
+    processed_ns : motion time of the last IMU sample that was used, or None
+    faults : faults found after samples that were still waiting, such as a gap, because they cannot
+        be raised when they are pushed; the owner removes them
     """
 
     def __init__(self, settings, truth_length=TRUTH_LENGTH):
@@ -39,19 +45,19 @@ class MatchedStreams:
         self.reset()
 
     def reset(self):
-        """Forget the solution; the next IMU sample starts anew.  Truth is no state: it stays."""
+        """Forget the solution: the next IMU sample starts a new one. Stored truth is kept."""
         self._imu, self._gaps = deque(), {}
         self._last_ns = None
         self._start_anew()
 
     def rejoin(self):
-        """Start anew as if both streams began now: one of them has not brought what it should."""
+        """Forget everything, as if both streams began now, because one of them stays silent."""
         self._forget_streams()
         self._truth.clear()
         self.reset()
 
     def _forget_streams(self):
-        # the IMU is the first of the two
+        # For the detector the IMU is the first stream and the truth the second.
         self._runs, self._truth_ns = RestartDetector(), None
         self._imu_stamps, self._truth_stamps = LastStamps(), LastStamps()
         self._truth_step_ns = None
@@ -72,15 +78,23 @@ class MatchedStreams:
         return bool(self._imu)
 
     def held(self, t_ns):
-        """Return whether an IMU sample that has its truth must wait for something else."""
+        """Return whether an IMU sample must wait for something besides its truth."""
         return False
 
     def go_on(self):
-        """Wait no longer for anything but the truth: too many samples wait; return outputs."""
+        """Stop waiting for anything but the truth, as too many samples wait; return outputs."""
         return []
 
     def push_imu(self, t_ns, omega, f):
-        """Take the IMU sample of stamp t_ns (motion time)."""
+        """
+        Take an IMU sample and return the outputs that become possible.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega : mean angular rate, rad/s
+        f : mean specific force, m/s^2
+        """
         check_finite('imu', t_ns, omega, f)
         if self._repeat is not None and t_ns == self._repeat[0]:
             return self._repeat[1]
@@ -93,9 +107,9 @@ class MatchedStreams:
         if self._imu_stamps.take(t_ns):
             self._runs.first_returns()
         if len(self._imu) >= self._truth.maxlen:
-            raise StreamFault(f'{len(self._imu)} readings of the imu wait for what belongs to '
-                              f'them, from {seconds(self._imu[0][0])} on; expected less than '
-                              'topics.depth', restart=True)
+            raise StreamFault(f'{len(self._imu)} imu readings wait for their truth or fixes, from '
+                              f'{seconds(self._imu[0][0])} on; expected less than topics.depth',
+                              restart=True)
         self._imu.append((t_ns, omega, f))
         return self.match()
 
@@ -115,8 +129,14 @@ class MatchedStreams:
         """
         Take the truth of stamp t_ns (motion time).
 
-        A repeated stamp is passed over; a stamp that jumps back begins a new history, and it is
-        the IMU, which jumps back too, that is reported.
+        A repeated stamp is ignored. A stamp that jumps back begins a new run; the fault is
+        reported for the IMU, which jumps back too.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        r_m, q_mb : pose in the map frame; position in m
+        v_b : velocity in body axes, m/s
         """
         check_finite('truth', t_ns, r_m, q_mb, v_b)
         check_unit('truth', t_ns, q_mb)
@@ -133,7 +153,7 @@ class MatchedStreams:
             self._joined_ns = t_ns
         outputs = []
         if len(self._truth) == self._truth.maxlen and self._imu:
-            # the oldest truth is about to be lost, and a reading may need it
+            # The oldest truth sample is about to be dropped, and a reading may need it.
             outputs = self.go_on()
         self._truth.append((t_ns, r_m, q_mb, v_b))
         return outputs + self.match()
@@ -150,7 +170,7 @@ class MatchedStreams:
             self._runs.second_jumps(t_ns, self._last_ns)
 
     def match(self):
-        """Use what can be used; return the outputs."""
+        """Use the samples that have their counterpart; return the outputs."""
         outputs = []
         imu, truth = self._imu, self._truth
         while imu and truth and self._runs.same_run:
@@ -163,7 +183,7 @@ class MatchedStreams:
                 self._end(self._gaps.pop(t_ns))
             if truth[0][0] > t_ns:
                 imu.popleft()
-                # else the streams were joined at different times: pass over what came before
+                # Otherwise the streams began at different times: skip what came before.
                 if self.navigates or truth[0][0] != self._joined_ns:
                     self._end(StreamFault(self._why_alone(t_ns, truth[0][0]), restart=True))
                 continue
@@ -178,11 +198,11 @@ class MatchedStreams:
                    f'{seconds(truth_ns)}')
         step_ns = self._truth_step_ns
         if step_ns and (truth_ns - t_ns) % step_ns == 0:
-            return (f'{nearest}; that sample of the truth was lost, as where a node cannot keep '
-                    'up and a queue runs over: expected a lower rate_hz or real_time_factor, or '
+            return (f'{nearest}; that truth sample was lost, probably because a node cannot keep '
+                    'up and a queue overflowed: expected a lower rate_hz or real_time_factor, or '
                     'more topics.depth')
         return (f'{nearest}; expected a truth rate that is a multiple of the IMU rate, both from '
-                'the same start: rate_hz must go together in all nodes (imu_time: nominal for '
+                'the same start: rate_hz must be consistent in all nodes (imu_time: nominal for '
                 'stamps with jitter or latency)')
 
     def _end(self, fault):

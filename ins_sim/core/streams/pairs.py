@@ -1,15 +1,18 @@
-"""Two live streams of values, paired where their stamps are equal."""
+"""Pairing of two live streams of values by equal stamps."""
 
 import math
 
 
 class StampPairs:
     """
-    Pairs the values of a first and a second stream that have the same instant.
+    Pairs values of a first and a second stream that have the same stamp.
 
-    depth: of how many values of a stream are kept, the newest ones.  The streams may have
-    different rates, and either may be ahead.  A stream that jumps back begins anew, and forgets
-    what it has brought.
+    The streams may have different rates, and either may be ahead. If a stream jumps back, its
+    earlier values are forgotten.
+
+    Parameters
+    ----------
+    depth : number of newest values kept of each stream
     """
 
     def __init__(self, depth):
@@ -22,7 +25,7 @@ class StampPairs:
 
     @property
     def waiting(self):
-        """Return whether a value of the first stream may still find that of the second."""
+        """Return whether a value of the first stream may still get its counterpart."""
         return bool(self._first) and max(self._first) > max(self._second, default=-math.inf)
 
     def push_first(self, t_ns, value):
@@ -30,7 +33,7 @@ class StampPairs:
         return self._push(self._first, self._second, t_ns, value)
 
     def push_second(self, t_ns, value):
-        """Take a value of the second stream; return as ``push_first``."""
+        """Take a value of the second stream; return the same as ``push_first``."""
         return [(t, first, second) for t, second, first in self._push(
             self._second, self._first, t_ns, value)]
 
@@ -39,7 +42,7 @@ class StampPairs:
             mine.clear()
         mine[t_ns] = value
         for old in [t for t in theirs if t < t_ns]:
-            # It has found its pair, or never will.
+            # An older value already has its counterpart, or will not get one.
             del theirs[old]
         while len(mine) > self._depth:
             del mine[next(iter(mine))]

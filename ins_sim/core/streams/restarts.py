@@ -1,30 +1,30 @@
-"""Two streams of the same time that both jump back, one before the other; and strays."""
+"""Restarts of two streams of the same run: jumps back in time, and stray samples."""
 
 
 class LastStamps:
     """
-    The last two stamps of a stream, by which a stray sample is told from a jump.
+    The last two stamps of a stream, which distinguish a stray sample from a jump.
 
-    One stamp that is ahead of its time, or of the past, is a stray if the next one goes on where
-    the stream was before it: nobody need follow it.
+    A single stamp from the future or the past is a stray if the next stamp continues where the
+    stream was before. A stray must not make the other stream wait for a restart.
     """
 
     def __init__(self):
         self._before_ns = self._newest_ns = None
 
     def was_ahead(self, t_ns):
-        """Return whether the newest one was a stray ahead: t_ns lies between the last two."""
+        """Return whether the newest stamp was a stray ahead: t_ns lies between the last two."""
         return self._before_ns is not None and self._before_ns < t_ns < self._newest_ns
 
     def was_of_the_past(self, t_ns):
-        """Return whether the newest one was a stray of the past: t_ns is behind the other."""
+        """Return whether the newest stamp was a stray of the past: t_ns continues the other."""
         return self._before_ns is not None and self._newest_ns < self._before_ns < t_ns
 
     def take(self, t_ns):
-        """Remember a stamp; return whether the newest one was a stray of the past."""
+        """Register a stamp; return whether the one before was a stray of the past."""
         newest_ns, before_ns = self._newest_ns, self._before_ns
         if before_ns is not None and before_ns < newest_ns < t_ns:
-            # as almost always
+            # Fast path for rising stamps, the usual case.
             self._before_ns, self._newest_ns = newest_ns, t_ns
             return False
         if t_ns == newest_ns:
@@ -38,15 +38,15 @@ class LastStamps:
 
 class RestartDetector:
     """
-    Which of two streams has begun a new run that the other has still to begin.
+    Tracks which of two streams has begun a new run that the other has not begun yet.
 
-    What the other stream brings until then belongs to the run before.
+    Samples of the other stream belong to the earlier run until it jumps back too.
     """
 
     def __init__(self):
-        # How many times the first stream has jumped back more often than the second.
+        # Number of jumps of the first stream minus those of the second.
         self._lead = 0
-        # Whether the last jump of each has counted.
+        # Whether the last jump of each stream was counted.
         self._counted = [False, False]
 
     @property
@@ -60,22 +60,22 @@ class RestartDetector:
         return self._lead == 0
 
     def first_jumps(self, t_ns, second_ns):
-        """Take note that the first is back at t_ns; second_ns: where the second is, or None."""
-        # a second that has not passed t_ns need not come back to it
+        """Register a jump of the first stream back to t_ns; second_ns: the second's, or None."""
+        # A second stream that has not passed t_ns does not have to jump back.
         self._counted[0] = self._lead < 0 or second_ns is not None and second_ns > t_ns
         self._lead += self._counted[0]
 
     def second_jumps(self, t_ns, first_ns):
-        """Take note that the second is back at t_ns; first_ns: where the first is, or None."""
+        """Register a jump of the second stream back to t_ns; first_ns: the first's, or None."""
         self._counted[1] = self._lead > 0 or first_ns is not None and first_ns > t_ns
         self._lead -= self._counted[1]
 
     def first_returns(self):
-        """Take note that the last jump of the first was a stray sample."""
+        """Undo the last jump of the first stream, which was a stray sample."""
         self._lead -= self._counted[0]
         self._counted[0] = False
 
     def second_returns(self):
-        """Take note that the last jump of the second was a stray sample."""
+        """Undo the last jump of the second stream, which was a stray sample."""
         self._lead += self._counted[1]
         self._counted[1] = False

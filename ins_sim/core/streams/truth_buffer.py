@@ -1,5 +1,5 @@
 """
-Continuous motion from streamed truth, without looking ahead.
+Continuous motion from streamed truth, without the use of later samples.
 
 See docs/theory/streamed_truth.md.
 """
@@ -18,16 +18,16 @@ from .faults import (check_finite, check_interval, check_periods, check_unit,
                      UNIT_HIGH, UNIT_LOW)
 from .truth_pieces import pieces_of_samples, TruthBlock, TruthPieces
 
-# fields of a sample
+# Indices of the fields of a sample.
 FORCE_M, RATE, FORCE_B = 3, 4, 5
 TURN_LIMIT = 2.0
-# Below it, sums of components are finite without a doubt.
+# Sums of a few components below this bound cannot overflow.
 FINITE = 1e100
 ZERO = (0.0, 0.0, 0.0)
 
 
 def leading(true):
-    """Return how many of an array of booleans are true before the first that is not."""
+    """Return the number of leading true entries of an array of booleans."""
     return len(true) if np.all(true) else int(np.argmin(true))
 
 
@@ -38,13 +38,17 @@ def _square(vector):
 
 class TruthBuffer:
     """
-    Ring buffer of streamed truth that answers for any instant it covers.
+    Ring buffer of streamed truth that gives the motion at any instant it covers.
 
-    frame: MapFrame; reach_ns: how far behind the newest sample it must answer; before: function of
-    the first sample that returns its BeforeTruth; wanted: which of FORCE_M, RATE, FORCE_B it will
-    be asked for; dt_ns: the period of rate_hz, of which a step of the truth is at most
-    MOST_PERIODS, and at least as small a part; interval_ns: of the increments of attitude that it
-    will be asked for, which must be less than half a turn, or None.
+    Parameters
+    ----------
+    frame : MapFrame
+    reach_ns : how far behind the newest sample it must answer, ns
+    before : function of the first sample that returns its BeforeTruth
+    wanted : the fields that will be requested, of FORCE_M, RATE, FORCE_B
+    dt_ns : period of rate_hz, ns; steps of the truth may be MOST_PERIODS times longer or shorter
+    interval_ns : length of the attitude increments that will be requested, ns, which must turn
+        less than half a turn; or None
     """
 
     def __init__(self, frame, reach_ns, before, wanted, dt_ns, interval_ns=None):
@@ -66,15 +70,22 @@ class TruthBuffer:
 
     @property
     def count_is_one(self):
-        """Return whether only the first sample has come."""
+        """Return whether only the first sample has arrived."""
         return len(self._last) == 1
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
         Take a sample; raise StreamFault on NaN, repeated or backwards stamps, gaps and turns.
 
-        The step between the first two samples is the step expected of all; it is itself a number
-        of periods of rate_hz that can be answered at once.
+        The step between the first two samples is the step expected of all others; it must itself
+        be within the limits for rate_hz.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        q_mb : attitude relative to the map frame
+        omega_ib_b : angular rate in inertial space, rad/s
+        f_ib_b : specific force, m/s^2
         """
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         check_unit('truth', t_ns, q_mb)
@@ -115,17 +126,26 @@ class TruthBuffer:
             self._pieces.popleft()
 
     def _sample(self, t_ns, q_mb, omega_ib_b, f_ib_b):
-        """Return what is kept of a sample, or of many whose components are arrays."""
+        """Return the fields kept for a sample, or for many if components are arrays."""
         turn = quaternion.rotate_back(q_mb, self._frame.omega_ie_m)
         omega_mb_b = (omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2])
         return t_ns, q_mb, omega_mb_b, quaternion.rotate(q_mb, f_ib_b), omega_ib_b, f_ib_b
 
     def push_block(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take the first of many samples, up to one of which ``push`` may have something to say.
+        Take as many leading samples of a block as are certainly free of faults.
 
-        t_ns (n,) int64; the others tuples of arrays (n,).  Return how many were taken, and their
-        TruthBlock; none where fewer than three samples came before.
+        The sample after them must go to ``push``, which may raise a StreamFault for it.
+
+        Parameters
+        ----------
+        t_ns : (n,) int64 motion times, ns
+        q_mb, omega_ib_b, f_ib_b : as in ``push``, tuples of arrays (n,)
+
+        Returns
+        -------
+        count : number of samples taken; 0 if fewer than three samples came before
+        block : their TruthBlock, or None
         """
         if len(self._last) < 3:
             return 0, None
@@ -135,7 +155,7 @@ class TruthBuffer:
                         & (np.sqrt(_square(new[4])) * self._interval_s < math.pi))
         if not count:
             return 0, None
-        # The three last samples lead the new ones.
+        # The last three samples precede the new ones.
         known = tuple(self._last)[::-1]
         stamps = np.concatenate([[sample[0] for sample in known], t_ns[:count]])
         q, w = (tuple(np.concatenate([before, x[:count]])
@@ -149,7 +169,7 @@ class TruthBuffer:
         return count, block
 
     def _keep(self, pieces, new, count):
-        """Keep of new samples and their pieces what single pushes would have kept."""
+        """Store the same pieces and samples as single pushes would have stored."""
         newest_ns = int(pieces.end_ns[-1])
         first = int(np.searchsorted(pieces.end_ns, newest_ns - self._reach_ns))
         self._pieces = deque(pieces.tuples(first))
@@ -160,7 +180,7 @@ class TruthBuffer:
                                                      for column in new[1:])))
 
     def _sound(self, t_ns, q_mb, omega_ib_b, f_ib_b):
-        """Return the samples before the first that cannot be used, but for a turn too far."""
+        """Return the samples before the first unusable one; turns are checked elsewhere."""
         finite = leading(abs(np.array((*q_mb, *omega_ib_b, *f_ib_b))).max(axis=0) < FINITE)
         x, y, z, w = (part[:finite] for part in q_mb)
         n2 = x * x + y * y + z * z + w * w
@@ -189,7 +209,7 @@ class TruthBuffer:
         return quaternion.multiply(q, quaternion.exponential(r))
 
     def cubic(self, t_ns, field):
-        """Return FORCE_M (m/s^2 in m), RATE (omega_ib_b, rad/s) or FORCE_B (f_ib_b, m/s^2)."""
+        """Return a field at t_ns: FORCE_M or FORCE_B (m/s^2), or RATE (omega_ib_b, rad/s)."""
         if t_ns <= self._before.first[0]:
             return self._before.value(t_ns, field)
         piece = self._piece(t_ns)

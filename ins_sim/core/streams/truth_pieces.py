@@ -1,8 +1,8 @@
 """
 Blocks of streamed truth as arrays, for offline runs.
 
-What ``TruthBuffer`` computes sample by sample is computed for many samples at once, to the same
-bits: the piece of the curve between every two samples, and its value at many instants.
+The computations of ``TruthBuffer`` for many samples at once, with the same bits: the piece of the
+curve between each two samples, and its value at many instants.
 """
 
 from dataclasses import dataclass
@@ -18,11 +18,16 @@ from ins_sim.core.attitude.rotation_vectors import exponentials
 @dataclass(frozen=True)
 class TruthPieces:
     """
-    The pieces of a curve between consecutive samples of truth, in arrays of m.
+    The m pieces of a curve between consecutive truth samples, as arrays (m,).
 
-    start_ns, end_ns (m,); q: attitude q_mb at the start, four arrays; per_step: reciprocal of the
-    length, 1/ns; curve: ``hermite_coefficients``; cubics: for each field ``newton_differences``
-    at the end; times: stamps of the last three samples at the end.
+    Attributes
+    ----------
+    start_ns, end_ns : motion times, ns
+    q : attitude q_mb at the start, four arrays
+    per_step : reciprocal of the length, 1/ns
+    curve : ``hermite_coefficients`` of the attitude
+    cubics : for each field, ``newton_differences`` at the end
+    times : stamps of the last three samples at the end, ns
     """
 
     start_ns: np.ndarray
@@ -35,14 +40,14 @@ class TruthPieces:
 
     @classmethod
     def of_tuples(cls, pieces):
-        """Return the pieces that ``TruthBuffer`` keeps, a list of tuples."""
+        """Return the pieces from a list of tuples, the form in which ``TruthBuffer`` has them."""
         start_ns, end_ns, q, per_step, curve, cubics, times = zip(*pieces)
         columns = {field: _columns([cubic[field] for cubic in cubics]) for field in cubics[0]}
         return cls(np.array(start_ns), np.array(end_ns), _columns(q), np.array(per_step),
                    _columns(curve), columns, _columns(times))
 
     def tuples(self, first):
-        """Return the pieces from number first as ``TruthBuffer`` keeps them."""
+        """Return the pieces from index ``first`` as tuples, the form of ``TruthBuffer``."""
         return [(int(self.start_ns[k]), int(self.end_ns[k]), _row(self.q, k),
                  float(self.per_step[k]), _row(self.curve, k),
                  {field: list(_row(cubic, k)) for field, cubic in self.cubics.items()},
@@ -50,28 +55,32 @@ class TruthPieces:
                 for k in range(first, len(self.start_ns))]
 
     def behind(self, other):
-        """Return these pieces preceded by others."""
+        """Return another TruthPieces followed by this one."""
         return TruthPieces(*(_joined(getattr(other, name), getattr(self, name))
                              for name in self.__dataclass_fields__))
 
     def attitude(self, t_ns, piece):
-        """Return q_mb, four arrays, at instants t_ns in the pieces of those numbers."""
+        """Return q_mb, four arrays, at t_ns in the pieces with these indices."""
         s = (t_ns - self.start_ns[piece]) * self.per_step[piece]
         r = tuple(s * (a[piece] + s * (b[piece] + s * c[piece])) for a, b, c in zip(*self.curve))
         return quaternion.multiply(tuple(x[piece] for x in self.q), exponentials(r))
 
     def cubic(self, t_ns, piece, field):
-        """Return a field, three arrays, at instants t_ns in the pieces of those numbers."""
+        """Return a field, three arrays, at t_ns in the pieces with these indices."""
         differences = [[x[piece] for x in d] for d in self.cubics[field]]
         return newton_value(differences, *((t_ns - t[piece]) * 1e-9 for t in self.times))
 
 
 class TruthBlock:
     """
-    A block of new samples that answers for any instant, as ``TruthBuffer`` did when they came.
+    A block of new samples that gives the motion as ``TruthBuffer`` did when each sample came.
 
-    pieces: TruthPieces, of which those from number ``new`` end at the new samples; before:
-    BeforeTruth of the stream; reach_ns: as of the buffer.
+    Parameters
+    ----------
+    pieces : TruthPieces; those from index ``new`` on end at the new samples
+    new : index of the first new piece
+    before : BeforeTruth of the stream
+    reach_ns : see TruthBuffer
     """
 
     def __init__(self, pieces, new, before, reach_ns):
@@ -79,7 +88,7 @@ class TruthBlock:
         self._new, self._before, self._reach_ns = new, before, reach_ns
 
     def attitude(self, t_ns, newest):
-        """Return q_mb (n, 4) at instants (n,) asked when new sample newest was the last."""
+        """Return q_mb (n, 4) at t_ns (n,), with new sample ``newest`` (n,) as the last known."""
         q = np.stack(self.pieces.attitude(t_ns, self._piece(t_ns, newest)), axis=-1)
         first_ns, q_first = self._before.first[:2]
         q[t_ns == first_ns] = q_first
@@ -89,7 +98,7 @@ class TruthBlock:
         return q
 
     def cubic(self, t_ns, newest, field):
-        """Return a field, (3, n), at instants asked when new sample newest was the last."""
+        """Return a field (3, n) at t_ns (n,), with new sample ``newest`` (n,) as the last."""
         values = np.array(self.pieces.cubic(t_ns, self._piece(t_ns, newest), field))
         before = np.flatnonzero(t_ns <= self._before.first[0])
         if len(before):
@@ -99,7 +108,7 @@ class TruthBlock:
 
     def _piece(self, t_ns, newest):
         pieces, last = self.pieces, self._new + newest
-        # What the buffer had dropped by then is not asked.
+        # Pieces that the buffer had already dropped at that time are excluded.
         first = np.searchsorted(pieces.end_ns, pieces.end_ns[last] - self._reach_ns)
         found = np.searchsorted(pieces.start_ns, t_ns, side='right') - 1
         return np.minimum(np.maximum(found, first), last)
@@ -107,11 +116,14 @@ class TruthBlock:
 
 def pieces_of_samples(t_ns, q_mb, omega_mb_b, fields, differences):
     """
-    Return the TruthPieces that end at the samples from the fourth.
+    Return the TruthPieces that end at the samples from the fourth on.
 
-    t_ns (n + 3,), q_mb, omega_mb_b: of three samples that are known and n new ones, components
-    as arrays; fields: {field: values of the new samples, three arrays}; differences: {field:
-    ``newton_differences`` at the last known sample}.
+    Parameters
+    ----------
+    t_ns : (n + 3,) motion times of three known samples and n new ones, ns
+    q_mb, omega_mb_b : attitude and rate (rad/s) of the same samples, components as arrays
+    fields : {field: values of the new samples, three arrays}
+    differences : {field: ``newton_differences`` at the last known sample}
     """
     steps = t_ns[3:] - t_ns[2:-1]
     back = [1e9 / (t_ns[3:] - t_ns[k:-3 + k]) for k in (2, 1, 0)]
@@ -126,10 +138,10 @@ def pieces_of_samples(t_ns, q_mb, omega_mb_b, fields, differences):
 
 
 def _differences(last, values, back):
-    """Return ``newton_differences`` of consecutive samples: each order needs the one below."""
+    """Return ``newton_differences`` of consecutive samples; each order needs the one below it."""
     found = [values]
     for before, r in zip(last, back):
-        # those of the samples before: one known, then the ones just found
+        # Values of the preceding samples: the known one, then those just found.
         shifted = [np.concatenate([[a], x[:-1]]) for a, x in zip(before, found[-1])]
         found.append(newton_differences([shifted], found[-1], r, 0.0, 0.0)[1])
     return found

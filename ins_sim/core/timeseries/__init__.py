@@ -1,1 +1,1 @@
-"""Records of many instants: histories of truth, readings, states and errors, and fixes."""
+"""Records over many instants: histories of truth, readings, states and errors, and fixes."""

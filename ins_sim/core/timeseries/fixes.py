@@ -1,24 +1,30 @@
-"""What the aiding instruments say: one fix of the velocity meter, and one of GNSS."""
+"""Fixes of the aiding instruments: the velocity meter and GNSS."""
 
 from dataclasses import dataclass
 import math
 
 VALID = 'valid'
-# why GNSS has no fix
+# Status of a GNSS fix during an outage.
 OUTAGE = 'outage'
 
 
 @dataclass(frozen=True)
 class VelocityFix:
     """
-    The velocity over one window of the correlation velocity meter.
+    The velocity over one window of the correlation velocity meter (Ivanov 2015).
 
-    start_ns, end_ns: the window (start, end] in motion time; cycles: navigation cycles in it;
-    velocity: mean forward and left velocity relative to the ground in velocity_meter_link, m/s
-    (the paper's V_x1 and -V_z1); sigma: their standard deviations, m/s; tan_alpha: tangent of the
-    attack angle that was used; tau: delays tau12 and tau23 of the maxima, s; g: curvatures g12
-    and g23 of the fits, 1/s^2 (tau and g zero from the surrogate); status: VALID, or why the fix
-    is none, and then the velocity is NaN; arrival_ns: motion time at which it is there.
+    Attributes
+    ----------
+    start_ns, end_ns : the window (start, end] in motion time, ns
+    cycles : number of navigation cycles in it
+    velocity : mean forward and left velocity relative to the ground in velocity_meter_link, m/s
+        (V_x1 and -V_z1); NaN if invalid
+    sigma : their standard deviations, m/s
+    tan_alpha : tangent of the angle of attack that was used
+    tau : delays tau12 and tau23 of the maxima, s; zero in mode surrogate
+    g : curvatures g12 and g23 of the fits, 1/s^2; zero in mode surrogate
+    status : VALID, or the reason why the fix is invalid
+    arrival_ns : motion time at which the fix is available, ns
     """
 
     start_ns: int
@@ -34,7 +40,7 @@ class VelocityFix:
 
     @property
     def valid(self):
-        """Return whether there is a velocity."""
+        """Return whether the fix has a velocity."""
         return self.status == VALID
 
     @property
@@ -44,7 +50,7 @@ class VelocityFix:
 
     @property
     def up(self):
-        """Return V_y1 = -V_x1 tan(alpha), m/s: no measurement (equation 4), never to be fused."""
+        """Return V_y1 = -V_x1 tan(alpha), m/s; not a measurement (equation 4), never fuse it."""
         return -self.velocity[0] * self.tan_alpha
 
 
@@ -53,9 +59,14 @@ class GnssFix:
     """
     Position and velocity of the GNSS antenna.
 
-    t_ns: motion time of validity; lat, lon: rad; height: m; v_n: m/s, East, North, Up;
-    position_sigma m and velocity_sigma m/s by East, North, Up; status: VALID, or why the fix is
-    none, and then its numbers are NaN; arrival_ns: motion time at which it is there.
+    Attributes
+    ----------
+    t_ns : motion time of validity, ns
+    lat, lon, height : rad, rad, m; NaN if invalid, like the other numbers
+    v_n : velocity East, North, Up, m/s
+    position_sigma, velocity_sigma : standard deviations East, North, Up, m and m/s
+    status : VALID, or the reason why the fix is invalid
+    arrival_ns : motion time at which the fix is available, ns
     """
 
     t_ns: int
@@ -70,11 +81,11 @@ class GnssFix:
 
     @property
     def valid(self):
-        """Return whether there is a position."""
+        """Return whether the fix has a position."""
         return self.status == VALID
 
 
 def no_gnss_fix(t_ns, status, arrival_ns):
-    """Return the GnssFix that is none, for a reason."""
+    """Return an invalid GnssFix with its reason as status."""
     nothing = (math.nan,) * 3
     return GnssFix(t_ns, *nothing, nothing, nothing, nothing, status, arrival_ns)

@@ -1,15 +1,15 @@
-"""Records: frozen structs of arrays, one class for a sample, a history and an ensemble."""
+"""Records: frozen structures of arrays, used for a single sample, a history or an ensemble."""
 
 from dataclasses import dataclass, fields
 
 import numpy as np
 
-# Rows that are read, joined or compared at once where a history need not be in memory.
+# Number of rows read, joined or compared at once, for histories that need not fit in memory.
 BLOCK = 8192
 
 
 class History:
-    """Slicing and joining along the leading (time) axis; a field that is None stays None."""
+    """Slicing and joining along the leading (time) axis; fields that are None stay None."""
 
     def __len__(self):
         return len(self.t_ns)
@@ -18,7 +18,7 @@ class History:
         return type(self)(**{name: value[index] for name, value in self.arrays().items()})
 
     def arrays(self):
-        """Return {field: array} of the fields that are there."""
+        """Return {field: array} of the fields that are not None."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -35,7 +35,7 @@ class History:
 
 
 class PlacedHistory(History):
-    """A history with lat, lon, height, v_n and q_nb."""
+    """A history with the fields lat, lon, height, v_n and q_nb."""
 
     def one(self, k):
         """Return lat, lon, height, v_n, q_nb of one instant as floats and tuples of floats."""
@@ -46,10 +46,16 @@ class PlacedHistory(History):
 @dataclass(frozen=True, eq=False)
 class Truth(PlacedHistory):
     """
-    True motion at instants.
+    True motion at n instants.
 
-    t_ns (n,) int64; lat, lon (n,) rad; height (n,) m above the ellipsoid; v_n (n, 3) m/s;
-    q_nb (n, 4); omega_ib_b (n, 3) rad/s; f_ib_b (n, 3) m/s^2.
+    Attributes
+    ----------
+    t_ns : (n,) int64 motion times, ns
+    lat, lon, height : (n,) rad, rad, m above the ellipsoid
+    v_n : (n, 3) velocity East, North, Up, m/s
+    q_nb : (n, 4) attitude quaternion
+    omega_ib_b : (n, 3) angular rate of the body in inertial space, rad/s
+    f_ib_b : (n, 3) specific force, m/s^2
     """
 
     t_ns: np.ndarray
@@ -65,11 +71,14 @@ class Truth(PlacedHistory):
 @dataclass(frozen=True, eq=False)
 class ImuSamples(History):
     """
-    Mean reading over the interval (t - dt, t] that ends at the stamp.
+    Mean readings over the intervals (t - dt, t] that end at the stamps.
 
-    t_ns (n,) int64; omega (n, 3) rad/s and f (n, 3) m/s^2: the increments of the output mode
-    divided by dt (see ``core.sensors.imu.ideal``).  parity (n,) rad/s: of a pair of tuned gyros,
-    else None.
+    Attributes
+    ----------
+    t_ns : (n,) int64 stamps, ns
+    omega, f : (n, 3) increments of the output mode divided by dt, rad/s and m/s^2 (see
+        ``core.sensors.imu.ideal``)
+    parity : (n,) parity of a pair of tuned gyros, rad/s; otherwise None
     """
 
     t_ns: np.ndarray
@@ -87,7 +96,16 @@ class ImuSamples(History):
 
 @dataclass(frozen=True, eq=False)
 class NavStates(PlacedHistory):
-    """Solution: t_ns (n,); lat, lon (n,) rad; height (n,) m; v_n (n, 3) m/s; q_nb (n, 4)."""
+    """
+    A navigation solution at n instants.
+
+    Attributes
+    ----------
+    t_ns : (n,) int64, ns
+    lat, lon, height : (n,) rad, rad, m
+    v_n : (n, 3) velocity East, North, Up, m/s
+    q_nb : (n, 4) attitude quaternion
+    """
 
     t_ns: np.ndarray
     lat: np.ndarray
@@ -100,10 +118,14 @@ class NavStates(PlacedHistory):
 @dataclass(frozen=True, eq=False)
 class NavErrors(History):
     """
-    Solution less truth, resolved in n: t_ns (n,) and four (n, 3) arrays.
+    Errors of a solution (solution minus truth), resolved in n, at n instants.
 
-    attitude: rotation vector of the *inertial* attitude error, rad; velocity m/s; position m;
-    drift: least-squares slope of the accumulated attitude error since the start, rad/s.
+    Attributes
+    ----------
+    t_ns : (n,) int64, ns
+    attitude : (n, 3) rotation vector of the *inertial* attitude error, rad
+    velocity, position : (n, 3) m/s and m
+    drift : (n, 3) least-squares slope of the accumulated attitude error since the start, rad/s
     """
 
     t_ns: np.ndarray
@@ -116,12 +138,17 @@ class NavErrors(History):
 @dataclass(frozen=True, eq=False)
 class AidedErrors(History):
     """
-    Errors of an aided solution, solution less truth, resolved in n, and what the filter thinks.
+    Errors of an aided solution (solution minus truth), resolved in n, and the filter's estimates.
 
-    t_ns (n,); attitude: rotation vector, q_nb = exp(attitude) q_nb_true, rad; velocity m/s;
-    position m; the three sigmas: standard deviations by the filter, all NaN where it has none;
-    estimates: mounting mu (rad), kx, kz of the velocity meter, and their standard deviations,
-    NaN too where there is none.  Each (n, 3).
+    Attributes
+    ----------
+    t_ns : (n,) int64, ns
+    attitude : (n, 3) rotation vector, q_nb = exp(attitude) q_nb_true, rad
+    velocity, position : (n, 3) m/s and m
+    attitude_sigma, velocity_sigma, position_sigma : (n, 3) standard deviations by the filter; NaN
+        if it has none
+    estimates, estimates_sigma : (n, 3) mounting error mu (rad), kx and kz of the velocity meter,
+        and their standard deviations; NaN if not estimated
     """
 
     t_ns: np.ndarray
@@ -138,11 +165,14 @@ class AidedErrors(History):
 @dataclass(frozen=True, eq=False)
 class SteeredStates(History):
     """
-    How a guided motion is steered, at instants.
+    How a guided motion is steered, at n instants.
 
-    t_ns (n,) int64; z (n,) m, offset to the right of the track; v_z (n,) m/s, its rate; beta (n,)
-    rad, sideslip in the air, positive with the track to the right of the nose; command (n,) rad,
-    the commanded sideslip.
+    Attributes
+    ----------
+    t_ns : (n,) int64, ns
+    z, v_z : (n,) offset to the right of the track, m, and its rate, m/s
+    beta : (n,) sideslip in the air, positive if the track is to the right of the nose, rad
+    command : (n,) commanded sideslip, rad
     """
 
     t_ns: np.ndarray
@@ -155,11 +185,14 @@ class SteeredStates(History):
 @dataclass(frozen=True, eq=False)
 class SteeringEstimates(History):
     """
-    What an autopilot saw and commanded, at the control instants.
+    Inputs and commands of an autopilot at its control instants.
 
-    t_ns (n,) int64; z (n,) m and v_z (n,) m/s, estimated, zero without a solution; command (n,)
-    rad, the sideslip to be flown at the end of the next control period; steers (n,) bool: whether
-    the autopilot commanded it, or the vehicle flew straight.
+    Attributes
+    ----------
+    t_ns : (n,) int64, ns
+    z, v_z : (n,) estimated offset, m, and its rate, m/s; zero without a solution
+    command : (n,) sideslip to be reached at the end of the next control period, rad
+    steers : (n,) bool, whether the autopilot gave the command; otherwise the vehicle flew straight
     """
 
     t_ns: np.ndarray

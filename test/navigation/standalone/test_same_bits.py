@@ -1,4 +1,4 @@
-"""A live IMU gives the bits of ``ins_sim navigate`` over its recording."""
+"""A live IMU gives the bits of ``ins_sim navigate`` on its recording."""
 
 from dataclasses import replace
 import math
@@ -21,14 +21,14 @@ PLACE = {'initial.latitude_deg': 50.0, 'initial.longitude_deg': 8.0, 'initial.he
 
 
 def offline(imu, fixes, values):
-    """Return the NavigationResult over a record."""
+    """Return the NavigationResult for a record."""
     sources = Sources('record', imu, 'imu', reference_of(fixes) if fixes else None)
     return navigate(build(NavigateSettings, values), sources)
 
 
 @pytest.mark.parametrize('late_s', [0.0, 0.35])
 def test_a_coarse_imu_that_takes_the_course_of_its_fixes(late_s):
-    """The start waits for the course; what waited is navigated then, from the standstill on."""
+    """A coarse IMU waits for the course of fixes, then navigates from the standstill on."""
     imu, fixes = vehicle()
     said = play(stage_of(), imu, fixes, round(late_s * 1e9))
     result = offline(imu, fixes, {})
@@ -38,7 +38,7 @@ def test_a_coarse_imu_that_takes_the_course_of_its_fixes(late_s):
 
 
 def test_a_fine_imu_that_sees_the_earth_turn():
-    """Gyrocompass and position from the fixes on both sides of the end of the standstill."""
+    """A fine IMU starts by gyrocompass, with the position between fixes on both sides."""
     imu, fixes = vehicle(noise=(1e-7, 1e-4), bias=(0.0, 0.0, 0.0))
     known = {'alignment.gyro_bias_sigma_deg_h': 0.01}
     said, result = play(stage_of(known), imu, fixes), offline(imu, fixes, known)
@@ -48,7 +48,7 @@ def test_a_fine_imu_that_sees_the_earth_turn():
 
 @pytest.mark.parametrize('kind', ['instant', 'integrated', 'rotation_vector'])
 def test_a_given_start(kind):
-    """Everything is given: the first sample is the start."""
+    """With everything given, the first sample is the start, for every kind of input."""
     imu, _ = vehicle()
     given = {**PLACE, 'initial.heading_deg': 70.0, 'initial.roll_deg': 1.0, 'input': kind,
              'initial.velocity_m_s': (1.0, 2.0, 0.5)}
@@ -59,7 +59,7 @@ def test_a_given_start(kind):
 
 
 def test_a_start_from_a_fix():
-    """The first sample between two fixes is the start."""
+    """With position from fixes, the first sample between two fixes is the start."""
     imu, fixes = vehicle()
     given = {'initial.heading_deg': 70.0}
     said = play(stage_of({**given, 'initial.source': 'fix', 'initial.heading': 'given'}), imu,
@@ -71,7 +71,7 @@ def test_a_start_from_a_fix():
 
 
 def test_a_mounting_found_by_level():
-    """The turn that brings the mean force up, from the same standstill."""
+    """Mounting level rotates the mean force upwards, from the same standstill as offline."""
     imu, fixes = vehicle()
     imu = imu.turned(quaternion.exponential((1.0, 0.2, 0.0)))
     values = {'mounting.source': 'level', 'mounting.rpy_deg': (0.0, 0.0, 20.0)}
@@ -80,10 +80,10 @@ def test_a_mounting_found_by_level():
 
 def test_jitter_strays_repeats_and_gaps():
     """
-    Stamps that jitter, go back, repeat or leap, readings that are no numbers, and gaps.
+    Jittering, backwards, repeated or leaping stamps, NaN readings and gaps: same bits as offline.
 
-    Offline sees all of the record, and drops the fewest samples; live, one sample is seen after
-    the other.  What was published at a stamp ahead of its time stays, and nothing behind it.
+    Offline sees the whole record and drops as few samples as possible; live sees one sample after
+    the other. A solution published for a stamp ahead of its time remains, but none after it.
     """
     imu, fixes = vehicle(length_s=50.0)
     rng = np.random.default_rng(4)
@@ -101,16 +101,16 @@ def test_jitter_strays_repeats_and_gaps():
     said = play(stage_of(), imu, fixes)
     result = offline(imu, fixes, {'on_gap': 'bridge', 'longest_bridge_s': 1.0})
     assert len(result.states) == 1 and '2 gaps bridged' in ' '.join(result.notes)
-    # published before it was known to be ahead of its time, and the one that is behind it
+    # Published before its stamp was known to be too late, and the sample after it.
     states = result.states[0]
     assert np.setdiff1d(said.t_ns, states.t_ns) == t_ns[1700]
     assert np.setdiff1d(states.t_ns, said.t_ns) == t_ns[1701]
     said.solved = [s for s in said.solved if s.t_ns != t_ns[1700]]
     same_bits(said, states[states.t_ns != t_ns[1701]])
-    for part in ('holds what is no number', 'repeats the stamp', 'goes back from',
+    for part in ('holds NaN or infinity', 'repeats the stamp', 'goes back from',
                  'ahead of its time', 'bridged by straight lines'):
         assert said.has(part), part
-    # the first one where two samples of the standstill are left out
+    # The first gap is where two samples of the standstill are left out.
     assert said.stage.gaps == 3
 
 
@@ -118,7 +118,7 @@ def test_jitter_strays_repeats_and_gaps():
     ('husky_test1_mcap', '/imu/data', '/fix', {'mounting.rpy_deg': (90.0, 0.0, -90.0)}),
     ('umn_thor_fl75_first90s_sqlite3', '/imu/data', '/gps/fix', {})])
 def test_the_recorded_bags(bag, imu, fix, values, shared_data):
-    """Two real IMUs, coarse: levelled at a standstill, the heading by the course of the fixes."""
+    """Two real coarse IMUs: levelled at a standstill, heading from the course of the fixes."""
     path = shared_data / 'rosbags' / bag
     result = ins_sim.navigate(path, {**OFFLINE, **values})
     said = play(stage_of(values), *read(path, imu, fix))
@@ -127,7 +127,7 @@ def test_the_recorded_bags(bag, imu, fix, values, shared_data):
 
 
 def test_the_recorded_car_from_a_given_start(shared_data):
-    """A MEMS IMU in a car that never stops, from the state of its reference."""
+    """A real MEMS IMU in a car that never stops, started from the state of its reference."""
     folder = shared_data / 'imu_ref'
     imu, _ = csv_imu.read_imu(folder / 'fogmems_imu.csv.gz')
     given = {**FRD, 'initial.latitude_deg': 34.426238931, 'initial.longitude_deg': 111.434225287,
@@ -141,7 +141,7 @@ def test_the_recorded_car_from_a_given_start(shared_data):
 
 
 def test_the_recorded_flight_from_its_standstill(shared_data):
-    """The circuit flight: aligned on the ground with a given place and heading, 670 s."""
+    """A recorded flight of 670 s, aligned on the ground with given position and heading."""
     imu, _ = csv_imu.read_imu(shared_data / 'imu_ref' / 'umn_thor_fl75_imu.csv.gz')
     given = {**FRD, 'initial.latitude_deg': 45.3288, 'initial.longitude_deg': -93.231,
              'initial.height_m': 249.3, 'initial.heading_deg': 30.0, 'initial.heading': 'given',
@@ -152,7 +152,7 @@ def test_the_recorded_flight_from_its_standstill(shared_data):
 
 
 def test_the_settings_are_those_of_navigate():
-    """What both have in common has the same defaults, of which the bits depend."""
+    """Common settings of live and offline navigation have the same defaults."""
     live, recorded = build(type(stage_of().stage._s), LIVE), NavigateSettings()
     assert live.alignment == recorded.alignment and live.gaps.factor == recorded.gap_factor
     assert live.mounting.rpy_deg == recorded.mounting.rpy_deg

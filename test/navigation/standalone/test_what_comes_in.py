@@ -1,4 +1,4 @@
-"""Input that no start can be made of, and headings from elsewhere: one sentence each."""
+"""Inputs that allow no start, and headings from other sources: one message each."""
 
 from dataclasses import replace
 import math
@@ -12,7 +12,7 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.earth.atmosphere import pressure, pressure_height
 from ins_sim.core.navigation.errors import position_error
 
-# Rest for 8 s is enough.
+# Rest for 8 s is sufficient.
 SHORT = {'alignment.longest_s': 8.0, 'alignment.shortest_s': 5.0}
 GIVEN = {**SHORT, 'initial.heading': 'given', 'initial.heading_deg': math.degrees(1.2)}
 
@@ -23,7 +23,7 @@ def headings(said):
 
 
 def test_alignment_on_the_move_is_never_trusted():
-    """A vehicle that shakes has no standstill; one that goes on steadily has fixes that move."""
+    """A shaking vehicle has no standstill; a steadily moving one is found out by its fixes."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     rng = np.random.default_rng(2)
     shaken = replace(imu, f=imu.f + 0.5 * rng.standard_normal((len(imu), 3)))
@@ -31,16 +31,16 @@ def test_alignment_on_the_move_is_never_trusted():
     assert not said.solved and said.has('no stationary interval of 5 s in 30 s')
     going = [f._replace(lat=f.lat + 2e-6 * k) for k, f in enumerate(fixes)]
     said = play(stage_of(GIVEN), imu, going)
-    assert not said.solved and said.has('seemed to be at rest; expected a vehicle that stands')
+    assert not said.solved and said.has('seemed to be at rest; expected a vehicle at rest')
 
 
 def test_a_standstill_that_is_cut_short_begins_anew():
-    """Three seconds are too short; the next one serves."""
+    """A standstill of three seconds is too short; the next one is used."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     f = imu.f.copy()
     f[160:180, 0] += 2.0
     said = play(stage_of(GIVEN), replace(imu, f=f), fixes)
-    assert said.has('alignment begins anew: the vehicle has moved at 1000000003.4')
+    assert said.has('alignment starts again: the vehicle has moved at 1000000003.4')
     assert said.t_ns[0] > imu.t_ns[180] + 7 * 10**9 and abs(headings(said) - 1.2) < 1e-3
 
 
@@ -49,7 +49,7 @@ def test_a_standstill_that_is_cut_short_begins_anew():
     (1000.0 / 9.80665, 'is it in mg?'), (0.0, 'was gravity taken off it?')])
 @pytest.mark.parametrize('source', ['alignment', 'given'])
 def test_another_unit_of_the_accelerometers(scale, part, source):
-    """It is named, and nothing is navigated."""
+    """Accelerometers in another unit are reported, and navigation does not start."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0, noise=(2e-4, 1e-4))
     values = SHORT if source == 'alignment' else {'initial.source': 'given'}
     said = play(stage_of(values), replace(imu, f=scale * imu.f), fixes)
@@ -57,7 +57,7 @@ def test_another_unit_of_the_accelerometers(scale, part, source):
 
 
 def test_upside_down():
-    """It is navigated as it is, and what to set is said."""
+    """An IMU upside down is navigated as it is, and the message says what to set."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     turn = quaternion.exponential((math.pi, 0.0, 0.0))
     said = play(stage_of(GIVEN), imu.turned(turn), fixes)
@@ -69,7 +69,7 @@ def test_upside_down():
 
 
 def test_zeros_in_turns():
-    """A driver that sends rates and forces in turns is named."""
+    """A driver that sends rates and forces in alternate messages is reported."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0, noise=(2e-4, 1e-3))
     f = imu.f.copy()
     f[::10] = 0.0
@@ -78,31 +78,31 @@ def test_zeros_in_turns():
 
 
 def test_readings_that_are_no_numbers():
-    """They are left out and counted."""
+    """Readings with NaN are dropped and counted."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     f = imu.f.copy()
     f[100:110] = np.inf
     said = play(stage_of(GIVEN), replace(imu, f=f), fixes)
     assert said.solved and said.stage.samples.dropped == 10
-    assert said.has('holds what is no number')
+    assert said.has('holds NaN or infinity')
 
 
 def test_a_long_gap_begins_anew():
-    """Behind it a standstill is needed again; a given state holds no longer."""
+    """After a long gap a new standstill is needed; a given state is no longer valid."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     kept = np.ones(len(imu), dtype=bool)
     kept[1000:1200] = False
     said = play(stage_of(SHORT | {'initial.heading': 'magnetometer'}), imu[kept], fixes)
     assert said.stage.begun == 2 and said.has('starting anew (gap 1)')
     said = play(stage_of({'initial.source': 'given', 'initial.latitude_deg': 50.0}), imu[kept])
-    assert said.stage.begun == 1 and said.has('expected ~/reset where the vehicle is in that')
+    assert said.stage.begun == 1 and said.has('expected a call of ~/reset when the vehicle is in')
     assert said.t_ns[-1] < imu.t_ns[1000] and said.stage.state == 'waiting for ~/reset'
     said.stage.reset()
     assert play(said, imu[1300:]).stage.begun == 2
 
 
 def test_a_clock_that_jumps_back():
-    """Ten samples in order show it; the alignment begins anew there."""
+    """A clock that jumps back is recognised after ten rising samples; alignment starts again."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     stage = play(stage_of(GIVEN), imu, fixes)
     said = play(stage, replace(imu, t_ns=imu.t_ns - 10**12),
@@ -111,7 +111,7 @@ def test_a_clock_that_jumps_back():
 
 
 def test_a_fix_of_another_clock():
-    """It is dropped in a sentence, and those behind it are used."""
+    """A fix with a stamp of another clock is dropped with a message; later fixes are used."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     fixes.insert(4, fixes[4]._replace(t_ns=fixes[4].t_ns + 10**12))
     said = stage_of(GIVEN)
@@ -122,7 +122,7 @@ def test_a_fix_of_another_clock():
 
 
 def test_a_solution_that_runs_away():
-    """It ends, once, in a sentence."""
+    """A solution that diverges is stopped once, with a message."""
     imu, _ = vehicle(length_s=10.0, rest_s=10.0)
     said = play(stage_of({'initial.source': 'given', 'initial.height_m': 9.9e5,
                           'initial.velocity_m_s': (0.0, 0.0, 9e3)}), imu)
@@ -132,7 +132,7 @@ def test_a_solution_that_runs_away():
 @pytest.mark.parametrize('declination', [0.0, 0.12])
 @pytest.mark.parametrize('turn', [(0.0, 0.0, 0.0), (0.3, -0.2, 0.0)])
 def test_a_heading_by_the_magnetic_field(declination, turn):
-    """Compensated for tilt: dip and roll do not matter; declination does."""
+    """The magnetic heading is free of dip and roll, and corrected for the declination."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0, noise=(2e-4, 1e-4))
     turn = quaternion.exponential(turn)
     imu = imu.turned(quaternion.conjugate(turn))
@@ -143,7 +143,7 @@ def test_a_heading_by_the_magnetic_field(declination, turn):
                                           2e-5 * math.cos(declination), -4e-5))
     for t_ns in imu.t_ns[::5].tolist():
         said.stage.push_field(t_ns, field)
-    # nothing is mounted before the first reading
+    # The mounting is not known before the first reading.
     said.stage.push_imu(int(imu.t_ns[0]), tuple(imu.omega[0]), tuple(imu.f[0]))
     for t_ns in imu.t_ns[::5].tolist():
         said.stage.push_field(t_ns, field)
@@ -154,7 +154,7 @@ def test_a_heading_by_the_magnetic_field(declination, turn):
 
 
 def test_a_field_that_is_not_the_earths():
-    """Levelled alone, and the reason is in the warning."""
+    """With a field that is not the Earth's, only levelling is done; a warning says why."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0)
     said = stage_of(SHORT | {'initial.heading': 'magnetometer'})
     for t_ns in imu.t_ns[::5].tolist():
@@ -165,20 +165,20 @@ def test_a_field_that_is_not_the_earths():
 
 
 def test_a_start_on_the_move_by_the_course_of_fixes():
-    """Position, velocity and heading of the car when its fixes are 20 m apart in 5 s."""
+    """A start on the move has position, velocity and heading of the car after 20 m within 5 s."""
     imu, fixes = vehicle(length_s=40.0, rest_s=5.0)
     said = play(stage_of({'initial.source': 'fix', 'initial.heading': 'course'}), imu, fixes)
     t_ns, (lat, lon, height, v, _) = said.solved[0][:2]
     assert abs(headings(said) - 1.2) < 1e-6 and said.has('start on the move')
     after = next(f for f in fixes if f.t_ns > t_ns)
-    # at 1 m/s^2 the next second is 1 m longer than the last one
+    # At 1 m/s^2 the next second is 1 m longer than the last one.
     way = math.hypot(*position_error(lat, lon, height, *after.place)[:2])
     assert way < math.hypot(*v[:2]) + 1.0
     assert abs(math.atan2(v[0], v[1]) - 1.2) < 1e-6 and math.hypot(*v) > 4.0
 
 
 def test_a_late_course_gives_way_to_what_there_is():
-    """Fixes that never go 20 m: the search ends, and the solution is levelled alone."""
+    """If the fixes never move 20 m, the search for the course ends and only levelling is done."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     said = play(stage_of(SHORT | {'alignment.course_search_s': 10.0}), imu, fixes)
     assert said.has('moves 0 m on one course within 10 s') and not said.stage.located
@@ -186,7 +186,7 @@ def test_a_late_course_gives_way_to_what_there_is():
 
 
 def test_pressure_and_height_are_inverse():
-    """In every layer, and beyond the last one."""
+    """Pressure and height are inverse functions in every layer and beyond the last one."""
     for height in (-400.0, 0.0, 1000.0, 11000.0, 15000.0, 25000.0, 40000.0, 50000.0, 60000.0,
                    80000.0, 90000.0):
         assert abs(pressure_height(pressure(height)) - height) < 1e-6

@@ -111,7 +111,7 @@ def same_bits_within(graph, said):
 
 
 @pytest.mark.parametrize('source, sentence', [
-    ('auto', 'is taken for base_link: set mounting.rpy_deg'),
+    ('auto', 'is assumed to be base_link: set mounting.rpy_deg'),
     ('tf', 'expected a transform from base_link to')])
 def test_a_frame_without_a_transform(source, sentence):
     """After two seconds of readings one message is logged, and the node keeps waiting for TF."""
@@ -138,14 +138,14 @@ def test_services_answer_in_a_sentence():
     messages = messages_of(imu, fixes)
     with RealImuGraph(**{'alignment.longest_s': 8.0, 'initial.heading': 'given',
                          'initial.heading_deg': 70.0}) as graph:
-        assert graph.call('align') == (False, 'nothing comes on imu/data_raw to align with')
+        assert graph.call('align') == (False, 'no readings on imu/data_raw to align with')
         graph.send(messages[:200])
         done, text = graph.call('align')
         assert not done and 'an alignment is under way: at rest for' in text
         graph.send(messages[200:600])
         first = len(graph.heard[topics.INS_ODOMETRY.name])
         done, text = graph.call('align')
-        assert done and 'the solution goes on' in text
+        assert done and 'the solution continues' in text
         graph.send(messages[600:1200])
         assert graph.node.stage.begun == 2
         stamps = [*graph.heard[topics.INS_ODOMETRY.name]]
@@ -154,7 +154,7 @@ def test_services_answer_in_a_sentence():
         assert done
         graph.send(messages[1200:1600])
         assert graph.node.stage.begun == 2
-        assert 'the alignment asked for by ~/align is given up' in graph.said
+        assert 'the alignment requested by ~/align was cancelled' in graph.said
         assert graph.call('reset') == (
             True, 'started anew from initial.source alignment: expected a vehicle at rest')
         assert graph.node.stage.run is None

@@ -1,4 +1,4 @@
-"""The Allan deviation of simulated records gives back the coefficients of the settings."""
+"""The Allan deviation of simulated records reproduces the coefficients of the settings."""
 
 import math
 
@@ -18,12 +18,12 @@ RUNS = 9
 # Earth rate, rad/s, and gravity, m/s^2, on a table at rest.
 AT_REST = {'gyro': (4.4e-5, 2.2e-5, 5.4e-5), 'accelerometer': (0.1, -0.2, 9.8)}
 TOLERANCES = np.array([0.05, 0.2, 0.3])
-# What three hours show of a triad whose white noise hides the rest: N alone.
+# Coefficients that three hours show; for navigation_rlg white noise hides all but N.
 SHOWN = {('navigation_rlg', 'gyro'): slice(1)}
 
 
 def ratios(model, record, rate_hz=RATE):
-    """Return fitted over simulated N, B, K of a record of three axes."""
+    """Return the ratios of fitted to simulated N, B, K for a record of three axes."""
     found = allan.estimate_deviation(record, rate_hz)
     known = allan.gauss_markov_variance(found.tau_s, model.gauss_markov_sigma[0],
                                         model.gauss_markov_time[0])
@@ -33,7 +33,7 @@ def ratios(model, record, rate_hz=RATE):
 
 
 def noise_record(model, run, name, rate_hz, samples):
-    """Return a record of the noise alone, (samples, 3)."""
+    """Return a record (samples, 3) of noise only."""
     noise = make_noise(model, 1, run, name, 1.0 / rate_hz)
     return noise(0, samples // BLOCK + 1)[:samples]
 
@@ -42,11 +42,12 @@ def noise_record(model, run, name, rate_hz, samples):
 @pytest.mark.parametrize('triad', ['gyro', 'accelerometer'])
 def test_round_trip(name, triad):
     """
-    Three-hour records: N within 5 %, B within 20 %, K within 30 %; see SHOWN for one exception.
+    Three-hour records of each preset give N within 5 %, B within 20 %, K within 30 %.
 
-    The first has everything on.  A record of three axes holds so few long intervals that B
-    scatters by up to 12 % and K by up to 20 % from record to record, which is printed: the root
-    mean square of nine records is held to the bounds, at least four standard deviations of it.
+    The exception is in SHOWN. The first of nine records has all errors on. A record of three axes
+    has so few long intervals that B scatters by up to 12 % and K by up to 20 % from record to
+    record (printed). The root mean square over the nine records is therefore compared with the
+    bounds, which are at least four of its standard deviations.
     """
     settings = preset_triads(name)[triad == 'accelerometer']
     model = triad_model(settings, 1.0 / RATE)
@@ -67,10 +68,10 @@ def test_round_trip(name, triad):
 
 def test_ring_laser_shows_floor_and_walk_in_weeks():
     """
-    One record of sixty days, a reading a minute: the bounds of test_round_trip for N, B, K.
+    Sixty days of navigation_rlg, one reading per minute, give N, B and K within the bounds above.
 
-    In three hours the Allan deviation of the gyro has only fallen to 0.0023 deg/h at the longest
-    tau, by white noise; the floor of 0.001 and the walk cross it at four hours and later.
+    In three hours the Allan deviation of the gyro only falls to 0.0023 deg/h at the longest tau,
+    because of white noise. The floor of 0.001 deg/h and the random walk appear from four hours on.
     """
     model = triad_model(preset_triads('navigation_rlg')[0], 60.0)
     found = np.array([ratios(model, noise_record(model, run, 'weeks', 1.0 / 60.0, 86400),
@@ -82,7 +83,7 @@ def test_ring_laser_shows_floor_and_walk_in_weeks():
 
 
 def test_coefficients_of_a_curve():
-    """The fit of the exact curve gives its coefficients back; absent ones vanish."""
+    """The fit of an exact Allan curve returns its coefficients; absent ones are zero."""
     for squares in ((1e-3, 0.1, 0.5, 0.01), (0.0, 0.1, 0.0, 0.0), (0.0, 0.0, 0.3, 0.002)):
         want = allan.Coefficients(*squares)
         tau = np.geomspace(0.1, 3000.0, 40)
@@ -94,7 +95,7 @@ def test_coefficients_of_a_curve():
 
 
 def test_gauss_markov_variance_joins_its_limits():
-    """2 sigma^2 T/tau for long tau, 2 sigma^2 tau/(3 T) for short; no step at the switch."""
+    """Gauss-Markov variance: 2 sigma^2 T/tau for long, 2 sigma^2 tau/(3 T) for short tau."""
     assert allan.gauss_markov_variance(1e7, 2.0, 10.0) == pytest.approx(8e-6, rel=1e-5)
     assert allan.gauss_markov_variance(1e-6, 2.0, 10.0) == pytest.approx(8e-7 / 3.0, rel=1e-5)
     low, high = allan.gauss_markov_variance(np.array([0.9999e-2, 1.0001e-2]), 1.0, 10.0)
@@ -103,14 +104,14 @@ def test_gauss_markov_variance_joins_its_limits():
 
 
 def test_white_noise_of_one_rad_s():
-    """The deviation at one sample is that of the samples, within 4 sigma of 2000."""
+    """The deviation at one interval equals that of 2000 white samples within 4 sigma."""
     found = allan.estimate_deviation(np.random.default_rng(1).normal(size=(2000, 3)), 100.0)
     assert found.deviation[0] == pytest.approx(np.ones(3), abs=4 / math.sqrt(2000))
     assert allan.fit_coefficients(found).seen(found).tolist() == [False, True, False, False]
 
 
 def test_coefficients_are_seen_where_they_matter():
-    """A floor far below the rest is not, nor one that few intervals show; a longer record does."""
+    """A coefficient is reported only if enough intervals of the record show it."""
     tau = np.geomspace(0.1, 1000.0, 30)
     for values, length_s, seen in (
             ((0.0, 1.0, 1e-4, 0.01), 1e4, [False, True, False, True]),
@@ -126,10 +127,10 @@ def test_coefficients_are_seen_where_they_matter():
 @pytest.mark.parametrize('samples', [40, 1001, 100_000])
 def test_estimate_is_that_of_allantools(record, samples):
     """
-    The overlapping Allan deviation is that of an independent implementation.
+    The overlapping Allan deviation agrees with that of allantools.
 
-    Both sum the same numbers; the order of the sums may differ by the version of NumPy, for which
-    ten roundings are allowed (none is found).
+    Both sum the same numbers, but the order of the sums may depend on the version of NumPy: ten
+    roundings are allowed (none was found).
     """
     allantools = pytest.importorskip('allantools')
     white = np.random.default_rng(3).normal(size=samples)
@@ -144,7 +145,7 @@ def test_estimate_is_that_of_allantools(record, samples):
 
 
 def test_averaging_times_are_whole_intervals():
-    """Each tau is a number of sampling intervals, from one to a quarter of the record."""
+    """Each tau is a whole number of sampling intervals, from one to a quarter of the record."""
     found = allan.estimate_deviation(np.random.default_rng(4).normal(size=(4000, 2)), 100.0)
     assert found.deviation.shape == (len(found.tau_s), 2)
     assert found.tau_s[0] == 0.01 and found.tau_s[-1] == 10.0
@@ -152,7 +153,7 @@ def test_averaging_times_are_whole_intervals():
 
 
 def test_bad_records_are_refused():
-    """One sentence each."""
+    """Records that are too short or invalid raise an error of one sentence."""
     with pytest.raises(ValueError, match='has 5 samples; expected at least 40'):
         allan.estimate_deviation(np.zeros(5), 10.0)
     with pytest.raises(ValueError, match='NaN or infinity'):

@@ -1,4 +1,4 @@
-"""Blocks of streamed truth give the readings and the faults of single pushes, to the bit."""
+"""Blocks of streamed truth give the same readings and faults as single pushes, bit for bit."""
 
 from dataclasses import replace
 
@@ -36,7 +36,7 @@ def sensor_and_truth(values, truth_rate=100.0, count=400, jitter_ns=0, first_ns=
 
 
 def pushed(imu, truth):
-    """Return the readings of single pushes, and the fault that ended them with its index."""
+    """Return the readings of single pushes, and the fault that ended them, with its index."""
     readings = []
     for k, sample in enumerate(imu.samples(truth)):
         try:
@@ -47,18 +47,18 @@ def pushed(imu, truth):
 
 
 def as_list(samples):
-    """Return ImuSamples as pushes return readings, vectors as lists."""
+    """Return ImuSamples in the form of the readings of ``push``, with lists for vectors."""
     parity = [None] * len(samples) if samples.parity is None else samples.parity.tolist()
     return list(zip(samples.t_ns.tolist(), samples.omega.tolist(), samples.f.tolist(), parity))
 
 
 def listed(readings):
-    """Return readings of pushes with lists in place of tuples."""
+    """Return the readings of ``push`` with lists instead of tuples."""
     return [(t, list(omega), list(f), parity) for t, omega, f, parity in readings]
 
 
 def in_cuts(imu, truth, rng):
-    """Return the readings of blocks of random length, single samples and pushes among them."""
+    """Return the readings from blocks of random length mixed with single samples and pushes."""
     readings, start = [], 0
     while start < len(truth):
         end = start + int(rng.choice([1, 2, 5, 40, 150]))
@@ -73,7 +73,7 @@ def in_cuts(imu, truth, rng):
 @pytest.mark.parametrize('truth_rate', [50.0, 100.0, 270.0, 1000.0])
 @pytest.mark.parametrize('kind', KINDS)
 def test_any_cutting_gives_the_readings_of_single_pushes(kind, truth_rate):
-    """At any rate of the truth, with jitter, whatever is cut and however it is given."""
+    """Any cutting gives the bits of single pushes, at any truth rate and with jitter."""
     make, truth = sensor_and_truth(KINDS[kind], truth_rate, jitter_ns=3000, first_ns=7_000_000)
     expected = listed(pushed(make(), truth)[0])
     assert len(expected) > 20
@@ -87,7 +87,7 @@ def test_any_cutting_gives_the_readings_of_single_pushes(kind, truth_rate):
 
 
 def spoilt(truth, k, what):
-    """Return a Truth record whose sample k cannot be used."""
+    """Return a Truth record whose sample k is unusable."""
     arrays = {name: values.copy() for name, values in truth.arrays().items()}
     if what == 'repeat':
         arrays['t_ns'][k] = arrays['t_ns'][k - 1]
@@ -108,7 +108,7 @@ def spoilt(truth, k, what):
 @pytest.mark.parametrize('what', ['nan', 'infinite', 'huge', 'repeat', 'jump back', 'gap', 'norm',
                                   'turn'])
 def test_a_fault_is_that_of_single_pushes(kind, what):
-    """The same sample, the same sentence, and the readings before it are there."""
+    """A bad sample raises the same fault as in single pushes; earlier readings are returned."""
     make, truth = sensor_and_truth(KINDS[kind], count=60)
     for k in (1, 2, 3, 30, 59):
         bad = spoilt(truth, k, what)
@@ -123,14 +123,14 @@ def test_a_fault_is_that_of_single_pushes(kind, what):
         assert raised.value.index == index
         assert as_list(raised.value.readings) == listed(readings)
         if not fault.restart:
-            # The sample was dropped, and the stream goes on with a sound one in its place.
+            # The sample was dropped; the stream continues with a good one in its place.
             single = make()
             pushed(single, bad[:k + 1])
             assert as_list(imu.advance(truth[k:])) == listed(pushed(single, truth[k:])[0])
 
 
 def test_rotors_that_run_away_lose_no_reading():
-    """A fault of the instrument, not of the stream, comes with the readings before it."""
+    """A fault of the instrument (diverging rotors) comes with all readings before it."""
     unstable = {**TUNED, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
     with pytest.warns(UserWarning, match='unstable'):
         make, truth = sensor_and_truth(unstable, count=100)
@@ -144,7 +144,7 @@ def test_rotors_that_run_away_lose_no_reading():
 
         pair.settle = settle
     readings, index, fault = pushed(single, truth)
-    with pytest.raises(StreamFault, match='the rotors of the gyros have run away') as raised:
+    with pytest.raises(StreamFault, match='the rotors of the gyros have diverged') as raised:
         imu.advance(truth)
     assert str(raised.value) == str(fault) and raised.value.index == index and 1 < index < 99
     assert as_list(raised.value.readings) == listed(readings)

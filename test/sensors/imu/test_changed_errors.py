@@ -1,4 +1,4 @@
-"""Biases and faults that change amid a run: what is carried goes on."""
+"""Biases and faults that change during a run; states carry on."""
 
 from dataclasses import replace
 
@@ -29,7 +29,7 @@ KINDS = {'perfect': {}, 'noise, lags and pulses': FULL, 'tuned': {**FULL, **TUNE
 
 
 def flown(values, changes=()):
-    """Return rates and forces (n, 3) of a flight; changes: {sample: {key: value}}, kept."""
+    """Return rates and forces (n, 3) of a flight; changes: {sample: {key: value}}, lasting."""
     s = settings({**MOTION_2, 'source': 'stream', **values})
     imu = make_imu(s.imu_sensor, motion := make_motion(
         s.motion_generator.motion, s.motion_generator.datum, s.motion_generator.earth))
@@ -46,27 +46,27 @@ def flown(values, changes=()):
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_a_change_to_the_same_values_changes_no_bit(kind):
-    """Lags, remainders of pulses, rotors and the schedule of a fault go on."""
+    """Setting the same values again leaves lags, pulses, rotors and fault schedule bit for bit."""
     expected = flown(KINDS[kind])
     got = flown(KINDS[kind], [(k, {}) for k in (1, 7, 150, 151, 300)])
     assert all(np.array_equal(a, b) for a, b in zip(got, expected))
 
 
 def test_pulses_lose_nothing_at_a_change():
-    """The sum of the readings is that of the inputs within a pulse, whatever the biases did."""
+    """The sum of readings equals that of inputs within one pulse despite changing biases."""
     steps = [(100, {'gyro.errors.bias_deg_h': [3600.0] * 3}),
              (200, {'gyro.errors.bias_deg_h': [0.0] * 3,
                     'accelerometer.errors.bias_ug': [1e4] * 3})]
     pulses = {key: value for key, value in FULL.items() if 'quantisation' in key}
     omega, f = (a.sum(axis=0) * 0.01 for a in flown(pulses, steps))
     ideal_omega, ideal_f = (a.sum(axis=0) * 0.01 for a in flown({}))
-    # of sample 0, which no interval is behind, the pulses are counted as well
+    # The pulses of sample 0 are counted too, although it has no interval before it.
     assert np.abs(omega - ideal_omega - 3600.0 * DEG_H).max() <= 2.0 * DEG_H
     assert np.abs(f - ideal_f - 2.0 * 1e4 * UG).max() <= 2e-4
 
 
 def test_a_bias_behind_a_lag_is_there_at_once():
-    """It enters behind the lag, as noise does: nothing of the change is smeared."""
+    """A changed bias acts after the lag, like noise, so the step is not smoothed."""
     lagged = {key: value for key, value in FULL.items() if 'bandwidth' in key}
     omega, _ = flown(lagged, [(200, {'gyro.errors.bias_deg_h': [3600.0] * 3})])
     before, _ = flown(lagged)
@@ -75,7 +75,7 @@ def test_a_bias_behind_a_lag_is_there_at_once():
 
 
 def test_the_imu_without_errors_stays_bare():
-    """A bias that is taken back leaves nothing to be done for a sample."""
+    """After a bias is removed again, the IMU is the ideal one without a wrapper."""
     s = settings({**MOTION_2, 'source': 'stream'}).imu_sensor
     imu = make_imu(s)
     biased = replace(s, gyro=replace(s.gyro, errors=replace(s.gyro.errors,

@@ -1,4 +1,4 @@
-"""The increments: single steps, arrays and loops, plain and compiled, give equal bits."""
+"""Increments: single steps, array operations and loops (plain and compiled) give equal bits."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ FORCE = 10.0 * RNG.normal(size=(N, 3))
 
 
 def single_steps(name):
-    """Return what the steps give one by one, and the loop, its arrays and its inputs."""
+    """Return the results of single steps, and the loop, its array version and its inputs."""
     starts, ends = [BEFORE, *map(tuple, Q_MB[:-1].tolist())], Q_MB.tolist()
     if name == 'rotation':
         return ([increments.rotation_increment(a, b, EARTH) for a, b in zip(starts, ends)],
@@ -35,7 +35,7 @@ def single_steps(name):
 
 @pytest.mark.parametrize('name', ['rotation', 'force', 'turned'])
 def test_loops_and_arrays_give_the_bits_of_single_steps(name):
-    """The plain loop, the arrays, and the compiled loop where Numba is."""
+    """The plain loop, the array version and the compiled loop give the bits of single steps."""
     expected, inputs = single_steps(name)
     loop = getattr(increments, f'{name}_rows')
     out = np.empty_like(expected)
@@ -55,7 +55,11 @@ def test_loops_and_arrays_give_the_bits_of_single_steps(name):
 @pytest.mark.parametrize('kind', ['static', 'two_axis', 'sculling', 'harmonics', 'aggressive'])
 @pytest.mark.parametrize('more', [{}, {'output': 'integrated'}, {'history': 'frozen'}])
 def test_an_imu_on_a_motion_gives_equal_bits_compiled_and_plain(kind, more, monkeypatch):
-    """Whole blocks and random cuts, with a delay of its own on every channel."""
+    """
+    An IMU on a motion gives equal bits compiled and plain, in whole blocks and random cuts.
+
+    Every channel has its own delay.
+    """
     s = settings({**MOTION_2, 'gyro.delay_us.x': -3.0, 'gyro.delay_us.z': 4000.0,
                   'accelerometer.delay_us.y': 15000.0, 'motion.kind': kind, **more})
     generator = s.motion_generator
@@ -71,7 +75,7 @@ def test_an_imu_on_a_motion_gives_equal_bits_compiled_and_plain(kind, more, monk
     monkeypatch.setattr(compilation, 'compiled', None)
     live = PacedImu(s.imu_sensor, motion)
     readings = [r for t in runs[0].t_ns.tolist() for r in live.push(t, (0.0,), (0.0,), (0.0,))]
-    # A node must not stop to compile.
+    # A live node must not stop to compile.
     runs.append(samples_of(readings))
     for run in runs[1:]:
         for name, values in runs[0].arrays().items():

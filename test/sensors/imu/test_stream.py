@@ -1,4 +1,4 @@
-"""The IMU on streamed truth against that on the closed form (docs/theory/streamed_truth.md)."""
+"""The IMU on streamed truth, compared with the closed form (docs/theory/streamed_truth.md)."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ BOUND = {1.0: 1e-7, 10.0: 2e-6, 30.0: 5e-5}  # section 8: 1 us, at 100 Hz
 
 
 def mix(frequency):
-    """Return a coning mix of 3 deg: two angles of one frequency, out of phase, no rest."""
+    """Return a coning mix of 3 deg: two angles of the same frequency, out of phase."""
     return {'motion.kind': 'sinusoids', 'motion.theta_deg': 5.0,
             'motion.sinusoids.angle_deg': [2.0, 3.0, 3.0],
             'motion.sinusoids.angle_hz': [frequency] * 3,
@@ -39,9 +39,10 @@ def readings(values, **more):
 @pytest.mark.parametrize('frequency', [1.0, 10.0, 30.0])
 def test_delay_signal_of_the_stream(frequency, rate, figures):
     """
-    What the delays add to the readings, relative to its largest value.
+    The delay signal of the stream agrees with the closed form, relative to its largest value.
 
-    The rounding of one increment, 2e-16 rad, over the delay signal is added to the bound.
+    Bounds: 1e-7 at 1 Hz, 2e-6 at 10 Hz, 5e-5 at 30 Hz, plus the rounding of one increment (2e-16
+    rad) divided by the delay signal.
     """
     def signal(source):
         common = {**mix(frequency), 'source': source, 'rate_hz': rate, 'duration_s': 4.0}
@@ -59,7 +60,7 @@ def test_delay_signal_of_the_stream(frequency, rate, figures):
 
 
 def drift_of(source, late, frequency, rate):
-    """Return the drift of 20 s of the mix, rad/s, started past the history of the stream."""
+    """Return the drift over 20 s of the mix, rad/s, after the history of the stream."""
     s = settings({**mix(frequency), **late, 'source': source, 'rate_hz': rate,
                   'duration_s': 20.0, 'initial.after_s': 0.1})
     return run_offline(s, twin=False).errors.drift[-1]
@@ -69,10 +70,10 @@ def drift_of(source, late, frequency, rate):
 @pytest.mark.parametrize('frequency', [1.0, 10.0, 30.0])
 def test_drift_of_the_stream(frequency, rate):
     """
-    The mean drift through the stream is that through the closed form.
+    The mean drift through the stream equals that through the closed form.
 
-    The drift is a mean of the delay signal, so it errs by at most sqrt(3) times the bound of
-    section 8 on the signal, times the largest signal, and by the rounding of the slope.
+    The drift is a mean of the delay signal. Its error is at most sqrt(3) times the bound on the
+    signal (section 8) times the largest signal, plus the rounding of the slope.
     """
     closed, streamed = (drift_of(source, LATE, frequency, rate)
                         - drift_of(source, {}, frequency, rate) for source in ('motion', 'stream'))
@@ -85,7 +86,7 @@ def test_drift_of_the_stream(frequency, rate):
 
 
 def test_slerp_would_be_seen():
-    """The check has teeth: slerp biases the delay signal of 10 Hz by far more than the bound."""
+    """With slerp instead of Hermite curves the delay signal at 10 Hz would fail clearly."""
     values = {**mix(10.0), 'rate_hz': 100.0}
     s = settings(values)
     generator = s.motion_generator
@@ -108,7 +109,7 @@ def test_slerp_would_be_seen():
     {**MOTION_2, **MIXED}, {**MOTION_2, **MIXED, 'output': 'integrated'},
     {**MOTION_2, **MIXED, 'accelerometer.delay_us.y': 40000.0, 'history': 'frozen'}])
 def test_any_cutting_gives_the_same_bits(values):
-    """Law 2: block of one, one block, random blocks."""
+    """Blocks of one sample, one block and random blocks give the same bits."""
     s = settings(values)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -128,7 +129,7 @@ def test_any_cutting_gives_the_same_bits(values):
 
 
 def push_all(imu, motion, frame, t_ns):
-    """Return the readings of an IMU pushed with the truth at the instants t_ns."""
+    """Return the readings of an IMU that is pushed the truth at the instants t_ns."""
     truth, out = motion.at(t_ns), []
     for sample in zip(t_ns.tolist(), frame.attitude(truth).tolist(),
                       truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):
@@ -139,7 +140,7 @@ def push_all(imu, motion, frame, t_ns):
 @pytest.mark.parametrize('truth_rate, delay_us', [(1000.0, 2500.0), (50.0, 0.0), (100.0, -30000.0),
                                                   (200.0, 123456.0)])
 def test_stream_at_another_rate_with_any_delay(truth_rate, delay_us):
-    """Truth faster or slower than the IMU, delays of any size and sign."""
+    """Truth at another rate than the IMU, with any delays, matches the closed form."""
     values = {**MOTION_2, 'gyro.delay_us.x': delay_us, 'accelerometer.delay_us.z': delay_us}
     s = settings(values, source='stream')
     generator = s.motion_generator
@@ -151,7 +152,7 @@ def test_stream_at_another_rate_with_any_delay(truth_rate, delay_us):
     assert [r[0] for r in streamed] == closed.t_ns.tolist()
     skip = 5 + int(max(0.0, delay_us) / 1e4)
     omega, f = (np.array([r[k] for r in streamed])[skip:] for k in (1, 2))
-    # truncation of the cubics at w h <= 0.02: (w h)^4 / 384 and 19 (w h)^4 / 720
+    # Truncation error of the cubics at w h <= 0.02: (w h)^4 / 384 and 19 (w h)^4 / 720.
     np.testing.assert_allclose(omega, closed.omega[skip:], atol=1e-7)
     np.testing.assert_allclose(f, closed.f[skip:], atol=1e-6)
     late = t[-1] - max(0, round(-delay_us * 1e3)) - streamed[-1][0]
@@ -159,7 +160,7 @@ def test_stream_at_another_rate_with_any_delay(truth_rate, delay_us):
 
 
 def streamed_drift(late, jitter, spoil):
-    """Return the drift of 60 s of motion 2, rad/s, through a spoilt stream."""
+    """Return the drift over 60 s of motion 2, rad/s, through a stream with defects."""
     s = settings({**MOTION_2, 'gyro.delay_us.y': late, 'initial.after_s': 0.1}, source='stream')
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -174,12 +175,12 @@ def streamed_drift(late, jitter, spoil):
 
 
 def single(q):
-    """Return quaternions rounded to float32."""
+    """Return quaternions rounded to single precision."""
     return q.astype(np.float32).astype(float)
 
 
 def test_float32_attitudes_and_jitter_change_the_drift_by_little():
-    """Section 8: jitter of 1 us or float32 quaternions change the mean drift by below 1e-7."""
+    """Jitter of 1 us or float32 quaternions change the mean drift by below 1e-7 (section 8)."""
     def same(q):
         return q
 

@@ -1,4 +1,4 @@
-"""Each instrument error alone gives the change its equation says; all zero gives the input."""
+"""Each instrument error alone has the effect of its equation; without errors the input is kept."""
 
 from dataclasses import replace
 import math
@@ -46,25 +46,25 @@ FULL = GyroErrors(
 
 
 def errors_of(settings, seed=1, run=0, name='gyro', dt=DT, temperature=None):
-    """Return the TriadErrors of settings."""
+    """Return the TriadErrors for these settings."""
     return TriadErrors(settings, seed, run, name, dt, temperature)
 
 
 def gyro(**terms):
-    """Return TriadErrors of a gyro with those terms on all axes."""
+    """Return TriadErrors of a gyro with these terms on all axes."""
     return errors_of(GyroErrors(**{k: v if isinstance(v, (int, tuple)) else three(v)
                                    for k, v in terms.items()}))
 
 
 def accelerometer(**terms):
-    """Return TriadErrors of accelerometers with those terms on all axes."""
+    """Return TriadErrors of accelerometers with these terms on all axes."""
     return errors_of(AccelerometerErrors(**{k: three(v) for k, v in terms.items()}))
 
 
 @pytest.mark.parametrize('cls', [GyroErrors, AccelerometerErrors])
 @pytest.mark.parametrize('temperature', [None, WARM])
 def test_no_errors_give_the_input_itself(cls, temperature):
-    """The very object, sample and block."""
+    """Without errors a triad returns the input object itself, for samples and blocks."""
     errors = errors_of(cls(), temperature=temperature)
     value, block = (-0.0, math.pi, 1e-320), np.ones((5, 3))
     assert errors.step(0, value, F, 0.0) is value
@@ -84,7 +84,7 @@ def test_no_errors_give_the_input_itself(cls, temperature):
      lambda u, f: u + 3.0 * DEG_H * (f / STANDARD_GRAVITY) ** 2),
     (gyro(saturation_deg_s=20.0), lambda u, f: max(-20.0 * DEG, min(20.0 * DEG, u)))])
 def test_terms_without_memory(errors, expected):
-    """Rounding bound: eight units in the last place."""
+    """Each term without memory changes the input as its equation says, within 8 ulp."""
     for index, sign in ((0, 1.0), (1, -1.0)):
         got = errors.step(index, tuple(sign * u for u in U), F, 0.0)
         for value, u, f in zip(got, U, F):
@@ -93,7 +93,7 @@ def test_terms_without_memory(errors, expected):
 
 
 def test_temperature():
-    """Bias and scale factor follow constant, ramp and sinusoid."""
+    """Bias and scale factor follow constant, ramp and sinusoid of the temperature."""
     cls = GyroErrors(temperature_bias_deg_h_c=three(0.5), temperature_scale_ppm_c=three(4.0))
     errors = errors_of(cls, temperature=WARM)
     for t in (0.0, 100.0, 5000.0):
@@ -105,7 +105,7 @@ def test_temperature():
 
 
 def test_misalignment_and_non_orthogonality():
-    """A rotation to second order of the cross product; the skewed axes are unit vectors."""
+    """Misalignment is a rotation, to first order a cross product; skewed axes have unit length."""
     a = np.array([2e-3, -1e-3, 0.5e-3])
     turned = np.array(gyro(misalignment_mrad=tuple(1e3 * a)).step(0, U, F, 0.0))
     assert np.linalg.norm(turned) == pytest.approx(np.linalg.norm(U), rel=ULP)
@@ -120,11 +120,11 @@ def test_misalignment_and_non_orthogonality():
 
 @pytest.mark.parametrize('order', [1, 2])
 def test_bandwidth_is_exact_for_a_held_input(order):
-    """Against the matrix exponential of lag and integral; the half-power point lies at f."""
+    """The lag agrees with the matrix exponential of lag and integral; at f the power is halved."""
     f, dt = 12.0, DT
     w = 2.0 * math.pi * f
     errors = gyro(bandwidth_hz=f, bandwidth_order=order)
-    # state (x, x', integral of x, u)
+    # State: x, x', integral of x, u.
     row = [0.0, 0.0, 0.0, 0.0]
     a = (np.array([[-w, 0, 0, w], row, [1, 0, 0, 0], row]) if order == 1 else
          np.array([[0, 1, 0, 0], [-w * w, -math.sqrt(2.0) * w, 0, w * w], [1, 0, 0, 0], row]))
@@ -141,12 +141,12 @@ def test_bandwidth_is_exact_for_a_held_input(order):
     t = 1e-4 * np.arange(20000)
     wave = np.sin(2.0 * math.pi * 5.0 * t)
     out = fine.advance(0, np.stack([wave] * 3, -1), np.zeros((20000, 3)), t)[10000:, 0]
-    # holding the input costs (w dt)^2/24 of the amplitude
+    # Holding the input reduces the amplitude by (w dt)^2/24.
     assert abs(np.sqrt(2.0 * np.mean(out ** 2)) - math.sqrt(0.5)) < 1e-6
 
 
 def test_pulses_carry_their_remainder():
-    """Whole pulses; their sum stays within half a pulse of the increments, plus rounding."""
+    """Readings are whole pulses, and their sum stays within half a pulse of the increments."""
     quantum = 0.7 * DEG / 3600.0
     errors = gyro(quantisation_arcsec=0.7)
     u = 1e-4 * np.random.default_rng(2).normal(size=(5000, 3)) + 1e-5
@@ -159,7 +159,7 @@ def test_pulses_carry_their_remainder():
 
 
 def test_turn_on_terms_are_drawn_once_a_run():
-    """Mean and variance over 3000 runs within chi-square bounds; constant within a run."""
+    """Turn-on terms are constant in a run; mean and variance over 3000 runs are as set."""
     runs = np.array([drawn_once(4, run, 'gyro.turn_on_bias', (2.0, 3.0, 4.0))
                      for run in range(3000)])
     z = runs / (2.0, 3.0, 4.0)
@@ -177,7 +177,11 @@ def test_turn_on_terms_are_drawn_once_a_run():
 
 @pytest.mark.parametrize('name', PRESETS)
 def test_variance_is_that_of_noise_and_pulses(name):
-    """Chi-square of white noise; with pulses within 3 % of N^2/dt + (q/dt)^2/6."""
+    """
+    The reported variance is that of white noise (chi-square), and within 3 % with pulses.
+
+    With pulses it is N^2/dt + (q/dt)^2/6.
+    """
     n, kinds = 30000, (GyroErrors, AccelerometerErrors)
     for settings_of, cls in zip(preset_triads(name), kinds):
         model = triad_model(settings_of, DT)
@@ -192,7 +196,7 @@ def test_variance_is_that_of_noise_and_pulses(name):
         assert np.abs(np.mean(white[1:] * white[:-1])) < 4.0 / math.sqrt(n)
         quantum = [k for k in cls.__dataclass_fields__ if k.startswith('quantisation')][0]
         both = replace(only, **{quantum: getattr(settings_of, quantum)})
-        # an input that moves over many pulses makes the remainders uniform
+        # An input that moves over many pulses makes the remainders uniform.
         u = np.outer(np.sin(np.arange(n) * 0.1), np.array([1.0, 0.7, 0.9]))
         rest = errors_of(both).advance(0, u, zero, zero[:, 0]) - u
         ratio = rest.var(axis=0) / noise_variance(model, DT)
@@ -201,7 +205,7 @@ def test_variance_is_that_of_noise_and_pulses(name):
 
 
 def test_flicker_is_flat_at_its_floor():
-    """The Allan deviation of the sum of processes is 0.664 B within 2.5 %, 1 s to 30000 s."""
+    """The Allan deviation of flicker noise is 0.664 B within 2.5 % from 1 s to 30000 s."""
     tau = np.geomspace(1.0, 3e4, 200)
     floor = np.sqrt(sum(gauss_markov_variance(tau, FLICKER_SIGMA, t) for t in FLICKER_TIMES))
     off = np.abs(floor / FLICKER_FLOOR - 1.0).max()
@@ -210,7 +214,7 @@ def test_flicker_is_flat_at_its_floor():
 
 
 def test_in_run_terms_have_their_units():
-    """Sample variance over 200 runs of one hour's end: Gauss-Markov and both random walks."""
+    """Gauss-Markov process and random walks have the set variance after 1 h, in 200 runs."""
     end = 3600.0
     for terms, sigma in (({'gauss_markov_sigma_deg_h': 0.3}, 0.3),
                          ({'gauss_markov_sigma_deg_h': 0.3, 'gauss_markov_time_s': math.inf}, 0.3),
@@ -231,7 +235,7 @@ def inputs(n):
 @settings(max_examples=15, deadline=None)
 @given(cuts=st.lists(st.integers(1, 699), max_size=6, unique=True), first=st.integers(0, 10 ** 8))
 def test_any_cutting_gives_the_same_bits(cuts, first):
-    """Everything on: one block, cut blocks and single steps agree, another sensor among them."""
+    """With all errors on, one block, cut blocks and single steps agree bit for bit."""
     values, forces, t = inputs(700)
     whole = errors_of(FULL, temperature=WARM).advance(first, values, forces, t)
     one, other = errors_of(FULL, temperature=WARM), errors_of(FULL, name='other')
@@ -254,7 +258,7 @@ def test_any_cutting_gives_the_same_bits(cuts, first):
 
 
 def test_noise_does_not_depend_on_loss_or_start():
-    """A sample's noise is that of its index, whichever samples came before."""
+    """The noise of a sample depends on its index only, whichever samples came before."""
     noise = replace(FULL, bandwidth_hz=three(0.0), quantisation_arcsec=three(0.0))
     values, forces, t = inputs(1000)
     whole = errors_of(noise).advance(0, values, forces, t)
@@ -264,7 +268,7 @@ def test_noise_does_not_depend_on_loss_or_start():
 
 
 def test_sensors_axes_runs_and_seeds_are_independent():
-    """Correlations of everything random at once below 4/sqrt(n) of the white part."""
+    """Sensors, axes, runs and seeds are independent: correlations below 4/sqrt(n)."""
     n = 10000
     white = GyroErrors(angle_random_walk_deg_sqrt_h=three(1.0))
     zero = np.zeros((n, 3))

@@ -1,4 +1,4 @@
-"""The errors of a triad: single steps, plain and compiled loops and arrays give equal bits."""
+"""Errors of a triad: single steps, plain and compiled loops and arrays give equal bits."""
 
 import numpy as np
 import pytest
@@ -26,14 +26,14 @@ TERMS = {'geometry': {'misalignment_mrad': (0.1, 0.2, 0.3), 'non_orthogonality_m
 
 
 def triad(names):
-    """Return the TriadErrors with terms of those names."""
+    """Return the TriadErrors with the terms of these names."""
     return TriadErrors(GyroErrors(**{k: v for name in names for k, v in TERMS[name].items()}),
                        7, 0, 'gyro', DT, WARM)
 
 
 @pytest.fixture(params=['arrays', 'loop', 'compiled'])
 def tier(request, monkeypatch):
-    """Let blocks be read by arrays, by the loop in plain Python, or compiled at once."""
+    """Read blocks with arrays, with the loop in plain Python, or with the compiled loop."""
     if request.param == 'loop':
         monkeypatch.setattr(triad_errors, 'run', lambda *inputs: compilation.run(*inputs[:4]))
     if request.param == 'compiled' and compilation.numba() is None:
@@ -43,7 +43,7 @@ def tier(request, monkeypatch):
 
 @pytest.fixture
 def inputs():
-    """Return rates, forces and times of N samples; some rates saturate, one is minus zero."""
+    """Return rates, forces and times of N samples; some rates saturate, and one is minus zero."""
     rng = np.random.default_rng(11)
     values, forces = 0.3 * rng.normal(size=(N, 3)), 10.0 * rng.normal(size=(N, 3))
     values[5] = -0.0
@@ -57,7 +57,7 @@ MIXTURES = [*([name] for name in TERMS), ['lags', 'pulses', 'saturation'],
 
 @pytest.mark.parametrize('names', MIXTURES, ids=lambda names: '+'.join(names)[:40])
 def test_blocks_give_the_bits_of_single_steps(names, inputs, tier):
-    """Any cutting, with a sample left out in the middle, at which lags and pulses start anew."""
+    """Any cutting gives the bits of single steps, also after a missing sample (states reset)."""
     values, forces, t_s = inputs
     single, cut, rng = triad(names), triad(names), np.random.default_rng(5)
     index = [*range(100, 400), *range(401, 101 + N)]
@@ -80,7 +80,7 @@ def test_blocks_give_the_bits_of_single_steps(names, inputs, tier):
     Sampling(latency_us=1500.0), Sampling(jitter_us=900.0), Sampling(drop_out_probability=0.1),
     Sampling(latency_us=-3.0, jitter_us=500.0, drop_out_probability=0.02)])
 def test_samples_that_get_through_are_those_of_single_stamps(sampling):
-    """Stamps and drop-outs of a block, with gaps in it."""
+    """Stamps and drop-outs of a block with gaps are those of single calls."""
     t_ns = 10_000_000 * np.delete(np.arange(20, 1500), [3, 4, 700])
     imu = ImuSamples(t_ns, np.random.default_rng(0).normal(size=(len(t_ns), 3)), np.ones((1, 3)))
     sampler = Sampler(sampling, 3, 0, 'sampling', 10_000_000)
@@ -94,7 +94,7 @@ def test_samples_that_get_through_are_those_of_single_stamps(sampling):
 
 
 def test_consecutive_numbers_are_found():
-    """Slices of runs, of which a single number is one."""
+    """Runs of consecutive numbers are found as slices; a single number is a run too."""
     for index in ([], [5], [5, 6, 7], [5, 7, 8, 1, 3]):
         runs = consecutive(np.array(index, dtype=np.int64))
         assert [k for run in runs for k in index[run]] == index

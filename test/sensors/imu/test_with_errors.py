@@ -1,4 +1,4 @@
-"""The IMU with errors: live and offline alike, perfect where nothing is asked."""
+"""The IMU with errors: live and offline agree, and an IMU without errors is the ideal one."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ NOISY = {**MOTION_2, 'source': 'stream', 'seed': 5,
 
 
 def offline(values, **more):
-    """Return the ImuSamples of ten seconds."""
+    """Return the ImuSamples of ten seconds from an offline run."""
     s = settings(values, duration_s=10.0, **more)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -31,7 +31,7 @@ def offline(values, **more):
 
 
 def test_zero_errors_are_the_ideal_instrument():
-    """No wrapper, no covariance, the same bits whatever the seed."""
+    """Without errors there is no wrapper and no covariance, and the seed changes no bit."""
     s, _, ideal = offline({**MOTION_2, 'source': 'stream'})
     assert with_errors(s.imu_sensor) is None
     assert isinstance(make_imu(s.imu_sensor), StreamImu)
@@ -40,7 +40,7 @@ def test_zero_errors_are_the_ideal_instrument():
 
 
 def test_live_is_offline_bit_for_bit_whatever_is_lost():
-    """The stage fed sample by sample, and one that starts late, read what the run offline does."""
+    """Sample by sample, from the start or later, a stage gives the bits of the offline run."""
     s, motion, expected = offline(NOISY)
     frame, t_ns = MapFrame(s.motion_generator.datum, True), expected.t_ns
     truth = motion.at(t_ns)
@@ -58,7 +58,7 @@ def test_live_is_offline_bit_for_bit_whatever_is_lost():
 
 
 def test_noise_has_the_density_of_the_settings():
-    """Variance of the readings less the ideal ones, within 4 sigma of chi-square."""
+    """The variance of (reading - ideal reading) is that of the settings, within 4 sigma."""
     s, _, noisy = offline(NOISY)
     _, _, ideal = offline({**MOTION_2, 'source': 'stream'})
     variances = reported_variances(s.imu_sensor)
@@ -70,7 +70,7 @@ def test_noise_has_the_density_of_the_settings():
 
 
 def test_covariances_reach_the_message():
-    """sensor_msgs/Imu: the diagonals hold the variances, row-major; unknown where perfect."""
+    """The covariances of sensor_msgs/Imu hold the variances; unknown without errors."""
     s, _, _ = offline(NOISY)
     variances = reported_variances(s.imu_sensor)
     topic = topics.imu_raw(*variances)
@@ -83,7 +83,7 @@ def test_covariances_reach_the_message():
 
 @pytest.mark.parametrize('name', ['imu_tactical_mems', 'imu_tactical_fog', 'imu_navigation_rlg'])
 def test_presets_order_the_navigation_error(name):
-    """Ten minutes at rest: the better the class, the smaller the error; the twin has it too."""
+    """In ten minutes at rest a better IMU preset has a smaller error, and so has its twin."""
     s = parameter_files.read([resources.config(name)], [
         'motion.kind:=static', 'duration_s:=600.0', 'rate_hz:=20.0', 'source:=motion'])
     run = run_offline(s)

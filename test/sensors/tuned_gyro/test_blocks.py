@@ -1,4 +1,4 @@
-"""Blocks of a pair with errors give the bits of its steps, plain and compiled, in any cutting."""
+"""Blocks of a pair of tuned gyros give the bits of single steps, in any cutting."""
 
 import numpy as np
 import pytest
@@ -34,21 +34,21 @@ COUNT = 300
 
 @pytest.fixture(params=['plain', 'compiled'])
 def loops(request, monkeypatch):
-    """Loops in plain Python or, from the first sample, compiled."""
+    """Run loops in plain Python, or compiled from the first sample on."""
     if request.param == 'compiled':
         pytest.importorskip('numba')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', 0 if request.param == 'compiled' else 10**9)
 
 
 def inputs(nodes):
-    """Return stamps, rates at the nodes and specific forces of COUNT sampling periods."""
+    """Return stamps, rates at the nodes, and specific forces for COUNT sampling periods."""
     rng = np.random.default_rng(5)
     return (10_000_000 * np.arange(1, COUNT + 1), rng.normal(size=(COUNT, nodes, 3)),
             10.0 * rng.normal(size=(COUNT, 3)))
 
 
 def stepped(one, t_ns, rates, force):
-    """Return rates and parities, sample by sample."""
+    """Return rates and parities, computed sample by sample."""
     found = [one.step(*sample) for sample in zip(
         t_ns.tolist(), [list(map(tuple, w)) for w in rates.tolist()],
         map(tuple, force.tolist()))]
@@ -57,7 +57,7 @@ def stepped(one, t_ns, rates, force):
 
 @pytest.mark.parametrize('name', SETTINGS)
 def test_blocks_are_the_steps(name, loops):
-    """Rates, parity and the state left behind, over random cuts."""
+    """Rates, parity and the final state of blocks equal those of single steps over random cuts."""
     one, other = instrument(SETTINGS[name]), instrument(SETTINGS[name])
     t_ns, rates, force = inputs(len(one.nodes))
     for each in (one, other):
@@ -68,13 +68,13 @@ def test_blocks_are_the_steps(name, loops):
     assert np.array_equal(np.concatenate([part[0] for part in parts]), omega)
     assert np.array_equal(np.concatenate([part[1] for part in parts]), parity)
     assert one.pair.state == other.pair.state
-    # a step after the blocks goes on where they end
+    # A step after the blocks continues where they end.
     last = 10_000_000 * (COUNT + 1), [(0.1, 0.2, 0.3)] * len(one.nodes), (1.0, 2.0, 3.0)
     assert one.step(*last) == other.step(*last)
 
 
 def test_a_forced_fault_holds_through_a_block(loops):
-    """What is injected by hand stays, whatever the times of the settings say."""
+    """A fault that was injected by hand persists through a block, whatever its schedule."""
     one, other = instrument(BROKEN), instrument(BROKEN)
     t_ns, rates, force = inputs(3)
     for on in (True, False):
@@ -86,12 +86,12 @@ def test_a_forced_fault_holds_through_a_block(loops):
 
 
 def test_a_block_ends_where_the_rotors_run_away(loops):
-    """What is before is returned, with the fault of the step; so also at the first sample."""
+    """A block ends before the sample at which the rotors diverge, with the fault of the step."""
     unstable = {**READ_OUT, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
     with pytest.warns(UserWarning, match='unstable'):
         one, other = instrument(unstable), instrument(unstable)
     t_ns, rates, force = inputs(3)
-    # the nutation grows by exp(0.0745) a sample
+    # The nutation grows by exp(0.0745) per sample.
     one.pair.state = other.pair.state = ((1e303, 0.0, 1e303, 0.0),) * 2
     omega, parity, fault = other.advance(t_ns, rates, force)
     count = len(omega)

@@ -1,4 +1,4 @@
-"""Two tuned gyros in the chain: live as offline, predicted as measured, late as well."""
+"""Two tuned gyros in the whole chain: live and offline, predicted and measured, with delays."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ DTG = {'motion.kind': 'two_axis', 'gyro.model': 'dtg', 'output': 'integrated',
 
 @pytest.mark.parametrize('arrangement', ['paper', 'turned'])
 def test_drift_is_the_predicted_one(arrangement, figures):
-    """The transfer function of the gyro in the sum over channels, within 1 % (issue: 1 %)."""
+    """The drift is within 1 % of the sum over channels with the transfer function of the gyro."""
     s = settings({**DTG, 'gyro.dtg.arrangement': arrangement}, duration_s=600.0)
     prediction, errors = prediction_of(s), run_offline(s).errors
     measured = errors.drift[-1]
@@ -29,7 +29,7 @@ def test_drift_is_the_predicted_one(arrangement, figures):
 
 
 def test_delays_compose_with_the_rotors():
-    """A late axis adds its own drift: the difference of two runs is that of the ideal gyro."""
+    """Delays add the same drift to tuned gyros as to the ideal gyro, within 1 %."""
     late = {'gyro.delay_us.y': 500.0}
     runs = [run_offline(settings({**DTG, **v}, duration_s=200.0), twin=False)
             for v in (late, {})]
@@ -37,12 +37,12 @@ def test_delays_compose_with_the_rotors():
     ideal = prediction_of(settings({**MOTION_2, **late}, duration_s=200.0)).drift
     added = with_rotors[0] - with_rotors[1]
     print(f'\nadded by 500 us: {added * DEG_PER_HOUR} deg/h, ideal gyro {ideal * DEG_PER_HOUR}')
-    # the rotors pass motion of 1 rad/s with a gain within 1e-3 of one
+    # At 1 rad/s the gain of the rotors is within 1e-3 of one.
     assert np.linalg.norm(added - ideal) <= 0.01 * np.linalg.norm(ideal)
 
 
 def test_live_is_offline_bit_for_bit_and_reset_forgets():
-    """Fed sample by sample, and again after reset."""
+    """A stage fed sample by sample gives the bits of the offline run, and again after a reset."""
     s = settings({**DTG, 'gyro.delay_us.x': 30.0}, source='stream', duration_s=3.0)
     expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
@@ -54,7 +54,7 @@ def test_live_is_offline_bit_for_bit_and_reset_forgets():
 
 
 def test_closed_form_in_any_cutting():
-    """The rotors carry their state from block to block."""
+    """Rotors carry their state from block to block, so any cutting gives the same bits."""
     s = settings(DTG, duration_s=3.0)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -66,6 +66,6 @@ def test_closed_form_in_any_cutting():
 
 
 def test_rotation_vectors_are_refused():
-    """A tuned gyro integrates its rate; it does not know the finite rotation."""
+    """A tuned gyro refuses output rotation_vector, because it integrates its rate."""
     with pytest.raises(ValueError, match='expected integrated: a tuned gyro reads the integral'):
         settings({**DTG, 'output': 'rotation_vector'})

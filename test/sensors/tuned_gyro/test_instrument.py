@@ -1,4 +1,4 @@
-"""The pair of tuned gyros with its errors: each term alone gives what its equation says."""
+"""The pair of tuned gyros with errors: each term alone has the effect of its equation."""
 
 from dataclasses import replace
 import math
@@ -29,7 +29,7 @@ RATE = (0.2, -0.1, 0.3)
 
 @pytest.mark.parametrize('arrangement', ['paper', 'turned'])
 def test_reported_covariance_is_that_of_the_readings(arrangement):
-    """Variances of the combined axes and of the parity, chi-square, all sources of noise on."""
+    """Reported variances of axes and parity match the readings (chi-square) with all noise on."""
     values = {**DTG, 'motion.kind': 'static', 'earth.rotation': False, 'source': 'motion',
               'gyro.dtg.arrangement': arrangement, 'seed': 3,
               OUT + 'angle_random_walk_deg_sqrt_h': [0.02] * 3,
@@ -43,7 +43,7 @@ def test_reported_covariance_is_that_of_the_readings(arrangement):
     got = np.var(np.column_stack((imu.omega, imu.parity)), axis=0)
     print(f'\n{arrangement}: variances measured over reported {(got / want).round(4)}; a pick-off '
           f'adds {one.channel_variances()[0] / (0.02 * math.radians(1) / 60) ** 2 * 0.01:.3f}')
-    # noise of the pick-off is correlated from sample to sample: half as many as there are
+    # Pick-off noise is correlated between samples, so the effective number is half the count.
     n = len(imu) // 2
     assert (got / want > chi2.ppf(QUANTILE, n) / n).all()
     assert (got / want < chi2.isf(QUANTILE, n) / n).all()
@@ -56,7 +56,7 @@ def test_reported_covariance_is_that_of_the_readings(arrangement):
 
 
 def test_zero_errors_are_the_bare_pair_bit_for_bit():
-    """Whatever the defaults say, nothing is added to the rotors."""
+    """With all errors zero the instrument gives the bits of the bare pair."""
     one, bare = instrument(), make_pair(settings(DTG).imu_sensor.gyro, 0.01)
     generator = np.random.default_rng(1)
     for k in range(50):
@@ -77,7 +77,7 @@ EVERYTHING = {
                                        'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 100.0,
                                        'gyro.dtg.fault.start_s': 1.0}])
 def test_everything_on_live_is_offline_and_reset_forgets(more):
-    """The same bits sample by sample, and again after a reset."""
+    """With everything on, samples and blocks agree bit for bit, and again after a reset."""
     s = settings({**EVERYTHING, **more}, source='stream', duration_s=3.0)
     expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
@@ -89,7 +89,7 @@ def test_everything_on_live_is_offline_and_reset_forgets(more):
 
 
 def test_steps_per_sample_bring_rk4_to_a_slow_imu():
-    """The paper's rotor at 100 Hz: 13 steps of 0.77 ms are inside its window, one of 10 is not."""
+    """At 100 Hz RK4 is stable for sapegin_2016 with 13 steps (0.77 ms) a sample, not with 10."""
     rotor = {'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.method': 'rk4'}
     with pytest.raises(ValueError, match='RK4 step is 10 ms, at which this gyro grows; expected '
                        'between 0.332'):
@@ -99,7 +99,7 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
     one.settle(RATE)
     for k in range(1000):
         omega, _ = one.step((k + 1) * 10_000_000, [RATE] * 27, FORCE)
-    # open loop: the gain at rest is -j c/(k2 - j c) = 1
+    # Open loop: the gain at rest is -j c/(k2 - j c) = 1.
     np.testing.assert_allclose(omega, RATE, rtol=1e-9)
     with pytest.raises(ValueError, match='unstable: a root grows with 7.447'):
         instrument({'gyro.dtg.preset': 'sapegin_2016'})
@@ -108,20 +108,20 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
 
 
 def test_rotors_that_run_away_are_a_fault():
-    """Not an infinite reading: one sentence, and a restart settles them anew."""
+    """Diverging rotors raise a fault instead of an infinite reading; a restart settles them."""
     values = {**DTG, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn',
               OUT + 'quantisation_arcsec': [0.3] * 3}
     with pytest.warns(UserWarning, match='unstable'):
         s = settings(values, duration_s=200.0, source='motion')
         motion = make_motion(s.motion_generator.motion, s.motion_generator.datum,
                              s.motion_generator.earth)
-        with pytest.raises(StreamFault, match='the rotors of the gyros have run away at') as fault:
+        with pytest.raises(StreamFault, match='the rotors of the gyros have diverged at') as fault:
             list(imu_blocks(s, motion))
     assert fault.value.restart
 
 
 def test_a_custom_gyro():
-    """By default the tactical one; what no instrument can be is refused with the key's name."""
+    """Preset custom defaults to the tactical gyro; impossible values are named by their key."""
     custom = {'gyro.dtg.preset': 'custom'}
     assert rotor_parameters(settings({**DTG, **custom}).imu_sensor.gyro.dtg) == TACTICAL
     slow = {**custom, 'gyro.dtg.custom.speed_hz': 200.0}
@@ -139,14 +139,14 @@ def test_a_custom_gyro():
     ('cross_feedback_n_m_rad', 0.05, 'with loop closed; expected 0'),
     ('speed_hz', 0.0, 'gyro.dtg.custom.speed_hz is 0; expected a number above 0')])
 def test_bad_gyros_are_refused(key, value, says):
-    """One sentence each."""
+    """Impossible gyros are refused in one sentence that names key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         instrument({'gyro.dtg.preset': 'custom', 'gyro.dtg.custom.' + key: value})
     assert says in str(raised.value) and '\n' not in str(raised.value)
 
 
 def test_channels_have_the_names_of_the_settings():
-    """The choices of the fault are the channels."""
+    """The choices of gyro.dtg.fault.channel are the names of the channels."""
     from dataclasses import fields
     from ins_sim.settings.tuned_gyro import TunedGyroFault
     choices = {f.name: f.metadata['choices'] for f in fields(TunedGyroFault)}['channel']

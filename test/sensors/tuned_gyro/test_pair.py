@@ -1,4 +1,4 @@
-"""Two gyros, four channels: combination, parity, faults, response and drift."""
+"""Two gyros with four channels: combination, parity, faults, response and drift."""
 
 import math
 
@@ -24,19 +24,19 @@ def pair(arrangement='paper', **options):
 
 
 def steps(w, count, dt=DT):
-    """Return body rates (count, 3, 3) of a function of time: step, start-middle-end, axis."""
+    """Return body rates (count, 3, 3) for a function of time: step, start-middle-end, axis."""
     t = dt * (np.arange(count)[:, None] + np.array((0.0, 0.5, 1.0)))
     return np.moveaxis(np.array(np.broadcast_arrays(*w(t))), 0, -1)
 
 
 def tumbling(t):
-    """Return a rate about all axes."""
+    """Return a rate about all three axes."""
     return (0.3 * np.sin(20 * t), 0.5 * np.cos(13 * t), 0.2 * np.sin(31 * t + 1))
 
 
 @pytest.mark.parametrize('arrangement', ARRANGEMENTS)
 def test_combination_is_least_squares(arrangement):
-    """It equals lstsq; the covariance is diag(1/2, 1, 1); parity is the unit null vector."""
+    """The combination equals lstsq, covariance diag(1/2, 1, 1); parity is the null vector."""
     h, combine = channel_axes(arrangement), pair(arrangement).combine
     np.testing.assert_allclose(np.linalg.inv(h.T @ h), np.diag(COVARIANCE_FACTORS), atol=1e-15)
     rows = [combine(row) for row in np.eye(4)]
@@ -48,7 +48,7 @@ def test_combination_is_least_squares(arrangement):
 
 @pytest.mark.parametrize('arrangement', ARRANGEMENTS)
 def test_channels_are_the_body_rates_along_their_axes(arrangement):
-    """A steady rate, settled; each case is a right-handed triad (spin, y_c, z_c)."""
+    """At a steady rate each channel reads the body rate along its axis; cases are right-handed."""
     w = (0.1, -0.2, 0.3)
     gyros, settled = pair(arrangement), pair(arrangement)
     for _ in range(300):
@@ -65,7 +65,7 @@ def test_channels_are_the_body_rates_along_their_axes(arrangement):
 
 
 def test_both_arrangements_give_the_same_rates():
-    """The rotor is isotropic: turning its pick-offs changes nothing but the parity's view."""
+    """Both arrangements give the same rates; turned pick-offs change the parity only."""
     w = steps(tumbling, 500)
     a, b = (pair(arrangement).advance(w) for arrangement in ARRANGEMENTS)
     np.testing.assert_allclose(a[0], b[0], rtol=0, atol=1e-13)
@@ -75,7 +75,7 @@ def test_both_arrangements_give_the_same_rates():
 @pytest.mark.parametrize('arrangement', ARRANGEMENTS)
 @pytest.mark.parametrize('channel', range(4))
 def test_parity_sees_a_fault(arrangement, channel):
-    """Of any channel where the pick-offs are turned, else of the two along x only."""
+    """The parity shows a fault of any channel if turned, otherwise only of the two along x."""
     gyros, w = pair(arrangement), (0.0, 0.0, 0.0)
     gyros.inject(CHANNELS[channel], bias_rad_s=1e-3)
     _, parity = gyros.step(w, w, w)
@@ -87,7 +87,7 @@ def test_parity_sees_a_fault(arrangement, channel):
 
 
 def test_a_dead_channel():
-    """Scale 0: the turned arrangement shows half of what the channel should read."""
+    """With scale 0 on a channel the turned arrangement reads half of its rate in the parity."""
     gyros, w = pair('turned'), (0.2, 0.1, 0.0)
     for _ in range(300):
         y = gyros.channels(w, w, w)
@@ -96,7 +96,7 @@ def test_a_dead_channel():
 
 
 def test_state_can_be_kept_and_set_back():
-    """Bit for bit."""
+    """A saved state that is set back gives the same bits again."""
     w, gyros = steps(tumbling, 100), pair('turned')
     gyros.advance(w[:40])
     kept = gyros.state
@@ -108,14 +108,14 @@ def test_state_can_be_kept_and_set_back():
 
 @pytest.mark.parametrize('axis', range(3))
 def test_response_is_that_of_the_simulation(axis):
-    """Rocking about each body axis at 10 Hz, two different gyros."""
+    """The response matches a simulated rocking about each body axis at 10 Hz, two unlike gyros."""
     w, count = 20 * math.pi, 1000
     gyros = GyroPair((TACTICAL, PRESETS['sapegin_2016_damped']), DT)
 
     def rate(t):
         return [np.cos(w * t) if k == axis else 0.0 * t for k in range(3)]
 
-    # the slow root of sapegin_2016_damped decays with 7.5 1/s
+    # The slow root of sapegin_2016_damped decays with 7.5 1/s.
     settle = 3000
     found = gyros.advance(steps(rate, settle + count))[0][settle:]
     t = DT * (settle + np.arange(count))
@@ -134,7 +134,7 @@ BAD = {"arrangement is 'heap'; expected paper or turned": lambda: pair('heap'),
 
 @pytest.mark.parametrize('sentence', BAD)
 def test_bad_input(sentence):
-    """One sentence each."""
+    """Bad arguments raise an error of one sentence."""
     with pytest.raises(ValueError, match=sentence):
         BAD[sentence]()
 
@@ -142,10 +142,10 @@ def test_bad_input(sentence):
 @pytest.mark.parametrize('preset', ['tactical'])
 def test_drift_of_motion_2_is_the_predicted_one(preset):
     """
-    Within 1 %: the pair's response in the Fourier sum against an attitude integrated at 1 kHz.
+    The drift of motion 2 is within 1 % of the Fourier sum with the response of the pair.
 
-    The Earth stands still, so that n is inertial; the error is that of the readings alone, slope
-    over whole periods.
+    It is measured from an attitude integrated at 1 kHz over whole periods. The Earth does not
+    rotate here, so n is inertial and the error is that of the readings alone.
     """
     values = {**MOTION_2, 'earth.rotation': False}
     generator = settings(values, duration_s=100.0).motion_generator
@@ -167,7 +167,7 @@ def test_drift_of_motion_2_is_the_predicted_one(preset):
         if k + 1 in (settle, settle + count):
             offs.append(quaternion.logarithm(quaternion.multiply(
                 found.q, quaternion.conjugate(true.q))))
-    # from the inertial frame of the start to n
+    # From the inertial frame at the start to n.
     q_start = tuple(motion.at(t[:1]).q_nb[0].tolist())
     measured = np.array(quaternion.rotate(q_start, np.subtract(offs[1], offs[0]) / (count * DT)))
     error = np.linalg.norm(measured - predicted) / np.linalg.norm(predicted)
@@ -178,7 +178,7 @@ def test_drift_of_motion_2_is_the_predicted_one(preset):
 
 
 def test_parity_of_a_healthy_pair_in_motion():
-    """It is -x (w_y + w_z) / sqrt 2, x = j w A / (B Omega) at low frequency, 1 % at 1 Hz."""
+    """The parity in motion is -x (w_y + w_z) / sqrt 2, x = j w A / (B Omega), 1 % at 1 Hz."""
     w, gyros = 2 * math.pi, pair('turned')
     found = gyros.advance(steps(lambda t: (np.cos(w * t), np.cos(w * t), 0.0 * t), 2000))[1]
     lag = TACTICAL.transverse_inertia / (TACTICAL.input_inertia * TACTICAL.omega)

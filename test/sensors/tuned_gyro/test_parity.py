@@ -1,4 +1,4 @@
-"""The parity test: silent while the channels are healthy, loud when one of them is not."""
+"""The parity test raises no alarm for healthy channels and detects faulty ones."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def windows_of(values, duration_s=30.0):
 @pytest.mark.parametrize('arrangement', ['paper', 'turned'])
 @pytest.mark.parametrize('errors', [{}, preset('tactical_dtg')], ids=['perfect', 'tactical'])
 def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
-    """At rest, turning, rocking and in flight; errors of the preset or none; five seeds."""
+    """No alarm at rest, turning, rocking, in flight, with and without errors, for five seeds."""
     closest = 0.0
     for seed in range(5 if errors else 1):
         found = windows_of({**motion, **errors, 'seed': seed,
@@ -47,7 +47,7 @@ def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
     ('paper', 'gyro_1_z', False), ('paper', 'gyro_2_y', False),
     *(('turned', c, True) for c in ('gyro_1_y', 'gyro_1_z', 'gyro_2_y', 'gyro_2_z'))])
 def test_a_fault_is_seen_where_the_parity_can_see_it(arrangement, channel, seen):
-    """50 deg/h on one channel of the tactical preset, from 10 to 20 s."""
+    """A fault of 50 deg/h from 10 to 20 s is detected exactly where the parity can show it."""
     found = windows_of({**TABLE, **preset('tactical_dtg'), **FAULT, 'seed': 2,
                         'gyro.dtg.arrangement': arrangement, 'gyro.dtg.fault.channel':
                             channel, 'gyro.dtg.fault.bias_deg_h': 50.0})
@@ -59,7 +59,7 @@ def test_a_fault_is_seen_where_the_parity_can_see_it(arrangement, channel, seen)
 
 
 def test_a_dead_channel_is_seen_while_it_turns():
-    """A reading that stays at zero is a fault only of a gyro that turns."""
+    """A channel stuck at zero is detected only while the gyro turns."""
     dead = {**FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.scale': 0.0,
             **preset('tactical_dtg')}
     turning = windows_of({**dead, 'motion.kind': 'rocking', 'motion.rocking.axis': 'x',
@@ -70,19 +70,19 @@ def test_a_dead_channel_is_seen_while_it_turns():
 
 
 def test_a_fixed_threshold_and_window():
-    """They hold as they are given."""
+    """A threshold and a window set by hand are used as given."""
     values = {**TABLE, 'gyro.dtg.parity.threshold_deg_h': 2.0, 'gyro.dtg.parity.window_s': 0.5,
               **FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 2.9}
     found = windows_of(values)
     assert len(found) == 60 and np.allclose(found[:, 2], 2.0 * DEG_H)
     inside = (found[:, 0] > 10.0) & (found[:, 0] < 20.0)
-    # 2.9/sqrt 2 deg/h is beyond 2 deg/h by 2.5 %
+    # 2.9/sqrt 2 deg/h exceeds 2 deg/h by 2.5 %.
     assert np.allclose(found[inside, 1], 2.9 * DEG_H / np.sqrt(2.0), rtol=1e-6)
     assert np.array_equal(found[:, 3] == 1.0, inside)
 
 
 def test_before_the_first_window():
-    """Nothing is said, and a reset says nothing again."""
+    """Before the first window there is no mean and no alarm, and again after a reset."""
     s = settings({**DTG, **TABLE}).imu_sensor
     test = ParityTest(s, PairInstrument(s))
     for _ in range(2):
@@ -95,7 +95,7 @@ def test_before_the_first_window():
 
 @pytest.mark.parametrize('count', [0, 1, 99, 100, 101, 1234])
 def test_windows_of_a_run_are_those_of_its_readings(count):
-    """Rows and windows of arrays equal those of pushes, bit for bit."""
+    """Windows and rows computed from arrays equal those of single readings, bit for bit."""
     rng = np.random.default_rng(6)
     imu = ImuSamples((1 + np.arange(count)) * 10_000_000, rng.normal(size=(count, 3)),
                      rng.normal(size=(count, 3)), 1e-4 * rng.normal(size=count))

@@ -1,4 +1,4 @@
-"""The dynamically tuned gyro against its equations, an ODE solver and the figures of the spec."""
+"""The dynamically tuned gyro compared with its equations, an ODE solver and published figures."""
 
 from dataclasses import replace
 import math
@@ -36,7 +36,7 @@ def real_form(p, w):
 
 @pytest.mark.parametrize('w', [-3.0, 0.7, 60.0, 2500.0])
 def test_transfer_function_is_that_of_the_real_equations(w):
-    """The complex form with v = theta' + u is the real one, to rounding."""
+    """The complex form with v = theta' + u equals the real equations to rounding."""
     for p in [SAPEGIN, DAMPED, *draws(20)]:
         direct, cross = state_space(p).axis_responses(w)
         expected = real_form(p, w)
@@ -45,7 +45,11 @@ def test_transfer_function_is_that_of_the_real_equations(w):
 
 
 def test_response_and_roots_are_those_of_the_matrices():
-    """Against LAPACK: (s - F)^-1 g, and the eigenvalues of F; a double root to half its digits."""
+    """
+    Response and roots agree with LAPACK: (s - F)^-1 g and the eigenvalues of F.
+
+    A double root agrees to half its digits.
+    """
     omega = np.array([-3000.0, -1.0, 0.0, 0.3, 200.0, 2600.0])
     for p in [SAPEGIN, DAMPED, TACTICAL, replace(TACTICAL, damping_ratio=0.6), *draws(20)]:
         space = state_space(p)
@@ -74,7 +78,7 @@ def test_closed_loop_places_the_roots():
 
 
 def test_margin_tells_stability():
-    """A c^2 < H c f + k2 f^2 holds where every root decays, and nowhere else."""
+    """A c^2 < H c f + k2 f^2 holds if and only if every root decays."""
     kinds = set()
     for p in draws(100):
         for speed in (p.speed_hz, 0.99 * p.speed_hz, 1.01 * p.speed_hz):
@@ -85,7 +89,7 @@ def test_margin_tells_stability():
 
 
 def test_figures_of_paper():
-    """Time constant, growth of the nutation and RK4 window of the spec, to its digits."""
+    """Time constant, growth of the nutation and RK4 window of sapegin_2016 are as specified."""
     found = tuned_gyro_report(SAPEGIN)
     print('\n' + '\n'.join(found.lines()))
     assert found.time_constant_s == pytest.approx(0.133652, abs=5e-7)
@@ -95,13 +99,13 @@ def test_figures_of_paper():
                                        pytest.approx(1.099, abs=5e-4))
     damped = tuned_gyro_report(DAMPED)
     assert damped.stable and damped.rk4_window_s[0] == 0.0
-    # physically stable above 129.5 Hz
+    # Physically stable above 129.5 Hz.
     assert tuned_gyro_report(replace(DAMPED, speed_hz=129.6)).stable
     assert not tuned_gyro_report(replace(DAMPED, speed_hz=129.4)).stable
 
 
 def test_figures_of_tactical():
-    """-3 dB, peak and gain at 10 Hz of the spec, to its digits."""
+    """Bandwidth, peak and gain at 10 Hz of the tactical gyro are as specified."""
     found = tuned_gyro_report(TACTICAL)
     gain = abs(state_space(TACTICAL).axis_responses(20 * math.pi)[0])
     print('\n' + '\n'.join([*found.lines(), f'|G(10 Hz)| = {gain:.6f}']))
@@ -113,7 +117,7 @@ def test_figures_of_tactical():
 
 
 def test_the_printed_equation_diverges():
-    """With one sign of the coupling in both rows it grows as exp(2575 t)."""
+    """The equation as printed, with one sign of both couplings, diverges as exp(2575 t)."""
     p = SAPEGIN
     a, f, h, c = p.transverse_inertia, p.damping, p.momentum, p.coupling
     grow = np.roots([a, f - h, -c]).real.max()
@@ -122,7 +126,7 @@ def test_the_printed_equation_diverges():
 
 
 def test_residual_stiffness_of_another_speed():
-    """Hinges fixed at the nominal speed leave k2 = -2 K_t dOmega / Omega (section 6)."""
+    """Hinges tuned at the nominal speed give k2 = -2 K_t dOmega / Omega at another (section 6)."""
     hinges = (1e-7 - 0.5 * 1.5e-7) * SAPEGIN.omega ** 2
     assert SAPEGIN.stiffness() == 0.0
     assert SAPEGIN.stiffness(230.0 * (1 + 1e-6)) == pytest.approx(-2e-6 * hinges, rel=1e-5)
@@ -150,7 +154,7 @@ BAD = {
 
 @pytest.mark.parametrize('sentence', BAD)
 def test_parameters_that_no_instrument_has(sentence):
-    """One sentence that names key, value and expectation."""
+    """Impossible parameters raise an error that names key, value and expectation."""
     with pytest.raises(ValueError, match=sentence) as caught:
         replace(SAPEGIN, **BAD[sentence])
     assert '\n' not in str(caught.value)

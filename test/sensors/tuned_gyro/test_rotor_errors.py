@@ -1,4 +1,4 @@
-"""Errors of the rotors: each term alone gives the drift its equation says."""
+"""Errors of the rotors: each term alone causes the drift of its equation."""
 
 from dataclasses import replace
 import math
@@ -20,7 +20,7 @@ A, B, OMEGA = TACTICAL.transverse_inertia, TACTICAL.input_inertia, TACTICAL.omeg
 
 
 def steady(values, w, force, steps=400):
-    """Return rates and parity after settling at a constant body rate and specific force."""
+    """Return rates and parity after settling at constant body rate and specific force."""
     one = instrument(values)
     one.settle(w)
     dt_ns = 10_000_000
@@ -37,7 +37,7 @@ def combined(channels, arrangement='paper'):
 
 FORCE = (2.0, -3.0, 9.0)
 RATE = (0.2, -0.1, 0.3)
-# a, along (y, z, spin) of the two cases: gyro 1 has body (x, y, z), gyro 2 body (z, x, y)
+# Acceleration along (y, z, spin) of both cases: gyro 1 has body (x, y, z), gyro 2 body (z, x, y).
 ALONG = {0: (2.0, -3.0, 9.0), 1: (-3.0, 2.0, 9.0), 2: (9.0, 2.0, -3.0), 3: (2.0, 9.0, -3.0)}
 
 
@@ -48,18 +48,18 @@ ALONG = {0: (2.0, -3.0, 9.0), 1: (-3.0, 2.0, 9.0), 2: (9.0, 2.0, -3.0), 3: (2.0,
     ('spin_axis_deg_h_g', DEG_H / G, lambda own, other, spin: spin),
     ('anisoelastic_deg_h_g2', DEG_H / G ** 2, lambda own, other, spin: spin * own)])
 def test_drift_by_specific_force(key, unit, expected, channel):
-    """Same axis, other axis, spin axis, product of spin and same axis; one channel alone."""
+    """Specific force on the same, other and spin axis drifts one channel as specified."""
     values = [0.0] * 4
     values[channel] = 2.0
     change = steady({ERRORS + key: values}, (0.0,) * 3, FORCE)
     channels = [0.0] * 4
     channels[channel] = 2.0 * unit * expected(*ALONG[channel])
-    # the rotors settle to the new moment with the slowest root, exp(-4 s x 220/s)
+    # The rotors settle to the new moment with the slowest root: exp(-4 s x 220/s).
     np.testing.assert_allclose(change, combined(channels), rtol=1e-9, atol=1e-18)
 
 
 def test_null_offset_of_the_pick_off():
-    """(k2 - j fe Omega) theta0/(j B Omega): -0.0406 deg/h on the same axis for 10 urad."""
+    """Pick-off offset: (k2 - j fe Omega) theta0/(j B Omega), -0.0406 deg/h for 10 urad."""
     change = steady({ERRORS + 'pickoff_offset_urad': [10.0, 0.0, 0.0, 0.0]}, (0.0,) * 3, FORCE)
     drift = -TACTICAL.rotating_damping_n_m_s * 1e-5 / B
     print(f'\n10 urad: {drift / DEG_H:.5f} deg/h by the equation, {2 * change[0] / DEG_H:.5f} '
@@ -69,7 +69,11 @@ def test_null_offset_of_the_pick_off():
 
 
 def test_speed_off_the_nominal_one():
-    """Scale Omega/Omega_nom; with an offset of the pick-off dk2 = -2 K_t dOmega/Omega besides."""
+    """
+    Off the nominal speed the scale is Omega/Omega_nom; a pick-off offset adds a drift.
+
+    The drift comes from dk2 = -2 K_t dOmega/Omega.
+    """
     e = 80e-6
     change = steady({ERRORS + 'speed_ppm': [80.0, 0.0]}, RATE, FORCE) - steady({}, RATE, FORCE)
     np.testing.assert_allclose(change, combined([e * RATE[0], e * RATE[1], 0.0, 0.0]), rtol=1e-6)
@@ -77,12 +81,12 @@ def test_speed_off_the_nominal_one():
     detuned = steady({**offset, ERRORS + 'speed_ppm': [80.0, 0.0]}, (0.0,) * 3, FORCE)
     k2 = -2.0 * TACTICAL.stiffness(0.0) * e
     drift = complex(k2, -TACTICAL.rotating_damping_n_m_s * OMEGA) * 1e-5 / (1j * B * OMEGA)
-    # second order in the speed error
+    # Second-order terms in the speed error.
     np.testing.assert_allclose(detuned, combined([drift.real, drift.imag, 0.0, 0.0]), rtol=2e-4)
 
 
 def test_hunting():
-    """A sinusoid of the scale, the mean of each interval, and of the detuning."""
+    """Hunting modulates scale and detuning by a sinusoid, averaged over each interval."""
     values = {ERRORS + 'hunting_ppm': [50.0, 0.0], ERRORS + 'hunting_hz': 2.0,
               ERRORS + 'pickoff_offset_urad': [0.0, 100.0, 0.0, 0.0]}
     one = instrument(values)
@@ -99,13 +103,13 @@ def test_hunting():
     ends = 2.0 * math.pi * 2.0 * dt * np.arange(401)
     wave = 50e-6 * -np.diff(np.cos(ends)) / (ends[1] - ends[0])
     drift = wave * (complex(RATE[0], RATE[1]) + kappa)
-    # through the rotor and its loop: the phase at 2 Hz; compare amplitude by the response there
+    # The rotor and its loop shift the phase at 2 Hz; compare amplitudes with the response there.
     gain = state_space(TACTICAL)
     through = gain.c @ np.linalg.solve(2j * math.pi * 2.0 * np.eye(3) - gain.f, gain.moment)
     fit = np.exp(1j * 2.0 * math.pi * 2.0 * dt * (np.arange(400) + 0.5))
     got = np.mean((added[100:, 0] + 1j * added[100:, 1]) * fit.conj()[100:])
     want = np.mean(drift[100:] * fit.conj()[100:]) * through
-    # the wave is held over each interval
+    # The wave is held over each interval.
     assert abs(got - want) <= 2e-3 * abs(want)
     assert not added[:, 2:].any()
 
@@ -116,7 +120,7 @@ def _begun(one, t_ns):
 
 
 def test_spin_rate_product():
-    """((B - A)/(B Omega)) u_s u with 3.007e-4 s."""
+    """The spin rate product drifts by ((B - A)/(B Omega)) u_s u, with 3.007e-4 s."""
     product = (B - A) / (B * OMEGA)
     print(f'\n(B - A)/(B Omega) = {product:.4e} s, A/(B Omega) = {A / (B * OMEGA):.4e} s')
     assert f'{product:.3e}' == '3.007e-04'
@@ -127,11 +131,11 @@ def test_spin_rate_product():
 
 
 def test_cross_coupling_of_angular_acceleration():
-    """(A/(B Omega)) u' on the other axis, 3.913e-4 s, is in the rotor's own equation."""
+    """The rotor equation contains the cross-coupling (A/(B Omega)) u', 3.913e-4 s."""
     assert f'{A / (B * OMEGA):.3e}' == '3.913e-04'
     omega = 1e-2
     _, cross = state_space(TACTICAL).axis_responses(np.array([omega]))
-    # as omega goes to 0 the rotor is held still, and only the moment A u' is left
+    # As omega approaches 0 the rotor is held still and only the moment A u' remains.
     assert abs(cross[0] - 1j * omega * A / (B * OMEGA)) <= 1e-4 * abs(cross[0])
 
 
@@ -140,8 +144,8 @@ def precession(ring, u_0, phase):
     Return the drift of a free rotor under U cos(2 Omega t + phase) about the axis y of the case.
 
     Hinge 1 turns ring and rotor about x, hinge 2 the rotor about y: Euler's equations of both in
-    the axes of the shaft, tuned, without damping.  ring: factor of its inertias.  The precession
-    of the free rotor is -(B/J) of the drift.
+    the axes of the shaft, tuned, without damping. ring: factor of the ring's inertias. The
+    precession of the free rotor is -(B/J) times the drift.
     """
     omega = OMEGA
     jr, je = TACTICAL.rotor_axial_kg_m2, TACTICAL.rotor_equatorial_kg_m2
@@ -164,16 +168,17 @@ def precession(ring, u_0, phase):
     t = np.linspace(0.0, length, 40001)
     found = solve_ivp(rate, (0.0, length), (0.0,) * 4, 'DOP853', t, rtol=1e-11, atol=1e-16)
     tilt = (found.y[0] + 1j * found.y[1]) * np.exp(1j * omega * t)
-    # at the start: to second order the ring detunes the rotor, which turns the precession later
+    # Use the slope at the start: to second order the ring detunes the rotor, which later turns the
+    # precession.
     return -(jr + jq) / (jr + 0.5 * jk) * np.polyfit(t, tilt, 4)[-2]
 
 
 @pytest.mark.parametrize('ring', [1.0, 0.3])
 def test_vibration_at_twice_the_speed(ring):
     """
-    The factor 1.18e-3 against rotor and ring integrated in the axes of the shaft.
+    The vibration factor 1.18e-3 agrees with rotor and ring integrated in the shaft's axes.
 
-    It is of first order in the ring; the second is of the size of 2 dJ/g, 8 % for a whole ring.
+    It is of first order in the ring. The second order is about 2 dJ/g, 8 % for a whole ring.
     """
     p = replace(TACTICAL, ring_axial_kg_m2=ring * TACTICAL.ring_axial_kg_m2,
                 ring_equatorial_kg_m2=ring * TACTICAL.ring_equatorial_kg_m2)
@@ -186,7 +191,7 @@ def test_vibration_at_twice_the_speed(ring):
 
 
 def test_vibration_reaches_the_reading():
-    """As a constant drift at the phase of the vibration to the hinges; 1.2e-3 of the amplitude."""
+    """Vibration at twice the speed reads as a constant drift of 1.2e-3 of its amplitude."""
     assert f'{TACTICAL.vibration_2n_factor:.1e}' == '1.2e-03'
     change = steady({ERRORS + 'vibration_2n_deg_s': [2.0, 0.0],
                      ERRORS + 'vibration_2n_phase_deg': [30.0, 0.0]}, (0.0,) * 3, FORCE)
@@ -196,7 +201,7 @@ def test_vibration_reaches_the_reading():
 
 
 def test_a_flat_rotor_has_no_such_vibration():
-    """Jr = 2 Jer: refused in one sentence."""
+    """A flat rotor (Jr = 2 Jer) with vibration at twice the speed is refused."""
     flat = {'gyro.dtg.preset': 'custom', 'gyro.dtg.custom.rotor_axial_kg_m2': 5.64e-6,
             ERRORS + 'vibration_2n_deg_s': [1.0, 0.0]}
     with pytest.raises(ValueError, match='twice rotor_equatorial_kg_m2 with a vibration'):
@@ -204,7 +209,7 @@ def test_a_flat_rotor_has_no_such_vibration():
 
 
 def test_errors_of_the_read_out_are_by_channel():
-    """A bias of x is on both channels of x, its turn-on bias is not the same on both."""
+    """A bias of body x acts on both channels of x; their turn-on biases are independent."""
     change = steady({OUT + 'bias_deg_h': [3.0, 0.0, 0.0]}, RATE, FORCE) - steady({}, RATE, FORCE)
     np.testing.assert_allclose(change, combined([3.0 * DEG_H, 0.0, 0.0, 3.0 * DEG_H]), atol=1e-17)
     drawn = steady({OUT + 'turn_on_bias_sigma_deg_h': [3.0, 0.0, 0.0], 'seed': 4}, RATE, FORCE)
@@ -212,6 +217,6 @@ def test_errors_of_the_read_out_are_by_channel():
     assert abs(drawn[3]) > 0.01 * DEG_H and not drawn[1:3].any()
     turned = steady({OUT + 'misalignment_mrad': [0.0, 1.0, 0.0]}, RATE, FORCE)
     turned = turned - steady({}, RATE, FORCE)
-    # w x m to first order, the same on both gyros: the second order of 1 mrad
+    # w x m to first order, the same on both gyros; the tolerance is the second order of 1 mrad.
     np.testing.assert_allclose(turned[:3], np.cross(RATE, (0.0, 1e-3, 0.0)), atol=4e-7)
     assert abs(turned[3]) <= 1e-15

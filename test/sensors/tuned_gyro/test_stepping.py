@@ -1,4 +1,4 @@
-"""Stepping a tuned gyro: against an ODE solver, in any cutting, inside the window of RK4."""
+"""Stepping a tuned gyro: against an ODE solver, in any cutting, and inside the RK4 window."""
 
 from dataclasses import replace
 import math
@@ -22,7 +22,7 @@ STABLE = {'sapegin_2016_damped': DAMPED, 'tactical': TACTICAL,
 
 
 def solved(space, u, steps, dt):
-    """Return mean readings (steps,) and states (steps + 1, n) by DOP853 at 1e-12."""
+    """Return mean readings (steps,) and states (steps + 1, n) from DOP853 at 1e-12."""
     n = len(space.g)
 
     def slope(t, z):
@@ -43,10 +43,11 @@ def triples(u, steps, dt):
 @pytest.mark.parametrize('name', STABLE)
 def test_exact_steps_against_an_ode_solver(name):
     """
-    20 Hz, 1 ms: 1e-6 of the reading's amplitude (quadratic hold), (w h)^2 / 12 (linear).
+    Exact steps agree with an ODE solver at 20 Hz and 1 ms.
 
-    The start from zero with a jump of the rate is in it; later the error is a third of that.  The
-    reading of an instant, which no sample gives, is held to twice as much.
+    Tolerance: 1e-6 of the amplitude of the reading for quadratic hold, (w h)^2 / 12 for linear
+    hold, including the start from zero with a jump of the rate (later errors are a third of that).
+    The reading of an instant, which no sample gives, has twice the tolerance.
     """
     p, dt, steps, w = STABLE[name], 1e-3, 200, 40 * math.pi
 
@@ -69,7 +70,7 @@ def test_exact_steps_against_an_ode_solver(name):
 @pytest.mark.parametrize('name', STABLE)
 @pytest.mark.parametrize('dt', [0.75e-3, 0.01])
 def test_exact_matrices_are_those_of_scipy(name, dt):
-    """The exponential of state and reading for a constant rate, to 1e-13 of each row."""
+    """The matrices for a constant rate equal SciPy's exponential to 1e-13 of each row."""
     space = state_space(STABLE[name])
     n = len(space.g)
     big = np.zeros((n + 2, n + 2), dtype=complex)
@@ -85,7 +86,7 @@ def test_exact_matrices_are_those_of_scipy(name, dt):
 
 @pytest.mark.parametrize('hz', [1, 5, 10, 20, 50, 100])
 def test_frequency_response_by_simulation(hz):
-    """`tactical` within 1e-4 of the transfer function; the step is 0.5 ms, see below at 1 ms."""
+    """The simulated tactical gyro matches its transfer function within 1e-4 (0.5 ms steps)."""
     w = 2 * math.pi * hz
     expected = state_space(TACTICAL).axis_responses(w)
     for dt, bound in ((0.5e-3, 1e-4), (1e-3, 2e-4)):
@@ -104,7 +105,7 @@ def test_frequency_response_by_simulation(hz):
 
 @pytest.mark.parametrize('p', [SAPEGIN, TACTICAL], ids=['sapegin_2016', 'tactical'])
 def test_rk4_matrices_are_the_program_of_the_paper(p):
-    """The linear map of a step equals the four stages written out, to rounding."""
+    """The RK4 matrices equal the four stages of Sapegin et al. written out, to rounding."""
     dt, space, gyro = 0.75e-3, state_space(p), TunedGyro(p, 0.75e-3, method='rk4')
     x = np.zeros(len(space.g), dtype=complex)
     for k in range(40):
@@ -139,7 +140,7 @@ def test_any_cutting_gives_the_same_bits(name):
 
 
 def test_steps_are_those_of_the_modes():
-    """Where the roots are apart, the state moves mode by mode: eigenvectors of the physics."""
+    """With separate roots the state moves mode by mode along the eigenvectors."""
     u = np.exp(1j * np.arange(600).reshape(200, 3))
     for p in (DAMPED, STABLE['tactical, zeta 0.7']):
         gyro = TunedGyro(p, 1e-3)
@@ -154,7 +155,7 @@ def test_steps_are_those_of_the_modes():
 
 
 def test_change_of_speed():
-    """The reading scales as Omega / Omega_nom (closed loop), the tilt is kept."""
+    """After a change of speed the closed-loop reading scales as Omega / Omega_nom."""
     gyro = TunedGyro(TACTICAL, 1e-3)
     for _ in range(300):
         steady = gyro.step(1.0, 1.0, 1.0)
@@ -165,7 +166,7 @@ def test_change_of_speed():
     for _ in range(300):
         steady = gyro.step(1.0, 1.0, 1.0)
     assert steady == pytest.approx(1.001, abs=1e-12)
-    # open loop: the read-out is the nominal one, k2 turns the reading into the other axis
+    # Open loop: the read-out stays nominal, and k2 turns the reading into the other axis.
     c = SAPEGIN.rotating_damping_n_m_s * 2 * math.pi * 231.0 + SAPEGIN.cross_feedback_n_m_rad
     expected = 231.0 / 230.0 * SAPEGIN.coupling / complex(c, SAPEGIN.stiffness(231.0))
     assert state_space(SAPEGIN, 231.0).response(0.0) == pytest.approx(expected, rel=1e-12)
@@ -186,7 +187,7 @@ UNSTABLE = {
 
 @pytest.mark.parametrize('sentence', UNSTABLE)
 def test_instruments_that_would_grow_are_refused(sentence):
-    """Unless a warning is asked for."""
+    """Gyros whose steps would diverge are refused unless a warning is requested."""
     parameters, dt, options = UNSTABLE[sentence]
     with pytest.raises(ValueError, match=sentence):
         TunedGyro(parameters, dt, **options)
@@ -197,7 +198,7 @@ def test_instruments_that_would_grow_are_refused(sentence):
 
 @pytest.mark.parametrize('dt', [0.34e-3, 0.75e-3, 1.09e-3])
 def test_rk4_inside_its_window_takes_the_paper_preset(dt):
-    """No warning, no refusal; a constant rate is read but for what is left of the transient."""
+    """Inside its RK4 window sapegin_2016 is accepted and settles to a constant rate."""
     gyro = TunedGyro(SAPEGIN, dt, method='rk4')
     last = [gyro.step(1.0, 1.0, 1.0) for _ in range(20000)][-1]
     roots = np.array(tuned_gyro_report(SAPEGIN).roots)

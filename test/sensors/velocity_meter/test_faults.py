@@ -1,4 +1,4 @@
-"""What the velocity meter cannot measure, and bad streams of truth and INS."""
+"""The velocity meter outside its limits, and with bad streams of truth and INS."""
 
 import math
 import warnings
@@ -27,7 +27,7 @@ MODES = ('signal', 'surrogate')
     ({}, ('v', (100.0, 0.0, -101.0)), 'sideslip or angle of attack beyond 45 deg'),
     ({'drop_outs.start_s': [0.149], 'drop_outs.end_s': [0.151]}, None, CALM)])
 def test_windows_that_measure_nothing(mode, terms, change, says):
-    """Window 2 says why, with NaN and no warning; its neighbours are as if nothing was."""
+    """A window outside the limits gives NaN and its reason; other windows are unaffected."""
     s = meter_settings({'mode': mode, 'window.cycles': 10, **terms})
     t_ns, v_b, height = flight(40)
     usual = VelocityMeter(meter_settings(mode=mode, window__cycles=10)).advance(t_ns, v_b, height)
@@ -45,7 +45,7 @@ def test_windows_that_measure_nothing(mode, terms, change, says):
 @pytest.mark.parametrize('start, end, lost', [(0.1, 0.2, [2]), (0.0999, 0.2001, [1, 2, 3]),
                                               (0.0, 0.1, [1]), (0.25, 0.26, [3]), (0.4, 9.0, [])])
 def test_the_schedule_of_drop_outs(start, end, lost):
-    """The windows (0, 0.1], (0.1, 0.2], ... that overlap are invalid, whatever else is wrong."""
+    """Windows (0, 0.1], (0.1, 0.2], ... that overlap a scheduled drop-out are invalid."""
     s = meter_settings({'window.cycles': 10, 'drop_outs.start_s': [start, 20.0],
                         'drop_outs.end_s': [end, 30.0]})
     fixes = VelocityMeter(s).advance(*flight(40))
@@ -53,7 +53,7 @@ def test_the_schedule_of_drop_outs(start, end, lost):
 
 
 def test_standing_still():
-    """An hour on the ground is invalid fixes, neither exception nor warning."""
+    """An hour on the ground gives invalid fixes, without exception or warning."""
     for mode in MODES:
         meter = VelocityMeter(meter_settings(mode=mode, attack_angle='ins', window__cycles=100))
         t_ns, v_b, height = flight(1000, (0.0, 0.0, 0.0))
@@ -64,20 +64,20 @@ def test_standing_still():
 
 
 def test_without_an_ins():
-    """A window waits for it, in order, and for no longer than WAIT_NS."""
+    """Windows wait for the INS, in order, at most WAIT_NS; then their fixes are invalid."""
     s = meter_settings(attack_angle='ins', window__cycles=100)
     meter, seconds = VelocityMeter(s), WAIT_NS // 1_000_000_000
     fixes = meter.advance(*flight(100 * (seconds + 2)))
     assert [(fix.end_ns, fix.status) for fix in fixes] == \
         [(m * 100 * DT_NS, NO_INS) for m in (1, 2)]
-    # it comes late: what it did not see is invalid, and nothing waits any more
+    # The INS arrives late: windows that it did not see are invalid, and nothing waits any longer.
     fixes = meter.push_ins(100 * (seconds + 2) * DT_NS, (V, 0.0, 0.0))
     assert [fix.status for fix in fixes] == [NO_INS] * (seconds - 1) + ['valid']
 
 
 @pytest.mark.parametrize('v', [(0.0, 0.0, 0.0), (-200.0, 0.0, 1.0), (10.0, 0.0, 11.0)])
 def test_an_ins_that_gives_no_angle(v):
-    """The fix says so."""
+    """A fix is invalid, with the reason, if the INS velocity gives no angle of attack."""
     s = meter_settings(attack_angle='ins', window__cycles=10)
     t_ns, v_b, height = flight(10)
     fix, = VelocityMeter(s).advance(t_ns, v_b, height, np.tile(v, (11, 1)))
@@ -98,7 +98,7 @@ def pushed(meter, cycles):
     (12, (V, 0.0, 0.0), 500.0, True, 'has a gap from 0.100000000 s to 0.120000000 s'),
     (10.5, (V, 0.0, 0.0), 500.0, False, 'lies between the cycles of rate_hz')])
 def test_faults_of_the_truth(t, v, height, restart, says):
-    """They are told in one sentence; a dropped sample leaves the meter intact."""
+    """Faults of the truth raise one sentence; a dropped sample leaves the meter unaffected."""
     meter = pushed(VelocityMeter(meter_settings(window__cycles=20)), 10)
     with pytest.raises(StreamFault, match=says) as raised:
         meter.push_truth(round(t * DT_NS), v, height)
@@ -115,7 +115,7 @@ def pushed_fixes():
 
 
 def test_jitter_and_repeats():
-    """Stamps off by a tenth of a period, and a first sample that is repeated, change nothing."""
+    """Stamps off by a tenth of a period and a repeated first sample change nothing."""
     meter = VelocityMeter(meter_settings(window__cycles=20))
     t_ns, v_b, height = flight(20)
     found = []
@@ -128,7 +128,7 @@ def test_jitter_and_repeats():
 
 
 def test_faults_of_the_ins():
-    """NaN is dropped, a repeat passed over; a jump back and a gap are none."""
+    """NaN from the INS is dropped and a repeat ignored; a jump back or gap raises no fault."""
     meter = VelocityMeter(meter_settings(attack_angle='ins', window__cycles=20))
     with pytest.raises(StreamFault, match='INS velocity at 0.010000000 s holds') as raised:
         meter.push_ins(DT_NS, (V, math.nan, 0.0))
@@ -136,6 +136,6 @@ def test_faults_of_the_ins():
     for k in (1, 1, 50):
         assert meter.push_ins(k * DT_NS, (V, 0.0, 0.0)) == []
     assert meter.push_ins(40 * DT_NS, (V, 0.0, 0.0)) == []
-    # who does not ask the INS does not mind it
+    # Without the use of an INS its faults do not matter.
     deaf = VelocityMeter(meter_settings())
     assert [deaf.push_ins(k, (math.nan, 0.0, 0.0)) for k in (5, 3)] == [[], []]

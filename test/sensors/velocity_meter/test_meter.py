@@ -1,4 +1,4 @@
-"""The velocity meter as an instrument: windows, streams, the angle of attack, invalid fixes."""
+"""The velocity meter as an instrument: windows, streams, angle of attack, invalid fixes."""
 
 import math
 
@@ -17,7 +17,7 @@ MODES = ('signal', 'surrogate')
 
 
 def wavy(cycles, first=0):
-    """Return t_ns, v_b, height of a flight that speeds up, slips and climbs."""
+    """Return t_ns, v_b, height of a flight that accelerates, slips and climbs."""
     t_ns, v_b, height = flight(cycles, first=first)
     s = t_ns * 1e-9
     v_b[:, 0], v_b[:, 1], v_b[:, 2] = V + 3.0 * s, 4.0 * np.sin(s), -5.0 + np.cos(2.0 * s)
@@ -25,7 +25,7 @@ def wavy(cycles, first=0):
 
 
 def test_windows():
-    """Window m is ((m - 1) N dt, m N dt]; stamps, arrival and mean are those of the window."""
+    """Window m is ((m - 1) N dt, m N dt], with its stamps, arrival and mean velocity."""
     s = meter_settings({**PERFECT, 'window.cycles': 7, 'window.latency_ms': 12.5})
     t_ns, v_b, height = wavy(30)
     fixes = VelocityMeter(s).advance(t_ns, v_b, height)
@@ -35,7 +35,7 @@ def test_windows():
         part = v_b[7 * m:7 * m + 8]
         mean = np.trapezoid(part, axis=0) if hasattr(np, 'trapezoid') else np.trapz(part, axis=0)
         assert fix.valid and fix.cycles == 7 and fix.arrival_ns == fix.end_ns + 12_500_000
-        # without an angle of attack both are read large by 1/cos(alpha)^2
+        # Without an angle of attack both velocities read large by 1/cos(alpha)^2.
         scale = 1.0 + (mean[2] / mean[0]) ** 2
         assert fix.velocity == pytest.approx(tuple(scale * mean[:2] / 7), rel=1e-12)
         assert fix.sigma == (1e-3, 1e-3) and fix.tan_alpha == 0.0
@@ -44,7 +44,7 @@ def test_windows():
 @pytest.mark.parametrize('first, windows', [(0, 3), (1, 2), (9, 2), (10, 2), (11, 1), (-10, 3),
                                             (-3, 3), (20, 1), (21, 0)])
 def test_a_window_that_was_not_seen_from_its_start_is_not_reported(first, windows):
-    """Nor is one before motion time zero."""
+    """A window whose start was not seen, or that begins before time zero, is not reported."""
     meter = VelocityMeter(meter_settings(window__cycles=10))
     fixes = meter.advance(*flight(30 - first, first=first))
     assert [fix.end_ns // DT_NS for fix in fixes] == [10, 20, 30][3 - windows:]
@@ -53,7 +53,7 @@ def test_a_window_that_was_not_seen_from_its_start_is_not_reported(first, window
 @pytest.mark.parametrize('mode', MODES)
 @pytest.mark.parametrize('attack', ['ins', 'none'])
 def test_numbers_do_not_depend_on_when_the_stream_is_joined(mode, attack):
-    """Window 5 is the same to the bit from 0, from its start, and after a reset."""
+    """Window 5 has the same bits from time 0, from its own start, and after a reset."""
     s = meter_settings(mode=mode, attack_angle=attack, window__cycles=5)
     t_ns, v_b, height = wavy(25)
     meter = VelocityMeter(s)
@@ -70,7 +70,7 @@ def test_numbers_do_not_depend_on_when_the_stream_is_joined(mode, attack):
        lead=st.lists(st.integers(0, 20), min_size=41, max_size=41),
        cuts=st.lists(st.integers(1, 40), max_size=5))
 def test_any_cutting_gives_the_same_bits(mode, attack, cycles, lead, cuts):
-    """Blocks, single pushes, and the INS ahead of the truth or behind it."""
+    """Blocks, single pushes, and an INS ahead or behind give the same bits."""
     s = meter_settings(mode=mode, attack_angle=attack, window__cycles=cycles)
     t_ns, v_b, height = wavy(40)
     ins_v_b = v_b + 0.1
@@ -99,9 +99,9 @@ def test_any_cutting_gives_the_same_bits(mode, attack, cycles, lead, cuts):
 @example(order=[False] * 134)
 def test_a_run_after_a_jump_back_is_whole(order):
     """
-    Truth or INS may jump first: windows of the new run have all of its angles and no older one.
+    After truth or INS has jumped back, windows of the new run have all its angles and no old one.
 
-    Both streams have begun the first run before one of them can end it.
+    Both streams have begun the first run before one of them ends it.
     """
     s = meter_settings(attack_angle='ins', window__cycles=5)
     t_ns, v_b, height = wavy(40)
@@ -129,7 +129,7 @@ def test_a_run_after_a_jump_back_is_whole(order):
 
 @pytest.mark.parametrize('mode', MODES)
 def test_seeds_and_runs(mode):
-    """The same give the same, others other numbers."""
+    """The same seed and run give the same numbers, others give different ones."""
     def velocities(**terms):
         s = meter_settings(mode=mode, window__cycles=10, **terms)
         return [fix.velocity for fix in VelocityMeter(s).advance(*flight(20))]
@@ -140,7 +140,7 @@ def test_seeds_and_runs(mode):
 
 
 def test_the_angle_of_attack_of_the_ins():
-    """It is -mean(V_y1)/mean(V_x1) of its samples in the window; with it the body is met."""
+    """tan(alpha) is -mean(V_y1)/mean(V_x1) of the INS; it recovers the body velocity."""
     s = meter_settings({**PERFECT, 'attack_angle': 'ins', 'window.cycles': 10})
     v = body(V, 0.05, 0.08)
     t_ns, v_b, height = flight(10, v)
@@ -149,7 +149,7 @@ def test_the_angle_of_attack_of_the_ins():
     fix, = VelocityMeter(s).advance(t_ns, v_b, height, ins)
     assert fix.tan_alpha == pytest.approx(math.tan(0.08), rel=1e-12)
     assert fix.velocity == pytest.approx(v[:2], rel=1e-12) and fix.up == pytest.approx(v[2])
-    # one sample in the window will do, the one at its start is not inside
+    # One INS sample in the window is enough; the one at its start is not inside.
     meter = VelocityMeter(s)
     assert meter.advance(t_ns, v_b, height) == []
     assert meter.push_ins(0, (V, 0.0, -50.0)) == []
@@ -159,7 +159,7 @@ def test_the_angle_of_attack_of_the_ins():
 
 
 def test_the_surrogate_has_its_errors():
-    """Bias, scales, and variances by chi-square at 1e-6, with sideslip, N = 4."""
+    """Surrogate: bias, scales, and variances (chi-square at 1e-6), with sideslip, N = 4."""
     beta, n = 0.1, 3000
     s = meter_settings(window__cycles=4, surrogate__k_x=0.01, surrogate__k_z=-0.02,
                        beam__sigma_theta_z_rad=0.11)

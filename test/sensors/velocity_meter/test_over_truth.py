@@ -1,4 +1,4 @@
-"""The meter over records of the truth, with the angle of attack of an INS."""
+"""The velocity meter on records of the truth, with the angle of attack of an INS."""
 
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
@@ -22,10 +22,9 @@ def record(rate_hz):
 @pytest.mark.parametrize('rate_hz', (100.0, 10.0))
 def test_long_blocks_leave_no_window_without_the_ins(rate_hz):
     """
-    At 10 Hz a block of 4096 samples is longer than the meter waits for the INS.
+    At 10 Hz a block of 4096 samples exceeds the wait for the INS, yet every window has its angle.
 
-    Every window has its angle all the same, and the cuts between blocks, which part samples of
-    the INS 3 ms before those of the truth from them, change no bit.
+    Cuts between blocks change no bit, even if they separate INS samples from the truth 3 ms later.
     """
     settings, truth = meter_settings(attack_angle='ins', rate_hz=rate_hz), record(rate_hz)
     ins_ns, ins_v = truth.t_ns - 3_000_000, truth.v_n + 0.1

@@ -15,18 +15,19 @@ from ins_sim.core.sensors.velocity_meter.surrogate import velocity_sigmas
 V = 250.0
 # Lateral scale errors of the two normalisations, see docs/design/velocity_meter.md.
 LATERAL_SCALE = {'cycle': 0.054, 'window': 0.015}
-# Sigmas of V_x and V_z over those of the surrogate's formulae, by 1000 windows of 100 cycles of
-# five seeds (2 % is one standard deviation), by sideslip in deg: the same document's "Surrogate".
+# Ratios of the sigmas of V_x and V_z to the formulas of the surrogate, by sideslip in deg, from
+# 1000 windows of 100 cycles with five seeds (one standard deviation is 2 %); same page,
+# "Surrogate".
 OVER_SURROGATE = {0.0: (0.93, 1.12), 3.0: (0.97, 1.07), -6.0: (0.97, 1.19)}
 
 
 def scatter(windows):
-    """Return three standard deviations of a sigma estimated from windows, as part of it."""
+    """Return three relative standard deviations of a sigma estimated from this many windows."""
     return 3.0 / math.sqrt(2.0 * windows)
 
 
 def show(name, found, valid, published=None):
-    """Print bias and sigma of V_x, V_z and of V_z by delays; return the sigmas."""
+    """Print bias and sigma of V_x, V_z and V_z by delays; return the sigmas."""
     sigma, bias = found.std(axis=0), found.mean(axis=0)
     core = np.subtract(*np.percentile(found, [75, 25], axis=0)) / 1.349
     print(f'{name}: {len(found)} valid, {100 * (1 - valid):.1f} % invalid; sigma V_x '
@@ -42,7 +43,7 @@ def show(name, found, valid, published=None):
                                        'signal.lags': 32}])
 @pytest.mark.parametrize('speed, beta, alpha', [(250.0, 10.0, 8.0), (60.0, -25.0, 0.0)])
 def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha):
-    """Real and imaginary part at every lag of every pair, and the noise at lag 0 alone."""
+    """The field has the designed correlations at every lag, and noise at lag 0 only."""
     s = meter_settings({'mode': 'signal', 'signal.detection': 'complex', **terms})
     field, correlator = Field(s), Correlator(s)
     v = speed * math.cos(math.radians(beta)), speed * math.sin(math.radians(beta))
@@ -56,7 +57,7 @@ def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha
     for part, wanted in ((each.real, expected), (each.imag, 0.0 * expected)):
         z = (part.mean(axis=0) - wanted) / (part.std(axis=0, ddof=1) / math.sqrt(cycles) + 1e-12)
         worst = max(worst, np.abs(z).max())
-    # of 640 normal numbers one in 1e6 tests is beyond 6.3
+    # With 640 normal numbers, one in 1e6 tests exceeds 6.3.
     print(f'{speed:g} m/s, beta {beta:g} deg, {terms}: worst of {expected.size} lags {worst:.2f} '
           'sigma')
     assert worst < 6.3
@@ -64,12 +65,12 @@ def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha
 
 def test_one_cycle(figures):
     """
-    Published: sigma of V_x about 45 m/s, 8 % invalid; both are made by false peaks.
+    One cycle: sigma of V_x is about 45 m/s as published; 15 % of the windows are invalid.
 
-    "About 45" is read as given to 5 m/s; the scatter of our sigma follows from the fourth moment,
-    for false peaks make the tails heavy. A known deviation: we find 15 % of the windows invalid,
-    because false peaks below the least speed are refused as well; 15 % is held, within three
-    standard deviations of the number of invalid windows.
+    Both come from false peaks. "About 45" is read as given to 5 m/s; the scatter of our sigma
+    follows from the fourth moment, because false peaks make heavy tails. Known deviation from the
+    published 8 %: false peaks below the least speed are also refused, which gives 15 %, held
+    within three standard deviations of the number of invalid windows.
     """
     found, valid = errors(meter_settings(mode='signal', window__cycles=1), 3000)
     sigma = show('N = 1', found, valid, '~45, 8 % invalid')
@@ -84,9 +85,9 @@ def test_one_cycle(figures):
 
 def test_a_hundred_cycles(figures):
     """
-    Published: 0.79 and 0.87 m/s; the amplitudes are worth six times the delays.
+    A hundred cycles: sigmas 0.79 and 0.87 m/s as published; amplitudes beat delays six times.
 
-    Each sigma scatters by three standard deviations of an estimate from 120 windows; their ratio
+    Each sigma scatters by three standard deviations of an estimate from 120 windows, their ratio
     by the root of two times that.
     """
     found, valid = errors(meter_settings(mode='signal', window__cycles=100), 120)
@@ -102,7 +103,7 @@ def test_a_hundred_cycles(figures):
 
 @pytest.mark.slow
 def test_a_thousand_cycles(figures):
-    """Published: 0.25 and 0.27 m/s."""
+    """A thousand cycles: sigmas 0.25 and 0.27 m/s as published."""
     found, valid = errors(meter_settings(mode='signal', window__cycles=1000), 100)
     sigma = show('N = 1000', found, valid, '0.25 / 0.27')
     figures.record('velocity_meter.signal.1000.sigma', sigma[:2], 'm/s', (0.25, 0.27),
@@ -115,10 +116,10 @@ def test_a_thousand_cycles(figures):
                                                    (100, 200, -6.0), (1000, 60, 3.0)])
 def test_the_surrogate_agrees(cycles, windows, beta, figures):
     """
-    Sigmas and biases by its formulae, within the scatter of so many windows.
+    Sigmas and biases in mode signal agree with the surrogate within the scatter of the windows.
 
-    A known deviation: the signal is up to 7 % quieter forward and 7 to 19 % louder to the side
-    than the published figures that the formulae pass through.
+    Known deviation: compared with the published figures used in the formulas, the signal is up to
+    7 % quieter forward and 7 to 19 % noisier sideways.
     """
     over = OVER_SURROGATE[beta]
     s, beta = meter_settings(mode='signal', window__cycles=cycles), math.radians(beta)
@@ -132,7 +133,7 @@ def test_the_surrogate_agrees(cycles, windows, beta, figures):
     figures.record(f'velocity_meter.surrogate.{cycles}.{math.degrees(beta):g}.bias_x',
                    found[:, 0].mean(), 'm/s', bias, 'surrogate')
     assert sigma[:2] == pytest.approx(np.multiply(over, formula), rel=scatter(windows))
-    # five standard deviations of a mean; a lateral scale error of 1.5 % is left of 5.4 %
+    # Five standard deviations of a mean; of the lateral scale error of 5.4 % 1.5 % remains.
     mean = found.mean(axis=0)
     assert abs(mean[0] - bias) < 5.0 * sigma[0] / math.sqrt(windows)
     assert abs(mean[1]) < 5.0 * sigma[1] / math.sqrt(windows) + (
@@ -141,7 +142,11 @@ def test_the_surrogate_agrees(cycles, windows, beta, figures):
 
 @pytest.mark.slow
 def test_normalisation_by_each_cycle_shrinks_the_lateral_velocity(figures):
-    """As printed: -5.4 %, for the mean of a cycle knows the signal it is taken from."""
+    """
+    Normalisation by cycle reduces the lateral velocity by 5.4 %, as published.
+
+    The mean of a cycle is correlated with the signal from which it is computed.
+    """
     beta, scale = math.radians(6.0), {}
     for normalisation in ('cycle', 'window'):
         s = meter_settings(mode='signal', window__cycles=250,
@@ -152,12 +157,12 @@ def test_normalisation_by_each_cycle_shrinks_the_lateral_velocity(figures):
     print(f'lateral scale error: cycle {scale["cycle"]:+.4f}, window {scale["window"]:+.4f}')
     for name, value in scale.items():
         figures.record(f'velocity_meter.lateral_scale.{name}', 100.0 * value, '%')
-    # four standard deviations of the mean, 1.2/sqrt(80) m/s of 26 m/s
+    # Four standard deviations of the mean: 1.2/sqrt(80) m/s of 26 m/s.
     assert abs(scale['cycle'] + LATERAL_SCALE['cycle']) < 0.02 and abs(scale['window']) < 0.02
 
 
 def test_complex_detection_is_quieter():
-    """By about a half: half the published sigmas, which are of powers, within the scatter."""
+    """Complex detection has about half the published sigmas, which are for power detection."""
     found, valid = errors(meter_settings(mode='signal', window__cycles=100,
                                          signal__detection='complex'), 60)
     sigma = show('N = 100, complex', found, valid)
@@ -168,7 +173,7 @@ def test_complex_detection_is_quieter():
 @pytest.mark.parametrize('detection', ['power', 'complex'])
 @pytest.mark.parametrize('normalisation', ['window', 'cycle'])
 def test_every_way_of_correlating_measures(detection, normalisation):
-    """With attack, sideslip and antenna 2 on the left; within five of the surrogate's sigmas."""
+    """Each detection and normalisation is within five surrogate sigmas, with attack and slip."""
     v = body(V, math.radians(4.0), math.radians(5.0))
     s = meter_settings({'mode': 'signal', 'window.cycles': 400, 'attack_angle': 'ins',
                         'signal.detection': detection, 'signal.normalisation': normalisation,
@@ -181,12 +186,12 @@ def test_every_way_of_correlating_measures(detection, normalisation):
     assert abs(fix.velocity[1] - v[1]) < 5.0 * fix.sigma[1] + (
         LATERAL_SCALE[normalisation] * abs(v[1]))
     assert min(fix.tau) > 0.0 and max(fix.g) < 0.0
-    # by the sideslip of the INS, which the error of the fix has no part in
+    # Sigma uses the sideslip of the INS, which is independent of the error of the fix.
     assert fix.sigma == pytest.approx(velocity_sigmas(s.surrogate, 400, math.atan2(-v[1], v[0])))
 
 
 def test_the_mounting_error_appears_as_a_lateral_velocity():
-    """Antennas turned left by mu see V_z1 = mu V_x1, as the surrogate says to the bit."""
+    """Antennas turned left by mu read V_z1 = mu V_x1, as the surrogate does."""
     found = {}
     for mode, terms in (('signal', {}), ('surrogate', PERFECT)):
         s = meter_settings({'mode': mode, 'antennas.mounting_yaw_arcmin': 60.0,
@@ -199,7 +204,7 @@ def test_the_mounting_error_appears_as_a_lateral_velocity():
 
 
 def test_delays_beyond_the_lags():
-    """A short correlator is blind to slow flight, and says so."""
+    """A correlator with too few lags cannot measure slow flight and gives the reason."""
     s = meter_settings(mode='signal', window__cycles=200, signal__lags=16, signal__snr_db=30.0,
                        limits__speed_min_m_s=100.0)
     slow, fast = (VelocityMeter(s).advance(*flight(200, (v, 0.0, 0.0)))[0] for v in (106.0, V))
@@ -208,7 +213,7 @@ def test_delays_beyond_the_lags():
 
 
 def test_a_false_peak_is_refused_by_its_speed():
-    """Fixes below the least speed of the instrument are invalid, with that reason."""
+    """A false peak below the least speed of the instrument makes the fix invalid."""
     fixes = VelocityMeter(meter_settings(mode='signal', window__cycles=1)).advance(*flight(400))
     reasons = {fix.status for fix in fixes if not fix.valid}
     assert 'measured speed outside the limits' in reasons and len(fixes) == 400
@@ -216,7 +221,7 @@ def test_a_false_peak_is_refused_by_its_speed():
 
 
 def test_neighbouring_cycles_are_independent():
-    """Products of their errors have no mean."""
+    """Errors of neighbouring cycles are independent: their products have zero mean."""
     s = meter_settings(mode='signal', window__cycles=20)
     found, _ = errors(s, 300)
     x = found[:, :2] - np.median(found[:, :2], axis=0)

@@ -18,7 +18,7 @@ V = 250.0
 
 
 def noise_free(speed, beta, alpha=0.0, taken=None, **terms):
-    """Return the Reading of expected functions; taken: what alpha is held for (default alpha)."""
+    """Return the Reading for expected functions; taken: the assumed alpha (default alpha)."""
     s = meter_settings(mode='signal', **terms)
     field = Field(s)
     functions = field.correlations(s.signal.lags, speed * math.cos(beta), speed * math.sin(beta),
@@ -28,7 +28,7 @@ def noise_free(speed, beta, alpha=0.0, taken=None, **terms):
 
 
 def test_the_published_noise_free_check():
-    """To the last printed digit, from Gaussian functions through the fits."""
+    """The published noise-free example is reproduced to its last printed digit."""
     one = noise_free(V, math.radians(3.0))
     tau = [1e6 * t for t in one.tau]
     print(f'V = 250 m/s, beta = +3 deg: tau12 {tau[0]:.4f}, tau23 {tau[1]:.4f} us, V_x '
@@ -44,23 +44,23 @@ def test_the_published_noise_free_check():
 @pytest.mark.parametrize('detection', ['power', 'complex'])
 @pytest.mark.parametrize('beta', [-5.0, -0.5, 0.0, 5.0])
 def test_signs_and_factors(side, offsets, detection, beta):
-    """Either side of antenna 2, either meaning of offsets, detection and side of the track."""
+    """Signs and factors hold for both sides, kinds of offset, detections and slip directions."""
     beta = math.radians(beta)
     x0, y0 = (0.2, 0.08) if offsets == 'physical' else (0.1, 0.04)
     one = noise_free(V, beta, signal__detection=detection, antennas__x0_m=x0, antennas__y0_m=y0,
                      antennas__antenna_2=side, antennas__offsets=offsets)
     assert one.status == VALID
-    # rounding of logarithms over a fit of a few lags
+    # Rounding of logarithms in a fit over a few lags.
     wanted = V * math.cos(beta), V * math.sin(beta), V * math.sin(beta)
     assert (one.v_x, one.v_z, one.v_z_delays) == pytest.approx(wanted, abs=1e-9 * V)
-    # antenna 2 on the right: on a track to the right it is passed sooner after antenna 1
+    # Antenna 2 on the right: on a track to the right it passes sooner after antenna 1.
     assert np.sign(round(1e12 * (one.tau[0] - one.tau[1]))) == \
         -np.sign(beta) * (1 if side == 'right' else -1)
 
 
 @pytest.mark.parametrize('alpha', [-8.0, 3.0, 10.0])
 def test_angle_of_attack(alpha):
-    """Equation (3) gives V cos(beta); the components are those of the body."""
+    """With the true angle of attack, equation (3) gives V cos(beta) and the body components."""
     alpha, beta = math.radians(alpha), math.radians(4.0)
     one = noise_free(V, beta, alpha)
     a, b = slowness(one.tau, antenna_geometry(meter_settings().antennas), math.tan(alpha))
@@ -74,7 +74,7 @@ def test_angle_of_attack(alpha):
 
 @pytest.mark.parametrize('alpha, taken', [(5.0, 0.0), (5.0, 4.0), (0.0, 5.0)])
 def test_a_wrong_angle_of_attack_scales_both_components(alpha, taken):
-    """By (cos taken / cos true)^2, but for terms of beta^2."""
+    """A wrong angle of attack scales both components by (cos assumed / cos true)^2."""
     alpha, taken, beta = map(math.radians, (alpha, taken, 0.5))
     one = noise_free(V, beta, alpha, taken)
     factor = (math.cos(taken) / math.cos(alpha)) ** 2
@@ -85,7 +85,11 @@ def test_a_wrong_angle_of_attack_scales_both_components(alpha, taken):
 
 @pytest.mark.parametrize('ratio', [0.9, 1.05, 1.1])
 def test_an_elliptical_beam_scales_the_lateral_velocity(ratio):
-    """1 + k_z = (sigma_theta_z/sigma_theta_x)^2 by amplitudes and by delays, up to beta^2."""
+    """
+    An elliptical beam scales V_z by 1 + k_z = (sigma_theta_z/sigma_theta_x)^2, up to beta^2.
+
+    This holds by amplitudes and by delays.
+    """
     beta = math.radians(1.0)
     one = noise_free(V, beta, beam__sigma_theta_z_rad=0.1 * ratio)
     truth = V * math.sin(beta)
@@ -98,7 +102,7 @@ def test_an_elliptical_beam_scales_the_lateral_velocity(ratio):
 
 
 def test_a_field_that_decays_reads_fast():
-    """By 1 + L^2/(V T_d)^2 along, as the delays are short by it."""
+    """A decaying field shortens the delays: V_x reads large by 1 + L^2/(V T_d)^2."""
     length, decay = 0.07 / (0.4 * math.pi), 2e-3
     one = noise_free(V, 0.0, signal__decay_time_s=decay)
     factor = 1.0 + (length / (V * decay)) ** 2
@@ -109,11 +113,11 @@ def test_a_field_that_decays_reads_fast():
 @given(g=st.floats(-2.0, -0.01), peak=st.floats(2.0, 9.0), c=st.floats(-3.0, 3.0),
        first=st.integers(0, 5), even=st.booleans())
 def test_the_fit_is_exact_on_gaussians(g, peak, c, first, even):
-    """Whatever their width, place and height."""
+    """The fit is exact for Gaussian functions of any width, position and height."""
     peak = 0.0 if even else peak
     values = [math.exp(g * (k - peak) ** 2 + c) for k in range(first, first + 6)]
     found_g, d, found_c = log_quadratic(values, first, even)
-    # three lags make the parabola: what rounding is beside the weight of the third
+    # Three lags determine the parabola: rounding divided by the weight of the third.
     tolerance = 1e-12 / (sorted(values)[-3] / max(values)) ** 2
     if tolerance < 1e-4:
         assert found_g == pytest.approx(g, rel=tolerance / -g)
@@ -123,13 +127,13 @@ def test_the_fit_is_exact_on_gaussians(g, peak, c, first, even):
 
 @pytest.mark.parametrize('even', [True, False])
 def test_weights_that_vanish(even):
-    """A single lag that counts makes no parabola, and no exception."""
+    """Weights that vanish at all but one lag give NaN, not an exception."""
     assert math.isnan(log_quadratic([1.0, 1e-9, 1e-20, 1e-300], 1, even)[0])
     assert auto_peak([9.0, 1.0, 1e-9, 1e-20, 1e-300]).status == 'has no maximum in the fit'
 
 
 def test_correlated_noise_counts_by_its_weight():
-    """The weights are C^2: the derivative of the fit to a lag is that of weighted polynomials."""
+    """The weights are C^2: the derivative of the fit to a lag is that of a weighted polynomial."""
     values = [0.5, 0.8, 1.0, 0.7, 0.45]
     g, d, c = log_quadratic(values, 3)
     expected = np.polyfit(np.arange(3, 8), np.log(values), 2, w=values)
@@ -147,12 +151,12 @@ def test_correlated_noise_counts_by_its_weight():
     ([0.0, 0.1, 0.3, 1.0, 0.3, -0.1, 0.0, 0.0], 'has a value that is not positive in the fit'),
     ([0.0, 0.9, 0.6, 0.51, 0.9, 1.0, 0.99, 0.0], 'has no maximum in the fit')])
 def test_peaks_that_are_none(values, says):
-    """They are told by their reason."""
+    """Cross-correlations without a usable peak give their reason."""
     assert cross_peak(values).status == says
 
 
 def test_autocorrelations_that_have_no_peak():
-    """They are told too; lag 0, which holds the noise, is not looked at."""
+    """Autocorrelations without a usable peak give their reason; lag 0 is ignored."""
     assert auto_peak([9.0, 1.0, 0.4, -0.1, 0.0]).status == \
         'has a value that is not positive in the fit'
     assert auto_peak([9.0, 1.0, 1.1, 1.2, 0.3]).status == 'has no maximum in the fit'
@@ -163,7 +167,7 @@ def test_autocorrelations_that_have_no_peak():
 
 
 def test_amplitudes_beyond_45_deg():
-    """A sine beyond 1 is no sideslip."""
+    """Amplitudes with |sin(2 beta)| > 1 give no sideslip."""
     s = meter_settings(mode='signal')
     field = Field(s)
     functions = field.correlations(64, V, 0.0, 0.0, 'power')

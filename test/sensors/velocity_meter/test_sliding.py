@@ -1,4 +1,4 @@
-"""Windows that slide: which there are, what they hold, and what they have in common."""
+"""Sliding windows: their instants, contents and common cycles."""
 
 from dataclasses import replace
 import math
@@ -16,7 +16,7 @@ UNBIASED = {'surrogate.bias_x_m_s': 0.0}
 
 
 def wavy(cycles, first=0):
-    """Return t_ns, v_b, height of a flight that speeds up, slips and climbs."""
+    """Return t_ns, v_b, height of a flight that accelerates, slips and climbs."""
     t_ns, v_b, height = flight(cycles, first=first)
     s = t_ns * 1e-9
     v_b[:, 0], v_b[:, 1], v_b[:, 2] = 200.0 + 3.0 * s, 4.0 * np.sin(s), np.cos(2.0 * s)
@@ -24,16 +24,16 @@ def wavy(cycles, first=0):
 
 
 def velocities(fixes):
-    """Return ends, in cycles, and velocities (n, 2), m/s."""
+    """Return ends (cycles) and velocities (n, 2), m/s."""
     return [fix.end_ns // DT_NS for fix in fixes], np.array([fix.velocity for fix in fixes])
 
 
 @pytest.mark.parametrize('cycles, step', [(6, 1), (6, 2), (6, 3), (10, 5)])
 def test_a_window_is_the_mean_of_its_cycles_and_of_their_noise(cycles, step):
     """
-    With the noise of every cycle: windows of one cycle of the same seed, averaged.
+    A window is the mean of its cycles and of their noise, as windows of one cycle show.
 
-    A flight without sideslip, so that sigma is that of all.  Rounding: sums of 10 numbers.
+    The flight has no sideslip, so all sigmas are equal. Tolerance: rounding of sums of 10 numbers.
     """
     t_ns, v_b, height = flight(60)
     v_b[:, 0] += np.sin(t_ns * 1e-9)
@@ -52,7 +52,7 @@ def test_a_window_is_the_mean_of_its_cycles_and_of_their_noise(cycles, step):
 
 
 def test_neighbours_share_the_noise_of_their_common_cycles():
-    """Correlation of windows k steps apart: 1 - k m/N; bound: five of its standard deviations."""
+    """Windows k steps apart have correlation 1 - k m/N, within five standard deviations."""
     cycles, step, n = 8, 2, 8000
     s = meter_settings(window__cycles=cycles, window__slide_cycles=step)
     _, v = velocities(VelocityMeter(s).advance(*flight(n * step)))
@@ -60,26 +60,26 @@ def test_neighbours_share_the_noise_of_their_common_cycles():
     for k in range(6):
         found = (z[:len(z) - k] * z[k:]).mean(axis=0)
         expected = max(0.0, 1.0 - k * step / cycles)
-        # the squares of the correlations add up to about 3
+        # The squares of the correlations add up to about 3.
         assert np.abs(found - expected).max() < 5.0 * math.sqrt(3.0 / n)
 
 
 @pytest.mark.parametrize('mode', MODES)
 def test_windows_at_whole_multiples_are_those_that_do_not_overlap(mode):
-    """To rounding: the parts are added in another order."""
+    """Windows at whole multiples equal those that do not overlap, to rounding (order of sums)."""
     terms = {'mode': mode, 'window.cycles': 12}
     apart = VelocityMeter(meter_settings(terms)).advance(*wavy(48))
     slid = VelocityMeter(meter_settings({**terms, 'window.slide_cycles': 4})).advance(*wavy(48))
     assert len(apart) == 4 and len(slid) == 10
     common = [fix for fix in slid if fix.end_ns % (12 * DT_NS) == 0]
     np.testing.assert_allclose(velocities(common)[1], velocities(apart)[1], rtol=1e-9)
-    # in signal mode the windows between are those of a flight that begins there
+    # In mode signal the windows between them are those of a flight that begins there.
     assert all(fix.valid for fix in slid)
 
 
 @pytest.mark.parametrize('slide', [0, 12])
 def test_slides_of_whole_windows_change_no_bit(slide):
-    """0 and N are windows that follow one another."""
+    """slide_cycles of 0 and of N both give adjacent windows, with the same bits."""
     s = meter_settings(window__cycles=12, attack_angle='ins')
     t_ns, v_b, height = wavy(48)
     slid = replace(s, window=replace(s.window, slide_cycles=slide))
@@ -93,7 +93,7 @@ def test_slides_of_whole_windows_change_no_bit(slide):
        window=st.sampled_from([(6, 1), (6, 3), (8, 2)]), first=st.integers(0, 20),
        cuts=st.lists(st.integers(1, 40), max_size=5))
 def test_neither_cutting_nor_joining_changes_a_bit(mode, attack, window, first, cuts):
-    """Blocks and single pushes, and a meter that begins anywhere."""
+    """Blocks, single pushes, and a meter that starts at any time give the same bits."""
     cycles, step = window
     s = meter_settings(mode=mode, attack_angle=attack, window__cycles=cycles,
                        window__slide_cycles=step)
@@ -116,20 +116,20 @@ def test_neither_cutting_nor_joining_changes_a_bit(mode, attack, window, first, 
 
 @pytest.mark.parametrize('attack', ['ins', 'none'])
 def test_a_cycle_that_cannot_be_measured_spoils_the_windows_that_hold_it(attack):
-    """And no other."""
+    """A cycle that cannot be measured invalidates exactly the windows that contain it."""
     s = meter_settings(attack_angle=attack, window__cycles=6, window__slide_cycles=2,
                        limits__height_max_m=1000.0)
     t_ns, v_b, height = wavy(40)
     height[15] = 2000.0
     fixes = VelocityMeter(s).advance(t_ns, v_b, height, v_b)
     bad = [fix.end_ns // DT_NS for fix in fixes if not fix.valid]
-    # the sample at 15 ends cycle 15 and begins cycle 16
+    # The sample at 15 ends cycle 15 and begins cycle 16.
     assert bad == [16, 18, 20] and len(fixes) == 18
     assert {fix.status for fix in fixes if not fix.valid} == {'height outside the limits'}
 
 
 def test_a_drop_out_spoils_the_windows_that_overlap_it():
-    """A window is an interval of motion time."""
+    """A drop-out invalidates exactly the windows that overlap it in motion time."""
     s = meter_settings({'window.cycles': 6, 'window.slide_cycles': 2,
                         'drop_outs.start_s': (0.125,), 'drop_outs.end_s': (0.135,)})
     fixes = VelocityMeter(s).advance(*wavy(40))
@@ -137,7 +137,7 @@ def test_a_drop_out_spoils_the_windows_that_overlap_it():
 
 
 def test_the_angle_of_attack_is_that_of_the_window():
-    """Mean over the samples of the INS in the window, though they are counted by slides."""
+    """The angle of attack is the mean over the whole window, although it is summed by slides."""
     s = meter_settings(attack_angle='ins', window__cycles=6, window__slide_cycles=2)
     t_ns, v_b, height = wavy(40)
     for fix in VelocityMeter(s).advance(t_ns, v_b, height, v_b):
@@ -147,7 +147,7 @@ def test_the_angle_of_attack_is_that_of_the_window():
 
 
 def test_after_a_gap_a_window_is_seen_from_its_start_again():
-    """Those that hold the gap are not reported."""
+    """After a gap, windows that contain the gap are not reported."""
     s = meter_settings(window__cycles=6, window__slide_cycles=2)
     t_ns, v_b, height = wavy(40)
     meter = VelocityMeter(s)
@@ -163,7 +163,7 @@ def test_after_a_gap_a_window_is_seen_from_its_start_again():
 
 @pytest.mark.parametrize('slide', [4, 7, 20])
 def test_a_slide_that_is_no_divisor_is_refused(slide):
-    """In one sentence that names it."""
+    """A slide that is not a divisor of N is refused in one sentence."""
     with pytest.raises(ValueError, match=f'window.slide_cycles is {slide} with window.cycles 10; '
                                          'expected 0 or a divisor of window.cycles'):
         meter_settings(window__cycles=10, window__slide_cycles=slide)

@@ -1,4 +1,4 @@
-"""Odometry that cannot be: one sentence each, no truth of it, and truth again behind it."""
+"""Impossible odometry is reported in one sentence and gives no truth; truth resumes later."""
 
 import math
 
@@ -14,7 +14,7 @@ from ins_sim.settings.truth_adapter import TruthAdapterSettings
 
 
 def pushed(rows, **values):
-    """Return truths and sentences of rows, given as a node gives them."""
+    """Return the truths and messages for rows that are pushed as a node pushes them."""
     adapter = TruthAdapter(build(TruthAdapterSettings, {**PLACE, **values}))
     truths, said = [], []
     for row in rows:
@@ -41,13 +41,13 @@ def rows_of(name='sinusoids', rate_hz=50.0, length_s=8.0):
 
 
 def changed(rows, k, **fields):
-    """Return rows, of which number k has other fields."""
+    """Return rows of which number k has other fields."""
     row = dict(zip(('t_ns', 'r', 'q', 'v', 'w'), rows[k]))
     return [*rows[:k], tuple({**row, **fields}.values()), *rows[k + 1:]]
 
 
 def moved(rows, k, metres):
-    """Return rows that are elsewhere from number k on."""
+    """Return rows whose positions are shifted from number k on."""
     return [*rows[:k], *((t, (r[0] + metres, *r[1:]), q, v, w) for t, r, q, v, w in rows[k:])]
 
 
@@ -63,9 +63,9 @@ def moved(rows, k, metres):
      'odom jumps back from'),
 ], ids=['gap', 'jump', 'zero quaternion', 'long quaternion', 'nan', 'repeated', 'backwards'])
 def test_a_fault_is_one_sentence_and_passes(spoil, said, k):
-    """What cannot be is said once; the truth then goes on, or begins anew."""
+    """A bad sample is reported once; the truth then continues or restarts."""
     truths, sentences = pushed(spoil(rows_of(), k))
-    # A sample that was dropped leaves a gap behind it.
+    # A dropped sample leaves a gap behind it.
     assert said in sentences[0] and len(sentences) <= 2
     assert all('gap' in sentence for sentence in sentences[1:])
     assert len(truths) > 600
@@ -74,7 +74,7 @@ def test_a_fault_is_one_sentence_and_passes(spoil, said, k):
 
 
 def test_a_turn_too_far_is_said():
-    """An input that turns more than 2 rad from sample to sample makes no truth, nor noise."""
+    """An input that turns more than 2 rad between samples gives no truth, and one message."""
     rows = [(k * 50_000_000, (0.0,) * 3, (0.0, 0.0, math.sin(1.1 * k), math.cos(1.1 * k)),
              (0.0,) * 3, (0.0, 0.0, 44.0)) for k in range(200)]
     truths, said = pushed(rows)
@@ -82,7 +82,7 @@ def test_a_turn_too_far_is_said():
 
 
 def test_another_rate_is_taken_for_another_input():
-    """A simulator that comes back at half the rate is judged anew."""
+    """A simulator that returns at half the rate is judged again."""
     rows = rows_of(rate_hz=100.0, length_s=12.0)
     truths, said = pushed([*rows[:400], *rows[400::2]])
     assert len(said) == 2 and 'gap' in said[0]
@@ -90,7 +90,7 @@ def test_another_rate_is_taken_for_another_input():
 
 
 def test_a_silence_is_a_gap():
-    """An input that stops and goes on gives truth up to the stop and from there on."""
+    """An input that pauses gives truth up to the pause and again from its end."""
     rows = rows_of()
     truths, said = pushed([*rows[:200], *rows[300:]])
     assert len(said) == 1 and 'from 3.980000000 s to 6.000000000 s' in said[0]
@@ -99,14 +99,14 @@ def test_a_silence_is_a_gap():
 
 
 def test_stamps_of_a_wrong_unit_do_no_harm():
-    """Stamps a thousand times too far apart are refused, not filled with truth."""
+    """Stamps a thousand times too far apart are refused instead of being filled with truth."""
     truths, said = pushed([(1000 * t, *more) for t, *more in rows_of(length_s=4.0)])
     assert not truths and 'has a gap' in said[0]
 
 
 @pytest.mark.parametrize('step_ns', [1, 1000])
 def test_stamps_too_near_do_no_harm(step_ns):
-    """A stream of stamps nanoseconds apart fills no memory and makes no noise."""
+    """A stream with stamps nanoseconds apart neither fills the memory nor repeats messages."""
     rows = rows_of(length_s=4.0)
     adapter = TruthAdapter(build(TruthAdapterSettings, PLACE))
     for k in range(20_000):
@@ -127,7 +127,7 @@ VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
        st.sampled_from(['auto', 'use', 'ignore']), st.sampled_from(['believed', 'nominal']),
        st.sampled_from([0.0, 0.2]))
 def test_no_garbage_makes_anything_but_sentences(spoiled, twist, stamps, smoothing_s):
-    """Whatever some samples hold, the stage raises StreamFault alone and its truth is finite."""
+    """For any content of samples the stage raises StreamFault only, and its truth stays finite."""
     rows = rows_of(length_s=6.0)
     for k, shift_ns, name, vector, w in spoiled:
         value = vector if name != 'q' else (*vector, w)

@@ -1,4 +1,4 @@
-"""The curves of the truth adapter: stencils, fits, pieces, and what is sensed on them."""
+"""The curves of the truth adapter: stencils, fits, pieces, and the readings derived from them."""
 
 import math
 
@@ -23,11 +23,11 @@ STEP = 20_000_000
 @given(st.lists(st.integers(STEP // 2, 2 * STEP), min_size=4, max_size=4), st.integers(0, 4),
        st.lists(st.floats(-10.0, 10.0), min_size=5, max_size=5))
 def test_a_stencil_is_exact_for_a_quartic(steps, node, c):
-    """Five uneven samples give both derivatives of a polynomial of fourth order, to rounding."""
+    """Five unevenly spaced samples give both derivatives of a quartic to rounding."""
     t = (np.cumsum([0, *steps]) - sum(steps[:node])) * 1e-9
     values = [(np.polyval(c, x), 0.0, 0.0) for x in t]
     first, second = (weighted(w, values, values[node])[0] for w in stencil(tuple(steps), node))
-    # Rounding of a value of at most 50 over the square of the shortest step.
+    # Rounding of a value of at most 50 divided by the square of the shortest step.
     assert first == pytest.approx(c[3], abs=1e-10)
     assert second == pytest.approx(2.0 * c[2], abs=1e-7)
 
@@ -35,7 +35,7 @@ def test_a_stencil_is_exact_for_a_quartic(steps, node, c):
 @given(st.lists(st.integers(1, 10), min_size=1, max_size=10),
        st.lists(st.integers(1, 10), min_size=1, max_size=10))
 def test_a_parabola_is_fitted_as_by_least_squares(before, behind):
-    """The weights give the value at zero of numpy's fit."""
+    """The weights of the parabola give the same value at zero as numpy.polyfit."""
     x = np.array([*-np.cumsum(before), 0, *np.cumsum(behind)]) * 1e-3
     values = np.sin(40.0 * x)
     assert np.dot(parabola_weights(x.tolist()), values) == pytest.approx(
@@ -44,12 +44,12 @@ def test_a_parabola_is_fitted_as_by_least_squares(before, behind):
 
 @pytest.mark.parametrize('x', [[0.0], [0.0, 0.1], [0.0, 0.1, 0.2], [-0.2, -0.1, 0.0]])
 def test_a_value_with_one_side_is_not_fitted(x):
-    """Where there is no other side, or too little, the value itself is taken."""
+    """With samples on one side only, or too few, the sample itself is used."""
     assert parabola_weights(x) == [float(s == 0.0) for s in x]
 
 
 def test_a_quintic_has_its_ends():
-    """Value, slope and second derivative are those given, at both ends."""
+    """The quintic has the given value, slope and second derivative at both ends."""
     given_values = (1.0, -2.0, 3.0, 1.5, 0.5, -4.0)
     c = quintic(0.05, *given_values)
     assert derivatives(c, 0.0) == pytest.approx(given_values[:3])
@@ -58,12 +58,12 @@ def test_a_quintic_has_its_ends():
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6))
 def test_the_rate_is_that_of_the_attitude(numbers):
-    """The rate of a rotation vector is the difference of neighbouring attitudes."""
+    """The rate of a rotation vector equals the difference of neighbouring attitudes."""
     phi, phi_rate, d = numbers[:3], numbers[3:], 1e-5
     before, after = (quaternion.exponential(tuple(p + s * d * r for p, r in zip(phi, phi_rate)))
                      for s in (-1.0, 1.0))
     turned = quaternion.logarithm(quaternion.multiply(quaternion.conjugate(before), after))
-    # Central differences are off by d^2 / 6 times a third derivative of at most 10.
+    # Central differences have an error of d^2 / 6 times a third derivative of at most 10.
     assert rate_of(tuple(phi), tuple(phi_rate)) == pytest.approx(
         [x / (2.0 * d) for x in turned], abs=2e-9)
 
@@ -89,7 +89,7 @@ def test_pieces_join(make, name):
     (PoseKnots, 20.0), (lambda: TwistKnots(False, 0.5), 20.0),
     (lambda: TwistKnots(True, 0.5), 20.0)])
 def test_it_is_late_by_at_most_three_periods(make, rate_hz):
-    """A piece is there with the sample three periods behind its start."""
+    """A piece is available with the sample three periods after its start."""
     knots = make()
     simulator = OtherSimulator('sinusoids', rate_hz, 2.0)
     for row in simulator.samples():
@@ -99,7 +99,7 @@ def test_it_is_late_by_at_most_three_periods(make, rate_hz):
 
 
 def test_a_dense_input_is_fitted_at_knots():
-    """Every fourth sample is a knot, there half a window later, and less noisy than a sample."""
+    """Of a dense input every fourth sample is a knot, half a window later and less noisy."""
     simulator = OtherSimulator('motion_1', 400.0, 20.0).noisy(1e-3, 0.01)
     fit = KnotFit(4, 5_000_000, 2_500_000)
     knots = [knot for row in simulator.samples() for knot in fit.push(Sample(*row))]
@@ -113,13 +113,13 @@ def test_a_dense_input_is_fitted_at_knots():
 
 @pytest.mark.parametrize('name', MOTIONS)
 def test_an_imu_senses_what_the_motion_says(name):
-    """Force and rate of an exact pose with exact derivatives are those of the closed form."""
+    """Force and rate of an exact pose with exact derivatives equal those of the closed form."""
     simulator = OtherSimulator(name, 1.0, 300.0)
     frame = MapFrame(simulator.settings.motion_generator.datum, True)
     for k in (10, 200):
         t_ns = int(simulator.t_ns[k])
         true = simulator.motion.at(np.array([t_ns]))
-        # Acceleration in the map by differences of the velocity in the map.
+        # Acceleration in the map frame from differences of the velocity in the map frame.
         d = 20_000_000
         v = [quaternion.rotate(q.T, tuple(v.T)) for _, q, v, _ in (
             simulator._odometry(np.array([t_ns + s * d])) for s in (-2, -1, 1, 2))]
@@ -129,12 +129,13 @@ def test_an_imu_senses_what_the_motion_says(name):
                                                        simulator.w))
         found = sensed(frame, None, t_ns, (r, quaternion.rotate(q, v_b), a, q, w))
         assert found.omega_ib_b == pytest.approx(true.omega_ib_b[0].tolist(), abs=1e-15)
-        # Differences are off by d^4 / 30 times a fifth derivative: 1e-6 at 1 m and 0.4 Hz.
+        # The differences have an error of d^4 / 30 times a fifth derivative: 1e-6 at 1 m and 0.4
+        # Hz.
         assert found.f_ib_b == pytest.approx(true.f_ib_b[0].tolist(), abs=3e-6)
         assert found.height == pytest.approx(float(true.height[0]), abs=1e-8)
 
 
 def test_a_stencil_is_that_of_five():
-    """Nodes are counted as the schemes do."""
+    """The middle node of the stencil has the index that the schemes use."""
     assert stencil((STEP,) * (POINTS - 1), 2)[0] == pytest.approx(
         [x / (12 * 0.02) for x in (1, -8, 0, 8, -1)], abs=1e-9)

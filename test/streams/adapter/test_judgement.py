@@ -1,4 +1,4 @@
-"""What the truth adapter finds out about its input, and what it then does."""
+"""The judgement of the truth adapter on its input, and the scheme that follows from it."""
 
 import math
 
@@ -21,9 +21,9 @@ def judgement_of(simulator, **more):
 
 
 def test_noise_is_found_by_axis():
-    """The sigmas are those of the noise, within what a hundred samples tell of them."""
+    """The estimated sigmas by axis equal those of the noise within the scatter of 100 samples."""
     j = judgement_of(OtherSimulator('racetrack', 50.0, 2.0).noisy(1e-3, 0.01, 2e-3, 0.02))
-    # The mean square of 300 values that share noise: 10 % at one sigma.
+    # The mean square of 300 values with common noise has a standard deviation of 10 %.
     for value, sigma in ((j.sigma_m, 1e-3), (j.sigma_rad, math.radians(0.01)),
                          (j.sigma_m_s, 2e-3), (j.sigma_rad_s, math.radians(0.02))):
         assert value == pytest.approx(sigma, rel=0.3)
@@ -32,12 +32,16 @@ def test_noise_is_found_by_axis():
 
 
 def test_a_noisy_twist_is_held_tighter_where_the_positions_bear_it():
-    """Loose for noisy positions, tight for a noisy twist, and between by the square root."""
+    """
+    The position loop is tight for a noisy twist, loose for noisy positions.
+
+    Between these limits its bandwidth follows the square root of the ratio of the noises.
+    """
     def hold(*noise):
         return position_hold(judgement_of(OtherSimulator('racetrack', 50.0, 4.0).noisy(*noise)))
     assert hold(1e-3) == LOOSE
     assert hold(1e-3, 0.01, 1e-3, 0.01) == TIGHT
-    # by the noise of two estimates, 10 % each
+    # Tolerance: noise of two estimates, 10 % each.
     assert hold(1.5e-2, 0.0, 1e-3) == pytest.approx(
         math.sqrt(0.1 * 2.7 * 1e-3 * 50.0 / (math.sqrt(3.0) * 1.5e-2)), rel=0.3)
 
@@ -46,7 +50,7 @@ def test_a_noisy_twist_is_held_tighter_where_the_positions_bear_it():
 @pytest.mark.parametrize('twist, noise', [('use', {'metres_s': 1e-3}),
                                           ('ignore', {'metres': 1e-4})])
 def test_the_noise_of_the_force_is_the_expected_one(twist, noise, rate_hz):
-    """Noise of the input becomes the noise of the force that the report tells, within 15 %."""
+    """The noise of the force is that of the report within 15 %."""
     simulator = OtherSimulator('motion_1', rate_hz, 40.0).noisy(**noise)
     _, truths = simulator.adapted(twist=twist)
     exact = simulator.motion.at(np.array([truth.t_ns for truth in truths])).f_ib_b
@@ -58,7 +62,7 @@ def test_the_noise_of_the_force_is_the_expected_one(twist, noise, rate_hz):
 @pytest.mark.parametrize('rate_hz', [20.0, 50.0, 100.0])
 @pytest.mark.parametrize('name', ['racetrack', 'sinusoids', 'aggressive'])
 def test_the_frame_of_the_twist_is_found(name, rate_hz):
-    """A twist in the axes of the parent is told from one in those of the child, and both fit."""
+    """The frame of the twist, parent or child, is found, and the twist fits."""
     for parent in (False, True):
         simulator = OtherSimulator(name, rate_hz, 2.0)
         j = judgement_of(simulator.parent_twist() if parent else simulator)
@@ -67,21 +71,21 @@ def test_the_frame_of_the_twist_is_found(name, rate_hz):
 
 
 def test_a_late_twist_is_found_with_its_delay():
-    """The mean of the last ten milliseconds is 5 ms late, by the specification 4.5 to 5."""
+    """A twist averaged over the last 10 ms is found to be 4.5 to 5 ms late, as specified."""
     j = judgement_of(OtherSimulator('racetrack', 50.0, 2.0).averaged_twist())
     assert 'velocity is late or wrong' in j.why_not()
     assert 4.4e-3 < j.delay_s < 5.1e-3
 
 
 def test_a_twist_noisier_than_the_poses_is_left():
-    """Exact poses are not spoiled by a noisy twist."""
+    """A twist that is noisier than the poses is not used."""
     adapter, truths = OtherSimulator('racetrack', 50.0, 3.0).noisy(metres_s=0.05).adapted()
     assert 'only the poses are used (it is noisier than the poses)' in adapter.notes[0]
     assert adapter.state == 'poses only' and truths
 
 
 def resting_first(simulator, rest_s):
-    """Let the motion of a simulator begin after a rest at its first pose, the twist being zero."""
+    """Let the motion of a simulator begin after a rest at its first pose with zero twist."""
     count = round(rest_s / 1e-9 / (simulator.t_ns[1] - simulator.t_ns[0]))
     simulator.t_ns = np.arange(len(simulator.t_ns) + count) * simulator.t_ns[1]
     for name in 'rqvw':
@@ -94,19 +98,19 @@ def resting_first(simulator, rest_s):
 @pytest.mark.parametrize('twist, wanted', [(True, 'the twist is believed'),
                                            (False, 'only the poses')])
 def test_a_vehicle_at_rest_is_judged_when_it_moves(twist, wanted):
-    """A twist of zero at rest says nothing; it is judged again when the vehicle moves."""
+    """The twist of a vehicle at rest is judged once the vehicle moves."""
     simulator = OtherSimulator('sinusoids', 50.0, 8.0)
     if not twist:
         simulator.without_twist()
     adapter, truths = resting_first(simulator, 5.0).adapted()
     assert 'it is zero while nothing moves' in adapter.notes[0]
     assert len(adapter.notes) == 2 and wanted in adapter.notes[1]
-    # The change of the scheme costs no instant.
+    # The change of the scheme loses no instant.
     assert set(np.diff([truth.t_ns for truth in truths])) == {5_000_000}
 
 
 def test_a_twist_that_goes_wrong_is_given_up():
-    """A twist that stops being sent is noticed within two times two seconds."""
+    """If the twist is no longer sent, it is rejected within two judgements of two seconds."""
     simulator = OtherSimulator('racetrack', 50.0, 12.0)
     simulator.v[250:] = simulator.w[250:] = 0.0
     adapter, truths = simulator.adapted()
@@ -121,7 +125,7 @@ def test_a_twist_that_goes_wrong_is_given_up():
     ('use', 'the twist is believed although it is missing'),
     ('ignore', 'only the poses are used (twist is ignore)')])
 def test_a_choice_is_kept(twist, said):
-    """With use and ignore nothing is decided; the report says what it would have been."""
+    """With twist use or ignore the scheme is fixed; the report tells what auto would do."""
     simulator = OtherSimulator('racetrack', 50.0, 5.0)
     if twist == 'use':
         simulator.without_twist()
@@ -130,7 +134,7 @@ def test_a_choice_is_kept(twist, said):
 
 
 def test_the_world_is_turned_by_its_yaw():
-    """A world whose axis x points North gives the truth of one whose points East."""
+    """A world whose x axis points North gives the same truth as one whose x axis points East."""
     plain, turned = (OtherSimulator('sinusoids', 50.0, 4.0) for _ in range(2))
     c, s = 0.0, 1.0
     x, y, z = turned.r.T
@@ -149,7 +153,7 @@ def test_the_world_is_turned_by_its_yaw():
 
 
 def test_either_sign_of_a_quaternion_is_the_same():
-    """Signs that alternate, and lengths within 1e-3, change nothing but rounding."""
+    """Alternating signs of quaternions, and norms within 1e-3 of one, change only the rounding."""
     plain, other = (OtherSimulator('motion_2', 50.0, 4.0) for _ in range(2))
     length = 1.0 + 9e-4 * np.sin(np.arange(len(other.q)))
     other.q = other.q * (length * np.where(np.arange(len(other.q)) % 3, -1.0, 1.0))[:, None]
@@ -160,7 +164,7 @@ def test_either_sign_of_a_quaternion_is_the_same():
 
 
 def test_nominal_instants_do_not_shake():
-    """With stamps 1 ms off, nominal instants give the force of steady ones."""
+    """With stamps off by 1 ms, nominal instants give the force of a steady input."""
     simulator = OtherSimulator('racetrack', 50.0, 20.0).off_stamps(1e-3)
     adapter, truths = simulator.adapted(stamps='nominal')
     run = AdaptedRun(simulator, truths)
@@ -168,7 +172,7 @@ def test_nominal_instants_do_not_shake():
 
 
 def test_a_round_rate_is_known_from_two_seconds():
-    """Jitter does not hide that a rate is 50 Hz; a rate that is none is not taken for one."""
+    """A rate of 50 Hz is recognised from two seconds despite jitter; an odd rate is kept."""
     rng = np.random.default_rng(1)
     for period, wanted in ((2e7, 2e7), (16e6, 16e6), (2.0123e7, None)):
         steady, line = steadiness(np.rint(np.arange(101) * period + 1e5 * rng.standard_normal(
@@ -178,18 +182,18 @@ def test_a_round_rate_is_known_from_two_seconds():
 
 
 def test_a_nominal_clock_follows_a_rate_that_is_another():
-    """The instants stay within a few periods of stamps that drift by 100 ppm, and rise."""
+    """Nominal instants rise and stay within a few periods of stamps that drift by 100 ppm."""
     clock = NominalClock(0, 2e7)
     stamps = [round(k * 2e7 * (1.0 + 1e-4)) for k in range(1, 20001)]
     instants = [clock.instant(t_ns) for t_ns in stamps]
     assert (np.diff(instants) > 0).all()
-    # Twice the relative drift over the bandwidth.
+    # Twice the relative drift divided by the bandwidth.
     assert abs(instants[-1] - stamps[-1]) == pytest.approx(2e-4 / 0.1 * 1e9, rel=0.01)
 
 
 @pytest.mark.parametrize('smoothing_s', [0.0, 0.1])
 def test_poses_are_smoothed_over_the_time_that_is_set(smoothing_s):
-    """Smoothing takes noise off the force; the truth is later by half of it."""
+    """Smoothing reduces the noise of the force and delays the truth by half its length."""
     simulator = OtherSimulator('motion_1', 100.0, 6.0).noisy(1e-4)
     adapter, truths = simulator.adapted(twist='ignore', smoothing_s=smoothing_s)
     run = AdaptedRun(simulator, truths)
@@ -200,7 +204,7 @@ def test_poses_are_smoothed_over_the_time_that_is_set(smoothing_s):
 
 @pytest.mark.parametrize('truth_rate_hz', [0.0, 200.0, 333.0, 1000.0])
 def test_the_truth_has_its_own_rate(truth_rate_hz):
-    """Any rate from twice that of the IMU; the first instant is a multiple of the IMU's period."""
+    """Truth has any rate from twice the IMU's; it begins at a multiple of the IMU period."""
     adapter, truths = OtherSimulator('sinusoids', 30.0, 4.0).adapted(truth_rate_hz=truth_rate_hz)
     stamps = [truth.t_ns for truth in truths]
     assert stamps[0] % 10_000_000 == 0
@@ -208,7 +212,7 @@ def test_the_truth_has_its_own_rate(truth_rate_hz):
 
 
 def test_memory_is_bounded():
-    """The stage keeps two seconds of knots and what curves need, however long it runs."""
+    """The stage keeps only two seconds of knots and what the curves need, however long it runs."""
     adapter = TruthAdapter(build(TruthAdapterSettings, PLACE))
     simulator = OtherSimulator('racetrack', 200.0, 30.0)
     for row in simulator.samples():

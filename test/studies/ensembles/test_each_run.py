@@ -1,4 +1,4 @@
-"""Runs that do not go side by side are flown one by one, with the same statistics."""
+"""Runs that cannot go side by side are simulated one by one, with the same statistics."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.ensemble.many_runs import in_lanes, simulate_runs
@@ -12,7 +12,7 @@ import pytest
 
 
 def settings_of(*names_and_assignments):
-    """Return SimulationSettings of shipped files and assignments, of 4 s."""
+    """Return SimulationSettings of 4 s from shipped files and assignments."""
     names = [word for word in names_and_assignments if ':=' not in word]
     return parameter_files.read([resources.parameter_file(name) for name in names],
                                 ['duration_s:=4.0', *(word for word in names_and_assignments
@@ -28,7 +28,7 @@ def same(a, b):
 
 
 def test_both_ways_give_the_same_bits():
-    """Side by side and one by one, for settings that go both ways."""
+    """Settings that allow both ways give the same bits side by side and one by one."""
     settings = settings_of('racetrack', 'imu_tactical_fog', 'initial.after_s:=0.5')
     motion, instants = read_motion(settings.motion_generator), np.array([0.1, 1.0, 2.5, 4.0])
     assert in_lanes(settings)
@@ -45,7 +45,7 @@ def test_both_ways_give_the_same_bits():
     ('guided_flight', 'imu_tactical_mems', 'guidance.topic:=ins/odometry')],
     ids=['tuned gyros', 'poisson', 'drop-outs', 'guided'])
 def test_each_run_is_the_single_run(words):
-    """To the bit, whatever the instrument; and runs differ."""
+    """Each run of an ensemble has the bits of the single run, and runs differ."""
     settings = settings_of(*words)
     motion, runs = read_motion(settings.motion_generator), range(2, 5)
     assert not in_lanes(settings)
@@ -69,7 +69,7 @@ def test_each_run_is_the_single_run(words):
 
 
 def test_statistics_that_have_travelled_are_the_same():
-    """Blocks that are joined in order count as the whole, whose ends are theirs."""
+    """Blocks joined in order have the statistics and final values of the whole ensemble."""
     settings = settings_of('racetrack', 'imu_tactical_fog')
     motion, instants = read_motion(settings.motion_generator), [0.0, 2.0, 4.0]
     whole = simulate_runs(settings, motion, range(40), instants)
@@ -82,12 +82,12 @@ def test_statistics_that_have_travelled_are_the_same():
     np.testing.assert_array_equal(both.statistics.histogram, whole.statistics.histogram)
     np.testing.assert_array_equal(both.horizontal.histogram, whole.horizontal.histogram)
     np.testing.assert_allclose(both.statistics.mean, whole.statistics.mean, rtol=1e-9, atol=1e-15)
-    with pytest.raises(ValueError, match='do not go together'):
+    with pytest.raises(ValueError, match='cannot be joined'):
         joined(parts[::-1])
 
 
 def test_horizontal_sizes_are_counted():
-    """Their rms is that of both axes; percentiles are within a bin of those of the runs."""
+    """Horizontal sizes have the rms of both axes, and percentiles within one bin of the runs'."""
     settings = settings_of('racetrack', 'imu_tactical_mems')
     found = simulate_runs(settings, read_motion(settings.motion_generator), range(200), [4.0])
     sizes = np.hypot(found.final_errors[:, 6], found.final_errors[:, 7])
@@ -99,12 +99,12 @@ def test_horizontal_sizes_are_counted():
         k = round(2.0 * percent)
         low, high = ranked[k - 2], ranked[min(k + 1, 199)]
         assert low / 1.032 <= found.horizontal.percentile(percent)[0, 2] <= high * 1.032
-    # the vertical channel is that of the truth
+    # The vertical channel follows the truth.
     assert found.statistics.percentile(50)[0, 8] == 0.0
 
 
 def test_runs_without_output_are_refused():
-    """With a sentence, one by one too."""
+    """Runs without output are refused in one sentence, also one by one."""
     settings = settings_of('racetrack', 'orientation:=poisson', 'initial.after_s:=5.0')
     with pytest.raises(ValueError, match='no navigation output'):
         simulate_runs(settings, read_motion(settings.motion_generator), range(2), [1.0])

@@ -1,4 +1,4 @@
-"""The circle in which a part of the runs ends, against published factors and counted runs."""
+"""The circle that contains a given part of the runs, against published factors and counts."""
 
 from ins_sim.studies.error_circle import error_circle
 import numpy as np
@@ -9,7 +9,7 @@ import pytest
     (1.0, 1.17741, 2.44775), (0.5, 0.87042, 2.03586), (0.2, 0.70585, 1.97041)])
 @pytest.mark.parametrize('turn', [0.0, 0.7])
 def test_factors_of_the_longer_sigma(ratio, half, most, turn):
-    """By the ratio of the axes, to the last digit of the table, however they lie."""
+    """The circle's factor of the longer sigma is as tabulated, for any direction of the axes."""
     axes = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     covariance = axes @ np.diag([49.0, 49.0 * ratio ** 2]) @ axes.T
     for part, factor in ((0.5, half), (0.95, most)):
@@ -18,7 +18,11 @@ def test_factors_of_the_longer_sigma(ratio, half, most, turn):
 
 
 def test_a_mean_counts():
-    """The circle is about the true place: of 4e5 normals as many are inside, within 5 sigma."""
+    """
+    The circle is centred on the true place: a mean shifts runs out of it.
+
+    Of 4e5 normal points the given part lies inside, within 5 sigma.
+    """
     mean, covariance = np.array([3.0, -2.0]), np.array([[4.0, 1.0], [1.0, 0.5]])
     drawn = np.random.default_rng(1).multivariate_normal(mean, covariance, 400000)
     for part in (0.5, 0.95):
@@ -28,16 +32,16 @@ def test_a_mean_counts():
 
 @pytest.mark.parametrize('mean, sigmas, part, radius', [
     ((0.0, 0.0), (0.0, 0.0), 0.5, 0.0), ((3.0, 4.0), (0.0, 0.0), 0.95, 5.0),
-    # one axis alone: the quantiles of the absolute normal
+    # One axis only: quantiles of the absolute normal distribution.
     ((0.0, 0.0), (0.0, 2.0), 0.95, 2.0 * 1.9599640), ((0.0, 0.0), (1e-12, 1.0), 0.5, 0.6744898),
-    # far off: the shift along the mean alone counts
+    # Far away: only the spread along the mean counts.
     ((1e4, 0.0), (1.0, 1.0), 0.5, 1e4 + 0.5e-4)])
 def test_narrow_and_far(mean, sigmas, part, radius):
-    """Also where an axis has no width, or the mean is far from the true place."""
+    """The circle is right if one axis has no width, or if the mean is far from the true place."""
     found = error_circle(mean, np.diag(np.square(sigmas)), part)
     assert found == pytest.approx(radius, rel=1e-6)
 
 
 def test_what_is_not_known_has_no_circle():
-    """The covariance of one run."""
+    """One run has no covariance and therefore no circle."""
     assert np.isnan(error_circle((0.0, 0.0), np.full((2, 2), np.nan), 0.5))

@@ -1,4 +1,4 @@
-"""The verb monte-carlo and ins_sim.monte_carlo: what they write, and what they refuse."""
+"""The verb monte-carlo and ins_sim.monte_carlo: their output, and what they refuse."""
 
 import json
 import shlex
@@ -20,7 +20,7 @@ WORDS = ['monte-carlo', '--params-file', 'racetrack', '--params-file', 'imu_tact
 
 @pytest.fixture(scope='module')
 def study():
-    """Return an ensemble of 20 runs of 3 s, from run 5 on."""
+    """Return an ensemble of 20 runs of 3 s, starting with run 5."""
     settings = ins_sim.read_settings(NAMES, {'duration_s': 3.0, 'run': 5})
     seen = []
     made = ins_sim.monte_carlo(settings, runs=20, instants=4, jobs=1, progress=seen.append)
@@ -29,7 +29,7 @@ def study():
 
 
 def test_the_verb_writes_what_python_returns(tmp_path, monkeypatch, capsys, study):
-    """Statistics, ends and the worst run, which simulate flies alone to the bit."""
+    """The verb writes what Python returns; ``simulate`` repeats the worst run bit for bit."""
     monkeypatch.chdir(tmp_path)
     assert main([*WORDS, '--runs', '20', '-p', 'run:=5', '-o', 'study']) == 0
     said = capsys.readouterr().out
@@ -56,7 +56,7 @@ def test_the_verb_writes_what_python_returns(tmp_path, monkeypatch, capsys, stud
 
 
 def test_statistics_are_those_of_the_ends(study):
-    """At the last instant: mean, sigma and rms are those of the final errors."""
+    """At the last instant mean, sigma and rms are those of the final errors."""
     for name, ends in study.final_errors.items():
         errors = study.errors
         np.testing.assert_allclose(errors.mean[name][-1], ends.mean(axis=0), rtol=1e-9,
@@ -69,7 +69,7 @@ def test_statistics_are_those_of_the_ends(study):
 
 
 def test_tables_for_others(study):
-    """Data frames by instant and by run; an xarray with named dimensions and units."""
+    """Data frames by instant and by run, and an xarray with named dimensions and units."""
     pytest.importorskip('pandas')
     table, ends = study.to_dataframe(), study.to_dataframe('final')
     assert table.index.tolist() == study.errors.t_ns.tolist() and ends.index.name == 'run'
@@ -86,7 +86,7 @@ def test_tables_for_others(study):
 
 
 def test_runs_that_diverge_are_counted_named_and_left_out():
-    """Of three runs one is not finite: the others count, and the note names it."""
+    """Of three runs one diverges: it is left out and counted, and the note names it."""
     errors = np.arange(27.0).reshape(1, 3, 9)
     errors[0, 1, 4] = np.nan
     tally = ErrorTally(1)
@@ -103,7 +103,7 @@ def test_runs_that_diverge_are_counted_named_and_left_out():
 
 
 def test_an_ensemble_of_which_all_have_diverged(tmp_path):
-    """Is written, and says so; no figure holds what is not finite."""
+    """An ensemble whose runs all diverged is written with a note, without NaN in figures."""
     tally = ErrorTally(2)
     tally.add(0, np.full((2, 2, 9), np.nan))
     settings = ins_sim.read_settings(NAMES, {'duration_s': 3.0})
@@ -125,7 +125,7 @@ def test_an_ensemble_of_which_all_have_diverged(tmp_path):
     (['--scheduler', 'tcp://host:1'], 'a scheduler is given; expected only one of them'),
     (['-o', '/dev/null/study'], '/dev/null/study cannot be made')])
 def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, capsys):
-    """With one sentence, and nothing is left."""
+    """Invalid ensembles are refused in one sentence, and nothing is written."""
     monkeypatch.chdir(tmp_path)
     assert main([*WORDS, *words]) == 2
     said = capsys.readouterr().err.splitlines()
@@ -134,13 +134,13 @@ def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, ca
 
 
 def test_python_refuses_other_settings():
-    """Those of no simulation."""
+    """Settings that are not those of a simulation are refused in Python."""
     with pytest.raises(ValueError, match='settings are dict; expected SimulationSettings or'):
         ins_sim.monte_carlo({'duration_s': 1.0})
 
 
 def test_nodes_fly_one_run():
-    """Those of a simulation agree on it; the truth is that of every run."""
+    """The nodes of a simulation must agree on the number of the run; runs share one truth."""
     with pytest.raises(ValueError, match='^gnss: run is 3; expected that of imu_sensor, 0: all'):
         ins_sim.read_settings(['route_flight'], {'gnss:run': 3}, aided=True)
     settings = ins_sim.read_settings(['route_flight'], {'run': 3}, aided=True)
@@ -153,14 +153,14 @@ def test_nodes_fly_one_run():
 
 
 def test_an_ensemble_of_no_runs_has_no_statistics():
-    """The core gives an empty result, of which nothing is NaN but percentiles."""
+    """An ensemble without runs has an empty result, in which only percentiles are NaN."""
     settings = ins_sim.read_settings(NAMES, {'duration_s': 1.0})
     found = simulate_runs(settings, read_motion(settings.motion_generator), range(0), [1.0])
     assert found.statistics.count.tolist() == [0] and found.final.shape == (0, 10)
 
 
 def test_the_command_of_the_worst_run_can_be_pasted(tmp_path, monkeypatch, capsys):
-    """Into a shell, wherever the study is: the folder stays one word."""
+    """The command for the worst run can be pasted into a shell: the folder stays one word."""
     monkeypatch.chdir(tmp_path)
     folder = 'a b <script> & "q"'
     assert main([*WORDS, '--runs', '2', '-o', folder]) == 0

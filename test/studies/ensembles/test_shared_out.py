@@ -1,4 +1,4 @@
-"""The result of an ensemble does not depend on what computes it, nor on what dies on the way."""
+"""The result of an ensemble does not depend on its workers, even if some are killed."""
 
 import os
 import signal
@@ -41,19 +41,23 @@ def alone():
 
 
 def test_blocks_are_whole_and_do_not_depend_on_workers():
-    """They cover all runs, from that of the settings on, in groups of 16, a few tens of them."""
+    """
+    Blocks cover all runs in groups of 16, and do not depend on the number of workers.
+
+    They begin at the run of the settings, and there are a few tens of them.
+    """
     for runs in (1, 16, 90, 1000, 10 ** 5):
         blocks = plan_of(runs, run=7).blocks()
         assert [k for block in blocks for k in block] == list(range(7, 7 + runs))
         assert all(len(block) % 16 == 0 for block in blocks[:-1])
         assert len(blocks) <= max(16, runs // 256 + 1)
-    # tuned gyros are flown one by one
+    # Tuned gyros are simulated one by one.
     assert {len(b) for b in EnsemblePlan(ins_sim.read_settings(
         ['racetrack', 'imu_tactical_dtg'], {'duration_s': 1.0}), 40).blocks()} == {3, 1}
 
 
 def test_two_workers_one_of_them_killed(alone):
-    """The digest is that of one."""
+    """With two workers, one of them killed, the digest is that of one process."""
     with open_executor(2) as executor:
         assert digest(executor) == alone
     killed = []
@@ -69,7 +73,7 @@ def test_two_workers_one_of_them_killed(alone):
 
 @pytest.mark.slow
 def test_a_cluster_one_worker_of_which_is_killed(alone):
-    """The digest is that of one process."""
+    """On a cluster, with one worker killed, the digest is that of one process."""
     pytest.importorskip('distributed', reason='needs Dask (extra cluster)')
     cluster = Processes()
     try:
@@ -93,7 +97,7 @@ def monte_carlo(folder, *words, **more):
 
 @pytest.mark.slow
 def test_an_interrupted_study_goes_on(alone, tmp_path):
-    """The blocks that were finished are found, and the digest is that of one go."""
+    """An interrupted study finds its finished blocks, and its digest is that of one go."""
     blocks = tmp_path / 'study.blocks'
     first = monte_carlo(tmp_path, '--jobs', '2')
     while len(list(blocks.glob('block_*.npz'))) < 2 and first.poll() is None:
@@ -115,7 +119,7 @@ def test_an_interrupted_study_goes_on(alone, tmp_path):
 
 @pytest.mark.slow
 def test_run_417_alone():
-    """The end of run 417 of 1000 is that of simulate with this run, to the bit."""
+    """The end of run 417 of 1000 has the bits of ``simulate`` with this run."""
     settings = ins_sim.read_settings(['racetrack', 'imu_tactical_fog'], {'duration_s': 20.0})
     study = ins_sim.monte_carlo(settings)
     alone = ins_sim.simulate(ins_sim.read_settings(['racetrack', 'imu_tactical_fog'], {

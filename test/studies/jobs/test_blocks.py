@@ -1,4 +1,4 @@
-"""Blocks come in their order, whoever finishes first, and once each, whatever dies on the way."""
+"""Blocks are returned in order and once each, whatever finishes first or fails on the way."""
 
 import os
 import signal
@@ -18,7 +18,7 @@ def square(block):
 
 
 class DiesOnce:
-    """Work whose process is killed at one block, the first times that it is computed."""
+    """Work that kills its process at one block, the first times that it is computed."""
 
     def __init__(self, folder, block, times):
         self.folder, self.block, self.times = folder, block, times
@@ -35,7 +35,11 @@ class DiesOnce:
 
 @pytest.mark.parametrize('jobs', [1, 2, 3])
 def test_results_come_in_the_order_of_the_blocks(jobs):
-    """Although the first blocks take longest; and the processes are as many as asked for."""
+    """
+    Results come in the order of the blocks although the first ones take longest.
+
+    The number of processes is the requested one.
+    """
     blocks, seen = [range(k, k + 2) for k in range(6)], []
     with open_executor(jobs) as executor:
         found = list(run_blocks(square, blocks, executor, progress=seen.append))
@@ -48,14 +52,14 @@ def test_results_come_in_the_order_of_the_blocks(jobs):
 
 @pytest.mark.parametrize('times', range(1, ATTEMPTS))
 def test_a_killed_worker_costs_only_time(times, tmp_path):
-    """Every block comes, once, with its result."""
+    """After a killed worker every block is still returned once, with its result."""
     with open_executor(2) as executor:
         found = list(run_blocks(DiesOnce(tmp_path, 3, times), range(8), executor))
     assert [(n, int(r['block'])) for n, r in found] == [(k, k) for k in range(8)]
 
 
 def test_a_block_that_kills_every_worker_is_named(tmp_path):
-    """The study ends with a sentence; the blocks before were given, and others are not blamed."""
+    """A block that kills every worker ends the study with a message that names this block only."""
     found = []
     with open_executor(2) as executor, pytest.raises(ValueError, match='^block 4 of 8 ended'):
         for number, _ in run_blocks(DiesOnce(tmp_path, 3, 99), range(8), executor):
@@ -72,20 +76,20 @@ def refuse(block):
 
 @pytest.mark.parametrize('jobs', [1, 2])
 def test_an_error_of_the_work_is_the_error(jobs):
-    """It comes through as it is."""
+    """An error raised by the work is passed on unchanged."""
     with open_executor(jobs) as executor, pytest.raises(ValueError, match='^the third block'):
         list(run_blocks(refuse, range(5), executor))
 
 
 @pytest.mark.parametrize('jobs, scheduler', [(-1, None), (2, 'tcp://host:8786')])
 def test_what_is_no_executor_is_refused(jobs, scheduler):
-    """A sentence names what was given."""
+    """Invalid executors are refused in one sentence that names the value."""
     with pytest.raises(ValueError, match=f'^jobs is {jobs}'), open_executor(jobs, scheduler):
         pass
 
 
 def test_finished_blocks_are_not_computed_again(tmp_path):
-    """Neither after an interruption; a damaged one is."""
+    """Finished blocks are not computed again after an interruption; a damaged one is."""
     folder, identity = tmp_path / 'blocks', {'a': 1, 'b': (1.5, 'x')}
     store = BlockStore(folder, identity)
     with open_executor(2) as executor:
@@ -106,7 +110,7 @@ def test_finished_blocks_are_not_computed_again(tmp_path):
 
 
 def test_blocks_of_another_study_are_never_mixed(tmp_path):
-    """The sentence says what differs; with replace they are deleted, and only they."""
+    """Blocks of another study are refused with the difference; replace deletes only them."""
     folder = tmp_path / 'blocks'
     BlockStore(folder, {'seed': 1, 'rate_hz': 100.0}).save(0, {'x': np.zeros(3)})
     with pytest.raises(ValueError, match='seed is 1 there and 2 here'):
@@ -118,7 +122,7 @@ def test_blocks_of_another_study_are_never_mixed(tmp_path):
     store = BlockStore(folder, {'seed': 2}, replace=True)
     assert store.found == 0 and len(store) == 0
     assert [path.name for path in folder.iterdir()] == ['mine.txt']
-    # where no block was finished there is nothing to mix, and nothing is left
+    # Without a finished block there is nothing to mix, and nothing remains.
     none = tmp_path / 'none'
     assert BlockStore(none, {'seed': 1}).found == 0 and not none.exists()
     other = tmp_path / 'other'

@@ -1,4 +1,4 @@
-"""A Dask cluster computes the same blocks; one that cannot be used is refused in a sentence."""
+"""A Dask cluster computes the same blocks; an unusable one is refused in one sentence."""
 
 import signal
 import sys
@@ -15,7 +15,7 @@ distributed = pytest.importorskip('distributed', reason='needs Dask (extra clust
 
 @pytest.fixture
 def processes():
-    """Give a scheduler, and end all at the end."""
+    """Yield a function that starts a scheduler or worker; all of them end after the test."""
     made = Processes()
     yield made
     for process in reversed(made.all):
@@ -24,7 +24,7 @@ def processes():
 
 
 def test_a_killed_worker_costs_only_time(processes):
-    """Every block comes, once and in order, although one of two workers is killed on the way."""
+    """After one of two workers is killed, every block is still returned once and in order."""
     workers = {process.pid: process for process in (processes.worker(), processes.worker())}
     found = []
     with open_executor(scheduler=processes.address) as executor:
@@ -37,7 +37,7 @@ def test_a_killed_worker_costs_only_time(processes):
 
 
 def test_a_cluster_that_goes_away_is_named(processes):
-    """The study ends with a sentence when the scheduler ends."""
+    """If the scheduler ends, the study ends with a message."""
     processes.worker()
     with open_executor(scheduler=processes.address) as executor:
         with pytest.raises(ValueError, match=f'{processes.address} is lost'):
@@ -47,7 +47,7 @@ def test_a_cluster_that_goes_away_is_named(processes):
 
 
 def test_a_cluster_without_workers_is_refused(processes, monkeypatch):
-    """At once; and one that has lost its last worker after a while."""
+    """A cluster without workers is refused at once, one that lost its last worker later."""
     with pytest.raises(ValueError, match='has no worker; expected one or more'):
         with open_executor(scheduler=processes.address):
             pass
@@ -63,7 +63,7 @@ def test_a_cluster_without_workers_is_refused(processes, monkeypatch):
 @pytest.mark.parametrize('address, reason', [
     ('tcp://127.0.0.1:9', 'there is no Dask scheduler at'), ('nowhere', 'there is no Dask')])
 def test_a_scheduler_that_is_not_there(address, reason, monkeypatch):
-    """The sentence names the address."""
+    """A missing scheduler is reported with its address."""
     monkeypatch.setattr(cluster, 'CONNECT_S', 1.0)
     with pytest.raises(ValueError, match=reason), open_executor(scheduler=address):
         pass
@@ -71,7 +71,7 @@ def test_a_scheduler_that_is_not_there(address, reason, monkeypatch):
 
 @pytest.mark.parametrize('address', ['nowhere', '', 'tcp:/localhost:8786', 'http://localhost:1'])
 def test_a_misspelt_address_makes_no_client(address, monkeypatch):
-    """One that has failed to begin waits 20 s for itself when it is deleted, and says so."""
+    """A misspelt address creates no client, which would block for 20 s when deleted."""
     def client(*_, **__):
         pytest.fail('a client was made')
 
@@ -82,10 +82,10 @@ def test_a_misspelt_address_makes_no_client(address, monkeypatch):
 
 @pytest.mark.parametrize('source, found', [
     ("__version__ = '0.0.9'\n", 'has ins_sim 0.0.9; expected ins_sim '),
-    # as where it is not installed
+    # The package is not installed there.
     ("raise ModuleNotFoundError('ins_sim', name='ins_sim')\n", 'has no ins_sim')])
 def test_other_versions_are_refused(processes, tmp_path, source, found):
-    """The sentence names both."""
+    """Another version of ins_sim on a worker is refused; the message names both."""
     (tmp_path / 'ins_sim').mkdir()
     (tmp_path / 'ins_sim' / '__init__.py').write_text(source, encoding='utf-8')
     processes.worker(path=tmp_path)
@@ -95,7 +95,7 @@ def test_other_versions_are_refused(processes, tmp_path, source, found):
 
 @pytest.mark.parametrize('name', ['Python', 'NumPy'])
 def test_another_python_is_refused(processes, monkeypatch, name):
-    """So is another NumPy, by its version."""
+    """Another version of Python or NumPy on a worker is refused."""
     processes.worker()
     theirs = cluster.own_versions()[name]
     monkeypatch.setattr(cluster, 'own_versions',

@@ -1,1 +1,1 @@
-"""The IMU: ideal increments of late channels, errors of the triads, sampling."""
+"""The IMU: ideal increments with channel delays, errors of the triads, sampling."""

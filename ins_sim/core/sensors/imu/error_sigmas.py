@@ -1,4 +1,4 @@
-"""What is known of the errors of an instrument beforehand, from its own figures."""
+"""A-priori standard deviations of the errors of an instrument, from its error settings."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -8,9 +8,10 @@ import numpy as np
 from .triad_errors import FLICKER_SIGMA, FLICKER_TIMES, TriadErrors
 from .triad_model import KEYS, noise_variance, triad_model
 
-# What changes faster is white noise to a navigator, s; what changes more slowly stays as it is.
+# Time constant, s, up to which a process counts as white noise for a navigator; slower processes
+# count as constant.
 SLOW_S = 100.0
-# Coefficients of a triad that are drawn, or that carry something from sample to sample.
+# Coefficients of a triad that are random, and those that carry a state from sample to sample.
 RANDOM = ('turn_on_sigma', 'gauss_markov_sigma', 'flicker', 'white', 'walk', 'scale_sigma',
           'misalignment_sigma')
 REMEMBERED = ('bandwidth_hz', 'saturation', 'quantum')
@@ -18,10 +19,18 @@ REMEMBERED = ('bandwidth_hz', 'saturation', 'quantum')
 
 class TriadSigmas(NamedTuple):
     """
-    Variances and densities of the errors of a triad by axis, tuples of three (U: rad/s or m/s^2).
+    Variances and spectral densities of the errors of a triad, tuples of three by body axis.
 
-    bias U^2, scale 1, misalignment rad^2: at the start; white U^2 s, walk U^2/s: densities;
-    sample U^2: of one sample.
+    U is the unit of the triad: rad/s for gyros, m/s^2 for accelerometers.
+
+    Attributes
+    ----------
+    bias : variance of the bias at the start, U^2
+    scale : variance of the scale factor error at the start
+    misalignment : variance of the misalignment at the start, rad^2
+    white : spectral density of the white noise, U^2 s
+    walk : spectral density of the random walk of the bias, U^2/s
+    sample : variance of the white noise and pulses of one sample, U^2
     """
 
     bias: tuple
@@ -34,11 +43,17 @@ class TriadSigmas(NamedTuple):
 
 def triad_sigmas(settings, dt_s, name=''):
     """
-    Return the TriadSigmas of GyroErrors or AccelerometerErrors: of what differs from run to run.
+    Return the TriadSigmas of the errors that differ from run to run.
 
-    dt_s: sampling period, s; name: as of ``triad_model``, whose ValueError it raises.  Of flicker
-    noise and Gauss-Markov processes, what has a time constant of at most SLOW_S is white noise,
-    the rest a bias that stays, which is more than it does after a few time constants.
+    Of flicker noise and Gauss-Markov processes, the parts with a time constant of at most SLOW_S
+    count as white noise and the slower parts as a constant bias. The latter overestimates them
+    after a few time constants.
+
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
+    dt_s : sampling period, s
+    name : prefix of the keys in the ValueError that ``triad_model`` raises
     """
     m = triad_model(settings, dt_s, name)
     fast = slow = 0.0
@@ -58,11 +73,15 @@ def triad_sigmas(settings, dt_s, name=''):
 
 def fixed_errors(settings):
     """
-    Return a function (input, force) -> error of the errors that are the same in every run.
+    Return a function (input, force) -> error for the errors that are the same in every run.
 
-    settings: GyroErrors or AccelerometerErrors.  Inputs and errors are three floats by body axis,
-    as of ``TriadErrors.step``; None where a triad has no such errors.  Lags, range and pulses are
-    left out, and temperature.
+    The function takes and returns three floats by body axis, see ``TriadErrors.step``. The result
+    is None if the triad has no such errors. Lags, the limits of the range, pulses and temperature
+    are left out.
+
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
     """
     off = {key: (0.0,) * 3 for key, (coefficient, _) in KEYS[type(settings)].items()
            if coefficient in RANDOM + REMEMBERED}

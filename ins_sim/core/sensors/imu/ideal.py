@@ -1,7 +1,8 @@
 """
-The ideal inertial measurement unit whose channels are late.
+The ideal IMU whose channels are delayed (Bogdanov and Fomichev 2018).
 
-See docs/theory/late_gyro.md.
+See docs/theory/late_gyro.md. Axes m are those of the map frame (`core.earth.frames.MapFrame`), b
+those of the body.
 """
 
 import numpy as np
@@ -19,9 +20,13 @@ from .readings import joined
 
 class Triads:
     """
-    The channels of both triads: which distinct delay each has, and what one step reads.
+    The channels of both triads: their distinct delays, and the arithmetic of one step.
 
-    gyro_delays, accel_delays: the distinct delays, ns; the inputs of a step come in their order.
+    Attributes
+    ----------
+    gyro_delays, accel_delays : the distinct delays of each triad in rising order, ns; the inputs
+        of a step are given in this order
+    attitude_delays : the distinct delays of both triads together, ns
     """
 
     def __init__(self, settings):
@@ -29,7 +34,7 @@ class Triads:
         self.integrated = settings.output == 'integrated'
         gyro, accel = settings.gyro.delay_us.in_ns(), settings.accelerometer.delay_us.in_ns()
         self.gyro_delays, self.accel_delays = tuple(sorted(set(gyro))), tuple(sorted(set(accel)))
-        # attitudes are needed at both kinds of delay; each distinct one is evaluated once
+        # Both triads need attitudes; each distinct delay is evaluated once.
         self.attitude_delays = tuple(sorted(set(gyro) | set(accel)))
         self._gyro = tuple(self.gyro_delays.index(d) for d in gyro)
         self._accel = tuple(self.accel_delays.index(d) for d in accel)
@@ -50,15 +55,18 @@ class Triads:
                                      for s in NODES)
 
     def begin(self):
-        """Let the rotors of tuned gyros, if any, be settled at the start of the next step."""
+        """Start a run: rotors of tuned gyros, if any, settle at the start of the next step."""
         self._settled = False
 
     def rotated(self, q_start, q_end, forces_m):
         """
-        Return omega, f, None of one step of the output ``rotation_vector``.
+        Return omega (rad/s), f (m/s^2) and None for one step of the output ``rotation_vector``.
 
-        q_start, q_end: q_mb at each attitude delay; forces_m: for each accelerometer delay, the
-        specific force in m at the three Gauss nodes.
+        Parameters
+        ----------
+        q_start, q_end : q_mb at the start and end of the step, one for each attitude delay
+        forces_m : specific force in m at the three Gauss nodes, one set for each accelerometer
+            delay, m/s^2
         """
         phi = [rotation_increment(q_start[k], q_end[k], self._dq_earth) for k in self._gyro_at]
         u = [velocity_increment(q_start[k], f, self._node_rotations)
@@ -69,11 +77,15 @@ class Triads:
 
     def rotated_block(self, t_ns, q_before, q_mb, forces_m):
         """
-        Return the ImuSamples of consecutive steps of the output ``rotation_vector``.
+        Return the ImuSamples of n consecutive steps of the output ``rotation_vector``.
 
-        For each attitude delay, q_before: q_mb at the end of the step before, floats, and q_mb
-        (n, 4) at the ends of the steps; forces_m: for each accelerometer delay and Gauss node
-        the specific force in m, arrays, or floats where it is always the same.
+        Parameters
+        ----------
+        t_ns : (n,) ends of the steps, ns
+        q_before : q_mb at the end of the step before, four floats for each attitude delay
+        q_mb : (n, 4) q_mb at the ends of the steps, one array for each attitude delay
+        forces_m : specific force in m for each accelerometer delay and Gauss node, m/s^2: arrays,
+            or floats where it is constant
         """
         count = len(t_ns)
         phi, u = [], []
@@ -92,7 +104,14 @@ class Triads:
         return ImuSamples(t_ns, omega, _picked(u, self._accel))
 
     def instant(self, t_ns, omega, f):
-        """Return omega, f, parity or None of rate and specific force at an instant."""
+        """
+        Return omega, f and parity (or None) of the first sample, which has no interval before it.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega, f : angular rate (rad/s) and specific force (m/s^2) at that instant
+        """
         if self.pair is None:
             return omega, f, None
         rate, parity = self.pair.first(t_ns, omega, f)
@@ -100,10 +119,14 @@ class Triads:
 
     def integrals(self, t_ns, rates, forces_b):
         """
-        Return omega, f, parity or None of one step, ending at t_ns, of the output ``integrated``.
+        Return omega, f and parity (or None) of the step of output ``integrated`` ending at t_ns.
 
-        rates, forces_b: for each gyro and each accelerometer delay, the vector in b at
-        ``rate_nodes`` and at the Gauss nodes.
+        Parameters
+        ----------
+        t_ns : end of the step, ns
+        rates : body rate at ``rate_nodes``, one set for each gyro delay, rad/s
+        forces_b : specific force in b at the Gauss nodes, one set for each accelerometer delay,
+            m/s^2
         """
         force = self._pick_means(forces_b, self._accel)
         if self.pair is None:
@@ -115,10 +138,18 @@ class Triads:
 
     def integrals_block(self, t_ns, rates, forces_b, first_ns=None):
         """
-        Return the ImuSamples of consecutive steps of the output ``integrated``.
+        Return the ImuSamples of n consecutive steps of the output ``integrated``.
 
-        rates, forces_b: as of ``integrals``, arrays (3, n) of the steps.  The rotors settle anew
-        behind the step that ends at first_ns.  A StreamFault has ``readings``, those before it.
+        Parameters
+        ----------
+        t_ns : (n,) ends of the steps, ns
+        rates, forces_b : as in ``integrals``, with arrays (3, n) for vectors
+        first_ns : end of the first step of the run: the rotors settle again after this step
+
+        Raises
+        ------
+        StreamFault
+            Its attribute ``readings`` holds the samples before the fault.
         """
         if self.pair is None:
             omega, f, _ = self.integrals(t_ns, rates, forces_b)
@@ -142,7 +173,7 @@ class Triads:
         return joined(parts)
 
     def _late(self, rates):
-        """Return the rates at the nodes, each axis of which is late at the input of the rotors."""
+        """Return the rates at the nodes, each axis with its own delay: the input of the rotors."""
         x, y, z = self._gyro
         return [(a[0], b[1], c[2]) for a, b, c in zip(rates[x], rates[y], rates[z])]
 
@@ -159,7 +190,7 @@ class Triads:
 
 
 def _picked(rows, picks):
-    """Return (n, 3), each axis from that of the rows (n, 3) which it picks; rows may change."""
+    """Return (n, 3) with axis i taken from rows[picks[i]]; the rows may be overwritten."""
     found = rows[picks[0]]
     for axis, k in enumerate(picks):
         if k != picks[0]:
@@ -169,10 +200,14 @@ def _picked(rows, picks):
 
 class MotionImu:
     """
-    The IMU fed by a motion that can be evaluated anywhere (closed form or recording).
+    The IMU on a motion that can be evaluated at any time (closed form or recording).
 
-    settings: ImuSensorSettings; motion: a Motion; first_ns: motion time of sample 0;
-    triads: of the same settings, to be used instead of new ones.
+    Parameters
+    ----------
+    settings : ImuSensorSettings
+    motion : Motion
+    first_ns : motion time of sample 0, ns
+    triads : Triads of the same settings, to reuse instead of building new ones
     """
 
     def __init__(self, settings, motion, first_ns, triads=None):
@@ -186,7 +221,7 @@ class MotionImu:
         self.dt_ns = self._triads.dt_ns
 
     def advance(self, count):
-        """Return the next count samples as ImuSamples; any cutting gives the same bits."""
+        """Return the next count samples as ImuSamples; the bits do not depend on the counts."""
         triads = self._triads
         t_ns = self.next_ns + triads.dt_ns * np.arange(count, dtype=np.int64)
         self.next_ns += triads.dt_ns * count
@@ -214,7 +249,7 @@ class MotionImu:
             return known[key]
 
         def rate(offset_ns, delay_ns):
-            # A step begins where the one before ends.
+            # Each step begins where the one before it ends, so both edges share one evaluation.
             if offset_ns == -triads.dt_ns:
                 return truth(edges, -delay_ns).omega_ib_b[:-1].T
             if offset_ns == 0:
@@ -229,7 +264,7 @@ class MotionImu:
         rates = [[rate(o, d) for o in self._offsets(triads.rate_nodes)]
                  for d in triads.gyro_delays]
         forces = [[force(o - d) for o in self._offsets(NODES)] for d in triads.accel_delays]
-        # The run begins at first_ns, as on a stream, which knows nothing of before.
+        # The run begins at first_ns, as on a stream, where no earlier motion is known.
         return triads.integrals_block(t_ns, rates, forces, self._first_ns)
 
     def _instants(self, t_ns):
@@ -249,6 +284,6 @@ class MotionImu:
         return quaternion.rotate(self._triads.frame.q_mn(lat, lon), f_n)
 
     def _offsets(self, nodes):
-        """Return the times of nodes of [0, 1] relative to the end of a step, ns."""
+        """Return the times of nodes in [0, 1], relative to the end of a step, ns."""
         dt_ns = self._triads.dt_ns
         return [round(dt_ns * (s - 1.0)) for s in nodes]

@@ -1,9 +1,10 @@
 """
 The increments of one sampling interval, and loops over the intervals of a block.
 
-Functions take floats; with arrays for components they take the intervals of a block at once.  A
-function ``..._rows`` is the loop over flat rows, to be compiled, and ``..._arrays`` does the same
-with arrays; the bits are equal.
+The functions take floats, or arrays as components to process many intervals at once. A function
+``..._rows`` loops over flat rows and is meant to be compiled; its counterpart ``..._arrays`` does
+the same with NumPy and gives the same bits. Axes m are those of the map frame, b those of the
+body, i those of inertial space.
 """
 
 import math
@@ -12,7 +13,7 @@ import numpy as np
 
 from ins_sim.core.attitude import quaternion
 
-# Gauss-Legendre, three points on [0, 1]
+# Gauss-Legendre quadrature with three points on [0, 1].
 NODES = (0.5 - math.sqrt(0.15), 0.5, 0.5 + math.sqrt(0.15))
 WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
@@ -21,7 +22,10 @@ def rotation_increment(q_start, q_end, dq_earth):
     """
     Return the rotation vector from the inertial attitude at the start to that at the end, rad.
 
-    q_start, q_end: q_mb; dq_earth: rotation of m in i over the interval.
+    Parameters
+    ----------
+    q_start, q_end : q_mb at the start and end of the interval
+    dq_earth : rotation of m relative to i over the interval
     """
     return quaternion.logarithm(quaternion.multiply(quaternion.conjugate(q_start),
                                                     quaternion.multiply(dq_earth, q_end)))
@@ -29,10 +33,12 @@ def rotation_increment(q_start, q_end, dq_earth):
 
 def mean_force(forces_m, node_rotations):
     """
-    Return the mean over the interval of the specific force in the inertial axes m of its start.
+    Return the mean specific force over the interval, in the inertial axes that m has at its start.
 
-    forces_m: specific force in m at the three Gauss nodes, m/s^2; node_rotations: rotations of m
-    in i from the start to the nodes.
+    Parameters
+    ----------
+    forces_m : specific force in m at the three Gauss nodes, m/s^2
+    node_rotations : rotations of m relative to i from the start to each node
     """
     (w1, w2, w3), (f1, f2, f3), (r1, r2, r3) = WEIGHTS, forces_m, node_rotations
     a, b, c = quaternion.rotate(r1, f1), quaternion.rotate(r2, f2), quaternion.rotate(r3, f3)
@@ -41,12 +47,25 @@ def mean_force(forces_m, node_rotations):
 
 
 def velocity_increment(q_start, forces_m, node_rotations):
-    """Return Q_ib(start)^-1 times the mean of Q_ib f_b over the interval, m/s^2."""
+    """
+    Return the mean specific force over the interval in the body axes at its start, m/s^2.
+
+    This is Q_ib(start)^-1 times the mean of Q_ib f_b; for the arguments see ``mean_force``.
+    """
     return quaternion.rotate_back(q_start, mean_force(forces_m, node_rotations))
 
 
 def rotation_rows(before, q_mb, dq_earth, out):
-    """Write the rotation increments to attitudes q_mb, the first from ``before``, into out."""
+    """
+    Write the rotation increments between consecutive attitudes into out, rad.
+
+    Parameters
+    ----------
+    before : q_mb at the start of the first interval
+    q_mb : flat (4 n,) q_mb at the ends of the intervals
+    dq_earth : rotation of m relative to i over one interval
+    out : flat (3 n,)
+    """
     for k in range(len(q_mb) // 4):
         i, j = 4 * k, 3 * k
         q = q_mb[i], q_mb[i + 1], q_mb[i + 2], q_mb[i + 3]
@@ -55,13 +74,21 @@ def rotation_rows(before, q_mb, dq_earth, out):
 
 
 def rotation_arrays(before, q_mb, dq_earth, out):
-    """Do what ``rotation_rows`` does with q_mb (n, 4) and out (n, 3)."""
+    """Do the same as ``rotation_rows`` with q_mb (n, 4) and out (n, 3)."""
     starts = _starts(before, q_mb)
     out[:] = np.stack(rotation_increment(starts, np.ascontiguousarray(q_mb.T), dq_earth), axis=-1)
 
 
 def force_rows(before, q_mb, mean, out):
-    """Write means of specific force in m into out, in the body axes at the starts."""
+    """
+    Write mean specific forces, resolved in the body axes at the interval starts, into out.
+
+    Parameters
+    ----------
+    before, q_mb : as in ``rotation_rows``
+    mean : flat (3 n,) mean specific forces in m, m/s^2
+    out : flat (3 n,)
+    """
     for k in range(len(q_mb) // 4):
         i, j = 4 * k, 3 * k
         f = mean[j], mean[j + 1], mean[j + 2]
@@ -70,12 +97,12 @@ def force_rows(before, q_mb, mean, out):
 
 
 def force_arrays(before, q_mb, mean, out):
-    """Do what ``force_rows`` does with q_mb (n, 4), mean and out (n, 3)."""
+    """Do the same as ``force_rows`` with q_mb (n, 4), mean and out (n, 3)."""
     out[:] = np.stack(quaternion.rotate_back(_starts(before, q_mb), mean.T), axis=-1)
 
 
 def turned_rows(q_mn, q_nb, out):
-    """Write q_mn times the attitudes q_nb into out; q_mn: of a place where all of them are."""
+    """Write the products of q_mn, constant, and q_nb (flat, 4 n) into out (flat, 4 n)."""
     for k in range(len(q_nb) // 4):
         i = 4 * k
         q = q_nb[i], q_nb[i + 1], q_nb[i + 2], q_nb[i + 3]
@@ -83,10 +110,10 @@ def turned_rows(q_mn, q_nb, out):
 
 
 def turned_arrays(q_mn, q_nb, out):
-    """Do what ``turned_rows`` does with q_nb and out (n, 4); q_mn may be four arrays too."""
+    """Do the same as ``turned_rows`` with arrays (n, 4); q_mn may be four arrays as well."""
     out[:] = np.stack(quaternion.multiply(q_mn, np.ascontiguousarray(q_nb.T)), axis=-1)
 
 
 def _starts(before, q_mb):
-    """Return the attitudes, four arrays, from which the intervals begin that end at q_mb."""
+    """Return the attitudes, as four arrays, at the starts of the intervals that end at q_mb."""
     return np.concatenate([[before], q_mb[:-1]]).T.copy()

@@ -1,4 +1,4 @@
-"""Readings of an IMU: from the lists of single samples to records of arrays."""
+"""Conversion of IMU readings: from lists of single samples to records of arrays."""
 
 import numpy as np
 
@@ -11,13 +11,13 @@ def components(vectors):
 
 
 def samples_of(readings):
-    """Return the ImuSamples of (t_ns, omega, f, parity or None), as pushes of an IMU return."""
+    """Return the ImuSamples of readings (t_ns, omega, f, parity or None), as ``push`` returns."""
     if readings:
         return ImuSamples.of_readings([r[0] for r in readings], [r[1:] for r in readings])
     return ImuSamples(np.empty(0, dtype=np.int64), np.empty((0, 3)), np.empty((0, 3)))
 
 
 def joined(parts):
-    """Return parts of ImuSamples, any of which may be empty or None, as one."""
+    """Return several ImuSamples as one; parts that are empty or None are skipped."""
     parts = [part for part in parts if part is not None and len(part)]
     return ImuSamples.concatenate(parts) if parts else samples_of([])

@@ -1,4 +1,4 @@
-"""How samples leave the IMU: latency, jitter of the stamps and drop-outs."""
+"""The stamps of the samples that leave the IMU: latency, jitter and drop-outs."""
 
 from dataclasses import fields, replace
 
@@ -7,17 +7,22 @@ import numpy as np
 from ins_sim.settings.catalogue import check_value
 from ins_sim.settings.instrument_errors import Sampling
 
-# Stamps move by less than half a period, five standard deviations, so that they keep their order.
+# A stamp moves by less than half a period (five standard deviations), so stamps keep their order.
 SIGMAS = 5.0
 
 
 class Sampler:
     """
-    The stamps of the samples that get through.
+    Stamps of the samples that are not dropped.
 
-    settings: Sampling; dt_ns: sampling period, ns.  A function of (seed, run, name, index): a
-    drop-out or a jitter does not depend on what was asked before.  Raises ValueError where the
-    settings do not fit.
+    Drop-out and jitter of a sample are functions of (seed, run, name, index) and do not depend on
+    earlier calls. Raises ValueError for settings out of range.
+
+    Parameters
+    ----------
+    settings : Sampling
+    name : name of the random streams and prefix of the keys in messages
+    dt_ns : sampling period, ns
     """
 
     def __init__(self, settings, seed, run, name, dt_ns):
@@ -34,13 +39,13 @@ class Sampler:
         self._lost = settings.drop_out_probability
         self.perfect = not (self._latency_ns or self._jitter_ns or self._lost)
         if not self.perfect:
-            # NumPy's generators cost the start of a node with perfect stamps nothing
+            # Imported only if needed: NumPy's generators would slow down the start of a node.
             from ins_sim.core.numerics.noise import indexed_noise
             self._jitters = indexed_noise(seed, run, f'{name}.jitter')
             self._drop_outs = indexed_noise(seed, run, f'{name}.drop_out')
 
     def stamp(self, index, t_ns):
-        """Return the stamp of sample index, taken at t_ns, or None where it is lost."""
+        """Return the stamp (ns) of sample index, taken at t_ns, or None if it is dropped."""
         if self.perfect:
             return t_ns
         if self._lost and self._drop_outs.uniform(index) < self._lost:
@@ -51,7 +56,7 @@ class Sampler:
         return t_ns + self._latency_ns
 
     def take(self, imu):
-        """Return the ImuSamples that get through, with their stamps."""
+        """Return the ImuSamples that are not dropped, with their stamps."""
         if self.perfect or not len(imu):
             return imu
         kept, stamps = np.ones(len(imu), dtype=bool), imu.t_ns.copy()
@@ -66,6 +71,6 @@ class Sampler:
 
 
 def consecutive(index):
-    """Return the slices of an array of whole numbers in which each is one more than the last."""
+    """Return the slices of an integer array in which each entry is one more than the last."""
     ends = [*(np.flatnonzero(np.diff(index) != 1) + 1).tolist(), len(index)]
     return [slice(start, end) for start, end in zip([0, *ends], ends) if end > start]

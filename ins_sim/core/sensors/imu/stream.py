@@ -1,4 +1,4 @@
-"""The IMU as a consumer of streamed truth: samples in, samples out."""
+"""IMUs that take streamed truth samples and return IMU samples."""
 
 from functools import partial
 import math
@@ -24,16 +24,23 @@ BLOCK = 256
 
 def make_imu(settings, motion=None):
     """
-    Return the IMU that ImuSensorSettings name; every kind has push(...) and reset().
+    Return the IMU that ImuSensorSettings describe; every kind has push(...) and reset().
 
-    motion: the motion to evaluate with source motion; not used with source stream.  Raises
-    ValueError where it turns too fast for the rate of the IMU.
+    Parameters
+    ----------
+    settings : ImuSensorSettings
+    motion : the motion to evaluate if ``source`` is motion; not used if it is stream
+
+    Raises
+    ------
+    ValueError
+        If the motion turns too fast for the rate of the IMU.
     """
     if settings.source == 'stream':
         imu = StreamImu(settings)
     elif settings.motion.kind == 'guided':
         raise ValueError('source is motion with motion.kind guided; expected stream: a guided '
-                         'motion is known only to what steers it')
+                         'motion is not known in advance')
     else:
         check_turning(settings, motion, 0.0, min(NODE_S, motion.end_s))
         imu = PacedImu(settings, motion)
@@ -49,11 +56,11 @@ def stream_samples(truth, frame):
 
 class StreamImu(Sensor):
     """
-    The IMU that knows the motion only from the stream.
+    The IMU that knows the motion only from streamed truth samples.
 
-    Its instants are t_first + j dt.  Sample 0 has no interval behind it: it carries the rate and
-    the specific force of the first instant.  A sample is sent when the truth covers it, so
-    negative delays make it late.
+    Its samples are at t_first + j dt. Sample 0 has no interval before it and holds the rate and
+    the specific force of the first instant. A sample is returned as soon as the truth covers it,
+    so negative delays postpone it.
     """
 
     def __init__(self, settings):
@@ -69,9 +76,9 @@ class StreamImu(Sensor):
         if longest_s > LINE_S and not self._frozen:
             warnings.warn(f'a channel is delayed by {longest_s * 1e3:.6g} ms, but a stream is '
                           f'continued backwards by {LINE_S * 1e3:g} ms only and is constant '
-                          f'before that, so that the first {longest_s - LINE_S:.6g} s of its '
-                          'readings hold an error of the start; source motion knows what was '
-                          'before', stacklevel=2)
+                          f'before that; the first {longest_s - LINE_S:.6g} s of readings are '
+                          'therefore wrong. source motion knows the motion before the start',
+                          stacklevel=2)
 
     def reset(self):
         """Forget everything; the next sample is the first."""
@@ -88,15 +95,30 @@ class StreamImu(Sensor):
 
     @property
     def next_made_ns(self):
-        """Motion time of the next reading that is not made yet; None before the first."""
+        """Motion time of the next reading to be computed, ns; None before the first."""
         return self._next_ns
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take one truth sample (motion time) and return the readings it completes.
+        Take one truth sample and return the readings that it completes.
 
-        Return a list of (t_ns, omega, f, parity or None).  Raise StreamFault as TruthBuffer.push
-        does; the first sample may be repeated, and is answered again.
+        The first sample may be repeated; it is answered again.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        q_mb : attitude relative to the map frame
+        omega_ib_b : angular rate of the body in inertial space, rad/s
+        f_ib_b : specific force, m/s^2
+
+        Returns
+        -------
+        list of (t_ns, omega, f, parity or None)
+
+        Raises
+        ------
+        StreamFault
+            As ``TruthBuffer.push`` does.
         """
         buffer = self._buffer
         if not (buffer.count_is_one and t_ns == buffer.newest_ns):
@@ -116,9 +138,10 @@ class StreamImu(Sensor):
 
     def advance(self, truth):
         """
-        Return the ImuSamples of a Truth record or of a part of one, those of single pushes.
+        Return the ImuSamples of a Truth record or of a part of one; same bits as single pushes.
 
-        Raise StreamFault as push does, with ``readings`` and ``index``.
+        Raises StreamFault as ``push`` does. Its ``readings`` are the samples before the fault, its
+        ``index`` the truth sample that caused it.
         """
         q_mb = components(self._triads.frame.attitude(truth))
         sample = (truth.t_ns, q_mb, components(truth.omega_ib_b), components(truth.f_ib_b))
@@ -140,7 +163,7 @@ class StreamImu(Sensor):
         return joined(parts)
 
     def _read_block(self, block, stamps):
-        """Return the samples that the new ones of a TruthBlock, of these stamps, complete."""
+        """Return the samples that new truth (a TruthBlock with these stamps) completes."""
         triads, dt_ns = self._triads, self._triads.dt_ns
         count = max(0, (int(stamps[-1]) - self._lead_ns - self._next_ns) // dt_ns + 1)
         if not count:
@@ -190,7 +213,11 @@ class StreamImu(Sensor):
 
 
 class PacedImu(Sensor):
-    """The IMU that evaluates the motion of its own parameters; the stream only paces it."""
+    """
+    The IMU that evaluates the motion of its own parameters.
+
+    Of the stream it uses only the stamps, which tell it how far to go.
+    """
 
     def __init__(self, settings, motion):
         self._settings = settings
@@ -206,11 +233,11 @@ class PacedImu(Sensor):
 
     @property
     def next_made_ns(self):
-        """Motion time of the next reading that is not made yet, a block ahead; None at first."""
+        """Motion time of the next reading to be computed, ns, a block ahead; None at first."""
         return None if self._imu is None else self._imu.next_ns
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
-        """Return the readings up to the stamp t_ns, as StreamImu.push does."""
+        """Return the readings up to the stamp t_ns, in the form of StreamImu.push."""
         check_finite('truth', t_ns, q_mb, omega_ib_b, f_ib_b)
         if self._imu is None:
             self._imu = MotionImu(self._settings, self._motion, t_ns, self._triads)
@@ -236,9 +263,9 @@ class PacedImu(Sensor):
 
     def advance(self, truth):
         """
-        Return the ImuSamples of a Truth record or of a part of one, those of single pushes.
+        Return the ImuSamples of a Truth record or of a part of one; same bits as single pushes.
 
-        Raise StreamFault as push does, with ``readings`` and ``index``.
+        Raises StreamFault as ``push`` does, with ``readings`` and ``index``.
         """
         readings = []
         for index, sample in enumerate(self.samples(truth)):
@@ -250,7 +277,7 @@ class PacedImu(Sensor):
         return samples_of(readings)
 
     def _compute(self):
-        """Compute a block ahead, never past the end of the motion; return whether there is one."""
+        """Compute the next block, up to the end of the motion; return False if at the end."""
         imu, end_s = self._imu, self._motion.end_s
         left = BLOCK
         if end_s != math.inf:

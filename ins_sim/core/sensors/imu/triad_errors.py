@@ -12,25 +12,30 @@ from ins_sim.core.numerics.processes import Processes
 from .triad_model import temperature_off, triad_model
 from .triad_reading import AT_REST, read, read_arrays, read_rows, respond, ZERO
 
-# Flicker noise is the sum of Gauss-Markov processes of these correlation times, s, each of
-# variance B^2 ln(10)/pi.  Its Allan deviation is 0.664 B within 2.5 % from 1 s to 30000 s.
+# Flicker noise is modelled as the sum of Gauss-Markov processes with these correlation times, s,
+# and the variance B^2 ln(10)/pi each. Its Allan deviation is 0.664 B within 2.5 % from 1 s to
+# 30000 s.
 FLICKER_TIMES = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5)
 FLICKER_SIGMA = math.sqrt(elementary.log(10.0) / math.pi)
-# After so many time constants nothing is left of a lag; the range of exp ends there too.
+# A lag has decayed completely after this many time constants; exp underflows beyond.
 GONE = 700.0
 
 
 class TriadErrors:
     """
-    What one triad makes of its inputs.
+    The errors of one triad; raises ValueError for settings out of range.
 
-    settings: GyroErrors or AccelerometerErrors; name: of the random streams and in messages;
-    dt_s: sampling period, s; temperature: settings Temperature, or None for the reference.
+    The random terms are functions of (seed, run, name, index). The quantities carried from sample
+    to sample are in ``state``: the last index, the lags and the remainders of the pulses. After a
+    jump of the index the lags start settled and the remainders at zero.
 
-    The random terms are functions of (seed, run, name, index).  What is carried from sample to
-    sample is ``state``: the last index, the lags and the remainders of the pulses.  At any other
-    than the next index the lags start settled and the remainders at zero.  Raises ValueError
-    where the settings do not fit.
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
+    seed, run : of the random streams
+    name : name of the random streams and prefix of the keys in messages
+    dt_s : sampling period, s
+    temperature : settings Temperature, or None for the reference temperature
     """
 
     def __init__(self, settings, seed, run, name, dt_s, temperature=None):
@@ -59,9 +64,10 @@ class TriadErrors:
 
     def bias(self, index, value, force):
         """
-        Return what a reading of sample index errs by at a constant input, tuple of three floats.
+        Return the error of sample index at a constant input, three floats by body axis.
 
-        value, force: as of ``step``.  Without white noise, pulses and the limits of the range.
+        White noise, pulses and the limits of the range are left out; for the arguments see
+        ``step``.
         """
         warm = None
         if self._by_temperature is not None:
@@ -73,10 +79,14 @@ class TriadErrors:
 
     def step(self, index, value, force, t_s):
         """
-        Return the reading of sample index.
+        Return the reading of sample index, three floats by body axis.
 
-        value: mean input over the sampling interval, rad/s or m/s^2; force: specific force,
-        m/s^2; both three floats by body axis.  t_s: motion time.
+        Parameters
+        ----------
+        index : motion time divided by the sampling period
+        value : mean input over the sampling interval by body axis, rad/s or m/s^2
+        force : specific force by body axis, m/s^2
+        t_s : motion time, s
         """
         if self.perfect:
             return value
@@ -99,9 +109,9 @@ class TriadErrors:
     @property
     def at_once(self):
         """
-        Return geometry, response and AdditiveNoise where there is noise and nothing else, or None.
+        Return (geometry, response, AdditiveNoise) if the triad has noise and no further term.
 
-        Then a reading is ``respond`` with both, and the noise, and nothing is carried.
+        A reading is then ``respond`` with the first two, plus the noise. Otherwise return None.
         """
         if self._noise is None or any((self._by_force, self._by_temperature, self._lags,
                                        self._most, self._quantum)):
@@ -110,10 +120,14 @@ class TriadErrors:
 
     def immediate(self, values, forces, t_s):
         """
-        Return the errors (n, 3) that follow the input at once, and the fixed bias.
+        Return the errors (n, 3) that depend on the present input only, and the fixed bias.
 
-        values, forces (n, 3), t_s (n,): as of ``step``.  Lags, range, pulses and noise are left
-        out.
+        Lags, range, pulses and noise are left out.
+
+        Parameters
+        ----------
+        values, forces : (n, 3), see ``step``
+        t_s : (n,) motion times, s
         """
         warm = None
         if self._by_temperature is not None:
@@ -124,9 +138,13 @@ class TriadErrors:
 
     def advance(self, first, values, forces, t_s):
         """
-        Return the readings (n, 3) of the samples first to first + n - 1, as step gives them.
+        Return the readings (n, 3) of consecutive samples; same bits as ``step``.
 
-        values, forces (n, 3); t_s (n,).  Any cutting gives the same bits.
+        Parameters
+        ----------
+        first : index of the first sample
+        values, forces : (n, 3), see ``step``
+        t_s : (n,) motion times, s
         """
         if self.perfect or not len(values):
             return values
@@ -155,17 +173,17 @@ def _if_any(*terms):
 
 
 def drawn_once(seed, run, name, sigma):
-    """Return the numbers of standard deviations sigma that are drawn once a run."""
+    """Return normal numbers with standard deviations sigma that are drawn once per run."""
     normals = indexed_noise(seed, run, name, 3, 1).normal(0)
     return tuple(s * n for s, n in zip(sigma, normals))
 
 
 def _geometry(model, seed, run, name):
     """
-    Return the nine elements that take body axes to the sensitive ones, or None.
+    Return the nine elements of the matrix from body axes to sensitive axes, or None if unity.
 
-    Rows are the unit sensitive axes: those of non-orthogonality in the triad, times the rotation
-    of the body into the triad.
+    Its rows are the unit vectors of the sensitive axes: non-orthogonality within the triad, times
+    the rotation from the body to the triad (misalignment).
     """
     turn = tuple(m + d for m, d in zip(model.misalignment, drawn_once(
         seed, run, f'{name}.misalignment', model.misalignment_sigma)))
@@ -188,11 +206,16 @@ def _response(model, seed, run, name):
 
 def discrete_lag(frequency_hz, order, dt_s):
     """
-    Return the exact discretisation of a lag over one interval of constant input.
+    Return the exact discretisation of a lag over one interval with constant input.
 
-    (a, b, c, d) takes output less input, and its rate, from start to end; (m, n) gives the mean
-    of output less input from both at the start.  First order: w = 2 pi f; second: Butterworth,
+    First order: x' = w (u - x) with w = 2 pi f. Second order (Butterworth):
     x'' + sqrt(2) w x' + w^2 x = w^2 u.
+
+    Returns
+    -------
+    a, b, c, d : matrix that takes (output - input, rate of the output) from the start of the
+        interval to its end
+    m, n : weights of the same two at the start in the mean of (output - input)
     """
     w = 2.0 * math.pi * frequency_hz
     if w == 0.0:
@@ -217,7 +240,7 @@ class AdditiveNoise:
     fixed : (3,) bias of this run
     white : (3,) standard deviations of the white noise of a sample, or None
     stream : IndexedNoise of the white noise, or None
-    processes : functions (first block, blocks) of rows that are added one after the other
+    processes : functions (first block, count) that return rows (n, 3); their sum is added
 
     """
 
@@ -231,7 +254,8 @@ class AdditiveNoise:
         self.processes = []
         hour = tuple(s / 60.0 if math.isinf(t) else s
                      for s, t in zip(model.gauss_markov_sigma, model.gauss_markov_time))
-        # The stream of the Gauss-Markov process keeps its old name: seeds keep their numbers.
+        # The Gauss-Markov process keeps the old name of its stream, so that a given seed still
+        # draws the same numbers.
         for term, sigma, time in (('in_run_bias', hour, model.gauss_markov_time),
                                   ('walk', model.walk, (math.inf,) * 3)):
             if any(sigma):
@@ -242,11 +266,11 @@ class AdditiveNoise:
             self._add(Processes(seed, run, f'{name}.flicker', sigma.ravel(), time, dt_s))
 
     def _add(self, made):
-        """Add Processes whose columns are those of axes x, y, z, x, y, z and so on."""
+        """Add Processes whose columns belong to the axes x, y, z, x, y, z and so on."""
         self.processes.append(lambda first, count: made.sums(first, count, 3))
 
     def __call__(self, first, count):
-        """Return the rows, three columns, of blocks from first."""
+        """Return the errors (n, 3) of ``count`` blocks of samples, the first being ``first``."""
         total = np.empty((count * BLOCK, 3))
         total[:] = self.fixed
         if self.white is not None:
@@ -256,7 +280,7 @@ class AdditiveNoise:
         return total
 
     def bias(self, index):
-        """Return the errors (3,) of a sample without the white noise."""
+        """Return the errors (3,) of a sample, without the white noise."""
         block, row = divmod(index, BLOCK)
         total = self.fixed.copy()
         for process in self.processes:

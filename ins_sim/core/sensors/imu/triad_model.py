@@ -1,4 +1,4 @@
-"""The error model of a triad in SI, made from the settings of either triad and checked."""
+"""The error model of a triad in SI units, built from the settings of gyros or accelerometers."""
 
 from dataclasses import dataclass, fields
 import math
@@ -8,22 +8,36 @@ from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H, STANDARD_GRAVITY, UG
 from ins_sim.settings.catalogue import check_value
 from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 
-# The Allan deviation of flicker noise over its coefficient B, sqrt(2 ln 2 / pi) (IEEE Std 952).
+# Floor of the Allan deviation of flicker noise divided by its coefficient B, sqrt(2 ln 2 / pi)
+# (IEEE Std 952).
 FLICKER_FLOOR = math.sqrt(2.0 * log(2.0) / math.pi)
-# Noise must stay inside the range by this factor.
+# The range must exceed the standard deviation of the white noise by this factor.
 SIGMAS = 5.0
 
 
 @dataclass(frozen=True)
 class TriadModel:
     """
-    Coefficients by axis, tuples of three, in rad/s or m/s^2 (here: U), rad, s and kelvin.
+    Coefficients of a triad, tuples of three by body axis.
 
-    bias, turn_on_sigma, gauss_markov_sigma, flicker U; gauss_markov_time s; white U sqrt(s);
-    walk U/sqrt(s); scale, scale_sigma, asymmetry 1; quadratic 1/U; cubic 1/U^2; misalignment,
-    misalignment_sigma, non_orthogonality rad; g_linear U/(m/s^2), g_quadratic U/(m/s^2)^2;
-    bandwidth_hz Hz, order 1 or 2; saturation U, quantum U s, 0 = none; temperature_bias U/K,
-    temperature_scale 1/K; reported_sigma U, negative = that of the noise.
+    U is the unit of the triad: rad/s for gyros, m/s^2 for accelerometers.
+
+    Attributes
+    ----------
+    bias, turn_on_sigma, gauss_markov_sigma, flicker : U
+    gauss_markov_time : s; infinite for a random walk
+    white : U sqrt(s)
+    walk : U/sqrt(s)
+    scale, scale_sigma, asymmetry : dimensionless
+    quadratic, cubic : 1/U and 1/U^2
+    misalignment, misalignment_sigma, non_orthogonality : rad
+    g_linear, g_quadratic : U/(m/s^2) and U/(m/s^2)^2
+    bandwidth_hz : Hz, 0 for no lag
+    order : 1 or 2, of the lag
+    saturation : U, 0 for no limit
+    quantum : U s, 0 for no quantisation
+    temperature_bias, temperature_scale : U/K and 1/K
+    reported_sigma : U; negative to report the standard deviation of the noise
     """
 
     bias: tuple
@@ -65,9 +79,9 @@ _COMMON = {
     'bandwidth_order': ('order', None),
     'temperature_scale_ppm_c': ('temperature_scale', 1e-6),
 }
-# Settings key to (coefficient, its SI value of one unit).  The white noise has two keys, of which
-# settings give one: its density is N in SI, and 1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz), as one
-# m/s/sqrt(h) is 1/60 m/s^2/sqrt(Hz).
+# Settings key to (coefficient, SI value of its unit). The white noise has two keys, of which the
+# settings use one. Both give its density N in SI: 1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz), and
+# 1 m/s/sqrt(h) is 1/60 m/s^2/sqrt(Hz).
 KEYS = {
     GyroErrors: _COMMON | {
         'bias_deg_h': ('bias', DEG_H),
@@ -107,9 +121,17 @@ def triad_model(settings, dt_s, name=''):
     """
     Return the TriadModel of GyroErrors or AccelerometerErrors.
 
-    dt_s: sampling period, s; name: what stands before the keys in a message.  Raises ValueError,
-    in one sentence that names key, value and expectation, on anything out of its bounds, and on
-    noise or pulses that do not fit into the range of the instrument.
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
+    dt_s : sampling period, s
+    name : prefix of the keys in messages
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its bounds, or the range of the instrument is too small for its noise
+        or pulses. The message names key, value and expectation.
     """
     keys, values, prefix = KEYS[type(settings)], {}, f'{name}.' if name else ''
     known = {f.name: f for f in fields(settings)}
@@ -127,7 +149,7 @@ def triad_model(settings, dt_s, name=''):
 
 
 def _check_times(name, value, f):
-    """Check correlation times; infinite ones, which the catalogue refuses, are random walks."""
+    """Check correlation times; an infinite one (random walk) passes, unlike in the catalogue."""
     if not hasattr(value, '__iter__') or isinstance(value, str) or len(value) != 3:
         raise ValueError(f'{name} is {value!r}; expected 3 correlation times in s')
     check_value(name, [1.0 if v == math.inf else v for v in value], f)
@@ -153,10 +175,10 @@ def _check_range(settings, model, dt_s, prefix):
 
 def noise_variance(model, dt_s):
     """
-    Return the variance of white noise and quantiser of one sample by axis, U^2.
+    Return the variance of white noise and quantisation of one sample by axis, U^2.
 
-    N^2/dt + (q/dt)^2/6: the pulses of a sample err by the difference of two remainders, each of
-    variance q^2/12.
+    It is N^2/dt + (q/dt)^2/6: the quantisation error of a sample is the difference of two
+    remainders, each with variance q^2/12.
     """
     return tuple(n * n / dt_s + q * q / (6.0 * dt_s * dt_s)
                  for n, q in zip(model.white, model.quantum))
@@ -164,21 +186,27 @@ def noise_variance(model, dt_s):
 
 def white_variance(settings, dt_s, name=''):
     """
-    Return the variance to report of one sample by axis, (rad/s)^2 or (m/s^2)^2.
+    Return the variance that is published with a sample, by axis, (rad/s)^2 or (m/s^2)^2.
 
-    That of the noise, or where the setting reported_sigma is not negative its square.
+    It is that of the noise, unless the setting reported_sigma is not negative; then its square.
+
+    Parameters
+    ----------
+    settings : GyroErrors or AccelerometerErrors
+    dt_s : sampling period, s
+    name : prefix of the keys in messages
     """
     model = triad_model(settings, dt_s, name)
     return reported_variance(noise_variance(model, dt_s), model.reported_sigma)
 
 
 def reported_variance(variances, sigmas):
-    """Return the variances by axis, or where a sigma is not negative its square."""
+    """Return the variances by axis, replaced by the square of each sigma that is not negative."""
     return tuple(v if s < 0.0 else s * s for v, s in zip(variances, sigmas))
 
 
 def temperature_off(temperature, t_s):
-    """Return by how much the instruments are warmer than at calibration, K, at times t_s."""
+    """Return the temperature minus the calibration temperature, K, at times t_s (s)."""
     off = temperature.constant_c - temperature.reference_c + temperature.ramp_c_h * t_s / 3600.0
     if temperature.amplitude_c:
         off = off + temperature.amplitude_c * sin(2.0 * math.pi * t_s / temperature.period_s)

@@ -1,9 +1,9 @@
 """
-What a triad makes of its input: the step of its errors, a pure function, and loops over it.
+The errors of a triad as pure functions: one sample, and loops over many.
 
-Terms that are off are None.  In the order of the signal: ``respond`` has the terms that act at
-once, ``remember`` those that need the samples before: lags and pulses, and between them noise and
-range.
+Terms that are switched off are None. ``respond`` applies the errors that depend on the present
+input only. ``remember`` then applies those that need earlier samples: lags and pulses, and between
+them noise and range.
 """
 
 import math
@@ -11,21 +11,21 @@ import math
 import numpy as np
 
 ZERO = (0.0, 0.0, 0.0)
-# What the lags carry where nothing is carried yet.
+# Output minus input of the lags, and its rate, before the first sample.
 AT_REST = ((0.0, 0.0),) * 3
-# Floats from here on are whole numbers.
+# Floats of at least this size (2^52) have no fractional part.
 WHOLE = 4503599627370496.0
 
 
 def read(geometry, response, by_force, by_temperature, lags, noise, most, quantum, dt, per_dt,
          following, lagged, carried, value, force, warm):
     """
-    Return the reading of one sample, and what the lags and the pulses carry on.
+    Return the reading of one sample, and the new states of the lags and of the pulses.
 
     Parameters
     ----------
-    geometry, response, by_force, by_temperature, warm : as of ``respond``
-    lags, noise, most, quantum, dt, per_dt, following, lagged, carried : as of ``remember``
+    geometry, response, by_force, by_temperature, warm : see ``respond``
+    lags, noise, most, quantum, dt, per_dt, following, lagged, carried : see ``remember``
     value : mean input over the sampling interval by body axis, rad/s or m/s^2
     force : specific force by body axis, m/s^2
     """
@@ -35,16 +35,19 @@ def read(geometry, response, by_force, by_temperature, lags, noise, most, quantu
 
 def respond(geometry, response, by_force, by_temperature, value, force, warm):
     """
-    Return the input with the errors that follow at once; components are floats or arrays.
+    Return the input with the errors that depend on the present input only.
+
+    Components are floats or arrays.
 
     Parameters
     ----------
-    geometry : nine elements that take body axes to the sensitive ones
-    response : by axis, errors of scale factor: linear, of the absolute value, quadratic, cubic
-    by_force : by axis, coefficients of specific force and of its square
-    by_temperature : by axis, bias and scale factor per kelvin
-    value, force : as of ``read``
-    warm : temperature less that of the calibration, K
+    geometry : nine elements of the matrix from body axes to sensitive axes
+    response : errors of the scale factor, each by axis: linear, of the absolute value, quadratic,
+        cubic
+    by_force : coefficients of specific force and of its square, each by axis
+    by_temperature : bias and scale factor per kelvin, each by axis
+    value, force : see ``read``
+    warm : temperature minus that of the calibration, K
     """
     x, y, z = value
     if geometry is not None:
@@ -72,20 +75,20 @@ def respond(geometry, response, by_force, by_temperature, value, force, warm):
 
 def remember(lags, noise, most, quantum, dt, per_dt, following, lagged, carried, driven):
     """
-    Return the reading of an input, and what the lags and the pulses carry on; floats.
+    Return the reading of one sample, and the new states of the lags and of the pulses; floats.
 
     Parameters
     ----------
-    lags : by axis, the six numbers of ``pass_lag``
+    lags : by axis, the six numbers that ``pass_lag`` takes
     noise : additive errors of this sample by axis
-    most : by axis, the greatest value that is read
-    quantum : by axis, the weight of a pulse times s; 0 = none
+    most : by axis, the largest value that can be read
+    quantum : by axis, the weight of a pulse (rad or m/s); 0 for no quantisation
     dt, per_dt : sampling period, s, and its reciprocal
-    following : whether this sample follows the last one; if not, lags are settled and no
-        remainder of pulses is left
-    lagged : by axis, the output of the lag and its rate at the end of the sample before
-    carried : by axis, what remained of the pulses of the sample before
-    driven : the input of the lags by axis
+    following : whether this sample directly follows the last one; if not, the lags start settled
+        and the remainders of the pulses at zero
+    lagged : by axis, output of the lag and its rate at the end of the sample before
+    carried : by axis, remainder of the pulses of the sample before
+    driven : input of the lags by axis
     """
     x, y, z = driven
     if lags is not None:
@@ -119,10 +122,14 @@ def remember(lags, noise, most, quantum, dt, per_dt, following, lagged, carried,
 def read_rows(geometry, response, by_force, by_temperature, lags, noise, most, quantum, dt,
               per_dt, following, lagged, carried, values, forces, warm, out):
     """
-    Write the readings of consecutive samples into out; return what is carried behind the last.
+    Write the readings of consecutive samples into out; return the states after the last one.
 
-    noise, values, forces, out: rows of three, one behind the other; warm: one a sample, or None.
-    The rest is as of ``read``, which this repeats.
+    Parameters
+    ----------
+    noise, values, forces, out : flat (3 n,)
+    warm : (n,), or None
+
+    The other parameters are those of ``read``, which is called for each sample.
     """
     for i in range(0, len(values), 3):
         reading, lagged, carried = read(
@@ -136,7 +143,7 @@ def read_rows(geometry, response, by_force, by_temperature, lags, noise, most, q
 
 def read_arrays(geometry, response, by_force, by_temperature, lags, noise, most, quantum, dt,
                 per_dt, following, lagged, carried, values, forces, warm, out):
-    """Do what ``read_rows`` does with arrays (n, 3), sample by sample only what needs it."""
+    """Do the same as ``read_rows`` with arrays (n, 3); only lags and pulses need a loop."""
     out[:] = np.stack(respond(geometry, response, by_force, by_temperature, values.T, forces.T,
                               warm), axis=-1)
     if lags is None and quantum is None:
@@ -172,9 +179,13 @@ def one_of(row, i):
 
 def pass_lag(lag, start, u):
     """
-    Return the mean output over an interval of input u, and (output, its rate) at the end.
+    Return the mean output of a lag over an interval with input u, and its state at the end.
 
-    lag: of ``discrete_lag``; start: output and its rate at the start of the interval.
+    Parameters
+    ----------
+    lag : six numbers of ``discrete_lag``
+    start : output and its rate at the start of the interval
+    u : input, constant over the interval
     """
     a, b, c, d, m, n = lag
     x, v = start
@@ -183,7 +194,15 @@ def pass_lag(lag, start, u):
 
 
 def count_pulses(increment, quantum, per_dt):
-    """Return the reading of the whole pulses in an increment, and what remains."""
+    """
+    Return the reading of the whole pulses in an increment, and the remainder.
+
+    Parameters
+    ----------
+    increment : integral of the input plus the last remainder, rad or m/s
+    quantum : weight of a pulse, rad or m/s
+    per_dt : reciprocal of the sampling period, 1/s
+    """
     pulses = increment / quantum + 0.5
     if abs(pulses) < WHOLE:
         pulses = math.floor(pulses) * 1.0

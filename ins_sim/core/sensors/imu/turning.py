@@ -1,4 +1,4 @@
-"""The fastest turn that the readings of an IMU can tell: half a turn an interval."""
+"""The limit of the turn rate that an IMU can measure: half a turn in one sampling interval."""
 
 import math
 
@@ -8,19 +8,26 @@ from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.streams.faults import half_turn_sentence
 
-# Instants at which a motion is looked at before it is sensed.
+# Number of instants at which the turn rate of a motion is checked beforehand.
 LOOKS = 4096
-# Of a node, which does not know how long it will be driven, s.
+# Length of the check in a node, which does not know how long it will run, s.
 NODE_S = 60.0
 
 
 def check_turning(settings, motion, start_s, span_s):
     """
-    Raise ValueError where a motion turns by half a turn or more in an interval of the IMU.
+    Raise ValueError if a motion turns by half a turn or more within one IMU interval.
 
-    settings: ImuSensorSettings.  The rotation vector of an interval is that of the shorter way
-    round, so that the reading would be of another rate; an integral of the rate has no such
-    limit.  The motion is looked at LOOKS times from start_s, s of motion time, on.
+    The rotation vector of an interval describes the shorter way round, so the reading would show a
+    different rate. Output ``integrated`` has no such limit. The motion is checked at LOOKS equally
+    spaced instants.
+
+    Parameters
+    ----------
+    settings : ImuSensorSettings
+    motion : Motion
+    start_s : motion time of the first instant, s
+    span_s : length of the span to check, s
     """
     if settings.output == 'integrated':
         return

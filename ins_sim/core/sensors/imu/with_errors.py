@@ -1,8 +1,8 @@
 """
-From the ideal IMU to the instrument: the errors of both triads, applied to its readings.
+The errors of both triads, applied to the readings of the ideal IMU.
 
-Errors act on the mean rate and the mean specific force of a sampling interval.  They are a
-function of seed, run and instant: the index of a sample is its motion time over the period.
+Errors act on the mean rate and the mean specific force of a sampling interval. They are functions
+of seed, run and instant: the index of a sample is its motion time divided by the period.
 """
 
 from ins_sim.core.numerics.instants import period_ns
@@ -13,15 +13,15 @@ from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from ..sensor import Sensor
 from .sampling import consecutive
 
-# Rate, rad/s, and specific force, m/s^2, of level flight.
+# Angular rate, rad/s, and specific force, m/s^2, in level flight.
 STILL, LEVEL = (0.0, 0.0, 0.0), (0.0, 0.0, STANDARD_GRAVITY)
 
 
 def with_errors(settings):
     """
-    Return the InstrumentErrors of ImuSensorSettings, or None where nothing is left to them.
+    Return the InstrumentErrors of ImuSensorSettings, or None if all of them are zero.
 
-    Raises ValueError where the error terms do not fit together.
+    Raises ValueError for error terms that are inconsistent.
     """
     gyro = outer_gyro_errors(settings)
     if gyro == GyroErrors() and settings.accelerometer.errors == AccelerometerErrors():
@@ -30,15 +30,15 @@ def with_errors(settings):
 
 
 def outer_gyro_errors(settings):
-    """Return the GyroErrors to apply to body rates: tuned gyros have theirs by channel, inside."""
+    """Return the GyroErrors acting on body rates; tuned gyros apply theirs to each channel."""
     return GyroErrors() if settings.gyro.model == 'dtg' else settings.gyro.errors
 
 
 def reported_variances(settings):
     """
-    Return the variances of a sample of ImuSensorSettings by axis, (rad/s)^2 and (m/s^2)^2.
+    Return the variances to publish with a sample, by axis, (rad/s)^2 and (m/s^2)^2.
 
-    Those of white noise and pulses, or what the settings report in their place.
+    They are those of white noise and pulses, or the values that the settings give instead.
     """
     from .triad_model import white_variance
     dt = period_ns(settings.rate_hz) * 1e-9
@@ -50,10 +50,17 @@ def reported_variances(settings):
 
 
 class InstrumentErrors:
-    """The errors of gyros (GyroErrors) and accelerometers of one IMU in one run."""
+    """
+    The errors of the gyros and accelerometers of one IMU in one run.
+
+    Parameters
+    ----------
+    settings : ImuSensorSettings
+    gyro_errors : GyroErrors acting on the body rates
+    """
 
     def __init__(self, settings, gyro_errors):
-        # NumPy's generators cost a perfect node's start nothing
+        # Imported only if needed: NumPy's generators would slow down the start of a node.
         from .triad_errors import TriadErrors
         self._dt_ns = period_ns(settings.rate_hz)
         dt = self._dt_ns * 1e-9
@@ -64,28 +71,36 @@ class InstrumentErrors:
             for errors, name in triads)
 
     def take_over(self, before):
-        """Go on where other InstrumentErrors are: from their lags and remainders of pulses."""
+        """Continue from the lags and remainders of pulses of other InstrumentErrors."""
         self.gyro.state, self.accelerometer.state = before.gyro.state, before.accelerometer.state
 
     def step(self, t_ns, omega, f):
-        """Return omega, f of the instrument for those of the ideal IMU at motion time t_ns."""
+        """
+        Return omega and f with errors.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega, f : reading of the ideal IMU, rad/s and m/s^2
+        """
         index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
         return (self.gyro.step(index, omega, f, t_s),
                 self.accelerometer.step(index, f, f, t_s))
 
     def biases(self, t_ns):
         """
-        Return the biases of gyros, rad/s, and accelerometers, m/s^2, of the sample at t_ns.
+        Return the biases of gyros (rad/s) and accelerometers (m/s^2) of the sample at t_ns.
 
-        In level flight without acceleration, where errors of scale factors and axes of the
-        accelerometers are constant: a filter without states for them finds them in the biases.
+        They are evaluated in level unaccelerated flight, where errors of the scale factors and
+        axes of the accelerometers are constant: a filter without states for these estimates them
+        as part of the biases.
         """
         index = t_ns // self._dt_ns
         return (self.gyro.bias(index, STILL, LEVEL),
                 self.accelerometer.bias(index, LEVEL, LEVEL))
 
     def advance(self, imu):
-        """Return the ImuSamples of the instrument; any cutting gives the bits of step."""
+        """Return the ImuSamples of the instrument; same bits as ``step``, however they are cut."""
         t_s, omega, f = imu.t_ns * 1e-9, imu.omega.copy(), imu.f.copy()
         for part in consecutive(imu.t_ns // self._dt_ns):
             first = int(imu.t_ns[part.start]) // self._dt_ns
@@ -97,10 +112,15 @@ class InstrumentErrors:
 
 def changed(imu, settings):
     """
-    Return the IMU with the biases and the fault of other ImuSensorSettings, from now on.
+    Return the IMU with the biases and the fault of other ImuSensorSettings from now on.
 
-    imu: of ``stream.make_imu``; its readings go on where they are, with what it carries, and are
-    those of an IMU that had these settings from the start as far as nothing is carried.
+    The lags, remainders and rotors carry on. Terms without such memory are the same as if the
+    settings had applied from the start.
+
+    Parameters
+    ----------
+    imu : as ``stream.make_imu`` returns it
+    settings : ImuSensorSettings
     """
     before = None
     if isinstance(imu, ImuWithErrors):
@@ -116,7 +136,7 @@ def changed(imu, settings):
 
 
 class ImuWithErrors(Sensor):
-    """An IMU, ``ideal``, with push and reset whose readings pass through InstrumentErrors."""
+    """An IMU with errors: the readings of ``ideal`` pass through InstrumentErrors."""
 
     def __init__(self, imu, errors):
         self.ideal, self.errors = imu, errors
@@ -124,16 +144,16 @@ class ImuWithErrors(Sensor):
 
     @property
     def next_made_ns(self):
-        """Motion time of the next reading that is not made yet, of the ideal IMU."""
+        """Motion time of the next reading that the ideal IMU has to compute, ns."""
         return self.ideal.next_made_ns
 
     def push(self, *sample):
-        """Return the readings that a truth sample completes, as the ideal IMU does."""
+        """Return the readings that a truth sample completes, see ``StreamImu.push``."""
         return [(t_ns, *self.errors.step(t_ns, omega, f), parity)
                 for t_ns, omega, f, parity in self.ideal.push(*sample)]
 
     def advance(self, truth):
-        """Return the ImuSamples of a Truth record or of a part of one, those of single pushes."""
+        """Return the ImuSamples of a Truth record or part of one; same bits as single pushes."""
         try:
             ideal = self.ideal.advance(truth)
         except StreamFault as fault:

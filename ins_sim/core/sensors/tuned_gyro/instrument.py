@@ -1,12 +1,11 @@
 """
 The two tuned gyros of an IMU with their errors: body rates in, body rates and parity out.
 
-In the order of the signal: disturbances of the rotors (moments due to specific force, the product
+The signal passes through: disturbances of the rotors (moments due to specific force, the product
 of rates, hunting, vibration at twice the speed) and of their pick-offs; the rotors; an injected
 fault; the read-out of each gyro, with the errors of a triad along (spin axis, y, z) of its case,
-where the spin axis only serves the misalignment; the combination of the four channels
-(docs/theory/tuned_gyro.md, Errors of the rotors and of the read-out; model of IEEE
-Std 813).
+where the spin axis serves the misalignment only; and the combination of the four channels. See
+docs/theory/tuned_gyro.md, Errors of the rotors and of the read-out (model of IEEE Std 813).
 """
 
 from dataclasses import fields, replace
@@ -24,16 +23,16 @@ from ..imu.triad_model import noise_variance, reported_variance, triad_model
 from .pair import GyroPair, spins, with_faults
 from .rotor import PRESETS, TunedGyroParameters
 
-# body axes of (spin, y, z) of each case; cyclic, so that a rotation vector keeps its meaning
+# Body axes of (spin, y, z) of each case; cyclic, so that rotation vectors keep their meaning.
 CASES = ((2, 0, 1), (1, 2, 0))
 NAMES = ('gyro.errors.gyro_1', 'gyro.errors.gyro_2')
 
 
 def rotor_parameters(dtg):
     """
-    Return the TunedGyroParameters that TunedGyroPairSettings name.
+    Return the TunedGyroParameters that TunedGyroPairSettings describe.
 
-    Raises ValueError where the rotor of preset custom is impossible.
+    Raises ValueError if the parameters of preset custom are physically impossible.
     """
     if dtg.preset != 'custom':
         return PRESETS[dtg.preset]
@@ -46,7 +45,7 @@ def rotor_parameters(dtg):
 
 
 def make_pair(gyro, dt_s):
-    """Return the GyroPair of settings.Gyro, without other errors than the speeds of the rotors."""
+    """Return the GyroPair of settings.Gyro; of the errors only the rotor speeds are applied."""
     dtg = gyro.dtg
     p = rotor_parameters(dtg)
     pair = GyroPair(p, dt_s, dtg.arrangement, method=dtg.method, hold=dtg.hold,
@@ -58,11 +57,11 @@ def make_pair(gyro, dt_s):
 
 
 def case_errors(errors, axes):
-    """Return GyroErrors by body axis as those along (spin, y, z) of a case."""
+    """Return GyroErrors given by body axis as errors along (spin, y, z) of a case."""
     values = {}
     for f in fields(GyroErrors):
         value = getattr(errors, f.name)
-        # non-orthogonality is by pairs of axes, the first of which is the reference
+        # Non-orthogonality belongs to pairs of axes, with the first axis as reference.
         if isinstance(value, tuple) and f.name != 'non_orthogonality_mrad':
             value = tuple(value[k] for k in axes)
         values[f.name] = value
@@ -78,24 +77,24 @@ def total_of(parts):
 
 
 def mean_rate(rates):
-    """Return the mean of the body rates at the nodes of a period, by Simpson's rule."""
+    """Return the mean of the body rates at the nodes of a period, rad/s, by Simpson's rule."""
     firsts = range(0, len(rates) - 1, 2)
     return tuple([total_of([rates[k][i] + 4.0 * rates[k + 1][i] + rates[k + 2][i]
                             for k in firsts]) / (6.0 * len(firsts)) for i in range(3)])
 
 
 def _run_away(t_ns):
-    return StreamFault(f'the rotors of the gyros have run away at {seconds(t_ns)}; expected a '
-                       'gyro whose roots decay', restart=True)
+    return StreamFault(f'the rotors of the gyros have diverged at {seconds(t_ns)}; expected a '
+                       'stable gyro', restart=True)
 
 
 class PairInstrument:
     """
-    The gyros of ImuSensorSettings whose model is dtg.
+    The tuned gyros of ImuSensorSettings; raises ValueError for impossible settings.
 
-    nodes: the instants of a sampling period, as parts of it, at which ``step`` wants the body
-    rate.  Errors are functions of seed, run and instant; what is carried are the states of rotors,
-    lags, pulses and pick-offs.  Raises ValueError where the settings make no instrument.
+    ``nodes`` are the instants, as fractions of a sampling period, at which ``step`` needs the body
+    rate. Random errors are functions of seed, run and instant; rotors, lags, pulses and pick-offs
+    carry states from sample to sample.
     """
 
     def __init__(self, settings):
@@ -116,9 +115,9 @@ class PairInstrument:
         self._schedule_fault(dtg.fault)
 
     def _read_errors(self, settings):
-        """Take the errors of the read-out."""
+        """Build the errors of the read-out from the settings."""
         self._read_out = None
-        # by body axis first, as a sentence about an axis names that of the settings
+        # First by body axis, so that a message about an axis names the axis of the settings.
         self._reported = triad_model(settings.gyro.errors, self.dt_s,
                                      'gyro.errors').reported_sigma
         self._models = tuple(triad_model(case_errors(settings.gyro.errors, axes), self.dt_s,
@@ -132,9 +131,9 @@ class PairInstrument:
 
     def change(self, settings):
         """
-        Take the biases and the fault of other ImuSensorSettings from the next step on.
+        Use the biases and the fault of other ImuSensorSettings from the next step on.
 
-        What is carried stays. A fault that was forced stays so, unless its times change too.
+        States are kept. A forced fault stays forced unless the times of the fault change too.
         """
         before = self._read_out
         self._read_errors(settings)
@@ -159,7 +158,7 @@ class PairInstrument:
         return self._fault is not None
 
     def force_fault(self, on):
-        """Inject the fault of the settings now, or take it off, whatever its times."""
+        """Switch the fault of the settings on or off now, whatever its schedule says."""
         self._scheduled = False
         self._set_fault(on)
 
@@ -174,13 +173,13 @@ class PairInstrument:
             self.pair.inject(*self._fault)
 
     def settle(self, w):
-        """Let the rotors have long turned at the body rate w, rad/s."""
+        """Set the rotors to the steady state at the constant body rate w, rad/s."""
         self.pair.settle(w)
         if self._disturbances is not None:
             self._disturbances.settle(w)
 
     def first(self, t_ns, w, force):
-        """Return body rates and parity of rotors that are settled at the instant t_ns."""
+        """Return body rates and parity at the instant t_ns for rotors in steady state."""
         self._keep_schedule(t_ns)
         return self._finish(t_ns, self.pair.instant(w), w, force)
 
@@ -188,8 +187,8 @@ class PairInstrument:
         """
         Return mean body rates and parity, rad/s, of the interval that ends at t_ns.
 
-        rates: body rates at ``nodes``; force: mean specific force in b, m/s^2.  Raises StreamFault
-        when unstable rotors that were asked for overflow.
+        rates: body rates at ``nodes``, rad/s; force: mean specific force in b, m/s^2. Raises
+        StreamFault if the rotors diverge, which needs an unstable gyro.
         """
         self._keep_schedule(t_ns)
         channels, disturbances, added = self.pair.channels, self._disturbances, None
@@ -210,11 +209,11 @@ class PairInstrument:
 
     def advance(self, t_ns, rates, force):
         """
-        Return the rates (n, 3) and the parity (n,) of intervals that end at t_ns, and None.
+        Return the rates (n, 3) and parity (n,), rad/s, of the intervals ending at t_ns, and None.
 
-        rates (n, nodes, 3), force (n, 3) and the results are those of ``step``, whose bits any
-        cutting gives.  Where ``step`` raises a StreamFault, that is returned in place of None, and
-        n is the number of intervals before.
+        rates (m, nodes, 3) and force (m, 3) are as in ``step``, and so are the bits of the result,
+        however the record is cut. If the rotors diverge, the third value is a StreamFault and n
+        counts the intervals before it; otherwise n is m.
         """
         steps, disturbances, fault = self._steps, (None, None), None
         start, middle, end = (rates[:, k:k + 2 * steps - 1:2].reshape(-1, 3).T for k in range(3))
@@ -240,7 +239,7 @@ class PairInstrument:
         return np.column_stack(omega), parity, fault
 
     def _faulty(self, t_ns, y):
-        """Return the channels (n, steps) of a block with the fault, if any, of each time."""
+        """Return the channels (n, steps) of a block, with the fault applied while it is on."""
         if self._fault is None or not self._scheduled:
             return with_faults(self.pair.faults, y)
         start, end = self._fault_ns
@@ -251,7 +250,7 @@ class PairInstrument:
         return [np.where(on[:, None], a, b) for a, b in zip(faulty, y)]
 
     def _finish(self, t_ns, y, w, force):
-        """Return body rates and parity of the four channels y through their read-outs."""
+        """Return body rates and parity of the four channels y, after their read-outs."""
         if self._read_out is not None:
             index, t_s = t_ns // self._dt_ns, t_ns * 1e-9
             (_, a, b), (_, c, d) = [
@@ -267,10 +266,9 @@ class PairInstrument:
 
     def channel_variances(self, count=1):
         """
-        Return the variances of the four channels by their noise and pulses, (rad/s)^2.
+        Return the variances of the mean of count samples of each channel, (rad/s)^2.
 
-        Of the mean of count samples: pulses and the noise of the pick-offs are errors of angle, of
-        which only the first and the last are left in it.
+        Pulses and pick-off noise are errors of the angle, so only the first and last remain.
         """
         found = []
         for model in self._models:
@@ -281,16 +279,16 @@ class PairInstrument:
         return tuple(found)
 
     def _through(self, out, count=1):
-        """Return the variances of out(combination) by those of the channels."""
+        """Return the variances of out(combination), propagated from those of the channels."""
         gains = [out(self.pair.combine(row)) for row in np.eye(4).tolist()]
         variances = np.array(self.channel_variances(count))[:, None]
         return product(np.square(gains).T, variances)[:, 0].tolist()
 
     @property
     def variances(self):
-        """Variances of a sample by body axis to report, (rad/s)^2."""
+        """Variances to publish with a sample, by body axis, (rad/s)^2."""
         return reported_variance(self._through(lambda read: read[0]), self._reported)
 
     def parity_variance(self, count=1):
-        """Return the variance of the mean of count parities by the noise, (rad/s)^2."""
+        """Return the noise variance of the mean of count parities, (rad/s)^2."""
         return self._through(lambda read: (read[1],), count)[0]

@@ -1,13 +1,16 @@
 """
-Two dynamically tuned gyros: four channels for three axes.
+Two dynamically tuned gyros: four channels for three axes (Sapegin, Romanov and Bugaiov 2016).
 
-Gyro 1 spins along body z: its case (spin, y_c, z_c) is body (z, x, y), so that it senses x and y.
-Gyro 2 spins along body y: its case is body (y, z, x), so that it senses z and x.  Both triads are
-right-handed.  Arrangement ``paper``: channels x1, y1, z2, x2.  Arrangement ``turned``: each pair
-of pick-offs is turned by +45 deg about its spin axis, so that a channel reads (y_c + z_c) / sqrt 2
-or (z_c - y_c) / sqrt 2.  Least squares gives the body rates with the covariance diag(1/2, 1, 1)
-of one channel's variance either way; the residual is one number, the parity, of one channel's
-standard deviation.  ``paper`` sees faults of x1 and x2 in it, ``turned`` those of any channel.
+Gyro 1 spins along body z: its case axes (spin, y_c, z_c) are body (z, x, y), so it senses x and y.
+Gyro 2 spins along body y: its case axes are body (y, z, x), so it senses z and x. Both triads are
+right-handed. In arrangement ``paper`` the channels are x1, y1, z2, x2. In arrangement ``turned``
+each pair of pick-offs is turned by +45 deg about its spin axis, so that the channels read
+(y_c + z_c) / sqrt 2 and (z_c - y_c) / sqrt 2.
+
+In both arrangements the body rates are the least-squares solution, with covariance
+diag(1/2, 1, 1) times the variance of one channel. The residual is a single number, the parity,
+with the standard deviation of one channel. With ``paper`` it shows faults of x1 and x2 only, with
+``turned`` faults of every channel.
 """
 
 import math
@@ -20,13 +23,13 @@ from .stepping import TunedGyro
 
 ARRANGEMENTS = ('paper', 'turned')
 CHANNELS = ('gyro_1_y', 'gyro_1_z', 'gyro_2_y', 'gyro_2_z')
-# variance of body x, y, z relative to that of a channel
+# Variances of body x, y, z divided by the variance of a channel.
 COVARIANCE_FACTORS = (0.5, 1.0, 1.0)
 _R = math.sqrt(0.5)
 
 
 def channel_axes(arrangement):
-    """Return the unit vectors (4, 3) of the channels in body axes."""
+    """Return the sensitive axes of the channels as unit vectors (4, 3) in body axes."""
     case = np.zeros((4, 3))
     case[range(4), (0, 1, 2, 0)] = 1.0
     if arrangement == 'paper':
@@ -36,7 +39,7 @@ def channel_axes(arrangement):
 
 
 def into_cases(turned, w):
-    """Return the components y, z of a body vector in the first case and in the second."""
+    """Return the components y, z of a body vector in the first case, then in the second."""
     x, y, z = w
     if turned:
         return _R * (x + y), _R * (y - x), _R * (z + x), _R * (x - z)
@@ -49,7 +52,7 @@ def spins(w):
 
 
 def both_inputs(turned, w_start, w_mid, w_end):
-    """Return the inputs u of both rotors (``rotor_step``) by body rates at three instants."""
+    """Return the inputs u of both rotors (see ``rotor_step``) for body rates at three instants."""
     a, b, c, d = into_cases(turned, w_start)
     e, f, g, h = into_cases(turned, w_mid)
     i, j, k, m = into_cases(turned, w_end)
@@ -57,7 +60,7 @@ def both_inputs(turned, w_start, w_mid, w_end):
 
 
 def with_faults(faults, y):
-    """Return the four channels y with their faults, (bias, scale) of each, or None."""
+    """Return the four channels y with their faults: (bias, scale) for each channel, or None."""
     if faults is None:
         return y
     (b1, s1), (b2, s2), (b3, s3), (b4, s4) = faults
@@ -76,11 +79,19 @@ def combine(turned, y):
 
 class GyroPair:
     """
-    Two gyros, their combination and an injectable fault.
+    Two gyros, the combination of their channels, and an injectable fault.
 
-    parameters: TunedGyroParameters of both, or a pair of them; dt_s: step; arrangement: paper or
-    turned; options: method, hold, on_unstable of TunedGyro.  state: of both gyros, can be kept
-    and set back; a fault is no part of it.  faults: (bias, scale) of each channel, or None.
+    Parameters
+    ----------
+    parameters : TunedGyroParameters of both gyros, or a pair of them
+    dt_s : step, s
+    arrangement : paper or turned
+    options : method, hold and on_unstable of TunedGyro
+
+    Attributes
+    ----------
+    state : states of both gyros, which can be saved and set back; a fault is not part of it
+    faults : (bias, scale) of each channel, or None
     """
 
     def __init__(self, parameters, dt_s, arrangement='paper', **options):
@@ -105,7 +116,15 @@ class GyroPair:
         self.gyros[0].state, self.gyros[1].state = state
 
     def inject(self, channel, bias_rad_s=0.0, scale=1.0):
-        """Let a channel, by name or index, read scale times its rate plus bias, rad/s."""
+        """
+        Inject a fault: the channel reads its rate times scale, plus a bias.
+
+        Parameters
+        ----------
+        channel : index 0 to 3, or one of CHANNELS
+        bias_rad_s : rad/s
+        scale : 1 for none, 0 for a dead channel
+        """
         if channel in CHANNELS:
             channel = CHANNELS.index(channel)
         if channel not in range(4):
@@ -119,11 +138,11 @@ class GyroPair:
         self.faults = tuple(faults)
 
     def clear_faults(self):
-        """Let every channel read what it should."""
+        """Remove the injected faults from all channels."""
         self.faults = None
 
     def into_cases(self, w):
-        """Return what the function ``into_cases`` does in this arrangement."""
+        """Return the result of the function ``into_cases`` for this arrangement."""
         return into_cases(self._turned, w)
 
     def combine(self, y):
@@ -131,20 +150,23 @@ class GyroPair:
         return combine(self._turned, y)
 
     def settle(self, w):
-        """Take the state of gyros that have long turned at the constant body rate w, rad/s."""
+        """Set both gyros to the steady state at the constant body rate w, rad/s."""
         y1, z1, y2, z2 = self.into_cases(w)
         self.gyros[0].settle(complex(y1, z1))
         self.gyros[1].settle(complex(y2, z2))
 
     def instant(self, w):
-        """Return the four channels of perfect gyros that turn at the body rate w, rad/s."""
+        """Return the four channels of perfect gyros at the body rate w, rad/s."""
         return with_faults(self.faults, self.into_cases(w))
 
     def channels(self, w_start, w_mid, w_end, disturbances=None):
         """
-        Advance by dt; body rates omega_ib_b, rad/s; return the mean of the four channels.
+        Advance by dt and return the mean rates of the four channels, rad/s.
 
-        disturbances: moment, tilt, jump of either gyro, six floats each, as of ``rotor_step``.
+        Parameters
+        ----------
+        w_start, w_mid, w_end : body rates omega_ib_b at start, middle and end, rad/s
+        disturbances : moment, tilt and jump for each gyro, six floats each, see ``rotor_step``
         """
         first, second = self.gyros
         one, two = both_inputs(self._turned, w_start, w_mid, w_end)
@@ -159,15 +181,17 @@ class GyroPair:
         return with_faults(self.faults, (a, b, c, d))
 
     def step(self, w_start, w_mid, w_end):
-        """Advance by dt; return the mean body rates (x, y, z), rad/s, and the parity, rad/s."""
+        """Advance by dt; return the mean body rates (x, y, z) and the parity, rad/s."""
         return self.combine(self.channels(w_start, w_mid, w_end))
 
     def run(self, w_start, w_mid, w_end, disturbances=(None, None)):
         """
-        Return the mean of the four channels, without faults, (n,) each, of n steps.
+        Return the mean rates of the four channels, without faults, over n steps; (n,) each.
 
-        w_start, w_mid, w_end: body rates, three columns (n,) each; disturbances: of either gyro
-        None or (n, 6), as ``channels`` takes them.
+        Parameters
+        ----------
+        w_start, w_mid, w_end : body rates, three columns (n,) each, rad/s
+        disturbances : (n, 6) or None for each gyro, see ``channels``
         """
         inputs = both_inputs(self._turned, w_start, w_mid, w_end)
         first, second = (gyro.run(np.column_stack(u), d)
@@ -182,10 +206,13 @@ class GyroPair:
 
     def response(self, omega):
         """
-        Return the frequency response (n, 3, 3) from body rates to combined rates, no fault.
+        Return the frequency response (n, 3, 3) from body rates to combined rates, without faults.
 
-        omega (n,): rad/s, either sign.  It is the same in both arrangements, the rotor being
-        isotropic.
+        It is the same in both arrangements, because the rotor is isotropic.
+
+        Parameters
+        ----------
+        omega : (n,) frequencies, rad/s, either sign
         """
         (d1, c1), (d2, c2) = (gyro.space.axis_responses(omega) for gyro in self.gyros)
         zero = 0.0 * d1

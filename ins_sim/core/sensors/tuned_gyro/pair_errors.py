@@ -1,18 +1,18 @@
 """
 Disturbances of the rotors of a pair of tuned gyros and of their pick-offs.
 
-A moment is given as the equivalent rate d, complex in the case, y + j z
-(docs/theory/tuned_gyro.md, Errors of the rotors):
+A moment is expressed as the equivalent rate d, a complex number y + j z in case axes. The terms
+are (docs/theory/tuned_gyro.md, Errors of the rotors):
 
-    by specific force a    d_y = m_y a_y + q_y a_z + a_s (s_y + c_y a_y), d_z likewise
-    product of rates       d = kappa (B - A)/(B Omega) u_s u
-    hunting e(t)           d = e (u - 2 K_t theta_0/(j B Omega)), as dk2 = -2 K_t e
-    vibration at 2 Omega   d = (2 Jek - Jk)/(8 B) (1 + dJ/g) U exp(-j phase)
+    specific force a        d_y = m_y a_y + q_y a_z + a_s (s_y + c_y a_y), d_z likewise
+    product of rates        d = kappa (B - A)/(B Omega) u_s u
+    hunting e(t)            d = e (u - 2 K_t theta_0/(j B Omega)), since dk2 = -2 K_t e
+    vibration at 2 Omega    d = (2 Jek - Jk)/(8 B) (1 + dJ/g) U exp(-j phase)
 
-with dJ = Jek - Jk/2, g = Jr - 2 Jer.  Offset and noise of the pick-off go through the rotor and
-its loop, so that an offset theta_0 reads (k2 - j fe Omega) theta_0/(j B Omega), and a jump of it
-an angle of J/B times the jump.  The acceleration of the case, (A/(B Omega)) u' on the other axis,
-is in the rotor's own equation.
+with dJ = Jek - Jk/2 and g = Jr - 2 Jer. Offset and noise of the pick-off pass through the rotor
+and its loop: an offset theta_0 reads (k2 - j fe Omega) theta_0/(j B Omega), and a jump of the
+pick-off error is read as an angle of J/B times the jump. The acceleration of the case,
+(A/(B Omega)) u' on the other axis, is part of the rotor's own equation.
 """
 
 import math
@@ -30,10 +30,16 @@ NONE = (0.0, 0.0, 0.0, 0.0)
 
 def moments_by_force(rows, moments, along, spin):
     """
-    Return moments with what specific force adds: y and z of the first gyro and of the second.
+    Return moments plus the effect of specific force, for y and z of the first and second gyro.
 
-    rows: m, q, s, c of each channel; along: specific force along y, z of both cases; spin: along
-    both spin axes.  Floats or arrays, as in the functions below.
+    The functions below take floats or arrays alike.
+
+    Parameters
+    ----------
+    rows : coefficients m, q, s, c of each channel
+    moments : moments of the four channels, rad/s
+    along : specific force along y, z of both cases, m/s^2
+    spin : specific force along both spin axes, m/s^2
     """
     r1, r2, r3, r4 = rows
     y1, z1, y2, z2 = along
@@ -49,10 +55,15 @@ def _by_force(row, own, other, spin):
 
 def moments_by_hunting(detuning, moments, speeds, cases, tilts):
     """
-    Return moments with what the hunting of the speed adds.
+    Return moments plus the effect of the hunting of the rotor speed.
 
-    speeds: parts by which both rotors are too fast; cases: rates along y, z of both cases at
-    mid-step; tilts: errors of the pick-offs.
+    Parameters
+    ----------
+    detuning : real and imaginary part of 2 j K_t/(B Omega), 1/s
+    moments : moments of the four channels, rad/s
+    speeds : relative errors of both rotor speeds
+    cases : rates along y, z of both cases at mid-step, rad/s
+    tilts : errors of the four pick-offs, rad
     """
     p, q = detuning
     a, b, c, d = moments
@@ -65,10 +76,14 @@ def moments_by_hunting(detuning, moments, speeds, cases, tilts):
 
 def moments_by_product(third, moments, cases, spin):
     """
-    Return moments with the means of the products of rates, by Simpson's rule.
+    Return moments plus the mean products of rates over a step, by Simpson's rule.
 
-    third: a sixth of the factor; cases, spin: rates along y, z and along the spin axes of both
-    cases at start, middle and end of the step.
+    Parameters
+    ----------
+    third : a sixth of the factor kappa (B - A)/(B Omega)
+    moments : moments of the four channels, rad/s
+    cases : rates along y, z of both cases at start, middle and end of the step, rad/s
+    spin : rates along both spin axes at the same instants, rad/s
     """
     start, middle, end = cases
     (s, t), (m, n), (e, f) = spin
@@ -81,11 +96,17 @@ def moments_by_product(third, moments, cases, spin):
 
 class RotorErrors:
     """
-    The disturbances of both gyros, sampling period by sampling period.
+    The disturbances of both gyros, one sampling period after the other.
 
-    errors: TunedGyroErrors; pair: GyroPair; dt_s: sampling period, s.  The noise of the
-    pick-offs is a function of (seed, run, index).  Raises ValueError for a rotor of which the
-    vibration is not defined.
+    The noise of the pick-offs is a function of (seed, run, index). Raises ValueError for a rotor
+    whose response to vibration at twice the speed is not defined.
+
+    Parameters
+    ----------
+    errors : TunedGyroErrors
+    pair : GyroPair
+    seed, run : of the random streams
+    dt_s : sampling period, s
     """
 
     def __init__(self, errors, pair, seed, run, dt_s):
@@ -112,17 +133,17 @@ class RotorErrors:
             p.input_inertia - p.transverse_inertia) * per_moment
         hunting = 2.0 * math.pi * errors.hunting_hz
         half = 0.5 * hunting * dt_s
-        # the mean of the wave over an interval
+        # Factor from the amplitude of the wave to that of its mean over an interval.
         mean = elementary.sin(half) / half if half else 1.0
         self._hunting = tuple(1e-6 * a * mean for a in errors.hunting_ppm)
         self._hunting_rad_s = hunting if any(self._hunting) else 0.0
-        # the stiffness of the hinges is what k2 is at a rotor that stands still
+        # k2 at zero speed is the stiffness K_t of the hinges.
         self._detuning = 0.0, 2.0 * p.stiffness(0.0) * per_moment
         self._tilts = self._offsets
         self._sample = self._constant, self._offsets, NONE, (0.0, 0.0)
 
     def settle(self, w):
-        """Let the rotors be settled at the body rate w and at the present offsets, no force."""
+        """Set the rotors to the steady state at body rate w and the present offsets, no force."""
         self._tilts = self._offsets
         values = zip(*(zip(four[::2], four[1::2]) for four in (
             self._pair.into_cases(w), self._constant, self._offsets)))
@@ -130,7 +151,7 @@ class RotorErrors:
             rotor.settle(*(complex(*value) for value in three))
 
     def begin(self, t_ns, force):
-        """Take the sampling period that ends at motion time t_ns; force: its mean, in b, m/s^2."""
+        """Begin the sampling period ending at t_ns with this mean specific force in b, m/s^2."""
         tilts, speeds = self._offsets, (0.0, 0.0)
         if self._normals is not None:
             normals = self._normals.normal(t_ns // round(self._dt_s * 1e9))
@@ -142,7 +163,7 @@ class RotorErrors:
         self._sample = self._forced_moments(force), tilts, jumps, speeds
 
     def step(self, w_start, w_mid, w_end):
-        """Return the disturbances d (``rotor_step``) of both gyros for one step of the rotors."""
+        """Return the disturbances of both gyros (d of ``rotor_step``) for one rotor step."""
         moments, tilts, jumps, speeds = self._sample
         self._sample = moments, tilts, NONE, speeds
         a, b, c, d = self._moments(moments, tilts, speeds, w_start, w_mid, w_end)
@@ -152,10 +173,14 @@ class RotorErrors:
 
     def block(self, t_ns, force, w_start, w_mid, w_end):
         """
-        Return the disturbances of both gyros, (m, 6) each, for the m steps of sampling periods.
+        Return the disturbances of both gyros, (m, 6) each, for the m rotor steps of n periods.
 
-        t_ns (n,): ends of the periods; force: three columns (n,); w_start, w_mid, w_end: rates at
-        the steps, three columns (m,), m a multiple of n.
+        Parameters
+        ----------
+        t_ns : (n,) ends of the sampling periods, ns
+        force : mean specific force of the periods, three columns (n,), m/s^2
+        w_start, w_mid, w_end : body rates of the steps, three columns (m,), rad/s; m is a
+            multiple of n
         """
         count, steps = len(t_ns), len(w_start[0]) // len(t_ns)
         tilts, speeds = [np.full(count, v) for v in self._offsets], (0.0, 0.0)
@@ -184,12 +209,12 @@ class RotorErrors:
                                 spins(force))
 
     def _speeds(self, t_ns):
-        """Return the parts by which both rotors are too fast."""
+        """Return the relative errors of both rotor speeds."""
         wave = elementary.sin(self._hunting_rad_s * (t_ns * 1e-9 - 0.5 * self._dt_s))
         return self._hunting[0] * wave, self._hunting[1] * wave
 
     def _moments(self, moments, tilts, speeds, w_start, w_mid, w_end):
-        """Return the moments of one step by those of its period and by rates, or of many."""
+        """Return the moments of one step (or many): those of its period plus rate effects."""
         into_cases = self._pair.into_cases
         if self._hunting_rad_s:
             moments = moments_by_hunting(self._detuning, moments, speeds, into_cases(w_mid), tilts)
@@ -201,7 +226,7 @@ class RotorErrors:
         return moments
 
     def noise_variances(self):
-        """Return the variances of the means of the four channels by the noise of the pick-offs."""
+        """Return the variances of the channel means due to pick-off noise, (rad/s)^2."""
         if self._normals is None:
             return (0.0,) * 4
         from .stability import pickoff_gain
@@ -211,7 +236,7 @@ class RotorErrors:
 
 
 def _vibration(rotor, amplitude_deg_s, phase_deg):
-    """Return the moment by a vibration at twice the speed, y and z."""
+    """Return the moments y and z due to a vibration at twice the rotor speed, rad/s."""
     if not amplitude_deg_s:
         return 0.0, 0.0
     size = math.radians(amplitude_deg_s) * rotor.parameters.vibration_2n_factor

@@ -1,12 +1,12 @@
 """
-Parity test of the four gyro channels: detect that one of them has failed.
+Parity test of the four gyro channels: detects that one of them has failed.
 
-The parity has unit gain for every channel that it sees, so that its spread is that of one
-channel. The limit for its mean over a window is five standard deviations of noise, biases, scale
-factors, misalignment and drifts due to specific force, at the present rate and force, plus the
-effect of the motion itself: the two gyros see an axis as y and as z, and differ by the
-cross-coupling of angular acceleration and by the product of rates (docs/theory/tuned_gyro.md,
-Parity test).
+The parity has unit gain for every channel that it sees, so its standard deviation is that of one
+channel. The limit for its mean over a window has two parts. The first is five standard deviations
+of noise, biases, scale factors, misalignment and force-dependent drifts at the present rate and
+specific force. The second is the effect of the motion itself: one gyro senses the common axis as y
+and the other as z, and the two differ by the cross-coupling of angular acceleration and by the
+product of rates (docs/theory/tuned_gyro.md, Parity test).
 """
 
 import math
@@ -19,14 +19,14 @@ from ins_sim.core.numerics.units import DEG_H, STANDARD_GRAVITY
 from ..imu.triad_model import temperature_off, triad_model
 
 SIGMAS = 5.0
-# what rounding may leave of rates of some rad/s, rad/s
+# Bound of the rounding error of the parity at rates of some rad/s, rad/s.
 ROUNDING = 1e-12
-# where the cross-coupling is looked for, rad/s
+# Frequencies at which the cross-coupling is evaluated, rad/s.
 BAND = elementary.exp(elementary.log(10.0) * np.linspace(-2.0, 2.0, 41))
 
 
 def _size(*terms):
-    """Return the root of the sum of squares."""
+    """Return the root of the sum of squares of the terms."""
     total = 0.0
     for term in terms:
         total += term * term
@@ -34,7 +34,7 @@ def _size(*terms):
 
 
 def _most(*rows):
-    """Return the largest over the axes of the root of the sum of squares of terms by axis."""
+    """Return the largest root sum square over the axes; each row holds one term by axis."""
     return max(_size(*column) for column in zip(*rows))
 
 
@@ -46,9 +46,16 @@ def _length(v):
 
 def terms(last, omega, f, parity):
     """
-    Return what a window adds up: parity, rate, its square, specific force, change of the rate.
+    Return the five terms that a window sums.
 
-    last, omega: rates of the reading before and of this one; floats or arrays.
+    They are the parity, the size of the rate, its square, the size of the specific force, and the
+    size of the change of the rate. Arguments are floats or arrays.
+
+    Parameters
+    ----------
+    last, omega : rates of the reading before and of this one, rad/s
+    f : specific force, m/s^2
+    parity : rad/s
     """
     w = _length(omega)
     change = omega[0] - last[0], omega[1] - last[1], omega[2] - last[2]
@@ -56,7 +63,7 @@ def terms(last, omega, f, parity):
 
 
 def add(sums, more):
-    """Return the sums of five terms each."""
+    """Return the sums of two sets of five terms."""
     a, b, c, d, e = sums
     f, g, h, i, j = more
     return a + f, b + g, c + h, d + i, e + j
@@ -64,12 +71,19 @@ def add(sums, more):
 
 class ParityTest:
     """
-    Window by window, the mean parity and what it may be.
+    The mean parity of each window and its limit.
 
-    settings: ImuSensorSettings with tuned gyros; instrument: their PairInstrument.  ``count`` is
-    the number of readings in a window.  After each
-    window ``mean`` and ``threshold``, rad/s, are those of the last one, and ``exceeded`` says
-    whether the one is beyond the other; before the first they are 0, infinite and False.
+    Parameters
+    ----------
+    settings : ImuSensorSettings with tuned gyros
+    instrument : PairInstrument of these settings
+
+    Attributes
+    ----------
+    count : number of readings in a window
+    mean, threshold : mean parity of the last window and its limit, rad/s; 0 and infinity before
+        the first window ends
+    exceeded : whether the mean is beyond the limit
     """
 
     def __init__(self, settings, instrument):
@@ -77,7 +91,7 @@ class ParityTest:
         self.reset()
 
     def expect(self, settings, instrument):
-        """Find what the parity may be with such settings."""
+        """Compute the expected spread of the parity for these settings."""
         gyro, errors = settings.gyro, settings.gyro.dtg.errors
         model = triad_model(gyro.errors, instrument.dt_s, 'gyro.errors')
         self._fixed = gyro.dtg.parity.threshold_deg_h * DEG_H
@@ -111,16 +125,21 @@ class ParityTest:
             p.input_inertia - p.transverse_inertia) / (p.input_inertia * p.omega)
 
     def reset(self):
-        """Begin anew."""
+        """Begin a new first window."""
         self.mean, self.threshold, self.exceeded = 0.0, math.inf, False
         self._last = None
         self._sums = (0,) + (0.0,) * 5
 
     def push(self, t_ns, omega, f, parity):
         """
-        Take a reading: rates, rad/s, specific force, m/s^2, and parity, rad/s.
+        Take one reading and return whether it completes a window.
 
-        Return whether it completes a window.
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        omega : rates, rad/s
+        f : specific force, m/s^2
+        parity : rad/s
         """
         (n, *sums), last = self._sums, self._last or omega
         self._last = omega
@@ -135,9 +154,11 @@ class ParityTest:
 
     def windows(self, imu):
         """
-        Return the windows of a run, (n, 3): mean, threshold, and 1 where it is exceeded.
+        Return the windows of a run, (n, 3): mean, threshold, and 1 if it is exceeded.
 
-        imu: ImuSamples with parity, whose first reading is that of the first window.
+        Parameters
+        ----------
+        imu : ImuSamples with parity; the first window begins at its first reading
         """
         last = np.concatenate([imu.omega[:1], imu.omega[:-1]])
         columns = terms(last.T, imu.omega.T, imu.f.T, imu.parity)
@@ -152,7 +173,7 @@ class ParityTest:
         return np.column_stack((mean, limits, np.abs(mean) > limits))
 
     def _limit(self, t_s, w, w_2, force, change):
-        """Return the threshold of a window that ends at t_s, by the sums of ``terms``."""
+        """Return the threshold of a window ending at t_s, from the sums of its ``terms``."""
         if self._fixed:
             return self._fixed
         n = self.count
@@ -166,16 +187,16 @@ class ParityTest:
         return ROUNDING + SIGMAS * spread + moved
 
     def row(self, parity):
-        """Return what a reading is published with: parity, mean, threshold (0 = none yet)."""
+        """Return parity, mean, threshold (0 before the first) as published with a reading."""
         return parity, self.mean, self.threshold if math.isfinite(self.threshold) else 0.0
 
 
 def parity_rows(settings, instrument, imu):
-    """Return ``ParityTest.row`` of each reading of a run, (n, 3); imu: ImuSamples with parity."""
+    """Return ``ParityTest.row`` for each reading of a run, (n, 3); imu: ImuSamples with parity."""
     test = ParityTest(settings, instrument)
     found = np.zeros((len(imu), 3))
     found[:, 0] = imu.parity
-    # A reading that completes a window has its figures, as those after it have.
+    # The reading that completes a window already carries the values of that window.
     windows = np.repeat(test.windows(imu)[:, :2], test.count, axis=0)
     found[test.count - 1:, 1:] = windows[:len(found) - test.count + 1]
     return found
@@ -183,7 +204,7 @@ def parity_rows(settings, instrument, imu):
 
 def parity_windows(settings, instrument, imu):
     """
-    Return the windows of a run, (n, 4): end, s, mean, threshold, rad/s, and 1 where it exceeds.
+    Return the windows of a run, (n, 4): end (s), mean, threshold (rad/s), and 1 if exceeded.
 
     imu: ImuSamples with parity.
     """

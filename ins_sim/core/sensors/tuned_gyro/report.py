@@ -1,4 +1,4 @@
-"""Figures of merit of a tuned gyro: roots, bandwidth, margin, and the steps that RK4 allows."""
+"""Figures of merit of a tuned gyro: roots, bandwidth, stability margin, and stable RK4 steps."""
 
 from dataclasses import dataclass
 import math
@@ -14,12 +14,19 @@ from .state_space import state_space
 @dataclass(frozen=True)
 class TunedGyroReport:
     """
-    Figures of an instrument; the frequencies are those of the direct response of an axis.
+    Figures of merit of a tuned gyro; see `tuned_gyro_report`.
 
-    roots: 1/s, least stable first.  time_constant_s: T = H / c, the lag at low frequency of the
-    open loop (None in closed loop).  bandwidth_hz: at -3 dB.  peak, peak_hz: largest gain below
-    it.  margin: 1 - A c^2 / (H c f + k2 f^2) in open loop, stable above 0 (None in closed loop).
-    decay_1_s: of the slowest root, stable above 0.  rk4_window_s: steps that RK4 allows, or None.
+    Bandwidth and peak are those of the response of an axis to its own rate.
+
+    Attributes
+    ----------
+    roots : characteristic roots, 1/s, least stable first
+    time_constant_s : T = H / c, the open-loop lag at low frequency, s; None in closed loop
+    bandwidth_hz : frequency at -3 dB
+    peak, peak_hz : largest gain below the bandwidth, and its frequency
+    margin : 1 - A c^2 / (H c f + k2 f^2), positive if stable; None in closed loop
+    decay_1_s : decay rate of the slowest root, 1/s, positive if stable
+    rk4_window_s : shortest and longest step for which RK4 is stable, s, or None
     """
 
     roots: tuple
@@ -33,7 +40,7 @@ class TunedGyroReport:
 
     @property
     def stable(self):
-        """Every root decays."""
+        """Whether every root decays."""
         return self.decay_1_s > 0.0
 
     def lines(self):
@@ -52,13 +59,20 @@ class TunedGyroReport:
 
 
 def tuned_gyro_report(parameters, speed_hz=None):
-    """Return the TunedGyroReport of TunedGyroParameters, at the nominal speed unless given."""
+    """
+    Return the TunedGyroReport of a rotor.
+
+    Parameters
+    ----------
+    parameters : TunedGyroParameters
+    speed_hz : speed of the rotor; None for the nominal one
+    """
     p, space = parameters, state_space(parameters, speed_hz)
 
     def gain(hz):
         return magnitude(space.axis_responses(2.0 * math.pi * hz)[0])
 
-    # one decade below the slowest root to twice the fastest
+    # Search from one decade below the slowest root to twice the fastest.
     sizes = magnitude(np.array(space.roots)) / (2.0 * math.pi)
     low, high = elementary.log(0.1 * sizes.min()), elementary.log(2.0 * sizes.max())
     grid = elementary.exp(np.linspace(low, high, GRID))

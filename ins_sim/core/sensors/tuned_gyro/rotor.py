@@ -1,19 +1,19 @@
 """
-The dynamically tuned gyro: its parameters and equations of motion.
+The dynamically tuned gyro: parameters and equations of motion.
 
-Case axes, right-handed: x_c is the spin axis, y_c and z_c are sensitive.  Vectors of the
-sensitive plane are complex, u = u_y + j u_z.  With theta the tilt of the rotor in the case, u
-the inertial rate of the case, M the moment of the torquer and v = theta' + u, so that u' never
-appears (docs/theory/tuned_gyro.md):
+Case axes are right-handed: x_c is the spin axis, y_c and z_c are the sensitive axes. Vectors in
+the sensitive plane are complex numbers, u = u_y + j u_z. Let theta be the tilt of the rotor in the
+case, u the inertial rate of the case, and M the moment of the torquer. With v = theta' + u the
+derivative u' does not appear (docs/theory/tuned_gyro.md; Sapegin, Romanov and Bugaiov 2016):
 
     theta' = v - u,   A v' = -(f - j H) v - (k2 - j c) theta + (f - j (H - B Omega)) u + M
 
-Open loop: M = 0 and the reading is -c theta / (B Omega).  Closed loop: M = -[Dc s + dc - j K +
-(di - j Ki) / s] theta, and the reading is j M / (B Omega).  The read-out and the loop's gains are
-those of the nominal speed, as electronics are; the rotor may turn at another.
+Open loop: M = 0, and the reading is -c theta / (B Omega). Closed loop: M = -[Dc s + dc - j K +
+(di - j Ki) / s] theta, and the reading is j M / (B Omega). Read-out and loop gains are electronic
+and stay those of the nominal speed, even if the rotor turns at another speed.
 
-Disturbances: a moment on the rotor is given as the rate d it is mistaken for, M = j B Omega d; the
-pick-off reads theta + n, n being its offset and noise, in loop and read-out alike.
+Disturbances: a moment on the rotor is expressed as the equivalent rate d, M = j B Omega d. The
+pick-off measures theta + n, where n is its offset and noise, for loop and read-out alike.
 """
 
 from dataclasses import dataclass, fields
@@ -21,22 +21,30 @@ import math
 from types import MappingProxyType
 
 LOOPS = ('open', 'closed')
-# The nominal speed may be off the one the hinges tune the rotor to by this part.
+# Largest relative difference between the nominal speed and the speed the hinges are tuned to.
 TUNING_TOLERANCE = 0.01
 
 
 @dataclass(frozen=True)
 class TunedGyroParameters:
     """
-    Physical parameters, SI; the letters of the equations in brackets.
+    Physical parameters of a tuned gyro, SI; symbols of the equations in brackets.
 
-    rotor_axial_kg_m2 [Jr], rotor_equatorial_kg_m2 [Jer], ring_axial_kg_m2 [Jk],
-    ring_equatorial_kg_m2 [Jek]: inertias of rotor and ring.  rotating_damping_n_m_s [fe]: turns
-    with the shaft; case_damping_n_m_s [D]: does not.  cross_feedback_n_m_rad [K]: pick-off to
-    torquer, turned by +j; open loop only.  hinge_stiffness_n_m_rad [(K_alpha + K_beta) / 2]: mean
-    of the two hinges; None is the one that tunes the rotor at speed_hz [Omega / 2 pi].  loop: open
-    or closed, the latter placing natural_rad_s [w0], damping_ratio [zeta] and the decay of the
-    nutation, nutation_rad_s [Wn].  Raises ValueError for what no such instrument can have.
+    Raises ValueError for values that no such instrument can have.
+
+    Attributes
+    ----------
+    rotor_axial_kg_m2, rotor_equatorial_kg_m2 : inertias of the rotor [Jr, Jer]
+    ring_axial_kg_m2, ring_equatorial_kg_m2 : inertias of the ring [Jk, Jek]
+    speed_hz : nominal speed of the rotor [Omega / 2 pi]
+    rotating_damping_n_m_s : damping that turns with the shaft [fe]
+    case_damping_n_m_s : damping by the case [D]
+    cross_feedback_n_m_rad : feedback from pick-off to torquer, turned by +j; open loop only [K]
+    hinge_stiffness_n_m_rad : mean of the two hinges [(K_alpha + K_beta) / 2]; None for the value
+        that tunes the rotor at speed_hz
+    loop : open or closed
+    natural_rad_s, damping_ratio, nutation_rad_s : natural frequency [w0], damping [zeta] and decay
+        of the nutation [Wn] that the closed loop is designed for
     """
 
     rotor_axial_kg_m2: float
@@ -54,7 +62,7 @@ class TunedGyroParameters:
     nutation_rad_s: float = 200.0
 
     def __post_init__(self):
-        """Check what depends on no other choice than the parameters."""
+        """Check the parameters for consistency with each other."""
         if self.loop not in LOOPS:
             raise ValueError(f'loop is {self.loop!r}; expected open or closed')
         positive = {'rotor_axial_kg_m2', 'rotor_equatorial_kg_m2', 'speed_hz'}
@@ -85,7 +93,7 @@ class TunedGyroParameters:
                              'open; expected one above 0, as the reading is proportional to them')
 
     def _check_tuning(self):
-        """Refuse hinges that tune the rotor to another speed."""
+        """Raise ValueError for hinges that tune the rotor to another speed."""
         if self.hinge_stiffness_n_m_rad is None:
             return
         per_speed = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
@@ -123,7 +131,7 @@ class TunedGyroParameters:
 
     @property
     def coupling(self):
-        """c = fe Omega + K, N m/rad; in closed loop K is the one that the loop sets."""
+        """c = fe Omega + K, N m/rad; in closed loop K is the gain designed for the loop."""
         closed = self.loop == 'closed'
         feedback = -loop_gains(self)[1].imag if closed else self.cross_feedback_n_m_rad
         return self.rotating_damping_n_m_s * self.omega + feedback
@@ -136,11 +144,11 @@ class TunedGyroParameters:
     @property
     def vibration_2n_factor(self):
         """
-        Drift over the amplitude of an angular vibration at 2 Omega: (2Jek - Jk)(1 + dJ/g)/(8B).
+        Drift per amplitude of an angular vibration at 2 Omega: (2Jek - Jk)(1 + dJ/g)/(8B).
 
-        dJ = Jek - Jk/2, g = Jr - 2 Jer.  The ring takes part about one axis of the rotor alone, so
-        that it turns the vibration into a constant moment.  Raises ValueError for a flat rotor,
-        whose nutation is at 2 Omega.
+        Here dJ = Jek - Jk/2 and g = Jr - 2 Jer. The ring follows the rotor about one of its axes
+        only and thereby rectifies the vibration to a constant moment. Raises ValueError for a flat
+        rotor, whose nutation is at 2 Omega.
         """
         d = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
         g = self.rotor_axial_kg_m2 - 2.0 * self.rotor_equatorial_kg_m2
@@ -150,7 +158,7 @@ class TunedGyroParameters:
         return 2.0 * d * (1.0 + d / g) / (8.0 * self.input_inertia)
 
     def stiffness(self, speed_hz=None):
-        """Return k2 at a speed, the nominal one by default, N m/rad."""
+        """Return the residual stiffness k2 at a speed, N m/rad; by default at the nominal one."""
         omega = self.omega if speed_hz is None else 2.0 * math.pi * speed_hz
         per_speed = self.ring_equatorial_kg_m2 - 0.5 * self.ring_axial_kg_m2
         if self.hinge_stiffness_n_m_rad is None:
@@ -161,8 +169,8 @@ class TunedGyroParameters:
 _ROTOR = {'rotor_axial_kg_m2': 5.0e-6, 'rotor_equatorial_kg_m2': 2.82e-6,
           'ring_axial_kg_m2': 1.5e-7, 'ring_equatorial_kg_m2': 1.0e-7,
           'rotating_damping_n_m_s': 1.0e-7, 'speed_hz': 230.0}
-# The rotor of Sapegin, Romanov and Bugaiov (2016) is physically unstable (nutation +7.45 1/s);
-# RK4 at 0.75 ms hides it.
+# The rotor of Sapegin, Romanov and Bugaiov (2016) is physically unstable (its nutation grows with
+# 7.45 1/s); RK4 with a step of 0.75 ms hides this.
 PRESETS = MappingProxyType({
     'sapegin_2016': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550),
     'sapegin_2016_damped': TunedGyroParameters(**_ROTOR, cross_feedback_n_m_rad=0.0550,
@@ -172,9 +180,10 @@ PRESETS = MappingProxyType({
 
 def loop_gains(p):
     """
-    Return Dc, dc - j K and di - j Ki, the derivative, proportional and integral gains.
+    Return the derivative, proportional and integral gains Dc, dc - j K and di - j Ki.
 
-    They turn the characteristic polynomial into (A (s + Wn) - j H)(s^2 + 2 zeta w0 s + w0^2).
+    They are chosen so that the characteristic polynomial becomes
+    (A (s + Wn) - j H)(s^2 + 2 zeta w0 s + w0^2).
     """
     a, h, w0, wn = p.transverse_inertia, p.momentum, p.natural_rad_s, p.nutation_rad_s
     twice = 2.0 * p.damping_ratio * w0

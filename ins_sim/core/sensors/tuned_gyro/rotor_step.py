@@ -1,17 +1,20 @@
 """
-One step of a tuned gyro, on floats.
+The arithmetic of one step of a tuned gyro, on floats.
 
-A complex number is two floats, real and imaginary part in turn, and products are written out:
-plain Python and the compiled loop then give the same bits. ``x`` is the state (theta, v) or, in
-closed loop, (theta, v, integral): four or six floats. ``u`` holds the rates u_y + j u_z of the
-case at start, middle and end of the step, rad/s, and ``d`` moment, tilt and jump of a disturbance
-(`TunedGyro.step_disturbed`): six floats each. ``gains`` are the rows of the step's matrix, that
-of the mean reading last, and ``added`` those of the disturbances (``step_matrices``).
+A complex number is stored as two floats, real part first, and products are written out, so that
+plain Python and the compiled loop give the same bits. The arguments have the same meaning in all
+functions:
+
+x : state (theta, v) or, in closed loop, (theta, v, integral): four or six floats
+u : rates u_y + j u_z of the case at start, middle and end of the step, rad/s: six floats
+d : moment, tilt and jump of a disturbance (`TunedGyro.step_disturbed`): six floats
+gains : rows of the matrix of the step, the row of the mean reading last (``step_matrices``)
+added : rows of the matrix of the disturbances (``step_matrices``)
 """
 
 
 def row_two(g, x, u):
-    """Return the product, two floats, of a row of five complex gains with (x, u), two states."""
+    """Return the product of a row of five complex gains with (x, u), for two states."""
     ar, ai, br, bi, cr, ci, dr, di, er, ei = g
     x0, y0, x1, y1 = x
     u0, v0, u1, v1, u2, v2 = u
@@ -22,7 +25,7 @@ def row_two(g, x, u):
 
 
 def row_three(g, x, u):
-    """Return the product, two floats, of a row of six complex gains with (x, u), three states."""
+    """Return the product of a row of six complex gains with (x, u), for three states."""
     ar, ai, br, bi, cr, ci, dr, di, er, ei, fr, fi = g
     x0, y0, x1, y1, x2, y2 = x
     u0, v0, u1, v1, u2, v2 = u
@@ -33,7 +36,7 @@ def row_three(g, x, u):
 
 
 def row_of_disturbance(g, d):
-    """Return the product, two floats, of a row of three complex gains with d."""
+    """Return the product of a row of three complex gains with d."""
     ar, ai, br, bi, cr, ci = g
     m, n, t, s, j, k = d
     return ((ar * m - ai * n) + (br * t - bi * s) + (cr * j - ci * k),
@@ -55,7 +58,7 @@ def rotor_step(gains, x, u):
 
 
 def disturbed_step(gains, added, x, u, d):
-    """Return what ``rotor_step`` does, under the disturbance d."""
+    """Return the results of ``rotor_step`` under the disturbance d."""
     if len(x) == 4:
         (x0, y0, x1, y1), (y, z) = rotor_step(gains, x, u)
         a, b, mean = added
@@ -73,7 +76,7 @@ def disturbed_step(gains, added, x, u, d):
 
 
 def rotor_stages(stages, x, u):
-    """Return the readings at the four stages of an RK4 step, two floats each; x: its start."""
+    """Return the readings at the four stages of an RK4 step from state x, two floats each."""
     a, b, c, d = stages
     if len(x) == 4:
         return row_two(a, x, u), row_two(b, x, u), row_two(c, x, u), row_two(d, x, u)
@@ -82,10 +85,14 @@ def rotor_stages(stages, x, u):
 
 def run_rotor(count, gains, added, x, u, d, out):
     """
-    Take ``count`` steps from state x; return the state after them.
+    Take ``count`` steps from state x and return the state after them.
 
-    u and d: flat columns of the inputs of each step, d None for an undisturbed rotor; out: takes
-    the mean readings.
+    Parameters
+    ----------
+    count : number of steps
+    gains, added, x : see the module docstring
+    u, d : flat (6 count,) inputs of the steps; d is None for an undisturbed rotor
+    out : flat (2 count,) that receives the mean readings
     """
     for k in range(count):
         i = 6 * k

@@ -1,15 +1,15 @@
-"""Stability of the numerical integration of a tuned gyro, and the gain of its pick-off."""
+"""Stability of the numerical integration of a tuned gyro, and its gain to pick-off noise."""
 
 import numpy as np
 
 from ins_sim.core.numerics.fixed_order import magnitude, product
 
-# The grid of the searches, refined by bisection to the precision of the floats.
+# Number of grid points of the searches, which bisection then refines to machine precision.
 GRID = 4000
 
 
 def bisect_condition(holds, inside, outside):
-    """Return where a condition that holds inside stops to hold, between the two floats."""
+    """Return the boundary, between two floats, of the region in which a condition holds."""
     for _ in range(100):
         middle = 0.5 * (inside + outside)
         if middle in (inside, outside):
@@ -22,16 +22,20 @@ def bisect_condition(holds, inside, outside):
 
 
 def rk4_amplification(z):
-    """Return the factor of one RK4 step, z = root x step (floats or arrays)."""
+    """Return the amplification factor of one RK4 step; z = root times step, floats or arrays."""
     return 1.0 + z * (1.0 + z * (0.5 + z * (1.0 / 6.0 + z / 24.0)))
 
 
 def rk4_window(roots):
     """
-    Return the steps (low, high), s, between which RK4 decays; None where it never does.
+    Return the shortest and longest step, s, for which RK4 is stable, or None if there is none.
 
-    low is 0 for a stable instrument; a slightly unstable one is damped by RK4 itself when the step
-    is long enough, as 1 - (w h)^6 / 144.
+    The lower limit is 0 for a stable instrument. A slightly unstable one is damped by RK4 itself,
+    by 1 - (w h)^6 / 144 per step, if the step h is long enough.
+
+    Parameters
+    ----------
+    roots : characteristic roots, 1/s
     """
     roots = np.array(roots)
     fastest = magnitude(roots).max()
@@ -39,7 +43,7 @@ def rk4_window(roots):
     def decays(h):
         return (magnitude(rk4_amplification(np.multiply.outer(h, roots))) < 1.0).all(axis=-1)
 
-    # RK4 is stable nowhere in the left half plane beyond |z| = 3
+    # In the left half plane RK4 is unstable everywhere beyond |z| = 3.
     steps = np.linspace(0.0, 3.0, GRID + 1)[1:] / fastest
     inside = decays(steps)
     if not inside.any():
@@ -55,15 +59,20 @@ def rk4_window(roots):
 
 def pickoff_gain(rotor, dt_s):
     """
-    Return the variance of mean readings over that of pick-off noise, (rad/s)^2/rad^2.
+    Return the ratio of the variances of mean readings and pick-off noise, (rad/s)^2/rad^2.
 
-    rotor: TunedGyro; the noise is white from one interval dt_s, s, to the next and constant within
-    it.  Stationary solution of the discrete Lyapunov equation of the state and the last noise, by
-    Smith's doubling, to which the scale of the states does not matter.
+    The noise is constant within an interval and independent between intervals. The result is the
+    stationary solution of the discrete Lyapunov equation for the state and the last noise, found
+    by Smith's doubling, which is insensitive to the scaling of the states.
+
+    Parameters
+    ----------
+    rotor : TunedGyro
+    dt_s : interval of the noise, s; a multiple of the step of the rotor
     """
     table, added = rotor.matrices
     n = len(added) - 1
-    # columns: state at the start of the interval, noise in it, its jump
+    # Columns: state at the start of the interval, noise in it, jump of the noise at its start.
     x, read = np.eye(n, n + 2, dtype=complex), np.zeros(n + 2, dtype=complex)
     steps = round(dt_s / rotor.dt_s)
     for k in range(steps):

@@ -1,8 +1,8 @@
 """
 The dynamically tuned gyro as a linear system: state space, transfer function and roots.
 
-Tables are computed in a fixed order (`core.numerics.fixed_order`), as they decide the bits of the
-readings.
+Matrices are computed in a fixed order of operations (`core.numerics.fixed_order`), because the
+bits of the readings depend on them.
 """
 
 from dataclasses import dataclass
@@ -22,11 +22,14 @@ class StateSpace:
     """
     The gyro as x' = F x + g u, reading = c x + d u, complex.
 
-    f (n, n), g (n,), c (n,), d: x is (theta, v) or, in closed loop, (theta, v, integral of
-    theta + n); rad, rad/s, rad s.  moment, tilt (n,): x' by a disturbing moment d, rad/s, and by a
-    pick-off error n, rad; tilt_reading: its reading.  jump (n,), jump_reading, rad: change of x
-    and integral of the reading by a jump of n, to which the derivative gain answers by an
-    impulse.
+    Attributes
+    ----------
+    f, g, c, d : matrices (n, n), (n,), (n,) and scalar; x is (theta, v) or, in closed loop,
+        (theta, v, integral of theta + n), in rad, rad/s, rad s
+    moment, tilt : (n,) derivative of x per disturbing moment d (rad/s) and pick-off error n (rad)
+    tilt_reading : reading per pick-off error
+    jump, jump_reading : change of x (n,), and integral of the reading (rad), per jump of the
+        pick-off error, to which the derivative gain responds with an impulse
     """
 
     f: np.ndarray
@@ -42,9 +45,9 @@ class StateSpace:
     @cached_property
     def transfer(self):
         """
-        Coefficients of the transfer function less d, highest powers of s first.
+        Coefficients of the transfer function without d, highest power of s first.
 
-        Numerator and denominator, tuples of complex numbers (Faddeev and LeVerrier).
+        Numerator and denominator are tuples of complex numbers (Faddeev-LeVerrier algorithm).
         """
         count, unit = len(self.g), np.eye(len(self.g), dtype=complex)
         adjugate, numerator, denominator = unit, [], [1.0 + 0.0j]
@@ -61,11 +64,11 @@ class StateSpace:
 
     @property
     def roots(self):
-        """Characteristic roots, 1/s, the least stable first."""
+        """Characteristic roots, 1/s, least stable first."""
         return tuple(sorted(polynomial_roots(self.transfer[1]), key=lambda s: -s.real))
 
     def response(self, omega):
-        """Return the complex transfer function at j omega (any shape, rad/s, either sign)."""
+        """Return the transfer function at j omega; omega: any shape, rad/s, either sign."""
         omega = np.asarray(omega, dtype=float)
         (a, b), (c, d) = (_along_the_axis(each, omega) for each in self.transfer)
         size = c * c + d * d
@@ -73,10 +76,14 @@ class StateSpace:
 
     def axis_responses(self, omega):
         """
-        Return the responses of an axis to its own rate and to that of the other axis.
+        Return the responses of an axis to its own rate and to the rate of the other axis.
 
-        As real signals, reading_y = direct u_y - cross u_z, reading_z = cross u_y + direct u_z:
-        direct = (G(j w) + conj G(-j w)) / 2, cross = (G(j w) - conj G(-j w)) / 2j.
+        For real signals reading_y = direct u_y - cross u_z and reading_z = cross u_y + direct u_z,
+        with direct = (G(j w) + conj G(-j w)) / 2 and cross = (G(j w) - conj G(-j w)) / 2j.
+
+        Parameters
+        ----------
+        omega : frequencies, rad/s, any shape
         """
         omega = np.asarray(omega, dtype=float)
         plus, minus = self.response(omega), np.conj(self.response(-omega))
@@ -94,14 +101,16 @@ def _along_the_axis(coefficients, omega):
 
 def polynomial_roots(coefficients):
     """
-    Return the roots of a polynomial by the iteration of Weierstrass, all of them at once.
+    Return all roots of a polynomial by the simultaneous iteration of Weierstrass (Durand-Kerner).
 
-    coefficients: complex, highest power first, which has 1.
+    Parameters
+    ----------
+    coefficients : complex, highest power first; the first must be 1
     """
     size = 1.0 + max(abs(c.real) + abs(c.imag) for c in coefficients[1:])
     roots = [complex(size)]
     for _ in coefficients[2:]:
-        # any points that are not symmetric to the axes
+        # Start from any points that are not symmetric about the axes.
         roots.append(roots[-1] * (0.4 + 0.9j))
     for _ in range(ITERATIONS):
         before = list(roots)
@@ -120,7 +129,7 @@ def polynomial_roots(coefficients):
 
 
 def state_space(p, speed_hz=None):
-    """Return the StateSpace of a rotor at a speed, by default the nominal one."""
+    """Return the StateSpace of TunedGyroParameters at a speed, by default the nominal one."""
     omega = p.omega if speed_hz is None else 2.0 * math.pi * speed_hz
     a, h, f = p.transverse_inertia, p.axial_inertia * omega, p.damping
     stiffness = complex(p.stiffness(speed_hz),

@@ -1,10 +1,11 @@
 """
 Matrices of one step of a tuned gyro.
 
-At constant speed the gyro is linear, so that a step, exact or RK4, is one set of matrices: the
-state at the end and the mean reading of the interval are linear in the state at its start and in
-the rates at its start, middle and end.  Exact steps take the rate between these as the parabola
-(``quadratic``) or the straight line (``linear``) through them (docs/theory/tuned_gyro.md).
+At constant speed the gyro is linear, so a step, exact or RK4, is a set of matrices: the state at
+the end and the mean reading over the interval are linear in the state at the start and in the
+rates at start, middle and end. For exact steps the rate between these three points is the parabola
+through them (``quadratic``) or the straight line from start to end (``linear``)
+(docs/theory/tuned_gyro.md).
 """
 
 from dataclasses import replace
@@ -19,10 +20,17 @@ HOLDS = ('quadratic', 'linear')
 
 def exact_matrices(space, dt_s, hold):
     """
-    Return the map (n + 1, n + 3) of one exact step: next state and mean reading.
+    Return the matrix (n + 1, n + 3) of one exact step.
 
-    Columns: state at the start, rates at start, middle, end.  Matrix exponential of the system
-    augmented by the integral of the reading and by the rate's derivatives (Van Loan 1978).
+    Rows are the next state and the mean reading; columns are the state at the start and the rates
+    at start, middle and end. It is the matrix exponential of the system augmented by the integral
+    of the reading and by the derivatives of the rate (Van Loan 1978).
+
+    Parameters
+    ----------
+    space : StateSpace
+    dt_s : step, s
+    hold : quadratic or linear
     """
     n = len(space.g)
     big = np.zeros((n + 4, n + 4), dtype=complex)
@@ -43,9 +51,10 @@ def exact_matrices(space, dt_s, hold):
 
 def rk4_matrices(space, dt_s):
     """
-    Return the map of one RK4 step and the map (4, n + 3) of the readings at its four stages.
+    Return the matrix of one RK4 step, and the matrix (4, n + 3) of the readings at its stages.
 
-    The classical Runge-Kutta step of a linear system is linear: this is it, column by column.
+    The classical Runge-Kutta step of a linear system is linear; it is evaluated column by column.
+    Rows and columns are those of `exact_matrices`.
     """
     n = len(space.g)
     start, middle, end = np.eye(n + 3)[n:]
@@ -66,11 +75,18 @@ def rk4_matrices(space, dt_s):
 
 def disturbance_matrix(table, space, dt_s, step_map):
     """
-    Return what disturbances add to one step, (n + 1, 3): next state and mean reading.
+    Return the effect of disturbances on one step, (n + 1, 3).
 
-    Columns: a moment and a pick-off error, constant over the step, and a jump of the latter at its
-    start.  table: the map of the step; step_map: function (StateSpace) -> map, linear in g and d,
-    whose three rate columns add up to the answer to a constant input.
+    Rows are the next state and the mean reading. Columns are a moment and a pick-off error, both
+    constant over the step, and a jump of the pick-off error at the start of the step.
+
+    Parameters
+    ----------
+    table : matrix of the step
+    space : StateSpace
+    dt_s : step, s
+    step_map : function (StateSpace) -> matrix of the step, linear in g and d; its three rate
+        columns add up to the response to a constant input
     """
     n = len(space.g)
     columns = []

@@ -1,4 +1,4 @@
-"""The dynamically tuned gyro, step by step."""
+"""One dynamically tuned gyro, step by step."""
 
 import math
 import warnings
@@ -14,7 +14,7 @@ from .step_matrices import disturbance_matrix, exact_matrices, HOLDS, METHODS, r
 
 
 def _check_stability(roots, dt_s, method):
-    """Return the sentence that says why the steps do not decay, or None."""
+    """Return a sentence that says why the integration is unstable, or None if it is stable."""
     if method == 'exact':
         if roots[0].real < 0.0:
             return None
@@ -30,22 +30,30 @@ def _check_stability(roots, dt_s, method):
 
 
 def floats_of(rows):
-    """Return complex numbers, in an array of any shape, as floats: each as two, in tuples."""
+    """Return a complex array as nested tuples of floats, two for each number."""
     found = np.ascontiguousarray(rows, dtype=complex).view(float)
     return tuple(map(tuple, found.tolist())) if found.ndim == 2 else tuple(found.tolist())
 
 
 class TunedGyro:
     """
-    One gyro: rates in, mean readings out.
+    One tuned gyro: rates in, mean readings out. Raises ValueError if the steps would diverge.
 
-    parameters: TunedGyroParameters; dt_s: step; method: exact or rk4; hold: quadratic or linear
-    (of the exact method); on_unstable: refuse or warn; speed_hz: where it is not the nominal one.
-    state: (theta, v) or, in closed loop, (theta, v, integral of theta), rad, rad/s, rad s, as a
-    tuple of four or six floats that can be kept and set back; zero at first, a rotor without tilt
-    that does not turn in inertial space (see settle).  gains, added, stages: constants of the
-    functions of ``rotor_step``, stages of RK4 alone.  Raises ValueError where the steps would
-    grow.
+    Parameters
+    ----------
+    parameters : TunedGyroParameters
+    dt_s : step, s
+    method : exact or rk4
+    hold : quadratic or linear; used by the exact method
+    on_unstable : refuse or warn
+    speed_hz : speed of the rotor if it is not the nominal one
+
+    Attributes
+    ----------
+    state : (theta, v) or, in closed loop, (theta, v, integral of theta), rad, rad/s, rad s, as
+        four or six floats; it can be saved and set back. At first it is zero: a rotor without tilt
+        that does not turn in inertial space (see ``settle``)
+    gains, added, stages : constants of the functions of ``rotor_step``; stages for RK4 only
     """
 
     def __init__(self, parameters, dt_s, method='exact', hold='quadratic', on_unstable='refuse',
@@ -94,29 +102,33 @@ class TunedGyro:
         return tuple(map(complex, self.state[::2], self.state[1::2]))
 
     def set_speed(self, speed_hz):
-        """Go on with another speed of the rotor; the tilt is kept, the matrices are rebuilt."""
+        """Continue with another rotor speed: the tilt is kept, the matrices are rebuilt."""
         if not 0.0 < speed_hz < math.inf:
             raise ValueError(f'speed_hz is {speed_hz!r}; expected a finite number above 0')
         self._build(speed_hz)
 
     def settle(self, u, moment=0.0, tilt=0.0):
-        """Take the state of a gyro that has long turned at the constant rate u, rad/s."""
+        """Set the steady state at the constant rate u, moment (rad/s) and pick-off tilt (rad)."""
         space = self._space
         driven = product(np.column_stack((space.g, space.moment, space.tilt)),
                          np.array(((u,), (moment,), (tilt,)), dtype=complex))
         self.state = floats_of(solve(space.f, -driven[:, 0]))
 
     def step(self, u_start, u_mid, u_end):
-        """Advance by dt; rates u_y + j u_z of the case, rad/s; return the mean reading."""
+        """Advance by dt with rates u_y + j u_z of the case, rad/s; return the mean reading."""
         self.state, mean = rotor_step(self.gains, self.state, floats_of((u_start, u_mid, u_end)))
         return complex(*mean)
 
     def step_disturbed(self, u_start, u_mid, u_end, moment, tilt, jump):
         """
-        Advance by dt as ``step`` does, under disturbances; return the mean reading.
+        Advance by dt under disturbances, otherwise as ``step``; return the mean reading.
 
-        moment, complex rad/s: the rate it is mistaken for; tilt, rad: error of the pick-off; both
-        constant over the step.  jump: by how much tilt differs from that of the step before.
+        Parameters
+        ----------
+        u_start, u_mid, u_end : complex rates of the case, rad/s
+        moment : complex disturbing moment as the equivalent rate, rad/s, constant over the step
+        tilt : complex pick-off error, rad, constant over the step
+        jump : change of tilt since the step before, rad
         """
         self.state, mean = disturbed_step(
             self.gains, self.added, self.state, floats_of((u_start, u_mid, u_end)),
@@ -124,7 +136,7 @@ class TunedGyro:
         return complex(*mean)
 
     def reading(self, u):
-        """Return the reading of this instant, the rate being u, rad/s."""
+        """Return the reading at this instant for the rate u, rad/s."""
         total = self._space.d * u
         for gain, x in zip(self._space.c.tolist(), self.physical_state):
             total += gain * x
@@ -141,7 +153,9 @@ class TunedGyro:
         """
         Return the mean readings (n, 2), real and imaginary parts, of n steps.
 
-        u, d (n, 6): inputs of each step as of ``rotor_step``.
+        Parameters
+        ----------
+        u, d : (n, 6) inputs of the steps, see ``rotor_step``; d may be None
         """
         readings = np.empty((len(u), 2))
         self.state = compilation.run(
@@ -149,5 +163,5 @@ class TunedGyro:
         return readings
 
     def advance(self, u):
-        """Return the mean readings (n,) of n steps; u (n, 3): rates at start, middle, end."""
+        """Return the mean readings (n,) of n steps; u (n, 3): complex rates as for ``step``."""
         return self.run(np.ascontiguousarray(u, dtype=complex).view(float)).view(complex)[:, 0]

@@ -1,4 +1,4 @@
-"""Velocities of the INS as the velocity meter uses them: their means over its windows."""
+"""Mean velocities of the INS over the windows of the velocity meter."""
 
 from functools import reduce
 from operator import add
@@ -12,18 +12,23 @@ from .blocks import in_order, pieces
 
 NO_INS = 'no INS velocity in the window'
 NO_ANGLE = 'INS velocity gives no angle of attack below 45 deg'
-# without the INS: why not, tan(alpha), and no sideslip
+# Status, tan(alpha) and sideslip of a window for which no INS velocity is available.
 UNSEEN = (NO_INS, 0.0, None)
-# How long a window waits for the INS, in motion time: more than lock-step lets it lag.
+# Longest wait of a window for the INS, in motion time; in lock-step the INS lags by less.
 WAIT_NS = 60_000_000_000
 
 
 class InsMeans:
     """
-    Sums of the velocities by part of a window, and which run of the truth they belong to.
+    Sums of INS velocities by part of a window; they belong to one run of the truth.
 
-    dt_ns: navigation cycle; span_ns: window; part_ns: from end to end of windows.  A stamp of the
-    INS that jumps back begins a new history, unless the one before it was a stray.
+    If the stamps of the INS jump back, a new run begins, unless the stamp before was a stray one.
+
+    Parameters
+    ----------
+    dt_ns : navigation cycle, ns
+    span_ns : length of a window, ns
+    part_ns : time from the end of a window to the end of the next, ns
     """
 
     def __init__(self, dt_ns, span_ns, part_ns):
@@ -32,8 +37,8 @@ class InsMeans:
         self.forget()
 
     def forget(self):
-        """Forget what the INS said."""
-        # The truth is the first of the two.
+        """Forget all velocities of the INS."""
+        # For the detector the truth is the first stream and the INS the second.
         self._runs, self.newest_ns, self._sums = RestartDetector(), None, {}
         self._truth_ns, self._truth_stamps, self._stamps = None, LastStamps(), LastStamps()
 
@@ -44,11 +49,11 @@ class InsMeans:
 
     @property
     def reached_ns(self):
-        """Return how far the INS has come in the run of the truth, or None."""
+        """Return the newest INS stamp in the present run of the truth, or None."""
         return None if self.is_parted else self.newest_ns
 
     def follow_truth(self, t_ns):
-        """Take note of a stamp of the truth."""
+        """Register a stamp of the truth."""
         if self._truth_ns is not None and t_ns < self._truth_ns \
                 and not self._truth_stamps.was_ahead(t_ns):
             self._runs.first_jumps(t_ns, self.newest_ns)
@@ -59,7 +64,7 @@ class InsMeans:
             self._runs.first_returns()
 
     def skip_truth(self, t_ns):
-        """Take note of the last of some rising stamps of the truth."""
+        """Register the last one of several rising stamps of the truth."""
         self._truth_ns = t_ns
 
     def rises(self, t_ns):
@@ -67,7 +72,7 @@ class InsMeans:
         return self._truth_ns is None or t_ns > self._truth_ns
 
     def push(self, t_ns, v_b):
-        """Take a velocity (FLU, m/s); a repeated stamp is passed over."""
+        """Take a velocity (FLU, m/s); a repeated stamp is ignored."""
         if self.newest_ns is not None and t_ns <= self.newest_ns:
             if t_ns == self.newest_ns:
                 return
@@ -85,7 +90,7 @@ class InsMeans:
 
     def _jump_back(self, t_ns):
         if self._stamps.was_ahead(t_ns):
-            # of a stray nothing stays, at most its share in the mean of its window
+            # Discard the sums of the stray; at most its share in the mean of this window stays.
             end_ns = self._end_of(t_ns)
             self._sums = {end: total for end, total in self._sums.items() if end <= end_ns}
         else:
@@ -93,19 +98,25 @@ class InsMeans:
             self._sums = {}
 
     def _end_of(self, t_ns):
-        """Return the end of the part of an instant."""
+        """Return the end of the part that contains an instant."""
         return -(-(t_ns - self._dt_ns // 2) // self._part_ns) * self._part_ns
 
     def advance(self, t_ns, v_b, push):
         """
-        Return what push(t_ns, v_b) returns of the velocities of a block, most of which go at once.
+        Return the results of push(t_ns, v_b) for a block of velocities.
 
-        t_ns (n,) int64; v_b (n, 3); push(t_ns, v_b) must call ``push`` for one of them.
+        Most velocities are added at once; ``push`` is called only for the others.
+
+        Parameters
+        ----------
+        t_ns : (n,) int64 motion times, ns
+        v_b : (n, 3) velocities, FLU, m/s
+        push : function (t_ns, v_b) that calls the method ``push`` and returns a list
         """
         found, half_ns = [], self._dt_ns // 2
         ends = self._end_of(t_ns)
         for a, b in pieces(np.diff(ends, append=0) != 0):
-            # Those before the part can be over are added at once.
+            # Velocities before the earliest end of the part are added at once.
             end_ns = int(ends[a])
             inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
             rising = (np.diff(t_ns[a:inside]) > 0).all() and (
@@ -122,9 +133,14 @@ class InsMeans:
 
     def angle(self, end_ns, now_ns):
         """
-        Return VALID or why not, tan(alpha) and sideslip of a window; None: not known yet.
+        Return status, tan(alpha) and sideslip (rad) of a window, or None if not known yet.
 
-        end_ns: its end; now_ns: where the truth is.
+        The status is VALID or says why there is no angle. See equation (8) of Ivanov 2015.
+
+        Parameters
+        ----------
+        end_ns : end of the window, ns
+        now_ns : motion time of the newest truth, ns
         """
         reached_ns = self.reached_ns
         if reached_ns is None or reached_ns < end_ns - self._dt_ns // 2:

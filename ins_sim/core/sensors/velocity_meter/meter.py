@@ -1,8 +1,10 @@
 """
 The correlation velocity meter: windows of truth in, fixes out.
 
-Both modes, ``signal`` and ``surrogate``, have one interface.  Frames: body FLU outside; inside
-the axes of the antennas, X1 forward, Y1 up, Z1 right, which the mounting error turns about up.
+The modes ``signal`` and ``surrogate`` have the same interface. Velocities are exchanged in body
+axes FLU. Internally they are resolved in the axes of the antennas: X1 forward, Y1 up, Z1 right,
+turned about the vertical axis by the mounting error. Source: Ivanov 2015
+(docs/theory/velocity_meter.md).
 """
 
 from collections import deque
@@ -28,16 +30,19 @@ CALM = 'drop-out over calm water'
 
 class VelocityMeter:
     """
-    The instrument, fed by pushes; any cutting or interleaving of them gives the same fixes.
+    The instrument; neither blocks nor the order of truth and INS change the fixes.
 
-    settings: VelocityMeterSettings.  Raises ValueError, one sentence, on settings that do not go
-    together.
+    Windows have N cycles. They end at whole multiples of ``window.slide_cycles`` cycles (or of N)
+    in motion time. A window whose start was not seen is not reported.
 
-    Windows have N cycles and end every ``window.slide_cycles`` of them, or every N, at whole
-    multiples in motion time; one that was not seen from its start is not reported.  With
-    attack_angle ``ins`` a fix comes when the INS has reached the end of its window, with
-    tan(alpha) = -mean(V_y1)/mean(V_x1) of its samples inside (equation 8), however many; without
-    one the fix is invalid, and so it is, 60 s of motion time later, when the INS never gets there.
+    With attack_angle ``ins`` a fix is returned when the INS has reached the end of its window,
+    with tan(alpha) = -mean(V_y1)/mean(V_x1) over the INS samples inside (equation 8), whatever
+    their number. Without any sample the fix is invalid. It is also invalid if the INS has not
+    reached the end of the window 60 s of motion time later.
+
+    Parameters
+    ----------
+    settings : VelocityMeterSettings; ValueError if they are inconsistent
     """
 
     def __init__(self, settings):
@@ -59,14 +64,14 @@ class VelocityMeter:
         self.reset()
 
     def reset(self):
-        """Forget the window that is open and those that wait.  What the INS said stays."""
+        """Forget the open window and those that wait; the velocities of the INS are kept."""
         self._last = None
         self._waiting = deque()
         self._repeatable = False
         self._open.forget()
 
     def change(self, settings):
-        """Take the drop-outs of other VelocityMeterSettings from the next window to end on."""
+        """Use the drop-outs of these VelocityMeterSettings from the next end of a window on."""
         self._calm_ns = [(round(a * 1e9), round(b * 1e9)) for a, b in
                          zip(settings.drop_outs.start_s, settings.drop_outs.end_s)]
 
@@ -82,9 +87,18 @@ class VelocityMeter:
         """
         Take the truth at the end of a navigation cycle; return the VelocityFixes it completes.
 
-        t_ns: motion time; v_b: velocity relative to the ground in body axes FLU, m/s; height
-        above the ground, m.  Raises StreamFault on NaN, gaps, repeated and backwards stamps, and
-        stamps off the whole periods; the first sample may be repeated.
+        The first sample may be repeated.
+
+        Parameters
+        ----------
+        t_ns : motion time, ns
+        v_b : velocity relative to the ground in body axes FLU, m/s
+        height : above the ground, m
+
+        Raises
+        ------
+        StreamFault
+            On NaN, gaps, repeated or backwards stamps, and stamps between whole periods.
         """
         check_finite('truth', t_ns, v_b, (height,))
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
@@ -109,19 +123,18 @@ class VelocityMeter:
         return self._complete()
 
     def _in_antennas(self, v_b):
-        """Return V_x1, V_y1, V_z1 of a velocity in body axes FLU, floats or arrays."""
+        """Return V_x1, V_y1, V_z1 for a velocity in body axes FLU, floats or arrays."""
         forward, left, up = v_b
         return (self._cos * forward + self._sin * left, up,
                 self._sin * forward - self._cos * left)
 
     def push_ins(self, t_ns, v_b):
         """
-        Take the body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
+        Take a body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
 
-        Any rate will do, and a gap is none of the meter's faults; with attack_angle ``none``
-        nothing is done.  Raises StreamFault on NaN.  A repeated stamp is passed over; one that
-        jumps back begins a new history, and it is the truth, which jumps back too, that is
-        reported.
+        Any rate is accepted, and gaps are not reported. With attack_angle ``none`` the velocity is
+        ignored, and so is a repeated stamp. A stamp that jumps back begins a new run; the fault is
+        reported for the truth, which jumps back too. Raises StreamFault on NaN.
         """
         if not self._waits:
             return []
@@ -136,16 +149,16 @@ class VelocityMeter:
 
     @property
     def ins_reached_ns(self):
-        """Return how far the INS has come in the run of the truth, or None."""
+        """Return the newest INS stamp in the present run of the truth, or None."""
         return self._ins.reached_ns
 
     @property
     def waits_for_ns(self):
-        """Return the end of the first window that is over and to which the INS has not come."""
+        """Return the end of the first window that waits for the INS, ns, or None."""
         return self._waiting[0][0] * self._dt_ns if self._waiting else None
 
     def give_up_ins(self):
-        """Return the VelocityFixes, invalid, of the windows that wait for the INS."""
+        """Return the windows that wait for the INS as invalid VelocityFixes."""
         fixes = [self._fix(index, why_not, total, *UNSEEN)
                  for index, why_not, total in self._waiting]
         self._waiting.clear()
@@ -154,16 +167,25 @@ class VelocityMeter:
         return fixes
 
     def rejoin(self):
-        """Forget everything, the INS too: as if both streams began now."""
+        """Forget everything, including the velocities of the INS, as if both streams began now."""
         self._ins.forget()
         self.reset()
 
     def advance(self, t_ns, v_b, height, ins_v_b=None):
         """
-        Return the VelocityFixes of a block of cycles, to the bit those of single pushes.
+        Return the VelocityFixes of a block of cycles; same bits as single pushes.
 
-        t_ns (n,) int64; v_b (n, 3); height (n,); ins_v_b (n, 3): the INS at the same instants.
-        Raises StreamFault.
+        Parameters
+        ----------
+        t_ns : (n,) int64 motion times, ns
+        v_b : (n, 3) velocities, FLU, m/s
+        height : (n,) heights above the ground, m
+        ins_v_b : (n, 3) velocities of the INS at the same instants, or None
+
+        Raises
+        ------
+        StreamFault
+            As ``push_truth`` and ``push_ins`` do.
         """
         fixes = []
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
@@ -174,7 +196,7 @@ class VelocityMeter:
         return fixes
 
     def _advance_truth(self, t_ns, v_b, height):
-        """Return the fixes of cycles of which none but the last ends a window."""
+        """Return the fixes of cycles, of which only the last may end a window."""
         first = len(t_ns) - 1
         if first < 2 or not self._add_cycles(t_ns[:-1], v_b[:-1], height[:-1]):
             first = 0
@@ -184,7 +206,7 @@ class VelocityMeter:
         return fixes
 
     def _add_cycles(self, t_ns, v_b, height):
-        """Add cycles to the open window at once; return False if each is to be looked at."""
+        """Add cycles to the open window at once; return False if they must be pushed singly."""
         if self._last is None or not self._ins.rises(t_ns[0]):
             return False
         last_ns, v_last, height_last = self._last
@@ -207,14 +229,14 @@ class VelocityMeter:
 
     def advance_ins(self, t_ns, v_b):
         """
-        Return the VelocityFixes of a block of velocities of the INS, those of single pushes.
+        Return the VelocityFixes of a block of INS velocities; same bits as single pushes.
 
-        t_ns (n,) int64; v_b (n, 3).  Raises StreamFault.
+        t_ns (n,) int64, ns; v_b (n, 3), FLU, m/s. Raises StreamFault.
         """
         return self._ins.advance(t_ns, v_b, self.push_ins) if self._waits else []
 
     def _cycle(self, index, last, v, height):
-        """Add the cycle that ends at index periods to the open windows."""
+        """Add the cycle that ends at ``index`` periods to the open windows."""
         if not self._open.measures:
             return
         _, v_last, height_last = last
@@ -226,7 +248,7 @@ class VelocityMeter:
         self._open.why_not = why_not
 
     def _close(self, index):
-        """End the window at index periods, if one was seen; it waits for its angle."""
+        """End the window at ``index`` periods, if it was seen; it then waits for its angle."""
         window = self._open.end(index)
         if window is None:
             return
@@ -236,7 +258,7 @@ class VelocityMeter:
         self._waiting.append((index, CALM if calm else window.why_not, window.total))
 
     def _complete(self):
-        """Return the fixes of the windows that need not wait any longer."""
+        """Return the fixes of the windows whose angle of attack is known."""
         fixes = []
         while self._waiting:
             index, why_not, total = self._waiting[0]
@@ -248,17 +270,18 @@ class VelocityMeter:
         return fixes
 
     def _angle(self, end_ns):
-        """Return VALID or why not, tan(alpha) and sideslip by the INS; None: not known yet."""
+        """Return status, tan(alpha) and sideslip from the INS; None if not known yet."""
         if not self._waits:
             return VALID, 0.0, None
         return self._ins.angle(end_ns, self._last[0])
 
     def _fix(self, index, why_not, total, angle_status, tan_alpha, slip):
         """
-        Return the fix of the window that ends at index periods.
+        Return the fix of the window that ends at ``index`` periods.
 
-        slip: sideslip by the INS.  By the fix itself its sigma would grow with its own error, and
-        whoever weighs by it would find all velocities too small: 0.7 m/s of V_z at N = 10.
+        slip: sideslip from the INS, used for sigma. Taken from the fix it would correlate sigma
+        with the error of the fix, and weighting would bias the velocities low (V_z by 0.7 m/s at
+        N = 10).
         """
         if why_not == VALID:
             why_not = angle_status

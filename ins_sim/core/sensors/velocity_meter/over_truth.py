@@ -1,4 +1,4 @@
-"""The velocity meter over records of the truth, offline."""
+"""The velocity meter on records of the truth, offline."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from .ins_means import WAIT_NS
 
 class MeterOnTruth:
     """
-    A VelocityMeter that is given truth in blocks.
+    A VelocityMeter that takes records of the truth.
 
-    Without an INS the true angle of attack is used; that of a converged INS differs from it by
-    milliradians.
+    Without `follow_ins` the true angle of attack is used; the angle of a converged INS differs
+    from it by milliradians.
     """
 
     def __init__(self, meter):
@@ -19,9 +19,12 @@ class MeterOnTruth:
 
     def follow_ins(self, t_ns, v_b):
         """
-        Take the angle of attack from an INS: t_ns (n,) int64, velocity in b (n, 3), m/s.
+        Take the angle of attack from an INS from now on.
 
-        Up to the end of the truth of the next ``advance``, or of the whole run.
+        Parameters
+        ----------
+        t_ns : (n,) int64 motion times, ns, up to the end of the next ``advance`` or of the run
+        v_b : (n, 3) velocity of the INS in body axes, m/s
         """
         self._ins, self._next = (t_ns, v_b), 0
 
@@ -32,7 +35,7 @@ class MeterOnTruth:
             return self._meter.advance(truth.t_ns, v_b, truth.height, v_b)
         t_ns, ins_v_b = self._ins
         found = []
-        # The meter waits for the INS for WAIT_NS only: so neither runs ahead by as much.
+        # The meter waits for the INS for WAIT_NS only, so neither stream may run ahead by more.
         step = max(1, int(np.searchsorted(truth.t_ns, truth.t_ns[0] + WAIT_NS // 2)))
         for first in range(0, len(truth), step):
             here = slice(first, first + step)
@@ -43,5 +46,5 @@ class MeterOnTruth:
         return found
 
     def finish(self):
-        """Return the VelocityFixes, invalid, of windows to whose end the INS never came."""
+        """Return the windows whose end the INS did not reach, as invalid VelocityFixes."""
         return self._meter.give_up_ins()

@@ -1,19 +1,20 @@
 """
-Mode signal of the velocity meter: the field at three antennas, and its correlation functions.
+Mode ``signal`` of the velocity meter: the field at three antennas and its correlation functions.
 
 A frozen random field, complex and Gaussian, moves past the phase centres r_i with the velocity v
-in the plane of motion.  With lengths by axis in correlation lengths L = lambda/(4 pi
-sigma_theta), and a decay of the field itself over T_d, signals i and j at times apart by t have
+in the plane of motion. Lengths are in units of the correlation length L = lambda/(4 pi
+sigma_theta) of each axis, and the field itself decays over the time T_d. Signals i and j with a
+time difference t then have the correlation::
 
     R_ij(t) = exp(-|r_i - r_j - v t|^2/2 - t^2/(2 T_d^2))
             = G_ij exp(-w^2 (t - t_i + t_j)^2/2),   w^2 = |v|^2 + 1/T_d^2,  t_i = r_i.v/w^2
-    G_ij = exp(-(p_i - p_j)^2/2 - (t_i - t_j)^2 w^2/(2 |v|^2 T_d^2)),  p_i the part across v
+    G_ij = exp(-(p_i - p_j)^2/2 - (t_i - t_j)^2 w^2/(2 |v|^2 T_d^2)),  p_i: component across v
 
-so that signal i is a mixture, by a constant factor of G, of three independent processes of one
-spectrum, ahead by t_i (docs/theory/velocity_meter.md, Signals).
+Signal i is therefore a mixture, by a matrix factor of G, of three independent processes with the
+same spectrum, advanced by t_i (docs/theory/velocity_meter.md, Signals).
 
-Fourier transforms and products of complex arrays have their last bits from the processor: fixes
-of this mode are the same on one machine only.
+The last bits of Fourier transforms and of products of complex arrays depend on the processor, so
+the fixes of this mode are reproducible on one machine only.
 """
 
 import math
@@ -28,22 +29,22 @@ from ins_sim.core.timeseries.fixes import VALID
 from .antennas import antenna_geometry
 from .reading import PAIRS, read_correlations, Reading, secant
 
-# the spectrum is cut, and the delays are parted, at this many standard deviations
+# Standard deviations at which the spectrum is cut off and the delays are separated.
 SIGMAS = 5.0
-# added to the diagonal of G, which is singular where two antennas follow one another
+# Added to the diagonal of G, which is singular if one antenna follows in the track of another.
 JITTER = 1e-9
 LN_10 = 2.302585092994046
-# 0.3 s and 100 MB a cycle
+# Largest number of modes; a cycle then takes 0.3 s and 100 MB.
 MOST_MODES = 1 << 20
 
 
 def power_of_two(n):
-    """Return the power of two that is at least n."""
+    """Return the smallest power of two that is at least n."""
     return 1 << (n - 1).bit_length()
 
 
 class Shape(NamedTuple):
-    """Of the field at the antennas: leads t_i, s, (3,), rate w, 1/s, and mixture G, (3, 3)."""
+    """The field at the antennas: leads t_i, s, (3,), rate w, 1/s, and mixture G, (3, 3)."""
 
     leads: np.ndarray
     rate: float
@@ -54,9 +55,12 @@ class Field:
     """
     The signals of the three antennas in one navigation cycle.
 
-    settings: VelocityMeterSettings.  ``length`` samples a lag apart: those of the cycle and,
-    for the later antenna of a pair, as many more as the correlator has lags to go.  Raises
-    ValueError where a cycle takes too many.
+    A signal has ``length`` samples, one per lag: those of the cycle and, for the later antenna of
+    a pair, one more for each further lag of the correlator.
+
+    Parameters
+    ----------
+    settings : VelocityMeterSettings; ValueError if a cycle needs more than MOST_MODES modes
     """
 
     def __init__(self, settings):
@@ -68,11 +72,11 @@ class Field:
         self._noise = exp(-0.05 * LN_10 * signal.snr_db) / math.sqrt(2.0)
         self.lag_s = settings.lag_s
         self.length = settings.samples + signal.lags - 1
-        # one period of the synthesis holds the samples and the longest correlation
+        # One period of the synthesis holds the samples and the longest correlation.
         reach = (2.0 * self._geometry.kappa * self._geometry.x0
                  + SIGMAS * max(self._lengths)) / limits.speed_min_m_s
         self._period = power_of_two(self.length + math.ceil(reach / self.lag_s))
-        # sideslip of 45 deg at the greatest forward speed is the fastest that is measured
+        # The fastest measurable motion has the greatest forward speed and 45 deg of sideslip.
         across = math.sqrt(2.0) * limits.speed_max_m_s / min(self._lengths)
         fastest = math.sqrt(across * across + self._decay * self._decay)
         bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
@@ -90,8 +94,12 @@ class Field:
         """
         Return the Shape at a velocity.
 
-        speed: along the trace of X1 in the plane of motion, v_z: along Z1, m/s; tan_alpha: true
-        angle of attack, which shortens X0 to X0 cos(alpha) in that plane.
+        Parameters
+        ----------
+        speed : along the trace of X1 in the plane of motion, m/s
+        v_z : velocity along Z1, m/s
+        tan_alpha : tangent of the true angle of attack, which shortens X0 to X0 cos(alpha) in the
+            plane of motion
         """
         g, (l_x, l_z) = self._geometry, self._lengths
         x0 = g.kappa * g.x0 / secant(tan_alpha)
@@ -106,7 +114,14 @@ class Field:
         return Shape(leads, math.sqrt(rate_2), exp(-0.5 * (apart * apart + lost)))
 
     def signals(self, normals, speed, v_z, tan_alpha):
-        """Return the complex amplitudes (3, length) made of ``width`` normal numbers."""
+        """
+        Return the complex amplitudes (3, length) of the signals.
+
+        Parameters
+        ----------
+        normals : (width,) standard normal numbers
+        speed, v_z, tan_alpha : see ``shape``
+        """
         leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
         modes = len(self._omega)
         parts = normals[:6 * modes].view(complex).reshape(3, modes)
@@ -115,7 +130,7 @@ class Field:
         parts = np.linalg.cholesky(mixture + JITTER * np.eye(3)) @ (parts * spectrum)
         sin, cos = sincos(leads[:, None] * self._omega)
         parts *= cos + 1j * sin
-        # what lies beyond the band of the samples is seen inside it
+        # Modes beyond the band of the samples are aliased into it.
         folded = np.empty((3, self._period), dtype=complex)
         folded[:, self._place] = parts.reshape(3, -1, self._period).sum(axis=1)
         noise = normals[6 * modes:].view(complex).reshape(3, self.length)
@@ -123,7 +138,7 @@ class Field:
                 + self._noise * noise)
 
     def correlations(self, lags, speed, v_z, tan_alpha, detection):
-        """Return the five functions that are expected without noise, (5, lags) by PAIRS."""
+        """Return the five expected functions without noise, (5, lags), in the order of PAIRS."""
         leads, rate, mixture = self.shape(speed, v_z, tan_alpha)
         t = self.lag_s * np.arange(lags)
         rows = [mixture[i, j] * exp(-0.5 * (rate * (t - leads[i] + leads[j])) ** 2)
@@ -133,10 +148,13 @@ class Field:
 
 class Sums(NamedTuple):
     """
-    What a window adds up over its cycles.
+    The sums that a window accumulates over its cycles.
 
-    products (5, lags): of values, by PAIRS; means (3, lags): of the values that stand in them,
-    by antenna and lag; power (3,): mean squared amplitude.
+    Attributes
+    ----------
+    products : (5, lags) mean products of values, in the order of PAIRS
+    means : (3, lags) means of the values used in these products, by antenna and lag
+    power : (3,) mean squared amplitude
     """
 
     products: np.ndarray
@@ -146,11 +164,12 @@ class Sums(NamedTuple):
 
 class Correlator:
     """
-    Two cross- and three autocorrelation functions, averaged over cycles.
+    Two cross-correlation and three autocorrelation functions, averaged over cycles.
 
-    Every lag has as many products as the cycle has samples, for the correlator goes on beyond
-    its end.  Powers are correlated less their mean and over it: that of the window, or that of
-    each cycle, which costs the functions a pedestal of about a correlation time over the cycle.
+    Every lag has as many products as the cycle has samples, because the correlator continues
+    beyond the end of the cycle. Powers are correlated after their mean is subtracted, and divided
+    by it. The mean is that of the window or that of each cycle; the latter lowers the functions
+    by a pedestal of about the correlation time divided by the cycle.
     """
 
     def __init__(self, settings):
@@ -161,7 +180,7 @@ class Correlator:
         self._earlier, self._later = (list(side) for side in zip(*PAIRS))
 
     def sums(self, signals):
-        """Return the Sums of one cycle; signals: complex amplitudes (3, length)."""
+        """Return the Sums of one cycle; signals (3, length): complex amplitudes."""
         values = power = signals.real ** 2 + signals.imag ** 2
         forward, back = fft.rfft, fft.irfft
         if not self._powers:
@@ -178,7 +197,7 @@ class Correlator:
                     (ends[:, self._count - 1:] - starts) / self._count, mean)
 
     def functions(self, total, cycles):
-        """Return the functions, real, (5, lags), of the Sums of so many cycles."""
+        """Return the real functions (5, lags) from the Sums over this number of cycles."""
         products, means, power = (part / cycles for part in total)
         p, q = power[self._earlier, None], power[self._later, None]
         if not self._powers:
@@ -191,9 +210,13 @@ class SignalWindows:
     """
     Sums and readings of windows by correlation functions.
 
-    Each cycle has a field of its own.  One that went on would tie neighbours only over the delay
-    and a correlation time, 0.4 and 0.2 ms of a cycle of 10 ms at 250 m/s.  settings:
-    VelocityMeterSettings.
+    Each cycle has its own field. A field that continued from cycle to cycle would correlate
+    neighbours only over the delay and a correlation time: 0.4 and 0.2 ms of a cycle of 10 ms at
+    250 m/s.
+
+    Parameters
+    ----------
+    settings : VelocityMeterSettings
     """
 
     def __init__(self, settings):
@@ -205,9 +228,15 @@ class SignalWindows:
 
     def add(self, total, index, v_last, v):
         """
-        Return the sum with the cycle that ends at index periods, its velocity being the mean.
+        Return the Sums including the cycle that ends at ``index`` periods.
 
-        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        The cycle is simulated at its mean velocity.
+
+        Parameters
+        ----------
+        total : Sums so far, or None
+        index : end of the cycle, periods
+        v_last, v : V_x1, V_y1, V_z1 at the start and end of the cycle, m/s
         """
         x, y, z = (0.5 * (a + b) for a, b in zip(v_last, v))
         signals = self._field.signals(self._normals.normal_block(index)[0],
@@ -216,15 +245,15 @@ class SignalWindows:
         return one if total is None else self.joined(total, one)
 
     def whole(self, total, index, cycles):
-        """Return the sum of cycles: it is whole."""
+        """Return the Sums of a part; unlike in mode surrogate nothing is added at its end."""
         return total
 
     def joined(self, first, then):
-        """Return the Sums of two."""
+        """Return the Sums of two consecutive parts together."""
         return Sums(*(a + b for a, b in zip(first, then)))
 
     def read(self, total, index, tan_alpha):
-        """Return the Reading of a window."""
+        """Return the Reading of a window from its Sums."""
         functions = self._correlator.functions(total, self._cycles)
         reading = read_correlations(functions, self._lag_s, self._geometry, tan_alpha)
         low, high = self._limits.speed_min_m_s, self._limits.speed_max_m_s

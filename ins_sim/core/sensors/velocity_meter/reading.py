@@ -2,7 +2,7 @@
 From correlation functions to velocity: the fits and equations (2) to (5).
 
 Source: Ivanov, Vestnik Koncerna PVO Almaz-Antey 2, 2015, with the corrections of
-docs/theory/velocity_meter.md. Axes of the antennas: X1 forward, Z1 right. Lags are whole numbers.
+docs/theory/velocity_meter.md. Axes of the antennas: X1 forward, Z1 right. Lags are integers.
 """
 
 import math
@@ -11,17 +11,17 @@ from typing import NamedTuple
 from ins_sim.core.numerics.elementary import atan2, log, sincos
 from ins_sim.core.timeseries.fixes import VALID
 
-# lags whose correlation is at least this part of the greatest are fitted
+# The fit uses lags whose correlation is at least this fraction of the maximum.
 PART = 0.5
 LEAST_CROSS, LEAST_AUTO = 5, 3
-# a determinant below this part of its terms is rounding
+# A determinant below this fraction of its terms is rounding error.
 ROUNDING = 1e-12
 PAIRS = ((0, 1), (1, 2), (0, 0), (1, 1), (2, 2))
 NAMES = ('R12', 'R23', 'R11', 'R22', 'R33')
 
 
 class Peak(NamedTuple):
-    """Maximum of a correlation function: lag, curvature g, 1/lag^2, logarithm of its value."""
+    """Maximum of a correlation function: lag, curvature g (1/lag^2), logarithm of the value."""
 
     status: str
     lag: float = 0.0
@@ -31,10 +31,15 @@ class Peak(NamedTuple):
 
 class Reading(NamedTuple):
     """
-    What one window gives, or why it gives nothing.
+    The result of one window; ``status`` is VALID or the reason why there is no result.
 
-    v_x: V_x1, v_z: V_z1 by amplitudes, v_z_delays: V_z1 by delays alone, for comparison, m/s;
-    tau: tau12, tau23, s; g: g12, g23, 1/s^2.
+    Attributes
+    ----------
+    v_x : V_x1, m/s
+    v_z : V_z1 by amplitudes, m/s
+    v_z_delays : V_z1 by delays alone, for comparison, m/s
+    tau : tau12, tau23, s
+    g : g12, g23, 1/s^2
     """
 
     status: str
@@ -49,9 +54,14 @@ def log_quadratic(values, first, even=False):
     """
     Return g, d, c of ln C = g k^2 + d k + c by least squares with weights C^2 (equation 6).
 
-    values: positive correlations at the lags k = first, first + 1, ...; even: with d = 0.  The
-    weights make the errors of C, alike at all lags, count alike.  NaN where they vanish at all
-    but one or two lags.
+    With these weights the errors of C, which are alike at all lags, count equally. The result is
+    NaN if the weights vanish at all but one or two lags.
+
+    Parameters
+    ----------
+    values : positive correlations at the lags k = first, first + 1, ...
+    first : first lag
+    even : whether to fit an even function, d = 0
     """
     middle, top = 0 if even else first + len(values) // 2, max(values)
     s0 = s1 = s2 = s3 = s4 = t0 = t1 = t2 = 0.0
@@ -69,7 +79,7 @@ def log_quadratic(values, first, even=False):
             return (math.nan,) * 3
         g = (t2 * s0 - t0 * s2) / determinant
         return g, 0.0, (t0 - g * s2) / s0
-    # moments about the mean lag part the unknowns
+    # Moments about the mean lag decouple the unknowns.
     m = s1 / s0
     a2, a3 = s2 - m * s1, s3 - m * s2
     a4 = s4 - s2 * s2 / s0
@@ -84,9 +94,9 @@ def log_quadratic(values, first, even=False):
 
 def cross_peak(values):
     """
-    Return the Peak of a cross-correlation function by lag: -d/(2g), ln R_max = c - d^2/(4g).
+    Return the Peak of a cross-correlation function: lag -d/(2g), ln R_max = c - d^2/(4g).
 
-    The fit takes the contiguous lags with C >= PART C_max, and at least LEAST_CROSS.
+    The fit uses the contiguous lags with C >= PART C_max, at least LEAST_CROSS (equation 6).
     """
     last = len(values) - 1
     top = max(range(last + 1), key=values.__getitem__)
@@ -117,10 +127,10 @@ def cross_peak(values):
 
 def auto_peak(values):
     """
-    Return the Peak, at lag 0, of an autocorrelation function by lag.
+    Return the Peak, at lag 0, of an autocorrelation function.
 
-    The fit takes the lags from 1, lag 0 holding the noise, while C >= PART C(1), and at least
-    LEAST_AUTO.  The function is even, so d = 0.
+    The fit omits lag 0, which contains the noise. It uses the lags from 1 while C >= PART C(1), at
+    least LEAST_AUTO. The function is even, so d = 0.
     """
     high = 1
     while high < len(values) - 1 and (high < LEAST_AUTO or values[high + 1] >= PART * values[1]):
@@ -140,7 +150,13 @@ def slowness(tau, geometry, tan_alpha):
     """
     Return a_K and b of equations (2) and (3), s/m.
 
-    tau: tau12, tau23, s.  a = (tau12 + tau23)/(2 X0) over cos(alpha), b = (tau12 - tau23)/(2 Y0).
+    a = (tau12 + tau23)/(2 X0), a_K = a/cos(alpha), b = (tau12 - tau23)/(2 Y0).
+
+    Parameters
+    ----------
+    tau : tau12, tau23, s
+    geometry : Geometry
+    tan_alpha : tangent of the angle of attack
     """
     a = (tau[0] + tau[1]) / (2.0 * geometry.x0) * secant(tan_alpha)
     return a, (tau[0] - tau[1]) / (2.0 * geometry.y0)
@@ -148,9 +164,14 @@ def slowness(tau, geometry, tan_alpha):
 
 def delay_velocity(a, b, geometry):
     """
-    Return the speeds by delays along the trace of X1 in the plane of motion and along Z1, m/s.
+    Return the speeds by delays: along the trace of X1 in the plane of motion, and along Z1, m/s.
 
-    Equation (3), exact: kappa a/(a^2 + b^2), and -s2 kappa b/(a^2 + b^2).
+    Equation (3), which is exact: kappa a/(a^2 + b^2), and -s2 kappa b/(a^2 + b^2).
+
+    Parameters
+    ----------
+    a, b : as `slowness` returns them, s/m
+    geometry : Geometry
     """
     scale = geometry.kappa / (a * a + b * b)
     return scale * a, -geometry.s2 * scale * b
@@ -158,10 +179,17 @@ def delay_velocity(a, b, geometry):
 
 def sideslip(r12, r23, a, b, geometry, tan_alpha):
     """
-    Return beta by amplitudes (equation 5), rad, or None where the sine is beyond +-1.
+    Return the sideslip beta by amplitudes (equation 5), rad, or None for a sine beyond 1.
 
-    r: (ln B_max - (ln A_i max + ln A_j max)/2)/g of either pair, s^2.  sin(2 beta) =
-    s2 (R12 - R23)/(2 X0 Y0 (a^2 + b^2)) with X0 cos(alpha) and a_K; k_b is 1 whatever kappa is.
+    sin(2 beta) = s2 (R12 - R23)/(2 X0 Y0 (a^2 + b^2)) with X0 cos(alpha) for X0 and a_K for a;
+    k_b is 1 for either kappa.
+
+    Parameters
+    ----------
+    r12, r23 : (ln B_max - (ln A_i max + ln A_j max)/2)/g of each pair, s^2
+    a, b : as `slowness` returns them, s/m
+    geometry : Geometry
+    tan_alpha : tangent of the angle of attack
     """
     x0 = geometry.x0 / secant(tan_alpha)
     sine = geometry.s2 * (r12 - r23) / (2.0 * x0 * geometry.y0 * (a * a + b * b))
@@ -172,10 +200,17 @@ def sideslip(r12, r23, a, b, geometry, tan_alpha):
 
 def read_correlations(correlations, lag_s, geometry, tan_alpha):
     """
-    Return the Reading of five correlation functions, (5, lags) by PAIRS.
+    Return the Reading of five correlation functions.
 
-    lag_s: time from lag to lag, s; tan_alpha: tangent of the angle of attack.  Equation (3) gives
-    the speed along the trace of X1; v_x is its component along X1, cos(alpha) of it.
+    Equation (3) gives the speed along the trace of X1 in the plane of motion; v_x is its component
+    along X1, smaller by cos(alpha).
+
+    Parameters
+    ----------
+    correlations : (5, lags) in the order of PAIRS
+    lag_s : time between lags, s
+    geometry : Geometry
+    tan_alpha : tangent of the angle of attack
     """
     rows = correlations.tolist()
     peaks = [cross_peak(row) for row in rows[:2]] + [auto_peak(row) for row in rows[2:]]

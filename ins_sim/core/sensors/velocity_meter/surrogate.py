@@ -1,8 +1,8 @@
 """
-Mode surrogate of the velocity meter: the window mean with the errors of the real instrument.
+Mode ``surrogate`` of the velocity meter: the window mean plus the errors of the instrument.
 
-Its coefficients are those of the simulated signals at 250 m/s (docs/theory/velocity_meter.md,
-Surrogate).
+The default coefficients were found from simulated signals at 250 m/s
+(docs/theory/velocity_meter.md, Surrogate).
 """
 
 import math
@@ -13,8 +13,8 @@ from ins_sim.core.timeseries.fixes import VALID
 from .blocks import in_order
 from .reading import Reading, secant
 
-# what a fix without errors carries: to weigh it the navigator divides by its variance, and its
-# window is the mean of a motion that the strapdown knows no better
+# Smallest sigma of a fix without errors: the navigator divides by the variance, and the mean
+# motion over the window is known to the strapdown no better than this.
 LEAST_SIGMA_M_S = 1e-3
 
 
@@ -22,8 +22,14 @@ def velocity_sigmas(surrogate, cycles, beta):
     """
     Return the standard deviations of V_x1 and V_z1 over N cycles, m/s.
 
-    surrogate: settings; beta: sideslip, rad.  sigma_x/sqrt(N) sqrt(1 + (slip_x beta)^2), and
-    sqrt(sigma_z^2 + (slip_z beta)^2)/sqrt(N).
+    They are sigma_x/sqrt(N) sqrt(1 + (slip_x beta)^2) for V_x1 and
+    sqrt(sigma_z^2 + (slip_z beta)^2)/sqrt(N) for V_z1 (docs/theory/velocity_meter.md, Surrogate).
+
+    Parameters
+    ----------
+    surrogate : settings
+    cycles : N
+    beta : sideslip, rad
     """
     root, x, z = math.sqrt(cycles), surrogate.slip_x * beta, surrogate.slip_z_m_s * beta
     sigma_z = surrogate.sigma_z_m_s
@@ -32,16 +38,18 @@ def velocity_sigmas(surrogate, cycles, beta):
 
 
 def reported_sigmas(surrogate, cycles, beta):
-    """Return the sigmas that a fix carries: those of ``velocity_sigmas``, but never zero."""
+    """Return the sigmas reported with a fix: those of ``velocity_sigmas``, but never zero."""
     return tuple(max(sigma, LEAST_SIGMA_M_S)
                  for sigma in velocity_sigmas(surrogate, cycles, beta))
 
 
 class SurrogateWindows:
     """
-    Sums and readings of windows by trapezoids over the instants of their cycles.
+    Sums and readings of windows; velocities are averaged by the trapezoidal rule over cycles.
 
-    settings: VelocityMeterSettings.
+    Parameters
+    ----------
+    settings : VelocityMeterSettings
     """
 
     def __init__(self, settings):
@@ -55,38 +63,46 @@ class SurrogateWindows:
 
     def add(self, total, index, v_last, v):
         """
-        Return the sum with the cycle that ends at index periods.
+        Return the sum including the cycle that ends at ``index`` periods.
 
-        total: the sum so far or None; v_last, v: (V_x1, V_y1, V_z1) at its ends, m/s.
+        Parameters
+        ----------
+        total : sum so far, or None
+        index : end of the cycle, periods
+        v_last, v : V_x1, V_y1, V_z1 at the start and end of the cycle, m/s
         """
         x, y, z = total or (0.0, 0.0, 0.0)
         return (x + 0.5 * (v_last[0] + v[0]), y + 0.5 * (v_last[1] + v[1]),
                 z + 0.5 * (v_last[2] + v[2]))
 
     def add_cycles(self, total, v):
-        """Return the sum with cycles, as ``add`` gives it; v (3, n + 1): at their ends, m/s."""
+        """Return the sum including n cycles; v (3, n + 1): velocities at their ends, m/s."""
         return in_order(total or (0.0, 0.0, 0.0), 0.5 * (v[:, :-1] + v[:, 1:]))
 
     def whole(self, total, index, cycles):
         """
-        Return the sum over cycles, with the sum of their noise; the last ends at index periods.
+        Return the sum over cycles with the sum of their noise appended.
 
-        Every cycle has noise of its own. Long windows therefore average the noise of the short
-        ones, and windows that overlap share the noise of the cycles that they share.
+        The last cycle ends at ``index`` periods. Every cycle has its own noise: long windows
+        average the noise of short ones, and overlapping windows share that of their common cycles.
         """
         noise = self._normals.normals(index - cycles + 1, cycles)
         return (*total, *in_order((0.0, 0.0), noise.T))
 
     def joined(self, first, then):
-        """Return the sum of two ``whole`` ones."""
+        """Return the sum of two results of ``whole``."""
         return tuple(a + b for a, b in zip(first, then))
 
     def read(self, total, index, tan_alpha):
         """
-        Return the Reading of the window that ends at index periods.
+        Return the Reading of the window that ends at ``index`` periods.
 
-        total: as of ``whole``; tan_alpha: tangent of what is taken for the angle of attack.  A
-        wrong one scales both components by (cos taken / cos true)^2, as with signals.
+        Parameters
+        ----------
+        total : as ``whole`` returns it
+        index : end of the window, periods
+        tan_alpha : tangent of the assumed angle of attack; a wrong one scales both components by
+            (cos assumed / cos true)^2, as in mode signal
         """
         v_x, v_y, v_z = (part / self._cycles for part in total[:3])
         ratio = secant(v_y / v_x) / secant(tan_alpha)

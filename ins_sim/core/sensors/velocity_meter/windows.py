@@ -1,10 +1,10 @@
 """
-The sums of windows that may overlap.
+Sums over windows that may overlap.
 
-The cycles from one end of a window to the next are a part, summed once.  A window is made of the
-last parts of one block of N cycles, the blocks beginning at whole multiples of N, and of the first
-parts of the next, so that its sum takes one addition whatever its length, and has the same bits
-wherever the meter began.
+The cycles between the ends of two successive windows form a part, which is summed once. Blocks of
+N cycles begin at whole multiples of N. A window consists of the last parts of one block and the
+first parts of the next, so its sum needs a single addition whatever its length, and has the same
+bits whenever the meter was started.
 """
 
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from ins_sim.core.timeseries.fixes import VALID
 
 
 class Part(NamedTuple):
-    """Consecutive cycles: VALID or why they cannot be measured, and their sum where they can."""
+    """Consecutive cycles: VALID and their sum, or the reason why they cannot be measured."""
 
     why_not: str
     total: Any
@@ -21,9 +21,13 @@ class Part(NamedTuple):
 
 class OpenWindows:
     """
-    The windows of N = ``cycles`` cycles that end every ``step`` of them, step a divisor of N.
+    The windows of N = ``cycles`` cycles that end every ``step`` cycles.
 
-    method: SignalWindows or SurrogateWindows.
+    Parameters
+    ----------
+    method : SignalWindows or SurrogateWindows
+    cycles : N
+    step : a divisor of N
     """
 
     def __init__(self, method, cycles, step):
@@ -31,19 +35,19 @@ class OpenWindows:
         self.forget()
 
     def forget(self):
-        """Open no part until the next ``begin``."""
+        """Discard all parts; no part is open until the next ``begin``."""
         self.why_not, self._sum, self._is_open = VALID, None, False
-        # of the last block: the sum from the start of a part to its end; of this one: its parts
-        # and their sum
+        # _tails: of the last block, the sums from the start of each part to the end of the block.
+        # _parts, _head: of the present block, the parts and their sum.
         self._tails, self._parts, self._head = {}, [], None
 
     def begin(self):
-        """Begin a part."""
+        """Open a part."""
         self.why_not, self._sum, self._is_open = VALID, None, True
 
     @property
     def measures(self):
-        """Return whether cycles are added: a part is open, and all of it could be measured."""
+        """Return whether cycles are to be added: a part is open and measurable so far."""
         return self._is_open and self.why_not == VALID
 
     @property
@@ -56,14 +60,14 @@ class OpenWindows:
         self._sum = self._method.add(self._sum, index, v_last, v)
 
     def add_cycles(self, v):
-        """Add cycles; v (3, n + 1): at their ends, m/s."""
+        """Add n cycles; v (3, n + 1): velocities at their ends, m/s."""
         self._sum = self._method.add_cycles(self._sum, v)
 
     def end(self, index):
         """
-        End the part at index periods; return the Part that is the window ending there.
+        End the part at ``index`` periods and return the Part that is the window ending there.
 
-        None, if the window was not seen from its start.
+        The result is None if the start of the window was not seen.
         """
         if not self._is_open:
             return None
@@ -86,7 +90,7 @@ class OpenWindows:
         self._parts, self._head = [], None
 
     def _joined(self, first, then):
-        """Return the Part of two consecutive ones; first may be None."""
+        """Return two consecutive Parts as one; first may be None."""
         if first is None:
             return then
         for part in (first, then):

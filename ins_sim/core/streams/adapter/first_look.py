@@ -1,4 +1,4 @@
-"""The first two seconds of an input, by which it is judged."""
+"""The first two seconds of an input, from which its quality is judged."""
 
 from typing import NamedTuple
 
@@ -9,16 +9,22 @@ from .scheme import chosen, knot_count, report, Scheme
 from .stamps import gap_fault, NominalClock, round_period_ns, Steadiness, steadiness
 from .steps import StepCheck
 
-# How long is looked, and at how many samples at most.
+# Length of the first look, and the largest number of samples in it.
 LOOK_NS, MOST = 2_000_000_000, 8192
 
 
 class Beginning(NamedTuple):
     """
-    What the first look has found.
+    The result of the first look.
 
-    steady, judgement, scheme; samples: those that were looked at, at their instants; clock: that
-    goes on with them, a NominalClock, or None where stamps are believed; sentence: the report.
+    Attributes
+    ----------
+    steady : Steadiness of the stamps
+    judgement : Judgement of the samples
+    scheme : Scheme that is chosen
+    samples : the samples, at the instants they stand for
+    clock : NominalClock that continues these instants, or None if stamps are used as they are
+    sentence : report for the log
     """
 
     steady: Steadiness
@@ -31,9 +37,13 @@ class Beginning(NamedTuple):
 
 class FirstLook:
     """
-    Collects samples until they can be judged.
+    Collects samples until there are enough to judge the input.
 
-    settings: TruthAdapterSettings; name: of the input; dt_ns: period of the IMU.
+    Parameters
+    ----------
+    settings : TruthAdapterSettings
+    name : name of the input, for messages
+    dt_ns : period of the IMU, ns
     """
 
     def __init__(self, settings, name, dt_ns):
@@ -47,9 +57,9 @@ class FirstLook:
 
     def push(self, sample):
         """
-        Take a Sample; return a Beginning, or None while more is needed.
+        Take a Sample; return a Beginning, or None if more samples are needed.
 
-        Raise StreamFault where the samples before a gap or a jump had to be dropped.
+        Raises StreamFault if samples before a gap or a jump had to be dropped.
         """
         samples = self._samples
         samples.append(sample)
@@ -65,7 +75,7 @@ class FirstLook:
                                 steady.longest_ns, restart=False)
         clock = None
         if self._settings.stamps == 'nominal':
-            # The instants of a round period, through the middle of the line.
+            # Instants at the round period, through the middle of the line through the stamps.
             part = round_period_ns(steady, count) / steady.period_ns
             half_ns = 0.5 * float(line[-1])
             base_ns = samples[0].t_ns + half_ns * (1.0 - part)
@@ -76,7 +86,7 @@ class FirstLook:
         thin = KnotFit(every, 0.0, steady.period_ns)
         knots = [knot for s in samples for knot in thin.push(s)]
         if len(knots) < FEWEST - 2:
-            # Stamps so irregular that hardly any is half a period behind another.
+            # The stamps are so irregular that hardly any is half a period after another.
             self._samples = []
             raise StreamFault(f'{self._name} has stamps from which no rate can be told; expected '
                               'steady ones; its samples were dropped', restart=False)
@@ -88,7 +98,7 @@ class FirstLook:
                          report(self._name, scheme, judgement, steady))
 
     def _check_steps(self, knots, spread_m):
-        """Raise StreamFault where the knots jump or turn too far; keep what is behind that."""
+        """Raise StreamFault if knots jump or turn too far; keep the samples from there on."""
         steps = StepCheck(self._name)
         for knot in knots:
             try:

@@ -1,21 +1,24 @@
-"""Knots from samples: each of them, or every so many, as parabolas through the samples around."""
+"""Knots from samples: the samples themselves, or parabolas fitted to the samples around them."""
 
 from collections import deque
 
 from ins_sim.core.attitude import quaternion
 from .knots import Sample, turn_between
 
-# A window is closed at this part of a period behind its half length, which stamps may be off.
+# Tolerance of the half length of a window, in periods, because stamps jitter.
 SLACK = 0.25
 
 
 class KnotFit:
     """
-    Makes knots of samples.
+    Makes knots from samples.
 
-    every: how many samples a knot stands for; half_ns: a knot is the value of the parabola fitted
-    to the samples not farther from it than this, 0 for the sample itself; period_ns: of the
-    samples.
+    Parameters
+    ----------
+    every : number of samples per knot
+    half_ns : a knot is the value of the parabola fitted to the samples within this distance, ns; 0
+        to use the sample itself
+    period_ns : period of the samples, ns
     """
 
     def __init__(self, every, half_ns, period_ns):
@@ -43,7 +46,7 @@ class KnotFit:
         return knots
 
     def _fitted(self, centre):
-        """Return a Sample at a centre by the samples around it, those before it being dropped."""
+        """Return the fitted Sample at a centre; samples before its window are dropped."""
         t_ns, reach_ns = centre.t_ns, self._half_ns + self._slack_ns
         while self._samples[0].t_ns < t_ns - reach_ns:
             self._samples.popleft()
@@ -66,9 +69,9 @@ def _mean(factors, vectors):
 
 def parabola_weights(x):
     """
-    Return the factors that give, at 0, the parabola of least squares through values at x.
+    Return the weights that give, at 0, the least-squares parabola through values at x.
 
-    Of fewer than three abscissas, or where they are on one side, the value at 0 alone counts.
+    With fewer than three abscissas, or with all on one side, only the value at 0 counts.
     """
     count = len(x)
     if count < 3 or not min(x) < 0.0 < max(x):

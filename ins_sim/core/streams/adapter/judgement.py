@@ -1,4 +1,4 @@
-"""What an input is worth, from two seconds of it: rate, noise, and whether its twist is right."""
+"""The quality of an input, judged from two seconds: rate, noise, and validity of its twist."""
 
 from dataclasses import dataclass
 from functools import reduce
@@ -12,44 +12,49 @@ from ins_sim.core.numerics.fixed_order import dot, length, total
 from .knots import turn_between
 from .stencils import MIDDLE, POINTS, weights
 
-# How few knots may be judged.
+# Smallest number of knots that can be judged.
 FEWEST = 16
-# Neighbours whose sixth divided difference is looked at: what a polynomial leaves is noise.
+# Number of neighbours in the sixth divided difference: what a polynomial does not fit is noise.
 NEIGHBOURS = 7
-# What poses and twist may differ by before lateness is looked for: m/s, rad/s; and from which
-# correlation of neighbours on it is no noise.
+# Difference between poses and twist, m/s and rad/s, beyond which the twist may be late, and the
+# correlation of neighbouring differences beyond which this is not noise.
 DIFFERENT_M_S, DIFFERENT_RAD_S = 1e-3, 2e-4
 CORRELATED, SURELY = 0.5, 0.7
-# Rms of the vector of the force by the noise of an axis of the input: of velocities times the
-# rate, of positions times its square (docs/theory/external_truth.md).
+# Rms of the force vector per noise of an axis of the input: noise of velocities times the rate of
+# the knots, noise of positions times its square (docs/theory/external_truth.md).
 BY_TWIST, BY_POSE = 2.7, 6.5
-# A twist that is so much noisier than the poses is left, from this noise of the force on, m/s^2.
+# The twist is not used if its force noise exceeds NOISY, m/s^2, and NOISIER times that of poses.
 NOISIER, NOISY = 2.0, 0.01
 
 
 @dataclass(frozen=True)
 class Fitting:
-    """How a twist fits the poses: rms of the difference, m/s or rad/s, and its correlation."""
+    """How a twist fits the poses: rms of the difference (m/s or rad/s), and its correlation."""
 
     rms: float
     correlation: float
     limit: float
 
     def is_wrong(self, surely=False):
-        """Return whether it is late, or another quantity, beyond noise."""
+        """Return whether the twist is late or wrong, beyond what noise explains."""
         return self.rms > self.limit and self.correlation > (SURELY if surely else CORRELATED)
 
 
 @dataclass(frozen=True)
 class Judgement:
     """
-    What two seconds of the input say.
+    The quality of the input over two seconds.
 
-    sigma_m, sigma_rad, sigma_m_s, sigma_rad_s: noise of position, attitude, velocity and rate by
-    axis; spread_m: that of the position as a vector, by the median, which jumps do not spoil;
-    in_parent: whether the twist is in the axes of the parent; velocity, rate: Fittings; delay_s of
-    the twist, or None where nothing has changed; empty: whether the twist is zero throughout;
-    knot_hz: rate of the knots.
+    Attributes
+    ----------
+    sigma_m, sigma_rad, sigma_m_s, sigma_rad_s : noise of position, attitude, velocity and rate, by
+        axis
+    spread_m : noise of the position vector from the median, which jumps do not affect, m
+    in_parent : whether the twist is in the axes of the parent frame
+    velocity, rate : Fitting of the velocity and of the angular rate
+    delay_s : delay of the twist, s, or None at constant velocity
+    empty : whether the twist is always zero
+    knot_hz : rate of the knots
     """
 
     sigma_m: float
@@ -65,13 +70,13 @@ class Judgement:
     knot_hz: float
 
     def force_noise(self, by_twist):
-        """Return what a scheme makes of the noise: rms of the vector of the force, m/s^2."""
+        """Return the expected noise of a scheme: rms of the force vector, m/s^2."""
         if by_twist:
             return BY_TWIST * self.sigma_m_s * self.knot_hz
         return BY_POSE * self.sigma_m * self.knot_hz * self.knot_hz
 
     def why_not(self, surely=False):
-        """Return why the twist is not to be believed, or ''."""
+        """Return the reason why the twist cannot be used, or ''."""
         for name, fitting, unit in (('velocity', self.velocity, 'm/s'),
                                     ('rate', self.rate, 'rad/s')):
             if fitting.is_wrong(surely):
@@ -85,9 +90,12 @@ class Judgement:
 
 def judged(knots, in_parent=None):
     """
-    Return the Judgement of consecutive knots, at least FEWEST - 2 Samples.
+    Return the Judgement of consecutive knots.
 
-    in_parent: the axes of the twist where they are known.
+    Parameters
+    ----------
+    knots : at least FEWEST - 2 Samples
+    in_parent : whether the twist is in the axes of the parent frame, or None to find out
     """
     t_ns, r, q, v, w = (np.array(column) for column in zip(*knots))
     step_s = np.diff(t_ns) * 1e-9
@@ -116,7 +124,7 @@ def judged(knots, in_parent=None):
 
 
 def _difference(t_ns, step_s, changes, rates):
-    """Return what changes differ by from the integral of the Hermite curve of their rates."""
+    """Return changes minus the integral of the Hermite curve of their rates."""
     steps = np.diff(t_ns)
     count = len(t_ns) - POINTS + 1
     first = weights([steps[k:k + count] for k in range(POINTS - 1)], MIDDLE)[0]
@@ -129,7 +137,7 @@ def _difference(t_ns, step_s, changes, rates):
 
 
 def _product(a, b):
-    """Return the sum of the products of the elements of two arrays."""
+    """Return the sum of the elementwise products of two arrays."""
     return dot(a.ravel(), b.ravel())
 
 
@@ -141,10 +149,14 @@ def _fitting(rho, step_s, limit):
 
 def _delay(rho, v_m, in_child):
     """
-    Return how late the velocities are, s, or None where they do not change.
+    Return the delay of the velocities, s, or None if they do not change.
 
-    in_child: attitudes and velocities in the child, where they are given in its axes: it is there
-    that they are late.
+    Parameters
+    ----------
+    rho : (n, 3) differences between poses and velocities, m
+    v_m : velocities in the map frame, m/s
+    in_child : attitudes and velocities in the child frame if the twist is given there, because the
+        delay then acts in that frame; otherwise None
     """
     if in_child is None:
         change = np.diff(v_m, axis=0)
@@ -158,7 +170,7 @@ def _delay(rho, v_m, in_child):
 
 
 def _is_parent(found):
-    """Return whether the twist is in the axes of the parent, where both have been tried."""
+    """Return whether the twist is in the axes of the parent, by comparing both assumptions."""
     child, parent = found[False], found[True]
     wrong = [x[0].is_wrong() or x[1].is_wrong() for x in (child, parent)]
     if wrong[0] != wrong[1]:
@@ -168,21 +180,23 @@ def _is_parent(found):
 
 class _Noise:
     """
-    Tells noise from motion by what a polynomial through NEIGHBOURS samples leaves.
+    Separates noise from motion: noise is the part that a polynomial through NEIGHBOURS misses.
 
-    t_ns (n,): instants of the samples.
+    Parameters
+    ----------
+    t_ns : (n,) instants of the samples, ns
     """
 
     def __init__(self, t_ns):
         count = len(t_ns) - NEIGHBOURS + 1
         near = [(t_ns[k:k + count] - t_ns[:count]) * 1e-9 for k in range(NEIGHBOURS)]
-        # Divided differences of sixth order, of unit gain for white noise.
+        # Divided differences of sixth order, scaled to unit gain for white noise.
         factors = [reduce(mul, [1.0 / (a - b) for b in near if b is not a]) for a in near]
         norm = np.sqrt(total([x * x for x in factors]))
         self._factors = [(x / norm)[:, None] for x in factors]
 
     def of(self, values):
-        """Return the noise of values (n, 3): by axis by the rms, of the vector by the median."""
+        """Return the noise of values (n, 3): rms by axis, and of the vector from the median."""
         count = len(self._factors[0])
         left = total([x * (values[k:k + count] - values[3:3 + count])
                       for k, x in enumerate(self._factors)])

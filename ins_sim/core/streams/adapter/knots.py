@@ -1,4 +1,4 @@
-"""What both schemes share: samples of the input, and the last of the knots made of them."""
+"""Common parts of both schemes: samples of the input, and the most recent knots."""
 
 from collections import deque
 from typing import NamedTuple
@@ -8,10 +8,14 @@ from ins_sim.core.attitude import quaternion
 
 class Sample(NamedTuple):
     """
-    A sample of the input, in its world.
+    A sample of the input, in its world frame.
 
-    t_ns: motion time; r: position, m; q: attitude of the child, a unit quaternion; v and w:
-    velocity, m/s, and angular rate, rad/s, in the axes of the child or of the world.
+    Attributes
+    ----------
+    t_ns : motion time, ns
+    r : position, m
+    q : attitude of the child, a unit quaternion
+    v, w : velocity (m/s) and angular rate (rad/s) in the axes of the child or of the world
     """
 
     t_ns: int
@@ -22,15 +26,17 @@ class Sample(NamedTuple):
 
 
 def turn_between(p, q):
-    """Return the rotation vector, in the axes of p, from attitude p to attitude q."""
+    """Return the rotation vector from attitude p to attitude q, in the axes of p, rad."""
     return quaternion.logarithm(quaternion.multiply(quaternion.conjugate(p), q))
 
 
 class LastKnots:
     """
-    The last knots that a scheme looks at, and the steps between them.
+    The most recent knots of a scheme, and the steps between them.
 
-    count: how many are kept.
+    Parameters
+    ----------
+    count : number of knots to keep
     """
 
     def __init__(self, count):
@@ -43,11 +49,11 @@ class LastKnots:
         return self._knots[k]
 
     def add(self, knot):
-        """Keep a knot, whose first entry is its instant."""
+        """Add a knot; its first entry must be its motion time, ns."""
         self._knots.append(knot)
 
     def column(self, field, first, stop):
-        """Return an entry of the knots first to stop - 1."""
+        """Return the entry ``field`` of the knots first to stop - 1."""
         return [self._knots[k][field] for k in range(first, stop)]
 
     def steps(self, first, stop):

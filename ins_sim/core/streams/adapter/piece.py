@@ -1,4 +1,4 @@
-"""The motion between two knots: a polynomial of position, and a curve of attitude."""
+"""The motion between two knots: a polynomial for position and a curve for attitude."""
 
 import math
 
@@ -6,7 +6,7 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.interpolation import hermite_coefficients
 from ins_sim.core.numerics import elementary
 
-# Below this square of an angle, rad^2, the series of the right Jacobian is exact to rounding.
+# Below this squared angle, rad^2, the series of the right Jacobian is exact to rounding.
 SMALL2 = 0.01
 
 
@@ -14,9 +14,14 @@ class Piece:
     """
     The motion from start_ns to end_ns.
 
-    path: for each axis of the world the coefficients c0...c5 of position in powers of the time
-    since start_ns, s; q: attitude at the start; turned: the rotation vector to the end, rad;
-    w_start, w_end: rates relative to the world at both ends, in the body, rad/s.
+    Parameters
+    ----------
+    start_ns, end_ns : motion times, ns
+    path : for each axis of the world, the coefficients c0...c5 of position (m) in powers of the
+        time since start_ns (s)
+    q : attitude at the start
+    turned : rotation vector from the start to the end, rad
+    w_start, w_end : rates relative to the world at both ends, in body axes, rad/s
     """
 
     __slots__ = 'start_ns', 'end_ns', '_path', '_q', '_curve', '_per_s'
@@ -27,7 +32,7 @@ class Piece:
         self._curve, self._per_s = hermite_coefficients(h, turned, w_start, w_end), 1.0 / h
 
     def at(self, t_ns):
-        """Return position, velocity and acceleration, attitude, and the rate in the body."""
+        """Return position, velocity, acceleration, attitude, and rate in body axes at t_ns."""
         t = (t_ns - self.start_ns) * 1e-9
         r, v, a = zip(*[derivatives(c, t) for c in self._path])
         s, n = t * self._per_s, self._per_s
@@ -39,7 +44,7 @@ class Piece:
 
 
 def derivatives(c, t):
-    """Return the polynomial c0 + c1 t + ... + c5 t^5 and its first two derivatives."""
+    """Return the value of c0 + c1 t + ... + c5 t^5 and its first two derivatives."""
     c0, c1, c2, c3, c4, c5 = c
     return (c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5)))),
             c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5)))),
@@ -48,10 +53,11 @@ def derivatives(c, t):
 
 def rate_of(phi, phi_rate):
     """
-    Return the rate of a body turned by a rotation vector, in the body, from its derivative.
+    Return the body rate, rad/s, for a rotation vector phi (rad) and its derivative (rad/s).
 
-    w = phi' - (1 - cos a) / a^2 phi x phi' + (a - sin a) / a^3 phi x (phi x phi'), a = |phi|
-    (the right Jacobian; docs/theory/external_truth.md).
+    By the right Jacobian of SO(3) (docs/theory/external_truth.md), with a the length of phi::
+
+        w = phi' - (1 - cos a) / a^2 phi x phi' + (a - sin a) / a^3 phi x (phi x phi')
     """
     a2 = phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2]
     if a2 < SMALL2:

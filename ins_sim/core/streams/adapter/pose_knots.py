@@ -1,8 +1,9 @@
 """
 The scheme without twist: derivatives of position and attitude from the poses alone.
 
-Position is the quintic through position, velocity and acceleration at both knots, each from five
-positions; attitude is a Hermite curve on SO(3) whose rates are from five quaternions.
+Position is a quintic with given position, velocity and acceleration at both knots; the derivatives
+come from five positions each. Attitude is a Hermite curve on SO(3) whose rates come from five
+quaternions.
 """
 
 from .knots import LastKnots, turn_between
@@ -11,14 +12,14 @@ from .stencils import MIDDLE, POINTS, stencil, weighted
 
 
 class PoseKnots:
-    """Makes pieces of samples: that up to knot k is there with knot k + 2."""
+    """Makes pieces from samples: the piece up to knot k is available with knot k + 2."""
 
     def __init__(self):
         self._last = LastKnots(POINTS)
         self._before = None
 
     def push(self, sample):
-        """Take a Sample that is a knot; return the Piece that it completes, or None."""
+        """Take a Sample as the next knot; return the Piece that it completes, or None."""
         q = sample.q
         if len(self._last) and _are_opposite(q, self._last[-1].q):
             sample = sample._replace(q=tuple(-x for x in q))
@@ -29,7 +30,7 @@ class PoseKnots:
         return None if start is None else _piece(start, self._before)
 
     def _derivatives(self):
-        """Return t_ns, r, v, a, q and w of the knot in the middle."""
+        """Return t_ns, r, v, a, q and w of the middle knot."""
         t_ns, r, q = self._last[MIDDLE][:3]
         first, second = stencil(self._last.steps(0, POINTS), MIDDLE)
         places = self._last.column(1, 0, POINTS)
@@ -39,12 +40,12 @@ class PoseKnots:
 
 
 def _are_opposite(q, p):
-    """Return whether two quaternions have opposite signs, one of which is to be turned."""
+    """Return whether two quaternions have opposite signs, so that one must be negated."""
     return q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3] < 0.0
 
 
 def _piece(start, end):
-    """Return the Piece between two knots with derivatives."""
+    """Return the Piece between two knots, given as ``_derivatives`` returns them."""
     h = (end[0] - start[0]) * 1e-9
     path = [quintic(h, *axis) for axis in zip(*start[1:4], *end[1:4])]
     return Piece(start[0], end[0], path, start[4], turn_between(start[4], end[4]), start[5],
@@ -52,7 +53,15 @@ def _piece(start, end):
 
 
 def quintic(h, p0, v0, a0, p1, v1, a1):
-    """Return c0...c5 of the quintic with these values, slopes and second derivatives."""
+    """
+    Return c0...c5 of the quintic with given values and first two derivatives at both ends.
+
+    Parameters
+    ----------
+    h : length of the interval, s
+    p0, v0, a0 : position (m), velocity and acceleration at its start
+    p1, v1, a1 : the same at its end
+    """
     n = 1.0 / h
     half = 0.5 * a0
     dp = (p1 - p0 - h * (v0 + h * half)) * n * n * n

@@ -1,4 +1,4 @@
-"""Which scheme an input calls for, and the sentences that say so."""
+"""Choice of the scheme for an input, and the sentences that report it."""
 
 from dataclasses import dataclass
 import math
@@ -6,22 +6,27 @@ import math
 from .judgement import Judgement
 from .stamps import Steadiness
 
-# Noise of the force, m/s^2, from which on a twist of zero holds what seems to be at rest.
+# If poses are noisier than this force, m/s^2, a zero twist is taken to mean a vehicle at rest.
 UNREST = 0.1
-# Bandwidth of the loop that holds the path to the positions, rad/s, at least and at most.
+# Smallest and largest bandwidth of the loop that ties the path to the positions, rad/s.
 LOOSE, TIGHT = 0.53, 1.0
-# What noise of the positions may add to the force, as a part of what that of the twist makes.
+# Largest force noise from the positions, as a fraction of that from the twist.
 SHARE = 0.1
 
 
 @dataclass(frozen=True)
 class Scheme:
     """
-    How truth is made of an input.
+    How truth is made from an input.
 
-    by_twist: whether its twist is believed, in_parent in the axes of its parent frame; reason: why
-    it is not, or ''; settled: whether the twist could be judged; every, half_ns: as of KnotFit;
-    hold: as of TwistKnots.
+    Attributes
+    ----------
+    by_twist : whether the twist is used
+    in_parent : whether the twist is in the axes of the parent frame
+    reason : why the twist is not used, or ''
+    settled : whether the twist could be judged
+    every, half_ns : see KnotFit
+    hold : see TwistKnots
     """
 
     by_twist: bool
@@ -34,12 +39,21 @@ class Scheme:
 
 
 def knot_count(period_ns, dt_ns):
-    """Return how many samples a knot stands for: knots are not denser than the IMU's readings."""
+    """Return the number of samples per knot; knots are not denser than the IMU's readings."""
     return max(1, math.ceil(dt_ns / period_ns - 0.05))
 
 
 def chosen(settings, judgement, steady, dt_ns):
-    """Return the Scheme for an input; settings: TruthAdapterSettings."""
+    """
+    Return the Scheme for an input.
+
+    Parameters
+    ----------
+    settings : TruthAdapterSettings
+    judgement : Judgement
+    steady : Steadiness
+    dt_ns : period of the IMU, ns
+    """
     every = knot_count(steady.period_ns, dt_ns)
     reason = judgement.why_not()
     settled = not judgement.empty or bool(reason)
@@ -61,10 +75,10 @@ def chosen(settings, judgement, steady, dt_ns):
 
 def position_hold(judgement):
     """
-    Return the bandwidth of the loop that holds the path to the positions, rad/s.
+    Return the bandwidth of the loop that ties the path to the positions, rad/s.
 
-    Noise of the twist and of the attitudes lets the path wander by one over the square root of the
-    bandwidth; noise of the positions becomes a force by its square
+    Noise of the twist and of the attitudes makes the path wander, by one over the square root of
+    the bandwidth. Noise of the positions appears as force, by the square of the bandwidth
     (docs/theory/external_truth.md).
     """
     allowed = SHARE * judgement.force_noise(True) / math.sqrt(3.0)
@@ -74,7 +88,7 @@ def position_hold(judgement):
 
 
 def report(name, scheme: Scheme, judgement: Judgement, steady: Steadiness):
-    """Return the sentence on an input and on the scheme for it."""
+    """Return the sentence that describes an input and the scheme for it."""
     j = judgement
     pose = f'{1e3 * j.sigma_m:.2g} mm, {math.degrees(j.sigma_rad):.2g} deg'
     if j.empty:

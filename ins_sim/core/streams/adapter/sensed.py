@@ -1,4 +1,4 @@
-"""What a vehicle on the Earth senses of a motion in the map frame: rate and specific force."""
+"""Angular rate and specific force that a vehicle on the Earth senses for a motion in the map."""
 
 from typing import NamedTuple
 
@@ -10,9 +10,13 @@ class AdaptedTruth(NamedTuple):
     """
     The truth at an instant.
 
-    t_ns: motion time; r_m, q_mb: pose in the map frame; v_b, omega_mb_b: velocity, m/s, and rate
-    relative to the map frame, rad/s, in b; lat, lon (rad), height (m), q_nb: the same pose on the
-    ellipsoid; omega_ib_b, rad/s, and f_ib_b, m/s^2: what an IMU senses.
+    Attributes
+    ----------
+    t_ns : motion time, ns
+    r_m, q_mb : pose in the map frame; position in m
+    v_b, omega_mb_b : velocity (m/s) and rate (rad/s) relative to the map frame, in body axes
+    lat, lon, height, q_nb : the same pose on the ellipsoid; rad, rad, m
+    omega_ib_b, f_ib_b : angular rate (rad/s) and specific force (m/s^2), as an ideal IMU senses
     """
 
     t_ns: int
@@ -32,18 +36,16 @@ def sensed(frame, terms, t_ns, motion):
     """
     Return the AdaptedTruth of a motion relative to the map frame.
 
-    The map frame turns with the Earth and is Cartesian, so that f = a + 2 Omega x v - g, gravity
-    being that of the ellipsoid at the place: far from the datum it is not along the axis Up.
+    The map frame is Cartesian and turns with the Earth, so f = a + 2 Omega x v - g. Gravity is
+    that of the ellipsoid at the place; far from the datum it is not parallel to the Up axis.
 
     Parameters
     ----------
     frame : MapFrame
-    terms : tuple or None
-        Entry of ``ellipsoid.GRAVITY_TERMS``.
-    t_ns : int
-        Motion time.
-    motion : tuple
-        Position (m), velocity, acceleration in m, q_mb, and rate relative to m in b.
+    terms : entry of ``ellipsoid.GRAVITY_TERMS``, or None
+    t_ns : motion time, ns
+    motion : position (m), velocity (m/s) and acceleration (m/s^2) in the map frame, q_mb, and
+        angular rate relative to the map frame in body axes (rad/s)
     """
     r, v, a, q_mb, omega = motion
     lat, lon, height, v_n, q_nb = frame.geodetic_one(r, q_mb, quaternion.rotate_back(q_mb, v))

@@ -1,4 +1,4 @@
-"""The stage that makes truth of the odometry of another simulator."""
+"""The stage that turns the odometry of another simulator into truth."""
 
 import math
 
@@ -21,21 +21,21 @@ from .watch import Watch
 
 class TruthAdapter:
     """
-    Takes poses and twists of another simulator, returns truth at the instants of its own rate.
+    Takes poses and twists of another simulator and returns truth at its own rate.
 
-    The first two seconds are looked at and make no truth. The instants begin at a multiple of the
-    period of rate_hz.
+    The first two seconds are only judged and yield no truth. The instants of the truth begin at a
+    multiple of the period of rate_hz.
 
     Parameters
     ----------
     settings : TruthAdapterSettings
     name : str
-        The input, for sentences.
+        Name of the input, for messages.
 
     Attributes
     ----------
     notes : list of str
-        Sentences on what the input is like and what is made of it; the owner empties it.
+        Sentences about the input and how it is used; the owner removes them.
     """
 
     def __init__(self, settings, name='odom'):
@@ -50,12 +50,12 @@ class TruthAdapter:
         self.begin()
 
     def begin(self):
-        """Forget everything, what the input is like too."""
+        """Forget everything, including the judgement of the input."""
         self._watch = self._steady = None
         self.reset()
 
     def reset(self):
-        """Forget the stream. What the input is like is kept."""
+        """Forget the stream, but keep the judgement of the input."""
         self._stamps, self._steps = StampCheck(self._name, self._imu_ns), StepCheck(self._name)
         self._look, self._clock, self._next_ns = None, None, None
         if self._watch is None:
@@ -65,7 +65,7 @@ class TruthAdapter:
             self._start()
 
     def _start(self):
-        """Begin the knots of the scheme."""
+        """Set up the knots of the present scheme."""
         scheme = self._watch.scheme
         self._fit = KnotFit(scheme.every, scheme.half_ns, self._steady.period_ns)
         self._knots = TwistKnots(scheme.in_parent, scheme.hold) if scheme.by_twist \
@@ -73,7 +73,7 @@ class TruthAdapter:
 
     @property
     def state(self):
-        """What the input is taken for, in a few words."""
+        """A few words on how the input is used."""
         if self._watch is None:
             return 'being judged'
         scheme = self._watch.scheme
@@ -82,14 +82,14 @@ class TruthAdapter:
 
     def push(self, t_ns, r, q, v, w):
         """
-        Take a sample; return the AdaptedTruth that it completes, a list.
+        Take a sample; return a list of the AdaptedTruth that it completes.
 
-        Raise StreamFault for what cannot be used. The first sample may be repeated.
+        The first sample may be repeated. Raises StreamFault for a sample that cannot be used.
 
         Parameters
         ----------
         t_ns : int
-            Its stamp, motion time.
+            Motion time, ns.
         r, q : tuples
             Pose of the child in the world: position, m, and quaternion of either sign.
         v, w : tuples
@@ -106,7 +106,7 @@ class TruthAdapter:
             return self._taken(sample)
         except StreamFault as fault:
             if fault.restart and self._next_ns is None:
-                # Nothing came of what is known of the input: it has become another one.
+                # No truth came of the judgement, so the input must have changed: judge it again.
                 self.begin()
             raise
 
@@ -132,7 +132,7 @@ class TruthAdapter:
         return truths
 
     def _begin_with(self, beginning):
-        """Begin behind the samples that were looked at, with what has come of them."""
+        """Continue after the first look with its samples and its scheme."""
         if beginning is None:
             return
         self._steady, self._clock = beginning.steady, beginning.clock
@@ -149,11 +149,11 @@ class TruthAdapter:
                     self._next_ns = self._first_instant(piece.end_ns)
 
     def _first_instant(self, t_ns):
-        """Return the first multiple of the IMU's period not before an instant."""
+        """Return the first multiple of the IMU's period that is not before t_ns."""
         return -(-t_ns // self._imu_ns) * self._imu_ns
 
     def _truths(self, piece):
-        """Return the AdaptedTruth at the instants that a piece covers, a list; piece or None."""
+        """Return a list of the AdaptedTruth at the instants that a Piece (or None) covers."""
         truths = []
         if piece is None:
             return truths

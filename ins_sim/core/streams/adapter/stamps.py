@@ -1,4 +1,4 @@
-"""The stamps of the input: their rate and jitter, their gaps, and the instants they stand for."""
+"""The stamps of the input: rate, jitter, gaps, and the instants that they stand for."""
 
 from dataclasses import dataclass
 import math
@@ -9,32 +9,39 @@ from ins_sim.core.numerics.fixed_order import dot, total
 from ins_sim.core.numerics.instants import seconds
 from ..faults import check_later, MOST_PERIODS, StreamFault
 
-# A step longer than so many periods is a gap, and what jitter is added to that.
+# A gap is a step longer than GAP periods plus JITTERS times the jitter.
 GAP, JITTERS = 1.5, 5.0
-# Bandwidth with which nominal instants follow the stamps, rad/s.
+# Bandwidth with which the nominal instants follow the stamps, rad/s.
 FOLLOW = 0.1
-# A period is taken for a round one within so many of its sigmas.
+# A period within this many sigmas of a round value is taken to be round.
 ROUND_SIGMAS = 4.0
 
 
 @dataclass(frozen=True)
 class Steadiness:
-    """period_ns of the stamps, a float, and their jitter: rms off a straight line, ns."""
+    """Period of the stamps (ns, a float) and jitter: rms deviation from a straight line, ns."""
 
     period_ns: float
     jitter_ns: float
 
     @property
     def longest_ns(self):
-        """The longest step that is no gap, ns."""
+        """The longest step that does not count as a gap, ns."""
         return GAP * self.period_ns + JITTERS * self.jitter_ns
 
 
 def steadiness(t_ns):
     """
-    Return the Steadiness of stamps, a list of ints, and the line through them.
+    Return the Steadiness of stamps and the straight line through them.
 
-    The line: instants (n,) float, ns since the first stamp, steps of the period apart.
+    Parameters
+    ----------
+    t_ns : list of int, ns
+
+    Returns
+    -------
+    Steadiness
+    line : (n,) instants, ns since the first stamp, a multiple of the period apart
     """
     stamps = np.array(t_ns) - t_ns[0]
     steps = np.diff(stamps)
@@ -47,9 +54,9 @@ def steadiness(t_ns):
 
 
 def round_period_ns(steady, count):
-    """Return the period of a whole rate in Hz or of whole milliseconds, where it may be that."""
+    """Return the nearest period that is a whole rate in Hz or whole ms, if the stamps allow it."""
     period_ns = steady.period_ns
-    # A hundredth of a nanosecond: stamps are whole ones.
+    # Add 0.01 ns, because stamps are whole nanoseconds.
     sigma_ns = steady.jitter_ns * math.sqrt(12.0 / count) / count + 0.01
     for nearest_ns in (1e9 / max(1, round(1e9 / period_ns)), 1e6 * round(1e-6 * period_ns)):
         if abs(nearest_ns - period_ns) <= ROUND_SIGMAS * sigma_ns:
@@ -59,10 +66,15 @@ def round_period_ns(steady, count):
 
 class NominalClock:
     """
-    Instants of equal steps that follow stamps which are off them.
+    Equally spaced instants that follow the stamps.
 
-    What they are off moves the steps and never the instants, by a loop of second order, so that
-    the motion does not shake. base_ns: the last instant; period_ns: the step, a float.
+    A second-order loop lets the deviation of the stamps adjust the step, never the instants
+    directly, so that jitter does not shake the motion.
+
+    Parameters
+    ----------
+    base_ns : the last instant, ns
+    period_ns : the step, a float, ns
     """
 
     def __init__(self, base_ns, period_ns):
@@ -82,9 +94,12 @@ class NominalClock:
 
 class StampCheck:
     """
-    Refuses stamps that do not follow each other.
+    Raises StreamFault for stamps that do not follow each other.
 
-    name: of the input; dt_ns: period of the IMU, of which a step is at most MOST_PERIODS.
+    Parameters
+    ----------
+    name : name of the input, for messages
+    dt_ns : period of the IMU, ns; a step may be at most MOST_PERIODS of it
     """
 
     def __init__(self, name, dt_ns):
@@ -92,7 +107,7 @@ class StampCheck:
         self._last_ns = None
 
     def check(self, t_ns, steady):
-        """Raise StreamFault for a stamp; steady: Steadiness of the input, or None."""
+        """Check a stamp; steady is the Steadiness of the input, or None if not yet known."""
         last_ns = self._last_ns
         if last_ns is None:
             self._last_ns = t_ns
@@ -105,6 +120,6 @@ class StampCheck:
 
 
 def gap_fault(name, last_ns, t_ns, longest_ns, restart):
-    """Return the StreamFault of a gap between two stamps."""
+    """Return the StreamFault for a gap between two stamps."""
     return StreamFault(f'{name} has a gap from {seconds(last_ns)} to {seconds(t_ns)}; expected '
                        f'steps of at most {longest_ns * 1e-9:.4g} s', restart=restart)

@@ -1,18 +1,22 @@
-"""Derivatives of samples at uneven instants, by the polynomial through some of them."""
+"""Derivatives of unevenly spaced samples, from the polynomial through several of them."""
 
 from functools import lru_cache
 
-# Samples of a symmetric stencil, and the number of the one in the middle.
+# Number of samples of a symmetric stencil, and index of the middle one.
 POINTS, MIDDLE = 5, 2
 
 
 def weights(steps_ns, node):
     """
-    Return the weights of the first and of the second derivative at one of some samples.
+    Return the weights of the first and second derivative at one of several samples.
 
-    steps_ns: the steps between the samples, ns, numbers or arrays; node: number of the sample. A
-    derivative is the sum of weight times (value - value at the node), per s and per s^2. Source:
+    A derivative is the sum of weight times (value - value at the node), per s and per s^2. Source:
     Berrut and Trefethen, SIAM Review 46, 2004, section 9.3 (differentiation of interpolants).
+
+    Parameters
+    ----------
+    steps_ns : steps between the samples, numbers or arrays, ns
+    node : index of the sample at which the derivatives are taken
     """
     at = [0]
     for step in steps_ns:
@@ -35,7 +39,7 @@ def weights(steps_ns, node):
     return tuple(first), tuple(second)
 
 
-# Of steps that are numbers, which are the same again and again.
+# Cached variant for steps that are numbers: the same steps occur again and again.
 stencil = lru_cache(maxsize=256)(weights)
 
 

@@ -1,4 +1,4 @@
-"""Knots that no vehicle could have gone between."""
+"""Detection of knots that jump or turn more than a vehicle can."""
 
 import math
 
@@ -6,17 +6,20 @@ from ins_sim.core.numerics.instants import seconds
 from ..faults import StreamFault
 from .knots import LastKnots, turn_between
 
-# What no vehicle does: acceleration, m/s^2, and turn from knot to knot, rad.
+# Limits beyond any vehicle: acceleration, m/s^2, and turn from knot to knot, rad.
 MOST_M_S2, MOST_RAD = 500.0, 2.0
-# Noise of a second difference of positions of unit noise, and how often that may be exceeded.
+# Noise of a second difference per unit noise of a position, and by how many times acceleration may
+# exceed it.
 SECOND_DIFFERENCE, NOISES = math.sqrt(6.0), 10.0
 
 
 class StepCheck:
     """
-    Refuses knots that jump or turn too far.
+    Raises StreamFault for knots that jump or turn too far.
 
-    name: of the input.
+    Parameters
+    ----------
+    name : name of the input, for messages
     """
 
     def __init__(self, name):
@@ -24,9 +27,9 @@ class StepCheck:
 
     def check(self, knot, spread_m):
         """
-        Raise StreamFault (restart) for a knot; spread_m: noise of the positions, m.
+        Check a knot; raise StreamFault (restart) if it jumps or turns too far.
 
-        The acceleration is that of the last three positions.
+        The acceleration is that of the last three positions; spread_m is their noise, m.
         """
         last = self._last
         last.add(knot)

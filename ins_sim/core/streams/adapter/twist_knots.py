@@ -1,9 +1,9 @@
 """
-The scheme that believes the twist: velocity and rate are integrated, the pose holds them.
+The scheme with twist: velocity and angular rate are integrated and tied to the poses.
 
-Velocity is a cubic Hermite curve with slopes from five velocities; position is its integral, held
-to the measured positions by a loop of second order whose acceleration is linear between knots.
-Attitude is integrated from the rates, held to the measured quaternions by a loop of first order.
+Velocity is a cubic Hermite curve with slopes from five velocities. Position is its integral, tied
+to the measured positions by a second-order loop whose acceleration is linear between knots.
+Attitude is integrated from the rates and tied to the measured quaternions by a first-order loop.
 """
 
 from ins_sim.core.attitude import quaternion
@@ -11,10 +11,10 @@ from .knots import LastKnots, turn_between
 from .piece import Piece
 from .stencils import MIDDLE, POINTS, stencil, weighted
 
-# Twice the damping of the loop of the position, with which the path wanders least; bandwidth of
-# that of the attitude, rad/s.
+# DAMPING: twice the damping ratio of the position loop, chosen for the smallest wander of the
+# path. TURN_HOLD: bandwidth of the attitude loop, rad/s.
 DAMPING, TURN_HOLD = 1.0, 1.5
-# Looked at: the knots from two before the start of a piece to two behind its end.
+# A piece needs the knots from two before its start to two after its end.
 LOOKED = POINTS + 1
 START, END = MIDDLE, MIDDLE + 1
 ZERO = (0.0, 0.0, 0.0)
@@ -22,22 +22,24 @@ ZERO = (0.0, 0.0, 0.0)
 
 class TwistKnots:
     """
-    Makes pieces of samples: that up to knot k is there with knot k + 2.
+    Makes pieces from samples: the piece up to knot k is available with knot k + 2.
 
-    in_parent: whether the twist is in the axes of the parent frame, not of the child; hold:
-    bandwidth of the loop of the position, rad/s.
+    Parameters
+    ----------
+    in_parent : whether the twist is in the axes of the parent frame, not of the child
+    hold : bandwidth of the position loop, rad/s
     """
 
     def __init__(self, in_parent, hold):
         self._in_parent, self._hold = in_parent, hold
         self._last = LastKnots(LOOKED)
-        # At the start of the next piece: attitude, rate of its correction, and what that is to be
-        # at the end; acceleration, with the velocities there and before; position with its loop.
+        # State at the start of the next piece: attitude, rate of its correction now and at the
+        # end of the piece; acceleration, velocities there and before, and the position loops.
         self._q, self._turning, self._wanted = None, ZERO, ZERO
         self._a, self._velocities, self._loops = None, None, None
 
     def push(self, sample):
-        """Take a Sample that is a knot; return the Piece that it completes, or None."""
+        """Take a Sample as the next knot; return the Piece that it completes, or None."""
         w = quaternion.rotate_back(sample.q, sample.w) if self._in_parent else sample.w
         self._last.add((sample.t_ns, w, sample))
         if len(self._last) < LOOKED:
@@ -48,7 +50,7 @@ class TwistKnots:
         return self._piece()
 
     def _begin(self):
-        """Turn the first attitude from knot to knot up to the start of the first piece."""
+        """Integrate the first attitude from knot to knot to the start of the first piece."""
         rates = self._rates(range(END + 1), 0)
         q, velocities = self._last[0][2].q, []
         for k in range(END):
@@ -62,9 +64,9 @@ class TwistKnots:
 
     def _rates(self, nodes, centred):
         """
-        Return rate and its slope at some of the knots.
+        Return angular rate and its slope at the given knots.
 
-        centred: the nodes below it have five samples around them, the others all that there are.
+        Slopes of nodes below ``centred`` use the five samples around them, others all samples.
         """
         last, w = self._last, self._last.column(1, 0, LOOKED)
         found = []
@@ -75,7 +77,7 @@ class TwistKnots:
         return found
 
     def _turned(self, q, k, start, end, before, now):
-        """Return attitude q after the step behind knot k: rates, slopes, rates of correction."""
+        """Return attitude q after the step from knot k; start, end: rates and their slopes."""
         h = (self._last[k + 1][0] - self._last[k][0]) * 1e-9
         w0, w1 = _sum(start[0], before), _sum(end[0], now)
         c = quaternion.cross(w0, w1)
@@ -91,9 +93,13 @@ class TwistKnots:
         """
         Return the acceleration at the end of a piece.
 
-        before: velocities of the two knots before it and there; q: the attitude there; turning:
-        rate of the correction behind it. The attitudes behind it are not final: rates still to
-        come will change them a little.
+        The attitudes after the end are provisional; rates still to come will change them a little.
+
+        Parameters
+        ----------
+        before : velocities at the two knots before the end and at the end, m/s
+        q : attitude at the end
+        turning : rate of the attitude correction after the end, rad/s
         """
         velocities = list(before)
         rates = self._rates(range(END, LOOKED), END + 1)
@@ -104,7 +110,7 @@ class TwistKnots:
                         velocities[MIDDLE])
 
     def _piece(self):
-        """Return the Piece between the two knots in the middle."""
+        """Return the Piece between the two middle knots."""
         start_ns, w0, first = self._last[START]
         end_ns, w1, second = self._last[END]
         before, now, q = self._turning, self._wanted, self._q
@@ -130,10 +136,15 @@ def _sum(a, b):
 
 def held(h, hold, loop, measured, v0, v1, a0, a1):
     """
-    Return c0...c5 of one axis of position, and its loop at the end.
+    Return c0...c5 of one axis of position, and the state of its loop at the end.
 
-    hold: bandwidth of the loop, rad/s; loop: position, velocity and acceleration of the correction
-    at the start; measured: position there; the others are velocity and its slope at both ends.
+    Parameters
+    ----------
+    h : length of the piece, s
+    hold : bandwidth of the loop, rad/s
+    loop : position, and velocity and acceleration of the correction, at the start
+    measured : measured position at the start, m
+    v0, v1, a0, a1 : velocity and acceleration at both ends
     """
     p, u, alpha = loop
     alpha_end = hold * (hold * (measured - p) - DAMPING * u)

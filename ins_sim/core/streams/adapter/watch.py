@@ -1,31 +1,35 @@
-"""Whether the scheme that the first look has chosen still fits."""
+"""Repeated judgement of the input: does the scheme chosen at the first look still fit?"""
 
 from collections import deque
 
 from .judgement import FEWEST, judged
 from .scheme import chosen, report
 
-# How long a time is judged, and after how many of them in doubt the twist is given up.
+# Length of a judgement, and number of consecutive doubtful ones after which the twist is rejected.
 WATCH_NS, DOUBTS = 2_000_000_000, 2
-# Knots of a high rate that are enough.
+# Number of knots that is sufficient at a high rate.
 MOST = 1024
 
 
 class Watch:
     """
-    Judges the knots of every two seconds, and chooses again where the scheme does not fit.
+    Judges the knots every two seconds, and chooses a new scheme if the present one does not fit.
 
-    A vehicle that stood still at the start says nothing of its twist: that is settled when it
-    moves.  What has been given up is not believed again.
+    The twist of a vehicle that was at rest at the start can only be judged once it moves. A twist
+    that has been rejected is not used again.
 
-    settings: TruthAdapterSettings; name: of the input; dt_ns: period of the IMU; beginning: what
-    the first look has found.
+    Parameters
+    ----------
+    settings : TruthAdapterSettings
+    name : name of the input, for messages
+    dt_ns : period of the IMU, ns
+    beginning : Beginning, the result of the first look
 
     Attributes
     ----------
     scheme : Scheme
     spread_m : float
-        Noise of the positions, by the last judgement.
+        Noise of the positions according to the last judgement, m.
     """
 
     def __init__(self, settings, name, dt_ns, beginning):
@@ -40,7 +44,7 @@ class Watch:
         self._judged_ns, self._doubts = None, 0
 
     def push(self, knot):
-        """Take a knot; return a sentence where the scheme has changed, or ''."""
+        """Take a knot; return a sentence if the scheme has changed, otherwise ''."""
         knots, t_ns = self.knots, knot.t_ns
         knots.append(knot)
         while t_ns - knots[0].t_ns > WATCH_NS:
