@@ -22,7 +22,8 @@ PAGES = ROOT / 'docs' / 'how_to'
 
 def blocks(page):
     """Return the Python blocks of a page."""
-    return re.findall(r'```python\n(.*?)```', (PAGES / page).read_text(encoding='utf-8'), re.DOTALL)
+    text = (PAGES / page).read_text(encoding='utf-8')
+    return re.findall(r'```python\n(.*?)```', text, re.DOTALL)
 
 
 CIRCLE, AUTOPILOT = blocks('add_motion.md')[:2], blocks('add_motion.md')[2:]
