@@ -48,3 +48,11 @@ def test_commands_of_the_page_on_bags(tmp_path, monkeypatch, capsys):
             assert 'standard error 0.11 deg' in out
             drift = re.search(r'^│ +60 │ +([\d.]+) │', out, re.MULTILINE).group(1)
             assert round(float(drift), 2) == 0.05
+
+
+def test_commands_of_the_page_on_delays(tmp_path, monkeypatch, capsys):
+    """The bench of estimate_delays.md gives 2.02 +- 0.10 us for a channel that is 2 us late."""
+    monkeypatch.chdir(tmp_path)
+    for words in commands('estimate_delays.md'):
+        assert main(words) == 0, words
+    assert re.search(r'^│ y +│.*│ +2\.02 \+- 0\.10 │ +2 │$', capsys.readouterr().out, re.MULTILINE)
