@@ -1,5 +1,8 @@
-"""Motion, autopilot and sensor of docs/how_to/extending.md are complete: they run, and are
-right."""
+"""
+The examples of docs/how_to/add_motion.md and add_sensor.md are complete.
+
+The motion, the autopilot and the sensor of these pages run, and give the right values.
+"""
 
 import re
 
@@ -14,24 +17,32 @@ import numpy as np
 import pytest
 from support.places import ROOT
 
-PAGE = ROOT / 'docs' / 'how_to' / 'extending.md'
-SECTIONS = {text.partition('\n')[0]: re.findall(r'```python\n(.*?)```', text, re.DOTALL)
-            for text in PAGE.read_text(encoding='utf-8').split('\n## ')[1:]}
+PAGES = ROOT / 'docs' / 'how_to'
+
+
+def blocks(page):
+    """Return the Python blocks of a page."""
+    text = (PAGES / page).read_text(encoding='utf-8')
+    return re.findall(r'```python\n(.*?)```', text, re.DOTALL)
+
+
+CIRCLE, AUTOPILOT = blocks('add_motion.md')[:2], blocks('add_motion.md')[2:]
+ALTIMETER = blocks('add_sensor.md')
 
 
 @pytest.fixture
 def example(tmp_path, monkeypatch):
-    """Return a function that saves the first block of a section and runs the second."""
+    """Return a function that saves the first block of an example and runs the second."""
     monkeypatch.syspath_prepend(tmp_path)
     # Restores the table after the test.
     monkeypatch.setitem(MOTIONS, 'circle', None)
 
-    def run(section, file):
-        code, use = SECTIONS[section]
+    def run(example, file):
+        code, use = example
         assert len(code.splitlines()) <= 30
         (tmp_path / file).write_text(code, encoding='utf-8')
         names = {}
-        exec(compile(use, str(PAGE), 'exec'), names)
+        exec(compile(use, f'use of {file}', 'exec'), names)
         return names
 
     return run
@@ -39,7 +50,7 @@ def example(tmp_path, monkeypatch):
 
 def test_the_motion_of_the_page_flies_its_circle(example):
     """Its speed is 2 pi 50 m / 60 s and its heading is along the circle."""
-    truth = example('A motion', 'circle.py')['run'].truth
+    truth = example(CIRCLE, 'circle.py')['run'].truth
     speed = 2.0 * np.pi * 50.0 / 60.0
     # The radii of the Earth at the datum differ from those 50 m away by 1e-7 of themselves, and
     # the height, left out of them, is that of the datum, below 200 m: 3e-5.
@@ -52,7 +63,7 @@ def test_the_motion_of_the_page_flies_its_circle(example):
 
 def test_a_motion_of_ones_own_is_flown_and_saved_without_published_figures(example, tmp_path):
     """Given as an object it gives the arrays of the motion in the table."""
-    names = example('A motion', 'circle.py')
+    names = example(CIRCLE, 'circle.py')
     motion = ins_sim.open_motion(names['settings'])
     settings = ins_sim.read_settings('motion_2', {'duration_s': 60.0})
     run = ins_sim.simulate(settings, motion=motion)
@@ -64,7 +75,7 @@ def test_a_motion_of_ones_own_is_flown_and_saved_without_published_figures(examp
 def test_the_autopilot_of_the_page_steers(example, monkeypatch):
     """It takes the vehicle back to the leg, and overshoots by its integral."""
     monkeypatch.setitem(AUTOPILOTS, 'integral', None)
-    steered = example('An autopilot', 'integral.py')['run'].steered
+    steered = example(AUTOPILOT, 'integral.py')['run'].steered
     assert steered.estimates.steers.all()
     assert steered.states.z.min() < -0.03 and abs(steered.states.z[-1]) < 0.1
     commanded = 0.0125 * steered.estimates.z + 0.04 * steered.estimates.v_z
@@ -73,7 +84,7 @@ def test_the_autopilot_of_the_page_steers(example, monkeypatch):
 
 def test_the_sensor_of_the_page_reads(example):
     """Ten readings a second, with the offset; blocks and restarts change nothing."""
-    names = example('A sensor', 'altimeter.py')
+    names = example(ALTIMETER, 'altimeter.py')
     run, readings = names['run'], names['readings']
     assert len(readings) == 601
     heights = np.interp([t for t, _ in readings], run.truth.t_ns, run.truth.height)

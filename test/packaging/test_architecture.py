@@ -1,6 +1,7 @@
 """The directions of the imports, and the sizes of files and folders, are those of the design."""
 
 import ast
+import re
 import sys
 
 import pytest
@@ -246,3 +247,16 @@ def test_file_is_short_and_has_a_telling_name(name):
     """A file that needs more lines, or is named utils, holds more than one thing."""
     assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= LONGEST
     assert name.rpartition('.')[2] not in ('utils', 'util', 'helpers', 'misc')
+
+
+def test_contributing_shows_the_rooms_in_the_order_of_their_imports():
+    """CONTRIBUTING.md has every room; a room imports only its own row and the rows above it."""
+    text = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
+    table = text.partition('| rooms | content |')[2].partition('\n\n')[0]
+    row_of = {room: row for row, line in enumerate(table.splitlines())
+              for room in re.findall(r'`([\w.]+)`', line.partition(' | ')[0])}
+    assert set(row_of) == set(MAY_IMPORT) - {'__version__'}
+    for room, others in MAY_IMPORT.items():
+        for other in others - {'__version__'}:
+            known = other if other in row_of else other.rpartition('.')[0]
+            assert row_of[known] <= row_of[room], (room, other)
