@@ -200,8 +200,8 @@ class _Search:
         notes = [still.describe()]
         check_gravity(still.force, limits.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
-            raise ValueError('the mean specific force at rest is zero, so that it does not show '
-                             'up; expected initial.attitude given, reference or imu')
+            raise ValueError('the mean specific force at rest is zero; expected about 9.8 m/s^2 '
+                             'upwards, or initial.attitude given, reference or imu')
         try:
             where = self._position(k, again, near=True)
             lat = where[0]
@@ -231,7 +231,7 @@ class _Search:
         if wanted == 'given' and not again:
             return alignment.level_attitude(
                 still.force, math.radians(self._s.initial.heading_deg)), False
-        refused = 'the Earth does not turn (earth.rotation)'
+        refused = 'the Earth does not rotate (earth.rotation)'
         if wanted in ('auto', 'gyrocompass', 'given') and self._spin:
             compass, refused = alignment.trusted_gyrocompass(still, where[0], self._s.alignment)
             if compass is not None:

@@ -212,9 +212,8 @@ class _Replay:
         stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
         for j, solution, _ in loop.run(self._samples(begin, last)):
             if solutions and runs_away(solution):
-                self._notes.append(f'the solution runs away at {seconds(stamps[j])} and ends '
-                                   'there: the initial values or the units of the IMU cannot be '
-                                   'right')
+                self._notes.append(f'the solution runs away at {seconds(stamps[j])} and is '
+                                   'stopped: check the initial values and the units of the IMU')
                 break
             solutions.append(solution)
             if self._progress is not None and (k + j) % 1000 == 0:
