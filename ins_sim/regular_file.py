@@ -12,7 +12,7 @@ def check_regular(path, expected):
     """
     Raise ValueError where a path names a device, a pipe or a socket, and OSError where nothing.
 
-    To read these takes for ever, or all memory. expected: what the path should name, such as
+    To read these takes forever, or all memory. expected: what the path should name, such as
     'a CSV file'.
     """
     mode = os.stat(path).st_mode

@@ -28,7 +28,7 @@ REPEATED = re.compile(r"'([a-z]{2,})\s\1'")
 def prose_of_page(text):
     """Return Markdown without code, formulas, tables, links and headings."""
     text = re.sub(r'(```|:::).*?\1', '', text, flags=re.DOTALL)
-    text = re.sub(r'\$\$.*?\$\$|\$[^$\n]+\$|`[^`]*`|\]\([^)]*\)', ' ', text, flags=re.DOTALL)
+    text = re.sub(r'\$\$.*?\$\$|\$[^$\n]+\$|`[^`]*`|\]\([^)]*\)', ' _ ', text, flags=re.DOTALL)
     return re.sub(r'^(\||#|    ).*$', '', text, flags=re.MULTILINE)
 
 
@@ -37,7 +37,7 @@ def prose_of_module(text):
     nodes = [node for node in ast.walk(ast.parse(text))
              if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))]
     found = '\n\n'.join(ast.get_docstring(node) or '' for node in nodes)
-    found = re.sub(r'``[^`]*``', ' ', found)
+    found = re.sub(r'``[^`]*``', ' _ ', found)
     return re.sub(r'^(    |-+$).*$', '', found, flags=re.MULTILINE)
 
 
@@ -53,12 +53,14 @@ def collect(folder):
 
 
 def run(command, folder):
-    """Run a checker in a folder; return its lines about the text."""
+    """Run a checker in a folder; return its findings, one text each."""
     found = subprocess.run([sys.executable, '-m', *command], cwd=folder, capture_output=True,
                            text=True, check=False)
     if found.returncode not in (0, 1, 65):
         raise SystemExit(f'{command[0]}: {found.stderr.strip() or found.stdout.strip()}')
-    return [line for line in found.stdout.splitlines() if line.strip()]
+    # A finding may quote a line break: it reaches to the next place, "file:line".
+    return [' '.join(text.split()) for text in re.split(r'\n(?=\S+:\d+:)', found.stdout)
+            if text.strip()]
 
 
 def findings(folder):
