@@ -1,110 +1,120 @@
-"""Every example of the README runs, and every name the documents give exists."""
+"""Every command of ins_sim and every Python block of README and docs/ runs, page by page."""
 
-import importlib
 import re
 import shlex
 
+from ins_sim.cli.main import main, parser, VERBS
 import pytest
-
-import ins_sim
-from ins_sim.cli.main import main, parser
-import numpy as np
+from support.pages import commands, page_id, PAGES, split
 from support.places import ROOT
 
-README = (ROOT / 'README.md').read_text(encoding='utf-8')
-BLOCKS = re.findall(r'```(\w+)\n(.*?)```', README, re.DOTALL)
-COMMANDS = [[line for line in text.splitlines() if line.startswith('ins_sim ')]
-            for kind, text in BLOCKS if kind == 'sh']
-# verbs that simulate or predict are shortened; those that need live nodes are tested with them
+# Verbs that simulate or predict: two seconds are enough to see that a command is right.
 SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters',
              'monte-carlo'}
-LIVE = {'record', 'play'}
-# take minutes whatever their flights are; tests of their own shorten them
-LONG = {'loop-study', 'delay-study'}
-DOCUMENTS = sorted((ROOT / 'docs').rglob('*.md'))
+FEWER = {'monte-carlo': ['--runs', '2'], 'compare-filters': ['--runs', '2'],
+         'allan': ['--duration', '600']}
+# Need live nodes, or take minutes whatever their flights are; tests of their own run them. Here
+# their words are read by the parser.
+READ_ONLY = {'record', 'play', 'demo', 'loop-study', 'delay-study', 'dtg-study'}
+# Pages whose Python blocks belong to a test of their own, or are fragments; why.
+ELSEWHERE = {
+    'docs/how_to/test_your_filter.md': 'run by test/docs/test_testing_page.py',
+    'docs/how_to/add_filter.md': 'run by test/docs/test_extending_filter.py',
+    'docs/how_to/extending.md': 'run by test/docs/test_extending.py',
+    'docs/design/bags.md': 'shows the calls on a bag that the text supposes',
+    'docs/design/recorded_truth.md': 'shows the calls with settings that the text supposes'}
 
 
-@pytest.mark.parametrize('lines', filter(None, COMMANDS), ids=lambda lines: lines[0])
-def test_commands_of_the_readme(lines, tmp_path, monkeypatch, request):
-    """Block by block, two seconds of simulated time; the flight is one of the recorded ones."""
+def is_command(line):
+    """Return whether a line is a command of ins_sim, and not one of its sentences."""
+    words = line.split()
+    return words[:1] == ['ins_sim'] and len(words) > 1 and words[1] in VERBS
+
+
+def stands_for_yours(words):
+    """Return whether a command has a word in capitals, in brackets or dots, in place of yours."""
+    return any(re.fullmatch(r'[A-Z_]{3,}|\.\.\.|\[.*\]|.*:=[A-Z]{3,}', word) for word in words)
+
+
+def short(words):
+    """Return the words that make a command short."""
+    verb = words[0]
+    added = ['-p', 'duration_s:=2.0'] if verb in SHORTENED or (
+        verb == 'budget' and '--require' not in words) else []
+    return [*words, *added, *FEWER.get(verb, [])]
+
+
+def run_command(line):
+    """Run a command, shortened; only read the words of one that cannot run here."""
+    words = shlex.split(line)[1:]
+    if words[0] in READ_ONLY or stands_for_yours(words) or '--scheduler' in words:
+        words = [word for word in words if word != '...']
+        assert parser().parse_args(words).verb == words[0]
+        return
+    if '-o' in words or '--output' in words:
+        words.append('--force')
+    assert main(short(words)) == 0, line
+
+
+def run_python(text, names, where, expected, capsys):
+    """
+    Run a block in the names that the blocks before it made.
+
+    What it prints is the indented block that follows it, but for lines with dots.
+    """
+    capsys.readouterr()
+    exec(compile(text, where, 'exec'), names)
+    printed = capsys.readouterr().out.splitlines()
+    if expected:
+        lines = expected.splitlines()
+        assert len(lines) == len(printed), (lines, printed)
+        assert all('...' in line or line == got for line, got in zip(lines, printed)), printed
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch, request):
+    """Work in a temporary folder, which holds a recorded flight where a page names one."""
     monkeypatch.chdir(tmp_path)
-    if any('flight.csv.gz' in line for line in lines):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv('MPLBACKEND', 'Agg')
+
+    def flight():
         data = request.getfixturevalue('shared_data')
         (tmp_path / 'flight.csv.gz').symlink_to(data / 'flights' / 'cruise_gv_acclip_rf01.csv.gz')
-    for line in lines:
-        words = shlex.split(line)[1:]
-        if words[0] in LIVE | LONG:
-            # the words are those of the parser
-            assert parser().parse_args(words).verb == words[0]
-        else:
-            short = ['-p', 'duration_s:=2.0'] if words[0] in SHORTENED else []
-            short += ['--runs', '2'] if words[0] == 'monte-carlo' else []
-            assert main([*words, *short]) == 0, line
+
+    return flight
 
 
-@pytest.mark.parametrize('code', [text for kind, text in BLOCKS if kind == 'python'])
-def test_python_of_the_readme(code, capsys):
-    """It prints three components of position and drift."""
-    exec(compile(code, 'README.md', 'exec'), {})
-    assert len(re.findall(r'[-\d.e+]+', capsys.readouterr().out)) >= 6
+@pytest.mark.parametrize('page', PAGES, ids=page_id)
+def test_examples_of_a_page(page, here, capsys):
+    """
+    Commands, Python blocks and parameter files of a page work in their order, in one folder.
+
+    A YAML block whose first line is a comment with a name is saved under that name first. A
+    comment "not run: REASON" above a fence exempts a block, whose Python must compile even so.
+    """
+    text = page.read_text(encoding='utf-8')
+    blocks, _ = split(text)
+    if any('flight.csv.gz' in line for block in blocks for line in commands(block)):
+        here()
+    names = {'__name__': 'example'}
+    for block, after in zip(blocks, [*blocks[1:], None]):
+        if block.language == 'python':
+            compile(block.text, page_id(page), 'exec')
+            if not block.reason and page_id(page) not in ELSEWHERE:
+                expected = after.text if after and after.language == 'indented' else ''
+                run_python(block.text, names, page_id(page), expected, capsys)
+        elif block.language == 'yaml' and (name := re.match(r'# ([\w.]+\.yaml)\b', block.text)):
+            # The folder of the test is the working directory.
+            with open(name[1], 'w', encoding='utf-8') as file:
+                file.write(block.text)
+        elif not block.reason:
+            for line in filter(is_command, commands(block)):
+                run_command(line)
 
 
-def test_make_targets_of_the_readme():
-    """The two commands are targets of the Makefile."""
-    makefile = (ROOT / 'Makefile').read_text(encoding='utf-8')
-    for target in re.findall(r'^make ([\w-]+)', README, re.MULTILINE):
-        assert f'\n{target}:' in makefile
-
-
-@pytest.mark.parametrize('path', DOCUMENTS, ids=lambda p: p.stem)
-def test_names_in_the_documents_exist(path):
-    """`core.module.name` and `ins_sim.module.name` can be imported."""
-    for name in re.findall(r'`(?:ins_sim\.)?((?:core|messages|ros|report)\.(?!html`)[\w.]+)`',
-                           path.read_text(encoding='utf-8')):
-        parts = name.split('.')
-        target = ins_sim
-        for k, part in enumerate(parts):
-            if not hasattr(target, part):
-                importlib.import_module('ins_sim.' + '.'.join(parts[:k + 1]))
-            target = getattr(target, part)
-
-
-def test_the_arrays_of_a_run_are_documented(tmp_path, monkeypatch):
-    """run_files.md names each array of run.npz, and only those, by its dimensions."""
-    monkeypatch.chdir(tmp_path)
-    text = (ROOT / 'docs' / 'reference' / 'run_files.md').read_text(encoding='utf-8')
-    dimensions = {}
-    for keys, shape in re.findall(r'^\| (`.*?`) \| ([^|]*?) \|', text, re.MULTILINE):
-        for key in re.findall(r'`(\w+_\w+)`', keys):
-            assert key not in dimensions, key
-            dimensions[key] = shape
-    found = set()
-    for words in ('--params-file motion_2 --params-file delay_y_1us',
-                  '--params-file motion_2 --params-file imu_tactical_dtg',
-                  '--aided --params-file route_flight --params-file grade_mid '
-                  '-p window.cycles:=100', '--params-file guided_flight'):
-        assert main(['simulate', *words.split(), '-p', 'duration_s:=3.0', '-o', 'run',
-                     '--force']) == 0
-        with np.load('run/run.npz') as arrays:
-            found |= set(arrays)
-            for key in set(arrays) & set(dimensions):
-                given = [part.strip() for part in dimensions[key].split(',')]
-                shape = arrays[key].shape
-                assert given == ['as above'] or [str(n) for n in shape[1:]] == given[1:], key
-    assert found == set(dimensions)
-
-
-def test_links_of_the_readme_lead_somewhere():
-    """Relative links name files that are there."""
-    for link in re.findall(r'\]\(([^)#:]+)\)', README):
-        assert (ROOT / link).exists(), link
-
-
-def test_what_docstrings_cite_can_be_opened():
-    """Pages of docs/ that code and configuration cite exist; nothing cites an unshipped file."""
-    cited = set()
-    for path in [*(ROOT / 'ins_sim').rglob('*.py'), *(ROOT / 'config').glob('*.yaml')]:
-        text = path.read_text(encoding='utf-8')
-        cited |= set(re.findall(r'docs/[\w/]+\.md', text))
-        assert not re.search(r'\bspec/\w', text), path
-    assert cited and all((ROOT / page).exists() for page in cited)
+def test_exempt_pages_have_python():
+    """The table of exempt pages is not longer than needed."""
+    for name in ELSEWHERE:
+        blocks, _ = split((ROOT / name).read_text(encoding='utf-8'))
+        assert any(block.language == 'python' for block in blocks), name
