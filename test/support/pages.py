@@ -28,12 +28,12 @@ def page_id(page):
 
 def split(text):
     """
-    Return the blocks of a page and its other lines.
+    Return the blocks of a page and its other lines, without display formulas.
 
     A fence without language is a shell block; so is an indented line that begins with a command.
     """
     blocks, prose, fence, before = [], [], None, ''
-    for line in text.splitlines():
+    for line in re.sub(r'^ *\$\$.*?\$\$', '', text, flags=re.DOTALL | re.MULTILINE).splitlines():
         opened = re.match(r' *(```+|:::+)(.*)', line)
         if fence is None and opened:
             fence, language, inside = opened[1], opened[2].strip(), []
