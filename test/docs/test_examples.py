@@ -1,5 +1,6 @@
 """Every command of ins_sim and every Python block of README and docs/ runs, page by page."""
 
+import doctest
 import re
 import shlex
 
@@ -8,7 +9,7 @@ import pytest
 from support.pages import commands, page_id, PAGES, split
 from support.places import ROOT
 
-# Verbs that simulate or predict: two seconds are enough to see that a command is right.
+# Verbs that simulate or predict; they are given the duration below.
 SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters',
              'monte-carlo'}
 FEWER = {'monte-carlo': ['--runs', '2'], 'compare-filters': ['--runs', '2'],
@@ -16,13 +17,12 @@ FEWER = {'monte-carlo': ['--runs', '2'], 'compare-filters': ['--runs', '2'],
 # Need live nodes, or take minutes whatever their flights are; tests of their own run them. Here
 # their words are read by the parser.
 READ_ONLY = {'record', 'play', 'demo', 'loop-study', 'delay-study', 'dtg-study'}
-# Pages whose Python blocks belong to a test of their own, or are fragments; why.
-ELSEWHERE = {
-    'docs/how_to/test_your_filter.md': 'run by test/docs/test_testing_page.py',
-    'docs/how_to/add_filter.md': 'run by test/docs/test_extending_filter.py',
-    'docs/how_to/extending.md': 'run by test/docs/test_extending.py',
+# Pages whose Python blocks are no programs; why.
+FRAGMENTS = {
     'docs/design/bags.md': 'shows the calls on a bag that the text supposes',
     'docs/design/recorded_truth.md': 'shows the calls with settings that the text supposes'}
+# Enough for every filter and estimate, and a second or two of computing.
+SHORT = ['-p', 'duration_s:=10.0']
 
 
 def is_command(line):
@@ -39,19 +39,26 @@ def stands_for_yours(words):
 def short(words):
     """Return the words that make a command short."""
     verb = words[0]
-    added = ['-p', 'duration_s:=2.0'] if verb in SHORTENED or (
+    added = SHORT if verb in SHORTENED or (
         verb == 'budget' and '--require' not in words) else []
     return [*words, *added, *FEWER.get(verb, [])]
 
 
-def run_command(line):
-    """Run a command, shortened; only read the words of one that cannot run here."""
+def run_command(line, missing):
+    """
+    Run a command, shortened; only read the words of one that cannot run here.
+
+    missing: folders that commands which are only read would have written, a set that grows.
+    """
     words = shlex.split(line)[1:]
-    if words[0] in READ_ONLY or stands_for_yours(words) or '--scheduler' in words:
+    output = words[words.index('-o') + 1:][:1] if '-o' in words else []
+    if (words[0] in READ_ONLY or stands_for_yours(words) or '--scheduler' in words
+            or missing & set(words)):
         words = [word for word in words if word != '...']
         assert parser().parse_args(words).verb == words[0]
+        missing |= set(output)
         return
-    if '-o' in words or '--output' in words:
+    if output:
         words.append('--force')
     assert main(short(words)) == 0, line
 
@@ -60,8 +67,14 @@ def run_python(text, names, where, expected, capsys):
     """
     Run a block in the names that the blocks before it made.
 
-    What it prints is the indented block that follows it, but for lines with dots.
+    What it prints is the indented block that follows it, but for lines with dots. A block with
+    prompts holds its output itself.
     """
+    if text.startswith('>>> '):
+        test = doctest.DocTestParser().get_doctest(text, names, where, where, 0)
+        assert doctest.DocTestRunner().run(test, clear_globs=False).failed == 0
+        names.update(test.globs)
+        return
     capsys.readouterr()
     exec(compile(text, where, 'exec'), names)
     printed = capsys.readouterr().out.splitlines()
@@ -97,11 +110,12 @@ def test_examples_of_a_page(page, here, capsys):
     blocks, _ = split(text)
     if any('flight.csv.gz' in line for block in blocks for line in commands(block)):
         here()
-    names = {'__name__': 'example'}
+    names, missing = {'__name__': 'example'}, set()
     for block, after in zip(blocks, [*blocks[1:], None]):
         if block.language == 'python':
-            compile(block.text, page_id(page), 'exec')
-            if not block.reason and page_id(page) not in ELSEWHERE:
+            if block.reason or page_id(page) in FRAGMENTS:
+                compile(block.text, page_id(page), 'exec')
+            else:
                 expected = after.text if after and after.language == 'indented' else ''
                 run_python(block.text, names, page_id(page), expected, capsys)
         elif block.language == 'yaml' and (name := re.match(r'# ([\w.]+\.yaml)\b', block.text)):
@@ -110,11 +124,11 @@ def test_examples_of_a_page(page, here, capsys):
                 file.write(block.text)
         elif not block.reason:
             for line in filter(is_command, commands(block)):
-                run_command(line)
+                run_command(line, missing)
 
 
-def test_exempt_pages_have_python():
+def test_pages_with_fragments_have_python():
     """The table of exempt pages is not longer than needed."""
-    for name in ELSEWHERE:
+    for name in FRAGMENTS:
         blocks, _ = split((ROOT / name).read_text(encoding='utf-8'))
         assert any(block.language == 'python' for block in blocks), name

@@ -6,7 +6,9 @@ import re
 from .places import ROOT
 
 README = ROOT / 'README.md'
-PAGES = sorted([README, *(ROOT / 'docs').rglob('*.md')])
+# Without the pages that the code generates.
+PAGES = sorted([README, *(page for page in (ROOT / 'docs').rglob('*.md')
+                          if 'generated' not in page.parts)])
 SHELL = ('sh', 'bash', 'console')
 # A comment on the line above a fence says why a block is not run.
 NOT_RUN = re.compile(r'<!-- not run: (\S.*\S) -->')
