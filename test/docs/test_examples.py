@@ -104,8 +104,9 @@ def test_examples_of_a_page(page, here, capsys):
     """
     Commands, Python blocks and parameter files of a page work in their order, in one folder.
 
-    Figures named in captions (lines between asterisks) are drawn by them. A YAML block whose first line is a comment with a name is saved under that name first. A
-    comment "not run: REASON" above a fence exempts a block, whose Python must compile even so.
+    Figures named in captions (lines between asterisks) are drawn by them. A YAML block whose
+    first line is a comment with a name is saved under that name first. A comment
+    "not run: REASON" above a fence exempts a block, whose Python must compile even so.
     """
     text = page.read_text(encoding='utf-8')
     blocks, _ = split(text)
