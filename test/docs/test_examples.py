@@ -1,6 +1,7 @@
 """Every command of ins_sim and every Python block of README and docs/ runs, page by page."""
 
 import doctest
+from pathlib import Path
 import re
 import shlex
 
@@ -103,8 +104,9 @@ def test_examples_of_a_page(page, here, capsys):
     """
     Commands, Python blocks and parameter files of a page work in their order, in one folder.
 
-    A YAML block whose first line is a comment with a name is saved under that name first. A
-    comment "not run: REASON" above a fence exempts a block, whose Python must compile even so.
+    Figures named in captions (lines between asterisks) are drawn by them. A YAML block whose
+    first line is a comment with a name is saved under that name first. A comment
+    "not run: REASON" above a fence exempts a block, whose Python must compile even so.
     """
     text = page.read_text(encoding='utf-8')
     blocks, _ = split(text)
@@ -120,11 +122,13 @@ def test_examples_of_a_page(page, here, capsys):
                 run_python(block.text, names, page_id(page), expected, capsys)
         elif block.language == 'yaml' and (name := re.match(r'# ([\w.]+\.yaml)\b', block.text)):
             # The folder of the test is the working directory.
-            with open(name[1], 'w', encoding='utf-8') as file:
-                file.write(block.text)
+            Path(name[1]).write_text(block.text, encoding='utf-8')
         elif not block.reason:
             for line in filter(is_command, commands(block)):
                 run_command(line, missing)
+    for caption in re.findall(r'^\*(?! )[^*]*\*$', text, re.MULTILINE):
+        for figure in re.findall(r'`([\w/]+\.png)`', caption):
+            assert Path(figure).is_file(), f'no command of the page draws {figure}'
 
 
 def test_pages_with_fragments_have_python():
