@@ -121,6 +121,6 @@ def test_a_reading_that_is_no_number_is_named_and_the_solution_starts_anew(bad):
     imu = ImuSamples(IMU.t_ns, IMU.omega, f)
     run = navigate_aided(settings_of('eskf'), [(imu, TRUTH)], Reported(FIXES))
     assert run.faults[0].startswith(
-        f'the solution at {bad / 100:.9f} s is no number any more; expected finite readings')
+        f'the solution at {bad / 100:.9f} s is not finite; expected finite readings')
     # The sample itself begins the new solution: its reading is not integrated.
     assert len(run.states) == len(IMU) and np.isfinite(run.states.v_n).all()
