@@ -1,6 +1,6 @@
 """
-Guidance: autopilots, and the steering that gives them a navigation solution.
+Guidance: autopilots, and the steering that supplies them with a navigation solution.
 
-``linear_loop`` tells where the loop with an aided navigator is stable, ``error_loop`` flies it in
-a reduced form.
+``linear_loop`` computes where the closed loop with an aided navigator is stable; ``error_loop``
+simulates it in a reduced form.
 """

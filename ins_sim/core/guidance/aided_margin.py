@@ -1,4 +1,4 @@
-"""The latency that a loop bears whose navigator is corrected by windows that slide."""
+"""Latency margin of a loop whose navigator is corrected by sliding windows."""
 
 import math
 from typing import NamedTuple
@@ -9,15 +9,15 @@ from ins_sim.core.numerics.units import DEG
 from .linear_loop import Aiding, window_mean
 from .linear_plant import after_period, lateral_loop
 
-# frequencies at which the gain is looked at
+# Number of frequencies at which the gain is evaluated.
 POINTS = 20001
 
 
 class PhaseMargin(NamedTuple):
     """
-    Crossover, rad/s, margin there, rad, and the further latency that uses it up, s.
+    Crossover frequency (rad/s), phase margin there (rad), and additional latency it allows (s).
 
-    Negative in a loop that is unstable as it is.
+    Margin and latency are negative for an unstable loop.
     """
 
     crossover: float
@@ -27,18 +27,24 @@ class PhaseMargin(NamedTuple):
 
 def aided_margin(loop, aiding, k_z=0.0):
     """
-    Return the PhaseMargin of a LateralLoop, the loop being opened at the command.
+    Return the PhaseMargin of a LateralLoop opened at the command, or None if the gain is never 1.
 
-    aiding: an Aiding of kind conventional with windows that slide; a correction every period is
-    assumed.  Navigators with contiguous windows are slower than the loop, so that the margin with
-    exact navigation, ``margin.phase_margin``, is a good approximation for them.  k_z: lateral
-    scale error of the meter.  Where the gain is one at several frequencies, the one that bears the
-    least latency is returned; None where it never is.
+    A correction every control period is assumed. Navigators with contiguous windows are slower
+    than the loop; for them the margin with exact navigation, ``margin.phase_margin``, is a good
+    approximation. If the gain is one at several frequencies, the one with the smallest latency
+    margin is returned.
+
+    Parameters
+    ----------
+    loop : LateralLoop
+    aiding : Aiding of kind conventional with sliding windows
+    k_z : lateral scale error of the meter
+
     """
     omega = np.geomspace(1e-4, 1.0, POINTS) * math.pi / loop.period_s
     found = _returned(loop, aiding, k_z, np.exp(1j * omega * loop.period_s))
     angle = np.unwrap(np.angle(found))
-    # at low frequencies a double integration, -180 deg
+    # At low frequencies the loop is a double integration with -180 deg.
     angle -= 2.0 * math.pi * round((angle[0] + math.pi) / (2.0 * math.pi))
     size = np.log(np.abs(found))
     margins = []
@@ -54,8 +60,10 @@ def aided_margin_sentence(generator, navigator):
     """
     Return the warning that the latency makes the loop unstable, or None.
 
-    generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.  Of filters other than
-    conventional on sliding windows, and where control instants are no cycles of the meter, None.
+    Only filter conventional with sliding windows is examined, and only if the control instants
+    are cycles of the meter; otherwise None is returned.
+
+    generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.
     """
     window, rate_hz = navigator.window, navigator.rate_hz
     if navigator.filter != 'conventional' or not (window.slides and navigator.meter_model.use):
@@ -75,7 +83,7 @@ def aided_margin_sentence(generator, navigator):
 
 
 def _returned(loop, aiding, k_z, q):
-    """Return what comes back of a command at q, with the sign of the feedback reversed."""
+    """Return the open-loop response to a command at q, with the sign of the feedback reversed."""
     step = after_period(loop)
     a, b = np.zeros((4, 4)), np.zeros(4)
     a[:3], b[:3], b[3] = step[:, :4], step[:, 4], 1.0

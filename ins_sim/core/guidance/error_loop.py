@@ -1,9 +1,9 @@
 """
-The loop of vehicle, autopilot and aided navigator, reduced to what matters in it, many at once.
+Reduced simulation of the loop of vehicle, autopilot and aided navigator, many flights at once.
 
-The plant of ``linear_plant`` with a command that is limited, and the errors of the estimates.
-Neither the Earth nor the readings of an IMU are in it, which is why it flies a hundred flights in
-a fraction of the time of one; ``linear_loop`` is what it is for small angles.
+It consists of the plant of ``linear_plant`` with a limited command and the errors of the
+estimates. Without the Earth and IMU readings it simulates a hundred flights in a fraction of the
+time of one full simulation; for small angles it agrees with ``linear_loop``.
 """
 
 from collections import deque
@@ -16,9 +16,9 @@ from .linear_plant import after_period
 
 class ReducedCases(NamedTuple):
     """
-    Flights that differ in these, (n,) each.
+    Parameters in which the flights differ, (n,) each.
 
-    gain: as of ``linear_loop.Aiding``; k_z: lateral scale error; offset: z at the start, m.
+    gain: see ``linear_loop.Aiding``; k_z: lateral scale error; offset: initial z, m.
     """
 
     gain: np.ndarray
@@ -27,7 +27,7 @@ class ReducedCases(NamedTuple):
 
 
 class ReducedFlights(NamedTuple):
-    """Histories at t_s (m,), s: z, m, beta, rad, and errors of z, m, and v_z, m/s, (m, n)."""
+    """Histories at t_s (m,), s: z (m), beta (rad), errors of z (m) and v_z (m/s), (m, n)."""
 
     t_s: np.ndarray
     z: np.ndarray
@@ -38,22 +38,22 @@ class ReducedFlights(NamedTuple):
 
 def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, forward=True):
     """
-    Return the ReducedFlights of cases, one row every ten control periods.
+    Simulate the flights of cases; return ReducedFlights, one row every ten control periods.
 
     Parameters
     ----------
     loop : LateralLoop
     aiding : linear_loop.Aiding
-        Its gain is not used, those of the cases are.
+        Its gain is not used; the cases have their own.
     cases : ReducedCases
     duration_s : float
     most_rad : float
-        The command is limited to plus and minus this.
+        Limit of the magnitude of the command.
     engaged_s : float
-        The autopilot steers from then on; before, the command is zero.
+        The autopilot steers from this time on; before, the command is zero.
     forward : bool
-        Whether the forward velocity is aided too, as the filters do.  Its error, of the second
-        order in beta, goes into the lateral one where the nose is off the leg.
+        Whether the forward velocity is aided too, as in the filters. Its error, of second order
+        in beta, couples into the lateral one if the nose is off the leg.
 
     """
     flight = (_TwoChannels if forward else _Lateral)(loop, aiding, cases, most_rad)
@@ -83,7 +83,7 @@ class _Lateral:
         self._state = np.array((cases.offset + zero, zero, zero))
         self._errors = self._velocity = self._acceleration = zero
         self._command, self._late = zero, deque([zero] * loop.latency)
-        # current values, their sums since the start, and those sums at the ends of the last steps
+        # Current values, their sums since the start, and these sums at the ends of the last steps.
         self._now = self._of_means()
         self._sums = np.zeros_like(self._now)
         self._ends, self._last = deque([self._sums], aiding.cycles // aiding.step + 1), None
@@ -93,7 +93,7 @@ class _Lateral:
         return self._state[0], self._state[2], self._errors, self._velocity
 
     def advance(self, engaged):
-        """Fly one period."""
+        """Advance by one control period."""
         loop, h, a = self._loop, self._loop.period_s, self._acceleration
         z, v, beta = self._state
         command = loop.k1 * (z + self._errors) + loop.k2 * (v + self._velocity)
@@ -109,14 +109,14 @@ class _Lateral:
         self._now = now
 
     def end_step(self, k):
-        """Correct the estimates, if a whole window ends after k periods."""
+        """Correct the estimates if a whole window ends after k periods."""
         self._ends.append(self._sums)
         if k >= self._aiding.cycles:
             self._correct(*(self._sums - self._ends[0]) / self._aiding.cycles)
             self._now = self._of_means()
 
     def _of_means(self):
-        """Return V sin(beta), and the error of the computed one."""
+        """Return V sin(beta) and the error of the computed value: the quantities to average."""
         beta = self._state[2]
         return np.array((self._loop.speed * np.sin(beta), self._velocity * np.cos(beta)))
 
@@ -140,21 +140,21 @@ class _Lateral:
 
 class _TwoChannels(_Lateral):
     """
-    Both channels, which the nose mixes where it is off the leg.
+    Both channels; a heading off the leg couples them.
 
-    Complex: along the leg, or the nose, and i times to the right of it.  V along the leg is
-    constant; the nose is off it by atan(v_z/V) - beta.
+    Complex numbers: the real part is along the leg, or along the nose, the imaginary part to the
+    right. V along the leg is constant; the nose is off the leg by atan(v_z/V) - beta.
     """
 
     def __init__(self, loop, aiding, cases, most_rad):
         zero = np.zeros(len(cases.k_z), dtype=complex)
-        # errors of the velocity along the leg, and corrections of the acceleration along the nose
+        # Errors of the velocity along the leg; corrections of the acceleration along the nose.
         self._both = self._corrections = zero
         self._a1 = self._b2 = zero
         super().__init__(loop, aiding, cases, most_rad)
 
     def advance(self, engaged):
-        """Fly one period."""
+        """Advance by one control period."""
         before, h = self._nose(), self._loop.period_s
         super().advance(engaged)
         if self._aiding.kind == 'conventional':
@@ -178,7 +178,7 @@ class _TwoChannels(_Lateral):
         return np.arctan2(v, self._loop.speed) - beta
 
     def _of_means(self):
-        """Return the velocity over ground, and the error of the computed one, along the nose."""
+        """Return the velocity over ground and the error of the computed one, along the nose."""
         turn = np.exp(-1j * self._nose())
         return np.array(((self._loop.speed + 1j * self._state[1]) * turn, self._both * turn))
 

@@ -1,17 +1,17 @@
 """
-Where the loop of vehicle, autopilot and aided navigator is stable, exactly in discrete time.
+Stability limits of the loop of vehicle, autopilot and aided navigator, exact in discrete time.
 
-From one correction of the navigator to the next all is linear.  In x, which holds the estimates of
-z and of its rate, beta, the command, those of the latency, and what the navigator keeps, with w
-what the meter reads,
+Between two corrections of the navigator everything is linear. The state x holds the estimates of z
+and of its rate, beta, the command, the commands delayed by the latency, and the state of the
+navigator; w is the reading of the meter:
 
     x+ = A x + b w,   w = (1 + k_z) D p,   p = c x
 
-p is the mean lateral velocity V beta since the last correction, and D makes the mean of a window
-of it: 1, or with windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), where Q is the operator of one
-step forward.  Errors that no measurement shows, those of the absolute position and for
-paper_corrected of the absolute velocity, are left out of x.
-So (1 + k_z) D(Q) c (Q - A)^-1 b = 1, which on the unit circle gives the limits of k_z.
+p is the mean lateral velocity V beta since the last correction, and D averages it over a window:
+1, or for windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), where Q is the operator of one step
+forward. Errors that are unobservable (the absolute position, and for paper_corrected the absolute
+velocity) are not in x. The characteristic equation is (1 + k_z) D(Q) c (Q - A)^-1 b = 1; on the
+unit circle it gives the limits of k_z.
 """
 
 import math
@@ -22,20 +22,20 @@ from scipy.linalg import schur
 
 from .linear_plant import after_period
 
-# how finely the unit circle is searched for where k_z is real
+# Number of points of the unit circle at which real values of k_z are searched for.
 POINTS = 2000
-# responses smaller than this are rounding errors and are ignored
+# Responses smaller than this are rounding errors and are ignored.
 ROUNDING = 1e-9
 KINDS = ('conventional', 'paper_corrected')
 
 
 class Aiding(NamedTuple):
     """
-    A navigator aided by a meter of windows of N cycles, a cycle being a control period.
+    A navigator aided by a meter with windows of N cycles; a cycle is a control period.
 
-    kind: of KINDS; cycles: N; step: cycles from end to end of windows, a divisor of N, and N for
-    paper_corrected; gain: of conventional the part of the error that a fix takes away (K_v times
-    the step when windows slide), of paper_corrected K.
+    kind: one of KINDS; cycles: N; step: cycles between the ends of windows, a divisor of N, and N
+    for paper_corrected; gain: for conventional the fraction of the error that a fix removes (K_v
+    times the step if windows slide), for paper_corrected K.
     """
 
     kind: str
@@ -45,14 +45,14 @@ class Aiding(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """Growth, 1/s, and frequency, rad/s, of the mode that grows fastest."""
+    """Growth rate, 1/s, and frequency, rad/s, of the mode that grows fastest."""
 
     growth: float
     frequency: float
 
 
 class StabilityLimit(NamedTuple):
-    """A lateral scale error k_z at which a mode neither grows nor decays; frequency, rad/s."""
+    """A lateral scale error k_z at which a mode is undamped; its frequency, rad/s."""
 
     k_z: float
     frequency: float
@@ -60,9 +60,10 @@ class StabilityLimit(NamedTuple):
 
 class StabilityLimits(NamedTuple):
     """
-    The StabilityLimits nearest to zero, one of each sign; None where a sign has no limit.
+    The StabilityLimits nearest to zero, one of each sign; None if there is none of that sign.
 
-    unstable: how many modes grow at k_z = 0; only without any are these limits of the stable loop.
+    unstable: number of modes that grow at k_z = 0. Only if it is zero do the limits bound the
+    stable range.
     """
 
     positive: StabilityLimit | None
@@ -80,11 +81,11 @@ def growth(loop, aiding, k_z):
     """
     Return the Mode of a LateralLoop and an Aiding at a lateral scale error k_z.
 
-    Takes the cube of N/step operations: a second for some hundred steps in a window.
+    The cost is of the order (N/step)^3: a second for some hundred steps in a window.
     """
     a, b, c = _step(loop, aiding)
     n, size = aiding.cycles // aiding.step, len(a)
-    # behind x the means of the n - 1 steps before
+    # Append to x the means of the n - 1 previous steps.
     whole = np.zeros((size + n - 1,) * 2)
     whole[:size, :size] = a + (1.0 + k_z) / n * np.outer(b, c)
     whole[:size, size:] = (1.0 + k_z) / n * b[:, None]
@@ -100,7 +101,7 @@ def limits(loop, aiding):
     """
     Return the StabilityLimits of k_z of a LateralLoop and an Aiding.
 
-    Frequencies are those seen at the corrections, at most pi over the time between them.
+    Frequencies are those seen at the corrections: at most pi over the time between them.
     """
     response = _Response(_step(loop, aiding), aiding.cycles // aiding.step)
     step_s, n = aiding.step * loop.period_s, aiding.cycles // aiding.step
@@ -115,7 +116,7 @@ def limits(loop, aiding):
         middle = 0.5 * (low + high)
         same = response.at(middle * step_s).imag * sign > 0.0
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    # at the highest frequency all is real
+    # At the highest frequency all values are real.
     places = np.append(low, highest)
     real = response.at(places * step_s).real
     found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
@@ -127,10 +128,10 @@ def limits(loop, aiding):
 
 def _unstable(roots, values):
     """
-    Return how many modes grow at k_z = 0.
+    Return the number of modes that grow at k_z = 0, by the principle of the argument.
 
-    By the principle of the argument: values are what is read along the upper half circle, from
-    near 1 to -1, where they are real; roots: eigenvalues of A.
+    values: the response along the upper half of the unit circle, from near 1 to -1, where it is
+    real; roots: eigenvalues of A.
     """
     around = np.unwrap(np.angle(1.0 - values))
     turns = 2.0 * (around[-1] - around[0]) / (2.0 * math.pi)
@@ -140,10 +141,10 @@ def _unstable(roots, values):
 
 class _Response:
     """
-    D(Q) c (Q - A)^-1 b on the unit circle.
+    The response D(Q) c (Q - A)^-1 b on the unit circle; n: steps of a window.
 
-    By the Schur form of A, so that the states of a long latency cost their square, not their cube,
-    at each Q.  n: steps of a window.
+    It uses the Schur form of A, so that the cost at each Q is the square, not the cube, of the
+    number of states, which is large for a long latency.
     """
 
     def __init__(self, step, n):
@@ -152,7 +153,7 @@ class _Response:
         self.roots = np.diag(self._upper)
 
     def at(self, angles):
-        """Return it at Q = exp(i angles)."""
+        """Return the response at Q = exp(i angles)."""
         q, upper = np.exp(1j * angles), self._upper
         x = np.zeros((len(upper), len(q)), dtype=complex)
         for k in reversed(range(len(upper))):
@@ -161,7 +162,7 @@ class _Response:
 
 
 def window_mean(q, n):
-    """Return D(Q), the mean of a quantity over n steps if it grows by the factor q in each."""
+    """Return D(Q): the mean over n steps of a quantity that grows by the factor q in each."""
     return 1.0 if n == 1 else (1.0 - q ** -n) / (n * (1.0 - 1.0 / q))
 
 
@@ -179,7 +180,7 @@ def _step(loop, aiding):
     before = np.array((e['z'], e['v'], e['beta'], e['command'], command))
     rows['z'], rows['v'], rows['beta'] = after_period(loop) @ before
     rows['sum_beta'] += 0.5 * (e['beta'] + rows['beta'])
-    # an error of the acceleration is integrated
+    # A constant error of the acceleration is integrated over the step.
     rows['z'] += 0.5 * h * h * e['acceleration']
     rows['v'] += h * e['acceleration']
     rows['error'] += h * e['acceleration']
@@ -187,7 +188,7 @@ def _step(loop, aiding):
     x = np.linalg.matrix_power(np.array([rows[name] for name in names]), aiding.step)
     now = dict(zip(names, x))
     mean = loop.speed / aiding.step * now['sum_beta']
-    # the coefficient of the meter's reading w in each state
+    # Coefficient of the meter's reading w in each state.
     read = {name: 0.0 for name in names}
     correct = _conventional if aiding.kind == 'conventional' else _paper_corrected
     correct(loop, aiding, now, mean, read)
@@ -199,9 +200,9 @@ def _step(loop, aiding):
 
 def _conventional(loop, aiding, now, mean, read):
     """
-    Take the part gain of the innovation off the velocity.
+    Subtract the fraction gain of the innovation from the velocity.
 
-    error: e_v.  The fix stands for the velocity at the end of its window.
+    The state error is e_v. The fix is used as the velocity at the end of its window.
     """
     innovation = loop.speed * now['beta'] + now['error']
     for name in ('v', 'error'):
@@ -212,9 +213,9 @@ def _conventional(loop, aiding, now, mean, read):
 
 def _paper_corrected(loop, aiding, now, mean, read):
     """
-    Take dW = K nu off the acceleration, T dW off the velocity, T^2/2 dW off the position.
+    Subtract dW = K nu from the acceleration, T dW from velocity, T^2/2 dW from position.
 
-    error: e_v less z' of the last window, so that nu = (mean of it + mean of V beta - w)/T.
+    The state error is e_v minus z' of the last window: nu = (mean of it + mean of V beta - w)/T.
     """
     span = aiding.cycles * loop.period_s
     nu, by_read = (now['sum_error'] / aiding.cycles + mean) / span, -1.0 / span

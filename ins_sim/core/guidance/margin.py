@@ -1,10 +1,10 @@
-"""Stability of an autopilot by itself, with exact navigation."""
+"""Phase margin of an autopilot with exact navigation."""
 
 import math
 
 from ins_sim.core.numerics.elementary import atan2
 
-# Halvings of the interval in which the crossover lies.
+# Number of bisections of the interval that contains the crossover.
 HALVINGS = 60
 
 
@@ -12,8 +12,8 @@ def phase_margin(gains, force, lag_s, delay_s):
     """
     Return the phase margin, rad, of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)).
 
-    gains: k1, rad/m, and k2, rad s/m; force: m/s^2 per rad; delay_s: latency and control period,
-    for the command is reached at the end of a period.  None: no gain at all.
+    gains: k1 (rad/m) and k2 (rad s/m); force: m/s^2 per rad; delay_s: latency plus control period,
+    because the command is reached at the end of a period.  Return None if the gains are zero.
     """
     k1, k2 = gains
     if k1 == k2 == 0.0:

@@ -1,4 +1,4 @@
-"""Steering: which solution an autopilot sees when, and when the vehicle flies straight."""
+"""Steering: which solution the autopilot gets, and when the vehicle flies straight."""
 
 from bisect import bisect_right
 from collections import deque
@@ -10,19 +10,19 @@ from ins_sim.core.numerics.instants import seconds
 from .autopilot import make_autopilot
 from .margin import phase_margin
 
-# Why an autopilot does not steer.
+# Reasons why an autopilot does not steer.
 NOT_ENGAGED, TURN, NO_SOLUTION = 'not engaged', 'in a turn', 'no solution'
 NO_NUMBER, JUMP, OLD, NO_COMMAND = 'no number', 'jump', 'old', 'no command'
-# It steers, at the limit of the command.
+# The autopilot steers, at the limit of the command.
 LIMITED = 'limited'
 
 
 class SteeringCommand(NamedTuple):
     """
-    What is commanded at a control instant, and by what.
+    The command at a control instant, and its origin.
 
     t_ns: the instant; beta: sideslip, rad; z, v_z: the estimate, m and m/s, zero without one; why:
-    '' where the autopilot steers, else why the vehicle flies straight.
+    '' if the autopilot steers, otherwise the reason why the vehicle flies straight.
     """
 
     t_ns: int
@@ -34,12 +34,12 @@ class SteeringCommand(NamedTuple):
 
 class Steering:
     """
-    An autopilot with the solutions that it steers by.
+    An autopilot with the solutions it uses.
 
-    Solutions are given by ``take``; ``command`` answers a control instant from the newest one that
-    is ``latency_s`` old.  The vehicle flies straight (command zero) until the autopilot is
-    engaged, in turns, and where the solution is missing, no number or too old.  After a jump of
-    the solution it flies straight until ``timeout_s`` has passed without another jump.
+    ``take`` receives solutions; ``command`` answers a control instant from the newest solution
+    that is at least ``latency_s`` old. The vehicle flies straight (command zero) until the
+    autopilot is engaged, in turns, and if the solution is missing, not finite or too old. After a
+    jump of the solution it flies straight until ``timeout_s`` has passed without another jump.
 
     Parameters
     ----------
@@ -52,9 +52,9 @@ class Steering:
     ----------
     engaged : bool
     notes : list of str
-        Sentences about what was met for the first time; the owner empties it.
+        Sentences about events that occurred for the first time; the owner empties it.
     counts : dict
-        {why: number of control instants} at which the vehicle flew straight, and LIMITED.
+        {why: number of control instants} at which the vehicle flew straight, and of LIMITED.
     """
 
     def __init__(self, settings, legs, turns=()):
@@ -68,14 +68,14 @@ class Steering:
         self.reset()
 
     def reset(self):
-        """Forget everything; the next control instant is the first of a run."""
+        """Forget all solutions; the next control instant is the first of a run."""
         self._solutions, self._used, self._jumped_ns = deque(), None, None
         self._engage_ns, self.engaged, self._steers = None, False, False
         self._scheduled = True
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it takes over at the end of the turn, and says so."""
+        """Engage the autopilot; in a turn it takes over at the end of the turn, with a note."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '
@@ -95,10 +95,10 @@ class Steering:
 
     def take(self, t_ns, solution):
         """
-        Take a solution of motion time t_ns, ns.
+        Store a solution of motion time t_ns, ns.
 
-        solution: (lat, lon, height, v_n, ...), rad, m and m/s.  A stamp that is not later than the
-        last one takes the place of those from there on.
+        solution: (lat, lon, height, v_n, ...), rad, m and m/s.  If its stamp is not later than the
+        last one, it replaces all solutions from that stamp on.
         """
         solutions = self._solutions
         while solutions and solutions[-1][0] >= t_ns:
@@ -138,12 +138,12 @@ class Steering:
         return SteeringCommand(t_ns, beta, z, v_z, why)
 
     def give_up(self, why):
-        """Count a control instant at which the autopilot does not steer, and why."""
+        """Count a control instant at which the autopilot does not steer, by reason."""
         self._steers = False
         self._count(why)
 
     def _estimate(self, t_ns):
-        """Return z, v_z and why they are not to be steered by, or ''."""
+        """Return z, v_z, and '' or the reason why they must not be used."""
         wanted_ns, solutions = t_ns - self._latency_ns, self._solutions
         while len(solutions) > 1 and solutions[1][0] <= wanted_ns:
             solutions.popleft()
@@ -162,13 +162,13 @@ class Steering:
         return z, v_z, why
 
     def _use(self, t_ns, stamp_ns, solution):
-        """Make a solution the one to steer by."""
+        """Use a solution for steering from now on."""
         lat, lon, height, v_n = solution[:4]
         index = self._leg_index(t_ns)
         last, why = self._used, ''
         if not math.isfinite(lat + lon + height + v_n[0] + v_n[1]):
-            self._say(NO_NUMBER, f'the solution at {seconds(stamp_ns)} is no number; expected one '
-                      'to steer by: the vehicle flies straight until it is one')
+            self._say(NO_NUMBER, f'the solution at {seconds(stamp_ns)} is not finite; expected '
+                      'a finite one: the vehicle flies straight until there is one')
             self._used = stamp_ns, 0.0, 0.0, NO_NUMBER, index
             return
         z, v_z = across_leg(self._legs[index], lat, lon, height, v_n)
@@ -179,7 +179,7 @@ class Steering:
                 self._say(JUMP, f'the solution jumps by {z - expected:.4g} m to the right at '
                           f'{seconds(stamp_ns)}; expected at most guidance.jump_m, '
                           f'{self._jump:g} m: the vehicle flies straight until the solution has '
-                          f'gone on without a jump for {self._timeout_ns * 1e-9:g} s')
+                          f'continued without a jump for {self._timeout_ns * 1e-9:g} s')
         if self._jumped_ns is not None:
             if 0 <= stamp_ns - self._jumped_ns <= self._timeout_ns:
                 why = JUMP
@@ -196,7 +196,7 @@ class Steering:
 
 
 def _number(value):
-    """Return what an autopilot commands as a finite float, or None."""
+    """Return the value that an autopilot commands as a finite float, or None."""
     try:
         value = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -208,7 +208,7 @@ def margin_sentence(settings, guided):
     """
     Return the warning that the latency makes the loop unstable, or None.
 
-    settings: GuidanceSettings; guided: GuidedSettings.  The navigation is taken to be exact.
+    Exact navigation is assumed.  settings: GuidanceSettings; guided: GuidedSettings.
     """
     gains = make_autopilot(settings).gains()
     if gains is None:
@@ -221,4 +221,4 @@ def margin_sentence(settings, guided):
     return (f'guidance.latency_s is {settings.latency_s:g} s and the control period '
             f'{period_s:g} s, which leaves the loop a phase '
             f'margin of {math.degrees(margin):.1f} deg; expected more than 0: it is unstable '
-            'with exact navigation already')
+            'even with exact navigation')
