@@ -27,7 +27,7 @@ class LateralAutopilot(Autopilot):
 
 
 class CourseHold(LateralAutopilot):
-    """Flies parallel to the leg at the present offset; only the rate of the offset is controlled."""
+    """Flies parallel to the leg at any offset: only the rate of the offset is controlled."""
 
     def __init__(self, settings):
         super().__init__(settings)

@@ -1,5 +1,5 @@
 """
-Navigation over a recorded IMU: clean the record, mount, find a start, navigate, compare.
+Navigation with a recorded IMU: clean the record, mount, find a start, navigate, compare.
 
 Start with ``navigate``.
 """

@@ -1,4 +1,4 @@
-"""Errors of a recorded navigation at the stamps of a reference."""
+"""Errors of the navigation with a recorded IMU, at the stamps of a reference."""
 
 from dataclasses import dataclass
 import math
@@ -15,9 +15,9 @@ AFTER_S = (10.0, 30.0, 60.0)
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """
-    Solution less reference, resolved in East, North, Up: Tracks of (n, 3), or None.
+    Solution minus reference, resolved in east, north, up: SampledTracks of (n, 3), or None.
 
-    name: of the reference; position m; velocity m/s; attitude: rotation vector from the
+    name: name of the reference; position: m; velocity: m/s; attitude: rotation vector from the
     reference to the solution, rad (Up: counter-clockwise).
     """
 
@@ -30,7 +30,7 @@ class Comparison:
 @dataclass(frozen=True)
 class ErrorRow:
     """
-    Errors a time after the start, None where unknown.
+    Errors at some time after the start, None if unknown.
 
     after_s; horizontal_m, vertical_m (up), speed_m_s (length of the horizontal velocity error),
     tilt_deg, heading_deg (clockwise).
@@ -46,10 +46,10 @@ class ErrorRow:
 
 def compare_with_reference(states, reference):
     """
-    Return the Comparison of a list of NavStates, one a segment, with a Reference, or None.
+    Return the Comparison of NavStates, one for each segment, with a Reference, or None.
 
-    Between its samples the solution is a straight line, its attitude a constant turn.  None
-    where the reference has no stamp within a segment.
+    Between its samples the solution is interpolated linearly, its attitude with a constant
+    rotation rate. None is returned if the reference has no stamp within a segment.
     """
     tracks = []
     for kind, errors in (('position', _position), ('velocity', _velocity),
@@ -95,20 +95,20 @@ def _attitude(states, t_ns, values):
 
 
 def _drawn(track, t_ns):
-    """Return the values at stamps within the track, whatever the steps."""
+    """Return the values at stamps within the track, interpolated over steps of any length."""
     start = track.t_ns[0]
     return np.stack([np.interp(t_ns - start, track.t_ns - start, v) for v in track.values.T], -1)
 
 
 def error_rows(comparison, start_ns, end_ns):
-    """Return the ErrorRows AFTER_S the start, as far as the solution goes, and at its end."""
+    """Return the ErrorRows AFTER_S after the start, while there is a solution, and at its end."""
     length_s = (end_ns - start_ns) * 1e-9
     return [_row(comparison, start_ns, after) for after in
             (*(a for a in AFTER_S if a < length_s), length_s)]
 
 
 def _row(comparison, start_ns, after_s):
-    """Return the errors at the stamps next to an instant, within a second of it."""
+    """Return the errors at the stamp nearest to an instant, within one second."""
     def at(track):
         if track is None:
             return None

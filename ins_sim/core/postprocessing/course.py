@@ -1,4 +1,4 @@
-"""The heading at a standstill from the way that a reference goes afterwards."""
+"""Find the heading at a standstill from the subsequent course of a reference."""
 
 from collections import deque
 import math
@@ -13,9 +13,9 @@ from ins_sim.core.numerics.fixed_order import length
 
 def navigated_headings(imu, state, kind, spin):
     """
-    Yield stamp and heading, ns and rad, behind the first sample of a RecordedImu.
+    Yield stamp (ns) and heading (rad) for each sample of a RecordedImu after the first.
 
-    state: (lat, lon, height, v_n, q_nb) at that sample; kind, spin: as in RecordedNavigator.
+    state: (lat, lon, height, v_n, q_nb) at the first sample; kind, spin: see RecordedNavigator.
     """
     samples = zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()), map(tuple, imu.f.tolist()))
     nav = RecordedNavigator(kind, spin, state)
@@ -26,17 +26,18 @@ def navigated_headings(imu, state, kind, spin):
 
 class CourseSearch:
     """
-    Finds the heading at a standstill from the ways that a reference goes afterwards.
+    Finds the heading at a standstill from the subsequent displacements of a reference.
 
-    Each way from stamp to stamp is turned back by what the heading has changed since the start;
-    the sum then points along the heading at the start, if the vehicle goes forwards.  The noise
-    of positions cancels in the sum but for that of its ends.
+    Each displacement between stamps is rotated back by the change of heading since the start.
+    The sum then points along the heading at the start, if the vehicle drives forwards. The
+    position noise cancels in the sum, except for that of its ends.
 
     Parameters
     ----------
-    start_ns : instant of the standstill's end
-    distance_m : length of the sum that is needed
+    start_ns : instant at which the standstill ends
+    distance_m : required length of the sum
     search_s : time within which it must be reached
+
     """
 
     def __init__(self, start_ns, distance_m, search_s):
@@ -45,20 +46,20 @@ class CourseSearch:
         self._along = self._across = 0.0
 
     def add(self, middle_ns, way):
-        """Take the next way: its middle, and (east, north), m."""
+        """Add the next displacement: the instant of its middle, and (east, north), m."""
         if middle_ns >= self._start_ns:
             self._ways.append((middle_ns, way))
 
     def is_over(self, t_ns):
-        """Return whether the time of the search is over at a stamp."""
+        """Return whether the search time has passed at a stamp."""
         return t_ns > self._start_ns + round(self._search_s * 1e9)
 
     def turn(self, t_ns, turned):
         """
-        Take the heading that a navigation from heading zero has at a stamp, rad.
+        Process the heading, rad, at a stamp of a navigation that started with heading zero.
 
-        All ways whose middle is up to there must have been added. Returns the heading at the
-        start, rad, and how it was found, or None.
+        All displacements whose middle is before that stamp must have been added. Returns the
+        heading at the start, rad, and a text on how it was found; or None.
         """
         while self._ways and self._ways[0][0] <= t_ns:
             _, (east, north) = self._ways.popleft()
@@ -81,17 +82,17 @@ class CourseSearch:
         return math.sqrt(self._along * self._along + self._across * self._across)
 
     def describe(self):
-        """Return why nothing was found."""
+        """Return the reason why no heading was found."""
         return (f'moves {self.way:.3g} m on one course within {self._search_s:g} s '
                 f'(alignment.course_distance_m {self._distance_m:g})')
 
 
 def find_course(turning, displacements, start_ns, distance_m, search_s):
     """
-    Return the heading at the start, rad, and how it was found; or None and why not.
+    Return the heading at the start, rad, and how it was found; or None and the reason.
 
-    turning: of ``navigated_headings`` from heading zero; displacements: of
-    Reference.displacements; the others as of CourseSearch.
+    turning: ``navigated_headings`` from heading zero; displacements: Reference.displacements; the
+    other arguments: see CourseSearch.
     """
     if displacements is None:
         return None, 'has no way to show a course'

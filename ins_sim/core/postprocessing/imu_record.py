@@ -1,4 +1,4 @@
-"""A recorded IMU, whatever its rate and faults: samples in order, counted losses, gaps."""
+"""A recorded IMU of any rate and with faults: samples in order, losses counted, gaps."""
 
 from bisect import bisect_left
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ from ins_sim.core.timeseries.histories import History
 @dataclass(frozen=True, eq=False)
 class RecordedImu(History):
     """
-    Samples as they were recorded, in the frame s of the sensor or in b.
+    Samples as they were recorded, in the sensor frame s or in the body frame b.
 
-    t_ns (n,) int64 stamps; omega (n, 3) rad/s; f (n, 3) specific force, m/s^2; q_ns (n, 4) the
-    orientation in the messages, NaN where there is none.
+    t_ns (n,) int64: stamps; omega (n, 3): rad/s; f (n, 3): specific force, m/s^2; q_ns (n, 4):
+    orientation from the messages, NaN where there is none.
     """
 
     t_ns: np.ndarray
@@ -38,16 +38,16 @@ class RecordedImu(History):
         return RecordedImu(self.t_ns, turn(self.omega), turn(self.f), np.stack(q_nb, axis=-1))
 
     def less_bias(self, bias):
-        """Return the same samples with a rate (3,), rad/s, taken off the gyros."""
+        """Return the samples with a gyro bias (3,), rad/s, subtracted."""
         return replace(self, omega=self.omega - bias)
 
 
 @dataclass(frozen=True)
 class Losses:
     """
-    How many samples were dropped.
+    Numbers of dropped samples.
 
-    not_finite; repeated: with the stamp of the one before; out_of_order; first_back: a text about
+    not_finite; repeated: same stamp as the sample before; out_of_order; first_back: text about
     the first stamp that goes back, or ''.
     """
 
@@ -59,12 +59,11 @@ class Losses:
 
 def ordered_samples(imu):
     """
-    Return the samples that are finite and rise in stamp, and the Losses.
+    Return the finite samples with increasing stamps, and the Losses.
 
-    Of stamps out of order the fewest possible are dropped (longest rising subsequence; Fredman,
-    Discrete Mathematics 11, 1975): one stamp far ahead costs one sample, not all that follow.
-
-    Raises ValueError where fewer than two samples are left.
+    If stamps are out of order, the smallest possible number of samples is dropped (longest
+    increasing subsequence; Fredman, Discrete Mathematics 11, 1975): a single stamp far ahead costs
+    one sample, not all that follow. Raises ValueError if fewer than two samples remain.
     """
     finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
     good = imu[finite]
@@ -91,7 +90,7 @@ def ordered_samples(imu):
 
 
 def _rising(stamps):
-    """Return the indices of a longest strictly rising subsequence."""
+    """Return the indices of a longest strictly increasing subsequence."""
     ends, tails, before = [], [], []
     for k, stamp in enumerate(stamps):
         place = bisect_left(tails, stamp)
@@ -109,10 +108,10 @@ def _rising(stamps):
 
 
 def find_gaps(t_ns, factor):
-    """Return the indices k whose step to k + 1 is longer than factor times the median step."""
+    """Return the indices k for which the step to k + 1 exceeds factor times the median step."""
     return np.flatnonzero(np.diff(t_ns) > gap_limit_ns(t_ns, factor))
 
 
 def gap_limit_ns(t_ns, factor):
-    """Return the longest step that is no gap: factor times the median step."""
+    """Return the longest step that is not a gap: factor times the median step."""
     return float(factor * np.median(np.diff(t_ns)))

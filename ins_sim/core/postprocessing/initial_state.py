@@ -1,4 +1,4 @@
-"""The start of a navigation over a recording: first sample, initial state, gyro bias, and why."""
+"""Choose the first sample, initial state and gyro bias of a recorded run, and record why."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,10 +21,11 @@ from .gravity_check import check_gravity, LEAST_FORCE
 @dataclass(frozen=True, eq=False)
 class InitialState:
     """
-    The sample to start at, the state there, and how it was found.
+    The first sample, the state at that sample, and how they were found.
 
-    index: into the record; state: (lat, lon, height, v_n, q_nb); bias (3,): rad/s, to be taken
-    off the gyros, or None; still: Standstill or None; notes: sentences; figures: {name: value}.
+    index: of the sample in the record; state: (lat, lon, height, v_n, q_nb); bias (3,): gyro bias
+    to subtract, rad/s, or None; still: Standstill or None; notes: sentences; figures: {name:
+    value}.
     """
 
     index: int
@@ -37,11 +38,21 @@ class InitialState:
 
 def choose_start(settings, sources, imu, broken, first, last, again=False):
     """
-    Return the InitialState in the samples first to last (not included).
+    Return an InitialState among the samples from first to last (excluded).
 
-    settings: NavigateSettings; sources: Sources; imu: RecordedImu in the body frame; broken:
-    indices of the samples before a gap; again: after a gap, where given values no longer hold.
-    Raises ValueError in one sentence where no sample can be the start.
+    Parameters
+    ----------
+    settings : NavigateSettings
+    sources : Sources
+    imu : RecordedImu in the body frame
+    broken : indices of the samples before a gap
+    first, last : range of samples
+    again : True after a gap, where given initial values no longer apply
+
+    Raises
+    ------
+    ValueError : with one sentence, if no sample is suitable
+
     """
     return _Search(settings, sources, imu, broken).start(first, last, again)
 
@@ -70,7 +81,7 @@ class _Search:
         return None if self._odometry is None else self._odometry.as_enu()
 
     def _speed_at(self, t_ns):
-        """Return the speed of a reference that measures velocity, (n,) m/s, NaN where unknown."""
+        """Return the speed of a reference that measures velocity, (n,) m/s, NaN if unknown."""
         if self._reference is not None and self._reference.velocity is not None:
             return length(self._reference.velocity_at(t_ns))
         if self._odometry is not None:
@@ -78,7 +89,7 @@ class _Search:
         return np.full(len(t_ns), np.nan)
 
     def _moving(self, first, last, source, again):
-        """Begin at the first sample where all that is to come from the reference is known."""
+        """Start at the first sample at which all values needed from the reference are known."""
         reason = None
         for k in range(first, last):
             try:
@@ -105,7 +116,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _judge_gravity(self, first, last):
-        """Refuse a specific force that is not that of rest, where the IMU is at rest at all."""
+        """Reject a specific force at rest that differs from gravity, if the IMU rests at all."""
         try:
             still = standstill.find_standstill(self._imu[first:last], self._s.alignment,
                                                self._speed_at)
@@ -183,8 +194,8 @@ class _Search:
         notes = [still.describe()]
         check_gravity(still.force, limits.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
-            raise ValueError('the mean specific force at rest is zero, so that it does not show '
-                             'up; expected initial.attitude given, reference or imu')
+            raise ValueError('the mean specific force at rest is zero, so that the vertical is '
+                             'unknown; expected initial.attitude given, reference or imu')
         try:
             where = self._position(k, again, near=True)
             lat = where[0]
@@ -209,7 +220,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):
-        """Return q_nb of a standstill and whether its heading is gyrocompassed."""
+        """Return q_nb at a standstill and whether its heading is from gyrocompassing."""
         wanted = self._s.initial.heading
         if wanted == 'given' and not again:
             return alignment.level_attitude(
@@ -231,7 +242,7 @@ class _Search:
         return alignment.level_attitude(still.force, heading), False
 
     def _reference_heading(self, still, k, where, wanted, refused):
-        """Return a heading and the text of its source; ValueError where there is none."""
+        """Return a heading and the text of its source; ValueError if there is none."""
         t_ns = int(self._imu.t_ns[k])
         if wanted != 'course' and self._reference is not None:
             q = self._reference.attitude_at(t_ns)

@@ -6,15 +6,15 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.settings.suggest import nearest_name
 
-# Shorter quaternions show no rotation; longer ones than the rounding of seven digits are said.
+# Shorter quaternions define no rotation; a norm that differs from 1 by more than _UNIT is noted.
 _LEAST, _UNIT = 1e-3, 1e-6
 
 
 def levelled_mounting(force, yaw):
-    """Return q_bs: the shortest turn that brings a force (3,) up, then one by yaw about up."""
+    """Return q_bs: the shortest rotation that takes a force (3,) up, then a yaw about up."""
     x, y, z = force.tolist()
     size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
-    # upside down any level axis will do
+    # If the force points down, any level axis gives the shortest rotation.
     axis, length = ((y, -x, 0.0), level) if level > 1e-12 * size else ((1.0, 0.0, 0.0), 1.0)
     scale = elementary.atan2(level, z) / length
     return quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
@@ -23,12 +23,19 @@ def levelled_mounting(force, yaw):
 
 def chained_mounting(transforms, base, frame, notes=None):
     """
-    Return q_bs from static transforms, or None where there are none at all.
+    Return q_bs from static transforms, or None if there are no transforms at all.
 
-    transforms: {(parent, child): q} where q maps child to parent, as TF has it, of any length;
-    base, frame: names; notes: list that takes what was done to the transforms.  Raises
-    ValueError, naming the nearest known frame, where one of both is not among them or they hang
-    on different trees, and where a transform between them is no rotation.
+    Parameters
+    ----------
+    transforms : {(parent, child): q}, q of any norm maps child to parent as in TF
+    base, frame : names of the frames b and s
+    notes : list to which remarks on the transforms are appended
+
+    Raises
+    ------
+    ValueError : naming the most similar known frame if one of the frames is unknown; also if the
+        frames are in different trees, or if a transform between them is not a rotation
+
     """
     if not transforms:
         return None
@@ -60,12 +67,12 @@ def chained_mounting(transforms, base, frame, notes=None):
 
 
 def _rotation(q, name, notes):
-    """Return the unit quaternion of a transform; note what it was, or refuse it by name."""
+    """Return the unit quaternion of a transform, with a note if needed; reject a non-rotation."""
     x, y, z, w = q
     size = math.sqrt(x * x + y * y + z * z + w * w)
     if not (math.isfinite(size) and size > _LEAST):
         raise ValueError(f'/tf_static from {name} has the rotation '
-                         f'({x:g}, {y:g}, {z:g}, {w:g}), which is none; expected a unit '
+                         f'({x:g}, {y:g}, {z:g}, {w:g}), which is not a rotation; expected a unit '
                          'quaternion, or mounting.source given with mounting.rpy_deg')
     if abs(size - 1.0) <= _UNIT:
         return q

@@ -1,4 +1,4 @@
-"""Navigate on a recording: clean, mount, begin, step, compare; every departure is a note."""
+"""Navigate with a recording: clean, mount, start, step, compare; note every irregularity."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -19,16 +19,18 @@ from .imu_record import find_gaps, gap_limit_ns, ordered_samples
 from .initial_state import choose_start
 from .sample_checks import checked_samples
 
-# A solution of one step shows nothing.
+# Smallest number of samples of a useful solution.
 FEWEST = 10
 
 
 @dataclass(frozen=True, eq=False)
 class NavigationResult:
     """
-    The result: states: NavStates of each segment; references: what it was compared with;
-    comparisons: one a reference; notes: what was found and done, in sentences; figures: the same
-    as numbers, {name: value}.
+    The result of a navigation.
+
+    states: NavStates of each segment; references: what the solution was compared with;
+    comparisons: one for each reference; notes: sentences on what was found and done; figures: the
+    same as numbers, {name: value}.
     """
 
     states: list
@@ -40,10 +42,10 @@ class NavigationResult:
 
 def navigate(settings, sources, progress=None):
     """
-    Return the Navigation of NavigateSettings over Sources.
+    Return the NavigationResult of NavigateSettings and Sources.
 
-    progress: called with the fraction done.  Raises ValueError in one sentence where there is
-    nothing to begin with.
+    progress: called with the fraction done.  Raises ValueError, with one sentence, if the
+    navigation cannot start.
     """
     notes = []
     try:
@@ -55,7 +57,7 @@ def navigate(settings, sources, progress=None):
 
 
 def _navigate(settings, sources, progress, notes):
-    """Do what ``navigate`` does; what is found is put into notes as it is found."""
+    """Do the work of ``navigate``; append findings to notes as they occur."""
     imu, remarks = checked_samples(sources.imu, settings.stamps, settings.accept.zero_readings)
     notes += [*sources.notes, *remarks]
     imu, losses = ordered_samples(imu)
@@ -87,7 +89,7 @@ def _navigate(settings, sources, progress, notes):
         earlier = ('an earlier start' if settings.initial.attitude == 'given' else
                    f'a shorter alignment (alignment.longest_s is {settings.alignment.longest_s:g} '
                    's)')
-        raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
+        raise ValueError(f'{sources.name} has fewer than {FEWEST} samples after the start at '
                          f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or '
                          f'{earlier}')
     references = [] if sources.reference is None else [sources.reference]
@@ -104,17 +106,17 @@ def _navigate(settings, sources, progress, notes):
 
 
 def _span(settings, imu):
-    """Return the index of the first sample to use and the count of all."""
+    """Return the index of the first sample to use and the total number of samples."""
     first = int(np.searchsorted(imu.t_ns, imu.t_ns[0] + round(settings.start_s * 1e9)))
     if len(imu) - first < FEWEST:
         raise ValueError(f'start_s is {settings.start_s:g} s and the IMU has '
                          f'{len(imu)} samples in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.6g} s; '
-                         f'expected at least {FEWEST} samples behind the start')
+                         f'expected at least {FEWEST} samples after the start')
     return first, len(imu)
 
 
 def _mounting(settings, sources, imu, first, notes):
-    """Return q_bs and note where it comes from."""
+    """Return q_bs, and note its origin."""
     wanted = settings.mounting
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
@@ -197,7 +199,7 @@ class _Replay:
                        ellipsoid.GRAVITY_TERMS[self._s.earth.gravity])
 
     def _segment(self, loop, begin, last):
-        """Return the NavStates from an InitialState to a gap or to last, which is left out."""
+        """Return the NavStates from an InitialState to a gap, or to last (excluded)."""
         stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
         for j, solution, _ in loop.run(self._samples(begin, last)):
             if solutions and runs_away(solution):
@@ -211,11 +213,11 @@ class _Replay:
         return NavStates(stamps[:len(solutions)], *map(np.array, zip(*solutions)))
 
     def _samples(self, begin, last):
-        """Yield stamps, omega, f and the height of the reference from an InitialState to last."""
+        """Yield stamp, omega, f and reference height from an InitialState to last (excluded)."""
         part, held = slice(begin.index, last), begin.state[2]
         imu = self._imu[part]
         for t_ns, omega, f, height in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),
                                           self._heights[part].tolist()):
-            # Without a newer height of the reference the last one holds.
+            # Without a newer height of the reference the last one is used.
             held = held if math.isnan(height) else height
             yield t_ns, omega, f, held

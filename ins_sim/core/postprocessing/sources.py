@@ -1,19 +1,20 @@
-"""What was recorded, as it is handed to ``navigate``."""
+"""The recorded data that ``navigate`` processes."""
 
 from dataclasses import dataclass
 
-# Why there is no position, where nobody says more.
+# Default reason why there is no position.
 NO_FIXES = 'there is no NavSatFix and no reference.path'
 
 
 @dataclass(frozen=True)
 class Sources:
     """
-    What was recorded.
+    Recorded data.
 
-    name; imu: RecordedImu in the frame of the sensor; frame: its name; reference: Reference or
-    None; odometry: Odometry or None; transforms: {(parent, child): q} of /tf_static; notes: what
-    the reading found, in sentences; without_position: why the reference has no position.
+    name; imu: RecordedImu in the sensor frame; frame: name of that frame; reference: Reference or
+    None; odometry: OdometryReference or None; transforms: {(parent, child): q} from /tf_static;
+    notes: sentences on findings while reading; without_position: why the reference has no
+    position.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The whole aided chain offline: six stages, the numbers of the six nodes in lock-step."""
+"""The aided chain offline: six stages with the same results as the six nodes in lock-step."""
 
 from dataclasses import replace
 
@@ -12,22 +12,33 @@ from .inertial import truth_blocks
 
 def make_instruments(settings):
     """
-    Return velocity meter and GNSS of AidedSimulationSettings, on the truth, before the first fix.
+    Return the velocity meter and GNSS of AidedSimulationSettings, before their first fix.
 
-    Raises ValueError where an instrument cannot be made; make them before the run they serve.
+    They measure the truth. Raises ValueError if the settings are invalid: call this before the run
+    that needs them.
     """
     return MeterOnTruth(VelocityMeter(settings.velocity_meter)), Gnss(settings.gnss)
 
 
 def simulate_aided(settings, instruments, motion, run, progress=None):
     """
-    Return the AidedResult on a SimulationResult of the first three stages.
+    Return the AidedResult for a SimulationResult of the first three stages.
 
-    settings: AidedSimulationSettings; instruments: those of ``make_instruments``, used up here;
-    motion: that of the run; run: SimulationResult, whose solution, as often as it is put out,
-    gives the velocity meter the angle of attack, as it does on ins/odometry; progress: called
-    with the fraction done.  The instruments see the truth of the generator, even where the IMU
-    loses samples.  Raises ValueError as the stages do.
+    The instruments measure the truth of the generator, even where the IMU loses samples.
+
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+    instruments : result of ``make_instruments``; can be used only once
+    motion : Motion of the run
+    run : SimulationResult; its solution, at its output instants, supplies the angle of attack to
+        the velocity meter, as ins/odometry does
+    progress : called with the fraction done
+
+    Raises
+    ------
+    ValueError : as the stages do
+
     """
     meter, gnss = instruments
     meter.follow_ins(run.states.t_ns, body_velocity(run.states))

@@ -1,4 +1,4 @@
-"""The loop of the aided navigator over blocks: many samples at once where no fix arrives."""
+"""Loop of the aided navigator over blocks; samples without a fix are processed together."""
 
 from bisect import bisect_left
 
@@ -16,22 +16,22 @@ UNKNOWN = (NONE,) * 3
 
 
 class AidedLoop(NavigationLoop):
-    """A NavigationLoop that gives the navigator the fixes that have arrived before each sample."""
+    """A NavigationLoop that passes fixes to the navigator before the sample at which they arrive."""
 
-    # Fixes on their way: (arrival_ns, source, fix), in the order of arrival.
+    # Fixes that have not arrived yet: (arrival_ns, source, fix), in the order of arrival.
     waiting = ()
-    # Function of the AidedNavigator whose result is kept at each output instant, or None.
+    # Function of the AidedNavigator whose result is stored at each output instant, or None.
     note = None
-    # Whether a solution has diverged, and another was begun.
+    # Whether a solution has diverged and was restarted.
     diverged = False
 
     def recover(self, fault):
-        """Make ready for the sample at a StreamFault; return whether the loop goes on."""
+        """Prepare for the sample at a StreamFault; return whether the loop continues."""
         self.diverged = self.diverged or isinstance(fault, DivergedSolution)
         return super().recover(fault)
 
     def step(self, t_ns, *sample):
-        """Give the fixes and a sample to the navigator; return its output."""
+        """Pass the arrived fixes and a sample to the navigator; return its output."""
         self.navigator.take_arrived(self.waiting, t_ns)
         return super().step(t_ns, *sample)
 
@@ -52,7 +52,7 @@ class AidedLoop(NavigationLoop):
         return found
 
     def _run_quiet(self, block, first):
-        """Take samples that follow each other and bring no fix; return their end."""
+        """Process consecutive samples at which no fix arrives; return their end."""
         if not self.navigator.takes_segments:
             return first
         stop = block.even_until(first, self._last_ns)
@@ -63,9 +63,9 @@ class AidedLoop(NavigationLoop):
 
 class AidedBlock:
     """
-    ImuSamples, the Truth at their stamps, and what a loop puts out of them.
+    ImuSamples, the Truth at their stamps, and the outputs of a loop at these samples.
 
-    loop: the AidedLoop that is to step through the block.
+    loop: the AidedLoop that will step through the block.
     """
 
     def __init__(self, imu, truth, loop):
@@ -85,7 +85,7 @@ class AidedBlock:
                                 tuple(truth.v_n[k].tolist()), tuple(truth.q_nb[k].tolist()))
 
     def even_until(self, first, last_ns):
-        """Return the end of the samples from first on that follow each other and last_ns."""
+        """Return the end of the samples, from first on, that follow last_ns without a gap."""
         t_ns = self.samples.t_ns
         if not is_regular(t_ns[first] - last_ns, self._loop.dt_ns):
             return first
@@ -93,12 +93,12 @@ class AidedBlock:
         return self._uneven[k] if k < len(self._uneven) else len(t_ns)
 
     def write(self, k):
-        """Take the solution of the navigator as that of a sample."""
+        """Store the solution of the navigator as that of sample k."""
         lat, lon, height, v, q_nb = self._loop.navigator.solution
         self.out[segment.ROW * k:segment.ROW * (k + 1)] = (lat, lon, height, *v, *q_nb)
 
     def put_out(self, first, stop):
-        """Put out those of some samples that are due, with what the filter says now."""
+        """Output the due ones among some samples, with the present state of the filter."""
         decimation = self._loop.decimation
         if self._due_since != decimation.first_ns:
             self._due = np.flatnonzero(decimation.due(self._imu.t_ns)).tolist()
@@ -115,7 +115,7 @@ class AidedBlock:
                 self._notes += [note(navigator)] * len(due)
 
     def records(self):
-        """Return Truth, NavStates, AidedErrors and notes of the samples put out, or None."""
+        """Return Truth, NavStates, AidedErrors and notes of the output samples, or None."""
         if not self._kept:
             return None
         truth = self._truth[self._kept]

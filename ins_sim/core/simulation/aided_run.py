@@ -1,4 +1,4 @@
-"""The aided navigator offline: readings of the IMU and fixes of the instruments in blocks."""
+"""The aided navigator offline: IMU readings and fixes of the instruments in blocks."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ class AidedResult:
     One aided run: truth, solution and errors at the output instants.
 
     judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
-    velocity_fixes, gnss_fixes: what the instruments reported, where ``simulate_aided`` asked them;
-    notes: what was asked for at each output instant, or None; diverged: whether a fault was that a
-    solution had diverged.
+    velocity_fixes, gnss_fixes: the reports of the instruments, if ``simulate_aided`` made them;
+    notes: results of ``note`` at each output instant, or None; diverged: whether a solution has
+    diverged.
     """
 
     truth: Truth
@@ -34,13 +34,13 @@ class AidedResult:
 
 
 class Reported:
-    """Known fixes in the order of their instants, an instrument of ``navigate_aided``."""
+    """Known fixes in the order of their instants; an instrument for ``navigate_aided``."""
 
     def __init__(self, fixes):
         self._fixes, self._next = fixes, 0
 
     def advance(self, truth):
-        """Return the fixes up to the last instant of a Truth record that were not returned yet."""
+        """Return the fixes, not yet returned, up to the last instant of a Truth record."""
         first, self._next = self._next, bisect_right(
             self._fixes, int(truth.t_ns[-1]), lo=self._next, key=lambda fix: fix.t_ns)
         return self._fixes[first:self._next]
@@ -56,10 +56,21 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     """
     Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
-    meter, gnss: the instruments, anything with advance(Truth) -> list of fixes in the order of
-    arrival, or None; note: function of the AidedNavigator whose result is kept at each output
-    instant.  Faults are handled as on_fault says: the solution starts anew from the truth, or
-    ValueError is raised.  Raises ValueError where there is no output.
+    Faults are handled according to on_fault: the solution starts anew from the truth, or
+    ValueError is raised.
+
+    Parameters
+    ----------
+    settings : AidedNavigatorSettings
+    blocks : pairs of ImuSamples and Truth
+    meter, gnss : instruments: any objects with advance(Truth) -> list of fixes in the order of
+        arrival; or None
+    note : function of the AidedNavigator whose result is stored at each output instant
+
+    Raises
+    ------
+    ValueError : also if there is no output
+
     """
     flown = AidedChain(settings, note)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
@@ -72,9 +83,9 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
 
 class AidedChain:
     """
-    The aided navigator of one run, which takes block after block.
+    The aided navigator of one run, which processes block after block.
 
-    settings, note: as of ``navigate_aided``; outputs: a Decimation, in place of output_every.
+    settings, note: see ``navigate_aided``; outputs: a Decimation that replaces output_every.
     """
 
     def __init__(self, settings, note=None, outputs=None):
@@ -88,7 +99,7 @@ class AidedChain:
 
     def block(self, imu, truth, fixes):
         """Step through a block; fixes: (arrival_ns, source, fix)."""
-        # A fix that is on its way from an earlier block may arrive after one of this block.
+        # A fix from an earlier block may arrive after one of this block.
         self._loop.waiting = sorted([*self._loop.waiting, *fixes], key=lambda entry: entry[:2])
         block = AidedBlock(imu, truth, self._loop)
         self._judged += self._loop.run_block(block)

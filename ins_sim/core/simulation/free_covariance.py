@@ -1,4 +1,4 @@
-"""The covariance of a strapdown from its settings, and what is published of it."""
+"""The covariance of a strapdown according to its settings, and the published part of it."""
 
 import math
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from ins_sim.core.numerics.fixed_order import product
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.error_sigmas import fixed_errors, triad_sigmas
 
-# Variances up to here, (rad/s)^2 and (m/s^2)^2, are what is stated of what has no noise.
+# IMU messages state variances up to these, (rad/s)^2 and (m/s^2)^2, for sensors without noise.
 ALMOST_EXACT = 1e-11, 1e-9
 
 
@@ -28,10 +28,10 @@ def sigmas_of(settings):
 
 class StartSigmas(NamedTuple):
     """
-    Standard deviations at a start.
+    Standard deviations at the start.
 
     position, velocity: of each axis, m and m/s; tilt, azimuth: rad; gyro_bias: of each axis,
-    rad/s, or None for that of the settings.
+    rad/s, or None to use the settings.
     """
 
     position: float
@@ -42,18 +42,17 @@ class StartSigmas(NamedTuple):
 
 
 def initial_sigmas(initial):
-    """Return the StartSigmas of the settings of the start."""
+    """Return the StartSigmas from the settings of the initial state."""
     return StartSigmas(initial.position_sigma_m, initial.velocity_sigma_m_s,
                        1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad)
 
 
 def free_covariance(settings, show=None, start=None, dt_s=None):
     """
-    Return the FreeCovariance of StrapdownSettings: of its initial errors and its instruments.
+    Return the FreeCovariance of StrapdownSettings, from initial errors and instrument errors.
 
-    show: as of FreeCovariance; start: StartSigmas, by default those of the settings; dt_s:
-    sampling period, by default that of rate_hz.  Raises ValueError where the figures of the
-    instruments are none.
+    show: see FreeCovariance; start: StartSigmas, by default from the settings; dt_s: sampling
+    period, by default from rate_hz.  Raises ValueError if the instrument parameters are invalid.
     """
     initial, channel = settings.initial, settings.vertical.channel
     gyro, accelerometer = sigmas_of(settings)
@@ -78,10 +77,10 @@ def free_covariance(settings, show=None, start=None, dt_s=None):
 
 def disagreement(settings, stated):
     """
-    Return in what an IMU is not the one that StrapdownSettings describe, or ''.
+    Return how the noise of an IMU differs from that in StrapdownSettings, or ''.
 
-    stated: variances of a sample by axis that its messages state, (rad/s)^2 and (m/s^2)^2; they
-    disagree from a factor of two of the standard deviations on, the least that is stated apart.
+    stated: variances of a sample by axis that the messages of the IMU state, (rad/s)^2 and
+    (m/s^2)^2. They disagree if the standard deviations differ by a factor of two or more.
     """
     for unit, name, said, known, least in zip(('rad/s', 'm/s^2'), ('gyro', 'accelerometer'),
                                               stated, sigmas_of(settings), ALMOST_EXACT):
@@ -96,12 +95,13 @@ def disagreement(settings, stated):
 
 class PublishedCovariance(NamedTuple):
     """
-    What is published of a FreeCovariance, tuples of floats; it holds from t_ns to the next one.
+    The published part of a FreeCovariance, tuples of floats; valid from t_ns until the next one.
+
+    All include the square of the error that is the same in every run.
 
     pose: (36) of position (m) and attitude (rad) about the axes of map, row by row; velocity: (9)
-    of the velocity that is published in b, in the axes of n; rate: (9) of the angular velocity in
-    b; place: (9) of the position in East, North, Up.  All with the square of the error that is the
-    same in every run.
+    of the velocity that is published in b, resolved in n; rate: (9) of the angular velocity in b;
+    place: (9) of the position in east, north, up.
     """
 
     t_ns: int
@@ -113,9 +113,9 @@ class PublishedCovariance(NamedTuple):
 
 def published_covariance(settings, frame=None, start=None, dt_s=None):
     """
-    Return the FreeCovariance of StrapdownSettings that shows a PublishedCovariance.
+    Return a FreeCovariance of StrapdownSettings whose ``shown`` is a PublishedCovariance.
 
-    frame: MapFrame, by default that of the datum; the others as of ``free_covariance``.
+    frame: MapFrame, by default that of the datum; other arguments: see ``free_covariance``.
     """
     frame = frame or MapFrame(settings.datum, settings.earth.rotation)
     gyro, _ = sigmas_of(settings)
@@ -130,7 +130,7 @@ def published_covariance(settings, frame=None, start=None, dt_s=None):
         pose = np.zeros((6, GROWING))
         pose[:3] = product(c, turn[:3])
         pose[3:] = product(c, turn[6:])
-        # an attitude that is out by phi turns the velocity in b by v x phi
+        # An attitude error phi changes the velocity in b by v x phi.
         velocity = np.concatenate([np.zeros((3, 3)), np.eye(3), skew(v)], axis=1)
         return PublishedCovariance(free.t_ns, _carried(pose, p), _carried(velocity, p),
                                    tuple((free.p[BG, BG] + sample).ravel().tolist()),

@@ -1,4 +1,4 @@
-"""The sensors and navigators of a closed loop, fed with the truth of one instant at a time."""
+"""Sensors and navigators of a closed loop, fed with the truth of one instant at a time."""
 
 from functools import partial
 
@@ -20,13 +20,13 @@ from .aided_loop import AidedLoop
 
 
 class _ImuOfMotion:
-    """The IMU that evaluates the motion itself, as far as the truth has come."""
+    """The IMU that evaluates the motion itself, as far as the truth is known."""
 
     def __init__(self, settings, motion, first_ns, lead_ns):
         self._imu, self._lead_ns = MotionImu(settings, motion, first_ns), lead_ns
 
     def push(self, t_ns, *_):
-        """Return the readings that need nothing later than t_ns, as StreamImu.push does."""
+        """Return the readings that depend on nothing after t_ns, as StreamImu.push does."""
         readings = []
         while self._imu.next_ns + self._lead_ns <= t_ns:
             block = self._imu.advance(1)
@@ -38,17 +38,16 @@ class _ImuOfMotion:
 
 class SteeringChain:
     """
-    IMU and strapdown, and where they aid, velocity meter, GNSS and aided navigator.
+    IMU and strapdown; in aided runs also velocity meter, GNSS and aided navigator.
 
-    These are the stages of ``simulate`` and ``simulate_aided``, and the solutions have their bits;
-    a stage on which the solution to steer by does not depend is left out.
-
+    The stages are those of ``simulate`` and ``simulate_aided``, and the solutions have the same
+    bits. Stages that do not affect the solution used for steering are left out.
     Parameters
     ----------
     settings : SimulationSettings
     motion : GuidedMotion
     aided : AidedSimulationSettings, optional
-        With them the aided solution steers, else that of the strapdown.
+        If given, the aided solution steers; otherwise that of the strapdown.
     """
 
     def __init__(self, settings, motion, aided=None):
@@ -82,19 +81,19 @@ class SteeringChain:
 
     def push(self, t_ns, truth):
         """
-        Take the truth of an instant.
+        Process the truth of one instant.
 
         Parameters
         ----------
         t_ns : int
             Motion time, ns.
         truth : tuple
-            As of ``GuidedMotion.one``.
+            See ``GuidedMotion.one``.
 
         Returns
         -------
         list of (int, tuple)
-            The solutions that it completes: instant, and lat, lon, height, v_n, q_nb.
+            The solutions completed by it: instant, and lat, lon, height, v_n, q_nb.
         """
         lat, lon, height, v_n, q_nb, omega, f = truth
         if self._meter is not None:
@@ -110,14 +109,14 @@ class SteeringChain:
         return found
 
     def _arrived(self, source, fixes):
-        """Let fixes wait until the samples reach their arrival."""
+        """Keep fixes until the samples reach their arrival."""
         if fixes:
             waiting = self._aided.waiting
             waiting += [(fix.arrival_ns, source, fix) for fix in fixes]
             waiting.sort(key=lambda entry: entry[:2])
 
     def _navigate(self, reading, now_ns, truth):
-        """Take a reading, unless it is lost; return the solutions to steer by, one or none."""
+        """Process a reading unless it is lost; return a list of solutions to steer by."""
         t_ns, omega, f, _ = reading
         if self._errors is not None:
             omega, f = self._errors.step(t_ns, omega, f)
@@ -137,7 +136,7 @@ class SteeringChain:
 
     @staticmethod
     def _published(loop, sample):
-        """Return the instant and the solution that a NavigationLoop or None publishes, or none."""
+        """Return [(instant, solution)] that a NavigationLoop (or None) publishes, or []."""
         if loop is None:
             return []
         return [(sample[0], loop.navigator.solution) for *_, due in loop.run([sample]) if due]

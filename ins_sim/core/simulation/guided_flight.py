@@ -13,18 +13,18 @@ from ins_sim.core.timeseries.histories import SteeredStates, SteeringEstimates
 from ins_sim.settings.guidance import AIDED_SOLUTION, INS_SOLUTION
 from .guided_chain import SteeringChain
 
-# Control periods between two calls of progress.
+# Number of control periods between two calls of progress.
 PIECE = 1024
 
 
 @dataclass(frozen=True)
 class GuidedResult:
     """
-    How a guided motion was steered, at the control instants.
+    History of the steering at the control instants.
 
-    estimates: what the autopilot saw; states: where the vehicle was; notes: a sentence for each
-    kind of event; counts: pairs of why the autopilot did not steer, or 'limited', and the number
-    of such control instants.
+    estimates: what the autopilot received; states: true state of the vehicle; notes: a sentence
+    for each kind of event; counts: pairs of the reason why the autopilot did not steer, or
+    'limited', and the number of such control instants.
     """
 
     estimates: SteeringEstimates
@@ -37,25 +37,25 @@ def fly(settings, motion, aided=None, progress=None):
     """
     Steer a guided motion through a whole run; return the GuidedResult.
 
-    Afterwards the motion is known as it was flown, and the usual simulations of it, which give
-    the bits of the loop, follow without steering.
+    Afterwards the motion is known as flown. The usual simulations can then be run on it without
+    steering; they give the same bits as the loop.
 
     Parameters
     ----------
     settings : SimulationSettings
     motion : Motion
-        That of the settings. One that is not guided needs no steering: the result is None.
+        The motion of the settings. If it is not guided, nothing is done and None is returned.
     aided : AidedSimulationSettings, optional
-        With them the aided solution steers, unless guidance.topic is that of the strapdown;
-        without them that of the strapdown.
+        If given, the aided solution steers, unless guidance.topic is that of the strapdown;
+        otherwise the solution of the strapdown steers.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
 
     Raises
     ------
     ValueError
-        Where the run ends behind the last turning point, where the motion's control instants are
-        no samples, or as the stages do.
+        If the run ends after the last turning point, if the control instants of the motion are
+        not sampling instants, or as the stages do.
     """
     if not isinstance(motion, GuidedMotion):
         return None
@@ -84,7 +84,7 @@ def fly(settings, motion, aided=None, progress=None):
 
 
 def _who_steers(settings, aided, notes):
-    """Return the AidedSimulationSettings whose solution steers; None: that of the strapdown."""
+    """Return the AidedSimulationSettings whose solution steers, or None for the strapdown's."""
     topic = settings.motion_generator.guidance.topic
     if topic == INS_SOLUTION:
         aided = None
@@ -97,11 +97,11 @@ def _who_steers(settings, aided, notes):
 
 @paused_in_blocks
 def _periods(settings, motion, chain, steering, commands):
-    """Fly the run, append the SteeringCommands to commands, and yield the part done."""
+    """Fly the run, append the SteeringCommands to commands, and yield the fraction done."""
     generator = settings.motion_generator
     dt_ns, period = period_ns(generator.rate_hz), motion.period_ns
     first_ns = round(generator.start_s * 1e9)
-    # A channel of negative delay looks so far beyond the last instant.
+    # A channel with negative delay needs the motion this far beyond the last instant.
     span_ns = round(generator.duration_s * 1e9) // dt_ns * dt_ns + settings.lead_ns
     count = -(-span_ns // period)
     motion.begin(first_ns)

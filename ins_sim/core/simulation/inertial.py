@@ -1,4 +1,4 @@
-"""The whole chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
+"""The unaided chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -27,8 +27,8 @@ class SimulationResult:
     """
     One offline run: the truth, the solution and its errors at the output instants.
 
-    imu holds every reading; twin the errors of the same run with all delays zero (or None);
-    faults a sentence for each gap at which the strapdown started anew.
+    imu: all readings; twin: the errors of the same run with all delays zero, or None; faults: a
+    sentence for each gap at which the strapdown started anew.
     """
 
     truth: Truth
@@ -40,13 +40,13 @@ class SimulationResult:
 
 
 def imu_blocks(settings, motion):
-    """Yield blocks of ImuSamples of a whole run, from the motion or through the stream."""
+    """Yield ImuSamples of a whole run in blocks, from the motion or from streamed truth."""
     return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion))
 
 
 @paused_in_blocks
 def sensed_blocks(sensor, ideal):
-    """Yield what the instrument of ImuSensorSettings makes of blocks of the ideal one."""
+    """Yield blocks of the ideal IMU with the errors of ImuSensorSettings added."""
     sensed = SensedRun(sensor)
     for block in ideal:
         block = sensed.take(block)
@@ -56,10 +56,10 @@ def sensed_blocks(sensor, ideal):
 
 class SensedRun:
     """
-    The instrument of ImuSensorSettings in one run, without its ideal part.
+    Adds the instrument errors of ImuSensorSettings to ideal readings, for one run.
 
-    errors: its InstrumentErrors, or None of a perfect one.  Raises ValueError as ``with_errors``
-    does.
+    errors: its InstrumentErrors, or None for a perfect instrument.  Raises ValueError as
+    ``with_errors`` does.
     """
 
     def __init__(self, sensor):
@@ -68,12 +68,12 @@ class SensedRun:
                                 period_ns(sensor.rate_hz))
 
     def take(self, ideal):
-        """Return the ImuSamples that it makes of those of the ideal one, or of part of them."""
+        """Return ImuSamples with errors, given those of the ideal IMU; some may be held back."""
         return self._sampler.take(ideal if self.errors is None else self.errors.advance(ideal))
 
 
 def reading_count(generator, dt_ns):
-    """Return how many readings an IMU with a sampling period of dt_ns takes on the motion."""
+    """Return the number of readings of an IMU with sampling period dt_ns during the motion."""
     return _steps(generator) * period_ns(generator.rate_hz) // dt_ns + 1
 
 
@@ -86,7 +86,7 @@ def truth_blocks(generator, motion):
 
 
 def ideal_blocks(settings, motion):
-    """Yield blocks of ImuSamples of the IMU without the errors that ``sensed_blocks`` adds."""
+    """Yield blocks of ImuSamples without the errors that ``sensed_blocks`` adds."""
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
     if sensor.source == 'motion':
@@ -107,11 +107,11 @@ def ideal_blocks(settings, motion):
 @paused_in_blocks
 def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     """
-    Run the strapdown over blocks of ImuSamples, the truth coming from the motion.
+    Run the strapdown over blocks of ImuSamples, with the truth from the motion.
 
-    Yield (truth, states, errors) records of the output instants of each block.  A gap is handled
-    as on_fault says: the strapdown starts anew from truth, the sentence about it being appended to
-    the list faults, or ValueError is raised.  covariance: a FreeCovariance kept beside it.
+    Yield (truth, states, errors) records at the output instants of each block. A gap is handled
+    according to on_fault: the strapdown starts anew from the truth and a sentence is appended to
+    the list faults, or ValueError is raised.  covariance: a FreeCovariance to propagate, or None.
     """
     strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:
@@ -128,7 +128,7 @@ class StrapdownRun:
                                     settings.output_every, settings.on_fault, faults)
 
     def take(self, imu):
-        """Yield (truth, states, errors) of the output instants of ImuSamples."""
+        """Yield (truth, states, errors) at the output instants among ImuSamples."""
         t_ns = self._clock.instant(imu.t_ns)
         truth = self._motion.at(t_ns)
         for first, (states, errors), due in self._loop.run_block(t_ns, imu.omega, imu.f, truth):
@@ -136,7 +136,7 @@ class StrapdownRun:
 
 
 class RecentTruth:
-    """The truth of a motion; what was asked for last is not computed again."""
+    """The truth of a motion; repeated requests for the last instants are not recomputed."""
 
     def __init__(self, motion):
         self._motion, self._last = motion, None
@@ -157,10 +157,19 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
     Return the SimulationResult of SimulationSettings.
 
-    motion: that of settings.motion_generator; twin: also run with all delays zero; progress:
-    called with the fraction done; collect: called once for each history, it returns what takes
-    the blocks and gives the whole, such as Collected, which keeps it in memory.  Raises ValueError
-    where the settings name no run of finite length.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion of settings.motion_generator
+    twin : whether to repeat the run with all delays set to zero
+    progress : called with the fraction done
+    collect : called once for each history; returns an object that receives the blocks and gives
+        the whole, such as Collected, which keeps it in memory
+
+    Raises
+    ------
+    ValueError : if the run has no finite length
+
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -178,7 +187,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
     if settings.imu_sensor.source == 'stream':
-        # The IMU and the navigation ask for the truth at the same instants.
+        # IMU and navigation request the truth at the same instants.
         motion = RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
     blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
@@ -202,22 +211,22 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
 
 def withheld_readings(settings):
     """
-    Return how many readings at the end of a run wait for truth that does not come.
+    Return the number of readings at the end of a run that are missing, for lack of later truth.
 
-    A channel of negative delay reads what is still to come; on a stream of truth its last
-    readings would need truth from beyond the end.
+    A channel with negative delay reads the future; on streamed truth its last readings would need
+    truth from beyond the end.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     if sensor.source != 'stream':
         return 0
     lead_ns = -min(0, *sensor.gyro.delay_us.in_ns(), *sensor.accelerometer.delay_us.in_ns())
     dt_ns, span_ns = period_ns(sensor.rate_hz), _steps(generator) * period_ns(generator.rate_hz)
-    # The first one carries the first instant alone.
+    # The first one contains only the first instant.
     return span_ns // dt_ns - max(0, (span_ns - lead_ns) // dt_ns)
 
 
 def _until(last_ns, blocks):
-    """Yield the readings up to an instant: a twin has no others than the run itself."""
+    """Yield the readings up to an instant, so that a twin has the same readings as the run."""
     for block in blocks:
         if block.t_ns[-1] > last_ns:
             block = block[:int(np.searchsorted(block.t_ns, last_ns, side='right'))]
@@ -232,7 +241,7 @@ def _kept(blocks, store):
 
 
 def check_start(settings):
-    """Raise ValueError where nominal instants, multiples of the period, would miss the start."""
+    """Raise ValueError if nominal instants, multiples of the period, would not hit the start."""
     start_s, dt_ns = settings.motion_generator.start_s, period_ns(settings.imu_sensor.rate_hz)
     if settings.strapdown.imu_time == 'nominal' and round(1e9 * start_s) % dt_ns:
         raise ValueError(f'motion_generator: start_s is {start_s:.9g} s with imu_time nominal; '

@@ -1,4 +1,4 @@
-"""The NEES of an aided run: its errors, and those of what the filter estimates beside it."""
+"""NEES of an aided run: errors of the solution and of the other estimates of the filter."""
 
 import numpy as np
 
@@ -10,9 +10,9 @@ UNBIASED = (0.0, 0.0, 0.0)
 
 class ErrorNormaliser:
     """
-    Normalises the errors of the runs of AidedSimulationSettings by the filter's covariance.
+    Normalises the errors of runs of AidedSimulationSettings by the covariance of the filter.
 
-    errors: InstrumentErrors of the run, None of a perfect instrument.
+    errors: InstrumentErrors of the run, None for a perfect instrument.
     """
 
     def __init__(self, settings, errors):
@@ -34,8 +34,8 @@ class ErrorNormaliser:
         """
         Return NEES and degrees of freedom, (n, BLOCKS), at the output instants of an AidedResult.
 
-        Its notes are FilterNotes.  At the first instant, the start, the errors are those that were
-        drawn: there is none (NaN, 0).
+        Its notes must be FilterNotes. At the first instant the errors are the drawn initial errors,
+        which are not evaluated (NaN, 0).
         """
         errors = result.errors
         columns = (errors.attitude.tolist(), errors.velocity.tolist(), errors.position.tolist())
