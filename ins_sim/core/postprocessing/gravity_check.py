@@ -22,7 +22,7 @@ def check_gravity(force, limit):
     if abs(force - STANDARD_GRAVITY) <= limit:
         return
     what, way = next((guess for size, *guess in _GUESSES if abs(force - size) <= _PART * size),
-                      ('was gravity removed?' if force < 0.5 * STANDARD_GRAVITY else '', ''))
+                     ('was gravity removed?' if force < 0.5 * STANDARD_GRAVITY else '', ''))
     raise ValueError(f'mean specific force at rest is {force:.1f} m/s^2; expected 9.8'
                      + (f': {what}' if what else '')
                      + f' ({way}it may differ by alignment.gravity_m_s2, {limit:g})')

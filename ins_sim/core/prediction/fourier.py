@@ -1,4 +1,4 @@
-"""Fourier coefficients of a sampled period by fixed-order real arithmetic."""
+"""Fourier coefficients of a sampled period by real arithmetic in a fixed order."""
 
 import numpy as np
 
@@ -7,12 +7,14 @@ from ins_sim.core.numerics import elementary
 
 def fourier_coefficients(samples):
     """
-    Return real and imaginary parts (n, m) of the coefficients of a period, and their harmonics.
+    Return the Fourier coefficients of a period and their harmonics.
 
-    samples (n, m), n a power of two: the value is the sum of c_k exp(j 2 pi k t/T).  harmonics
-    (n,): k = 0, 1, ..., n/2 - 1, -n/2, ..., -1.  The transform is the self-sorting one of Stockham
-    with radix two, in additions and products of real arrays, so that its bits depend neither on
-    the processor nor on a library.
+    The signal is the sum of c_k exp(j 2 pi k t/T). The transform is the self-sorting one of
+    Stockham with radix two, in additions and products of real arrays, so that its bits depend
+    neither on the processor nor on a library.
+
+    samples (n, m): n a power of two.  Return the real and imaginary parts (n, m) and the harmonics
+    (n,): k = 0, 1, ..., n/2 - 1, -n/2, ..., -1.
     """
     count = len(samples)
     re, im = samples.reshape(count, 1, -1), np.zeros((count, 1, samples[0].size))

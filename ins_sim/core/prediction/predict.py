@@ -1,4 +1,4 @@
-"""Predicted drift and position error of a run, by the linear theory."""
+"""Predicted drift and position error of a run, by linear theory."""
 
 from dataclasses import dataclass
 
@@ -34,13 +34,18 @@ class PredictedErrors(History):
 @dataclass(frozen=True)
 class Prediction:
     """
-    What the linear theory expects of a run.
+    Prediction of a run by linear theory.
 
-    drift (3,) rad/s, East, North, Up; t_s (n,) since the start; position (n, 3) and attitude
-    (n, 3): error histories, m and rad; largest (3,): the largest |position|, m; resonances: list
-    of (name, rate of psi rad/s, drift there (3,) rad/s); turned: the largest attitude error, rad;
-    drift_bound, position_bound: what the theory, linear in the errors, may leave out of the drift,
-    rad/s, and of the position error, m.
+    Attributes
+    ----------
+    drift : (3,) mean drift, east, north, up, rad/s
+    t_s : (n,) time since the start
+    position, attitude : (n, 3) error histories, m and rad
+    largest : (3,) largest magnitude of the position error, m
+    resonances : list of (name, rate of psi in rad/s, drift there (3,) in rad/s)
+    turned : largest attitude error, rad
+    drift_bound, position_bound : bounds of the effects that linear theory leaves out, rad/s and m
+
     """
 
     drift: np.ndarray
@@ -58,9 +63,9 @@ def predict(settings, motion, collect=Collected) -> Prediction:
     """
     Return the Prediction of SimulationSettings.
 
-    motion: that of settings.motion_generator; collect: as of ``core.simulation.inertial``, or None
-    to do without t_s, attitude and position, which then are None.  Raises ValueError where the
-    settings name no run of finite length, NoPrediction for rotors that only RK4 damps.
+    motion: that of settings.motion_generator; collect: see ``core.simulation.inertial.simulate``;
+    with None t_s, attitude and position are not computed and are None.  Raises ValueError if the
+    run has no finite length, NoPrediction for rotors that are stable only with RK4.
     """
     check_length(settings.motion_generator, motion)
     run = _FineRun(settings, motion)
@@ -81,10 +86,11 @@ def predict(settings, motion, collect=Collected) -> Prediction:
 
 def _along_parallels(position, lat):
     """
-    Return position errors (n, 3) in the plane tangent at latitudes (n,) as they are measured.
+    Return position errors (n, 3) in the tangent plane at latitudes (n,), in measured coordinates.
 
-    East along the parallel and North along the meridian (``navigation.errors.position_error``),
-    to second order: a great circle that begins eastwards leaves the parallel by d^2 tan(lat) / 2R.
+    These are east along the parallel and north along the meridian
+    (``navigation.errors.position_error``), to second order: a great circle that starts eastwards
+    leaves the parallel by d^2 tan(lat) / 2R.
     """
     s, c = elementary.sincos(lat)
     per_r = s / c / ellipsoid.MEAN_RADIUS
@@ -94,12 +100,12 @@ def _along_parallels(position, lat):
 
 
 def _longest(vectors):
-    """Return the largest length of vectors (n, 3)."""
+    """Return the largest length among vectors (n, 3)."""
     return float(length(vectors).max())
 
 
 class _FineRun:
-    """The errors on a fine grid over the run, block by block."""
+    """The errors on a fine time grid over the run, block by block."""
 
     def __init__(self, settings, motion):
         generator, nav = settings.motion_generator, settings.strapdown
@@ -124,7 +130,7 @@ class _FineRun:
             late = LateAttitudeError(self._turns.at, self._fine_s)
             self._beta = lambda truth, omega_in, first: late.advance(truth, omega_in)
         else:
-            # The interval as the difference of the instants has it.
+            # Compute the interval as the difference of the instants, with the same rounding.
             count = self._steps * SUBSAMPLES
             step_s = (self._instant_s(count) - self._instant_s(0)) / count
             pair = PairAttitudeError(motion, self._gyro, self.tau, self._start_s, step_s,
@@ -143,7 +149,7 @@ class _FineRun:
                            initial.velocity_error_m_s, self._gravity)
         for first in range(0, last, BLOCK):
             stop = min(first + BLOCK, last)
-            # The slope of the specific force needs an instant on either side.
+            # The derivative of the specific force needs an instant on either side.
             before, behind = min(1, first), min(1, last - stop)
             k = np.arange(first - before, stop + behind + 1)
             truth = self._motion.at(_nanoseconds(self._instant_s(k)))
@@ -153,7 +159,7 @@ class _FineRun:
             s, c = elementary.sincos(truth.lat)
             self._steepest = max(self._steepest, float(abs(s / c).max()))
             omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, self._rotation)
-            # Attitude error in n without the turning of n.
+            # Attitude error in n, without the effect of the rotation of n.
             beta = self._beta(truth, omega_in, first)
             self._last_beta = beta[-1]
             self._swept += np.add.reduce(
@@ -164,35 +170,38 @@ class _FineRun:
                                                self._held_ns))
             attitude, position = model.advance(truth, omega_in, _to_n(truth, truth.f_ib_b),
                                                beta + turned, df_n)
-            # The figures of short delays keep their bits; their bound has room for it.
+            # Only for long delays: the published figures of short delays keep their bits, and
+            # their bound includes this effect.
             if self._turns.long:
                 position = _along_parallels(position, truth.lat[::SUBSAMPLES])
-            # The first step of a block is the last of the one before.
+            # The first step of a block is the last one of the previous block.
             kept = slice(before, None)
             steps = np.arange(first // SUBSAMPLES, stop // SUBSAMPLES + 1)
             yield PredictedErrors(STEP_S * steps[kept], attitude[kept], position[kept])
 
     def second_order(self, turned, far):
         """
-        Return a bound, m, of what is of second order in the largest errors, rad and m.
+        Return a bound, m, of the terms of second order in the largest errors, rad and m.
 
-        Half the square of a rotation is half of it times the position error that it makes; and a
-        position error is measured along parallels and meridians (``_along_parallels``).
+        For a rotation it is half the rotation times the position error that it causes. In
+        addition, a position error is measured along parallels and meridians
+        (``_along_parallels``).
         """
         angle = far / ellipsoid.MEAN_RADIUS
         return 0.5 * far * (turned + angle * (1.0 + 2.0 * self._steepest))
 
     def drift_bound(self, turned):
         """
-        Return a bound, rad/s, of what is of second order in the drift.
+        Return a bound, rad/s, of the terms of second order in the drift.
 
-        The rotation vector of an attitude error that grows by e grows by e + error x e / 2: twice
-        the area that it sweeps.  turned: the largest one, rad, for the next order.
+        If the attitude error grows by e, its rotation vector grows by e + error x e / 2; the
+        second term is twice the area that it sweeps. turned: largest error, rad, for the next
+        order.
         """
         return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)
 
     def drift(self):
-        """Return the mean drift (3,), rad/s, once the blocks have been made."""
+        """Return the mean drift (3,), rad/s, after all blocks have been computed."""
         motion, tau = self._motion, self.tau
         if self._gyro.model == 'ideal':
             if self._turns.long and motion.period_s:

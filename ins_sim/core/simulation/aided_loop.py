@@ -16,7 +16,7 @@ UNKNOWN = (NONE,) * 3
 
 
 class AidedLoop(NavigationLoop):
-    """A NavigationLoop that passes fixes to the navigator before the sample at which they arrive."""
+    """A NavigationLoop that passes fixes to the navigator before the sample of their arrival."""
 
     # Fixes that have not arrived yet: (arrival_ns, source, fix), in the order of arrival.
     waiting = ()

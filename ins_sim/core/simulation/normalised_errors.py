@@ -34,8 +34,8 @@ class ErrorNormaliser:
         """
         Return NEES and degrees of freedom, (n, BLOCKS), at the output instants of an AidedResult.
 
-        Its notes must be FilterNotes. At the first instant the errors are the drawn initial errors,
-        which are not evaluated (NaN, 0).
+        Its notes must be FilterNotes. At the first instant the errors are the drawn initial
+        errors, which are not evaluated (NaN, 0).
         """
         errors = result.errors
         columns = (errors.attitude.tolist(), errors.velocity.tolist(), errors.position.tolist())

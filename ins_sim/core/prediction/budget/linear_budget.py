@@ -8,16 +8,16 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from .propagation import navigation_span_s, Propagation
 
-# The instants of a budget divide the run by this; others are added to them.
+# Number of equal intervals between the instants of a budget; further instants may be added.
 INTERVALS = 360
-# Times that are nearer to each other are the same, s.
+# Times that differ by less than this are considered the same, s.
 SAME_S = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class LinearBudget:
     """
-    Covariances and means of the errors by source: position, velocity, attitude, East, North, Up.
+    Covariances and means of the errors by source: position, velocity, attitude, east, north, up.
 
     The attitude error is the inertial one, as in NavErrors.
 
@@ -27,12 +27,12 @@ class LinearBudget:
     lat : (n,) true latitude, rad
     random : ErrorSources that differ from run to run
     covariance : (random, n, 9, 9) m, m/s, rad
-    by_axis : (random, n, 3, 9) variances that the axes of the source make; of a source without
-        axes, all in the first
+    by_axis : (random, n, 3, 9) variances caused by each axis of the source; for a source without
+        axes everything is in the first
     fixed : ErrorSources that are the same in every run
     mean : (fixed, n, 9) errors, m, m/s, rad
-    beyond : (2,) of accelerometers and gyros, the part of the time in which an input is greater
-        than the instrument reads, which is left out of the budget
+    beyond : (2,) for accelerometers and gyros, fraction of the time in which an input exceeds the
+        range of the instrument; the budget ignores the saturation
 
     """
 
@@ -55,7 +55,7 @@ class LinearBudget:
         return np.add.reduce(np.concatenate([np.zeros((1, len(self.t_s), 9)), self.mean]))
 
     def at(self, t_s):
-        """Return the number of the instant t_s, s; ValueError where the budget has none then."""
+        """Return the index of the instant t_s, s; ValueError if the budget does not have it."""
         k = int(np.argmin(np.abs(self.t_s - t_s)))
         if abs(self.t_s[k] - t_s) > SAME_S:
             raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget, '
@@ -65,7 +65,7 @@ class LinearBudget:
 
 @paused_in_blocks
 def _propagated(run):
-    """Yield nothing; propagate with the garbage collector at rest."""
+    """Propagate with the garbage collector disabled; yield as the propagation does."""
     yield from run.blocks()
 
 
@@ -73,9 +73,17 @@ def error_budget(settings, motion, instants_s=()):
     """
     Return the LinearBudget of SimulationSettings.
 
-    motion: that of settings.motion_generator; instants_s: times since the start of the navigation,
-    s, that are wanted beside the even ones.  Raises ValueError where the settings name no run of
-    finite length, an instant lies outside of it, or no linear budget covers the errors.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion of settings.motion_generator
+    instants_s : times since the start of the navigation, s, in addition to the evenly spaced ones
+
+    Raises
+    ------
+    ValueError : if the run has no finite length, an instant is outside it, or the linear budget
+        does not cover the errors
+
     """
     check_length(settings.motion_generator, motion)
     model = settings.imu_sensor.gyro.model
@@ -99,6 +107,6 @@ def instants_of(settings, wanted_s):
             raise ValueError(f'the time is {t_s:g} s; expected a time of the navigation, 0 to '
                              f'{span_s:g} s')
     even = span_s * np.arange(INTERVALS + 1) / INTERVALS
-    # an instant that is even but for rounding is not taken twice
+    # Do not add an instant that equals an evenly spaced one except for rounding.
     others = [t_s for t_s in wanted.tolist() if np.abs(even - t_s).min() > SAME_S]
     return np.unique(np.concatenate([even, others]))

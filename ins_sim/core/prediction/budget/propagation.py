@@ -1,4 +1,4 @@
-"""The propagation of a budget through a run: blocks of intervals, and in turn what they add."""
+"""Propagate a budget through a run in blocks of intervals."""
 
 import math
 
@@ -17,14 +17,14 @@ from .sources import (ACCELEROMETER, CONSTANTS, GYRO, processes, random_sources,
                       start_sources)
 from .time_lanes import TimeLanes
 
-# Steps are at most this long, s, turn by at most this angle, rad, and are at least so many in a
-# period of the motion and in a time constant of a damped vertical channel.
+# Largest step, s; largest rotation in a step, rad; smallest number of steps in a period of the
+# motion and in a time constant of a damped vertical channel.
 STEP_S, STEP_RAD, PER_PERIOD = 0.05, 0.1, 20
-# Intervals are at most this long, s, and together have at most so many steps.
+# Largest interval, s, and largest total number of steps processed together.
 INTERVAL_S, STEPS_AT_ONCE = 10.0, 100_000
-# Looks at the motion for its fastest turning.
+# Number of instants at which the motion is searched for its fastest rotation.
 LOOKS = 1000
-# Columns of what a run has one number of: units of the errors at the start, and the constants of
+# Columns of what has a single value per run: unit initial errors, and the constant errors of
 # accelerometers and gyros.
 START, OF_TRIAD, FIXED = slice(0, 9), (slice(9, 18), slice(18, 27)), slice(27, None)
 
@@ -35,7 +35,7 @@ def navigation_start_s(settings):
 
 
 def navigation_span_s(settings):
-    """Return how long the strapdown of SimulationSettings navigates, s; ValueError if not."""
+    """Return how long the strapdown navigates, s; ValueError if the run ends before its start."""
     after_s, duration_s = (settings.strapdown.initial.after_s,
                            settings.motion_generator.duration_s)
     if not duration_s - after_s > 0.0:
@@ -53,8 +53,8 @@ class Propagation:
     Attributes
     ----------
     random, fixed : ErrorSources
-    covariances, by_axis, means, lat : lists by instant, entries as of LinearBudget
-    beyond : (2,) as of LinearBudget
+    covariances, by_axis, means, lat : lists by instant, entries as in LinearBudget
+    beyond : (2,) see LinearBudget
 
     """
 
@@ -68,7 +68,7 @@ class Propagation:
                          else (0.0, 0.0))
         errors = sensor.accelerometer.errors, sensor.gyro.errors
         dt_s = period_ns(sensor.rate_hz) * 1e-9
-        # refuses what no instrument has
+        # Raises ValueError for values that no instrument can have.
         models = [triad_model(e, dt_s, e.NAME) for e in errors]
         self._most = [[s or math.inf for s in model.saturation] for model in models]
         self.random = [*random_sources(errors[GYRO], errors[ACCELEROMETER]),
@@ -83,7 +83,7 @@ class Propagation:
         self.beyond, self._columns = np.zeros(2), None
 
     def blocks(self):
-        """Propagate block by block of intervals; yield the time of the end of each."""
+        """Propagate in blocks of intervals; yield the time at the end of each block."""
         edges, kept = self._edges()
         truth = self._motion.at(_nanoseconds(self._start_s + edges))
         self._keep_first(truth)
@@ -113,7 +113,7 @@ class Propagation:
         return np.concatenate(edges), kept
 
     def _step_s(self):
-        """Return how long a step may be, s."""
+        """Return the largest step, s."""
         t_ns = _nanoseconds(self._start_s + self.t_s[-1] * np.arange(LOOKS + 1) / LOOKS)
         fastest = float(length(self._motion.at(t_ns).omega_ib_b).max())
         step_s = min(STEP_S, STEP_RAD / max(fastest, 1e-9))
@@ -132,7 +132,7 @@ class Propagation:
                 part * lanes.h * lanes.steps)[-1]) / span_s
 
     def _fixed_means(self, lanes):
-        """Return the means (steps, 6, f, n) of what is the same in every run."""
+        """Return the means (steps, 6, f, n) of the errors that are the same in every run."""
         found = np.zeros((lanes.steps, 6, len(self._drivers), len(lanes.h)))
         for k, driver in enumerate(self._drivers):
             rows = slice(0, 3) if driver.source.triad == ACCELEROMETER else slice(3, 6)
@@ -156,7 +156,7 @@ class Propagation:
         self._columns = product(transition, self._columns) + added
 
     def _keep(self, lat, height):
-        """Keep what the sources make at an instant."""
+        """Store the covariances and means of all sources at an instant."""
         turn = level_turn(lat, height)
         columns = product(turn, self._columns)
         covariances = np.zeros((len(self.random), GROWING, GROWING))
@@ -173,7 +173,7 @@ class Propagation:
         self.lat.append(lat)
 
     def _by_axis(self, source, columns, turn):
-        """Yield the covariances that the axes of a random source make; of the start one."""
+        """Yield the covariance for each axis of a random source, or for a source of the start."""
         if source.triad is None:
             x = columns[:, list(START_AXES[source.kind])] * source.si[0]
             yield product(x, x.T)
@@ -198,7 +198,7 @@ class Propagation:
 
 
 def _combined(columns, axes, values):
-    """Return the sum of start columns times values, (9,)."""
+    """Return the sum of the initial-error columns times values, (9,)."""
     found = np.zeros(GROWING)
     for axis, value in zip(axes, values):
         found += columns[:, axis] * value
