@@ -1,4 +1,4 @@
-"""A live IMU gives the bits of ``ins_sim navigate`` over its recording."""
+"""A live IMU without simulated truth gives the same bits as ``ins_sim navigate`` on its record."""
 
 from dataclasses import replace
 import math
@@ -21,14 +21,14 @@ PLACE = {'initial.latitude_deg': 50.0, 'initial.longitude_deg': 8.0, 'initial.he
 
 
 def offline(imu, fixes, values):
-    """Return the NavigationResult over a record."""
+    """Return the NavigationResult of a record."""
     sources = Sources('record', imu, 'imu', reference_of(fixes) if fixes else None)
     return navigate(build(NavigateSettings, values), sources)
 
 
 @pytest.mark.parametrize('late_s', [0.0, 0.35])
 def test_a_coarse_imu_that_takes_the_course_of_its_fixes(late_s):
-    """The start waits for the course; what waited is navigated then, from the standstill on."""
+    """The start waits for the course; the samples since the standstill are navigated then."""
     imu, fixes = vehicle()
     said = play(stage_of(), imu, fixes, round(late_s * 1e9))
     result = offline(imu, fixes, {})
@@ -38,7 +38,7 @@ def test_a_coarse_imu_that_takes_the_course_of_its_fixes(late_s):
 
 
 def test_a_fine_imu_that_sees_the_earth_turn():
-    """Gyrocompass and position from the fixes on both sides of the end of the standstill."""
+    """Gyrocompass; the position is interpolated between the fixes around the standstill's end."""
     imu, fixes = vehicle(noise=(1e-7, 1e-4), bias=(0.0, 0.0, 0.0))
     known = {'alignment.gyro_bias_sigma_deg_h': 0.01}
     said, result = play(stage_of(known), imu, fixes), offline(imu, fixes, known)
@@ -48,7 +48,7 @@ def test_a_fine_imu_that_sees_the_earth_turn():
 
 @pytest.mark.parametrize('kind', ['instant', 'integrated', 'rotation_vector'])
 def test_a_given_start(kind):
-    """Everything is given: the first sample is the start."""
+    """With all initial values given, the first sample is the start."""
     imu, _ = vehicle()
     given = {**PLACE, 'initial.heading_deg': 70.0, 'initial.roll_deg': 1.0, 'input': kind,
              'initial.velocity_m_s': (1.0, 2.0, 0.5)}
@@ -71,7 +71,7 @@ def test_a_start_from_a_fix():
 
 
 def test_a_mounting_found_by_level():
-    """The turn that brings the mean force up, from the same standstill."""
+    """The mounting that brings the mean force up is found from the same standstill."""
     imu, fixes = vehicle()
     imu = imu.turned(quaternion.exponential((1.0, 0.2, 0.0)))
     values = {'mounting.source': 'level', 'mounting.rpy_deg': (0.0, 0.0, 20.0)}
@@ -80,10 +80,11 @@ def test_a_mounting_found_by_level():
 
 def test_jitter_strays_repeats_and_gaps():
     """
-    Stamps that jitter, go back, repeat or leap, readings that are no numbers, and gaps.
+    Stamps that jitter, go back, repeat or leap; readings that are not finite; and gaps.
 
-    Offline sees all of the record, and drops the fewest samples; live, one sample is seen after
-    the other.  What was published at a stamp ahead of its time stays, and nothing behind it.
+    Offline the whole record is known and the fewest samples are dropped; live, samples are seen
+    one after the other. A solution already published at a stamp that is too early stays, and
+    later samples before that stamp are not used.
     """
     imu, fixes = vehicle(length_s=50.0)
     rng = np.random.default_rng(4)
@@ -101,7 +102,8 @@ def test_jitter_strays_repeats_and_gaps():
     said = play(stage_of(), imu, fixes)
     result = offline(imu, fixes, {'on_gap': 'bridge', 'longest_bridge_s': 1.0})
     assert len(result.states) == 1 and '2 gaps bridged' in ' '.join(result.notes)
-    # published before it was known to be ahead of its time, and the one that is behind it
+    # Live, the sample ahead of its time is published before it is known to be; the one after it
+    # is then dropped.
     states = result.states[0]
     assert np.setdiff1d(said.t_ns, states.t_ns) == t_ns[1700]
     assert np.setdiff1d(states.t_ns, said.t_ns) == t_ns[1701]
@@ -110,7 +112,7 @@ def test_jitter_strays_repeats_and_gaps():
     for part in ('holds what is no number', 'repeats the stamp', 'goes back from',
                  'ahead of its time', 'bridged by straight lines'):
         assert said.has(part), part
-    # the first one where two samples of the standstill are left out
+    # The first gap is where two samples of the standstill are left out.
     assert said.stage.gaps == 3
 
 
@@ -141,7 +143,7 @@ def test_the_recorded_car_from_a_given_start(shared_data):
 
 
 def test_the_recorded_flight_from_its_standstill(shared_data):
-    """The circuit flight: aligned on the ground with a given place and heading, 670 s."""
+    """The circuit flight, 670 s: aligned on the ground with given position and heading."""
     imu, _ = csv_imu.read_imu(shared_data / 'imu_ref' / 'umn_thor_fl75_imu.csv.gz')
     given = {**FRD, 'initial.latitude_deg': 45.3288, 'initial.longitude_deg': -93.231,
              'initial.height_m': 249.3, 'initial.heading_deg': 30.0, 'initial.heading': 'given',
@@ -152,7 +154,7 @@ def test_the_recorded_flight_from_its_standstill(shared_data):
 
 
 def test_the_settings_are_those_of_navigate():
-    """What both have in common has the same defaults, of which the bits depend."""
+    """Settings common to both have the same defaults; equal bits depend on them."""
     live, recorded = build(type(stage_of().stage._s), LIVE), NavigateSettings()
     assert live.alignment == recorded.alignment and live.gaps.factor == recorded.gap_factor
     assert live.mounting.rpy_deg == recorded.mounting.rpy_deg

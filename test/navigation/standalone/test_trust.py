@@ -1,4 +1,4 @@
-"""What a self-alignment claims, and what it is worth (specification of stacks, section 5)."""
+"""Standard errors that self-alignment claims, and the actual errors (specification, section 5)."""
 
 import math
 
@@ -20,7 +20,7 @@ BIAS_DEG_H = {'imu_tactical_fog': 1.0, 'imu_tactical_mems': 10.0, 'imu_navigatio
 
 
 def at_rest(preset, seed, length_s, heading_deg):
-    """Return the RecordedImu of a preset at rest, 100 Hz, its latitude, rad, and true q_nb."""
+    """Return the RecordedImu of a preset at rest, 100 Hz; its latitude, rad; and the true q_nb."""
     chosen = parameter_files.read([resources.config(preset)], [
         'motion.kind:=static', f'motion.psi_deg:={-heading_deg}', f'duration_s:={length_s}',
         f'seed:={seed}', 'source:=motion', 'output:=integrated', 'input:=integrated'])
@@ -42,11 +42,11 @@ def heading_error(q_nb, true):
 @pytest.mark.parametrize('preset', ['imu_tactical_fog', 'imu_tactical_mems'])
 def test_no_draw_is_trusted_that_is_out_by_three_sigma(preset, capsys):
     """
-    24 draws, 30 s at rest, with the default sigma of the bias and with the true one: none is
-    trusted, for the bias alone makes 6.8 deg and more.
+    No gyrocompass alignment that is trusted errs by more than three sigma.
 
-    Whoever takes headings of up to 69 deg of sigma gets trusted ones, with the true sigma: of
-    these, too, none is out by more than three sigma.
+    24 draws, 30 s at rest, with the default and with the true sigma of the gyro bias: none is
+    trusted, because the bias alone causes 6.8 deg and more. If headings with a sigma of up to 69
+    deg are accepted, some are trusted with the true sigma; none errs by more than three sigma.
     """
     true_sigma, trusted = BIAS_DEG_H[preset], dict.fromkeys(('default', 'true', 'wide'), 0)
     for seed in range(24):
@@ -65,7 +65,7 @@ def test_no_draw_is_trusted_that_is_out_by_three_sigma(preset, capsys):
 
 
 def test_the_sigma_is_noise_and_bias_together():
-    """hypot(noise, bias sigma / (15.04 deg/h cos(latitude)))."""
+    """Sigma of the heading is hypot(noise, bias sigma / (15.04 deg/h cos(latitude)))."""
     imu, lat, _ = at_rest('imu_tactical_fog', 1, 10.0, 40.0)
     still = find_standstill(imu, AlignmentSettings())
     compass = alignment.gyrocompass(still, lat, 1.0 / DEG_PER_HOUR)
@@ -76,12 +76,12 @@ def test_the_sigma_is_noise_and_bias_together():
 
 def test_what_two_instruments_reach(capsys):
     """
-    Standard errors over 8 draws: those of the specification.
+    Standard errors over 8 draws are those of the specification.
 
-    A navigation-grade RLG has less than 1 deg after 5 s and 0.1 deg after 60 s (here with the bias
-    of its data sheet, to the 15 % of an estimate from 15 frequencies); the noise of a tactical FOG
-    less than 1 deg after 25 s, and its bias of 1 deg/h leaves 6.8 deg at latitude 55.75 deg.  The
-    errors of the RLG are within three of its sigmas.
+    A navigation-grade RLG has less than 1 deg after 5 s and 0.1 deg after 60 s (here including the
+    bias of its data sheet, and to within the 15 % of an estimate from 15 frequencies). The noise
+    of a tactical FOG causes less than 1 deg after 25 s, and its bias of 1 deg/h causes 6.8 deg at
+    latitude 55.75 deg. The errors of the RLG are within three of its sigmas.
     """
     rows = {}
     for preset, lengths in (('imu_navigation_rlg', (5.0, 60.0)), ('imu_tactical_fog', (25.0,))):

@@ -1,4 +1,4 @@
-"""Input that no start can be made of, and headings from elsewhere: one sentence each."""
+"""Input that allows no start, and headings from other sources: one sentence each."""
 
 from dataclasses import replace
 import math
@@ -12,7 +12,7 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.earth.atmosphere import pressure, pressure_height
 from ins_sim.core.navigation.errors import position_error
 
-# Rest for 8 s is enough.
+# A standstill of 8 s is enough.
 SHORT = {'alignment.longest_s': 8.0, 'alignment.shortest_s': 5.0}
 GIVEN = {**SHORT, 'initial.heading': 'given', 'initial.heading_deg': math.degrees(1.2)}
 
@@ -23,7 +23,7 @@ def headings(said):
 
 
 def test_alignment_on_the_move_is_never_trusted():
-    """A vehicle that shakes has no standstill; one that goes on steadily has fixes that move."""
+    """A shaking vehicle has no standstill; the fixes show that a uniformly moving one moves."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     rng = np.random.default_rng(2)
     shaken = replace(imu, f=imu.f + 0.5 * rng.standard_normal((len(imu), 3)))
@@ -35,7 +35,7 @@ def test_alignment_on_the_move_is_never_trusted():
 
 
 def test_a_standstill_that_is_cut_short_begins_anew():
-    """Three seconds are too short; the next one serves."""
+    """A standstill of 3 s is too short; the next one is used."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     f = imu.f.copy()
     f[160:180, 0] += 2.0
@@ -49,7 +49,7 @@ def test_a_standstill_that_is_cut_short_begins_anew():
     (1000.0 / 9.80665, 'is it in mg?'), (0.0, 'was gravity removed?')])
 @pytest.mark.parametrize('source', ['alignment', 'given'])
 def test_another_unit_of_the_accelerometers(scale, part, source):
-    """It is named, and nothing is navigated."""
+    """The wrong unit is named, and nothing is navigated."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0, noise=(2e-4, 1e-4))
     values = SHORT if source == 'alignment' else {'initial.source': 'given'}
     said = play(stage_of(values), replace(imu, f=scale * imu.f), fixes)
@@ -57,7 +57,7 @@ def test_another_unit_of_the_accelerometers(scale, part, source):
 
 
 def test_upside_down():
-    """It is navigated as it is, and what to set is said."""
+    """An IMU mounted upside down is navigated, with a warning that names the parameter to set."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     turn = quaternion.exponential((math.pi, 0.0, 0.0))
     said = play(stage_of(GIVEN), imu.turned(turn), fixes)
@@ -69,7 +69,7 @@ def test_upside_down():
 
 
 def test_zeros_in_turns():
-    """A driver that sends rates and forces in turns is named."""
+    """A driver that sends rates and forces in turns is reported."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0, noise=(2e-4, 1e-3))
     f = imu.f.copy()
     f[::10] = 0.0
@@ -78,7 +78,7 @@ def test_zeros_in_turns():
 
 
 def test_readings_that_are_no_numbers():
-    """They are left out and counted."""
+    """Readings that are not finite are dropped and counted."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     f = imu.f.copy()
     f[100:110] = np.inf
@@ -88,7 +88,7 @@ def test_readings_that_are_no_numbers():
 
 
 def test_a_long_gap_begins_anew():
-    """Behind it a standstill is needed again; a given state holds no longer."""
+    """After a long gap a standstill is needed again, and a given state is no longer valid."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     kept = np.ones(len(imu), dtype=bool)
     kept[1000:1200] = False
@@ -102,7 +102,7 @@ def test_a_long_gap_begins_anew():
 
 
 def test_a_clock_that_jumps_back():
-    """Ten samples in order show it; the alignment begins anew there."""
+    """A backward clock jump is detected after ten ordered samples; the alignment starts anew."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     stage = play(stage_of(GIVEN), imu, fixes)
     said = play(stage, replace(imu, t_ns=imu.t_ns - 10**12),
@@ -111,7 +111,7 @@ def test_a_clock_that_jumps_back():
 
 
 def test_a_fix_of_another_clock():
-    """It is dropped in a sentence, and those behind it are used."""
+    """A fix from another clock is dropped with one sentence; later fixes are used."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     fixes.insert(4, fixes[4]._replace(t_ns=fixes[4].t_ns + 10**12))
     said = stage_of(GIVEN)
@@ -122,7 +122,7 @@ def test_a_fix_of_another_clock():
 
 
 def test_a_solution_that_runs_away():
-    """It ends, once, in a sentence."""
+    """A diverging solution ends once, with one sentence."""
     imu, _ = vehicle(length_s=10.0, rest_s=10.0)
     said = play(stage_of({'initial.source': 'given', 'initial.height_m': 9.9e5,
                           'initial.velocity_m_s': (0.0, 0.0, 9e3)}), imu)
@@ -132,7 +132,7 @@ def test_a_solution_that_runs_away():
 @pytest.mark.parametrize('declination', [0.0, 0.12])
 @pytest.mark.parametrize('turn', [(0.0, 0.0, 0.0), (0.3, -0.2, 0.0)])
 def test_a_heading_by_the_magnetic_field(declination, turn):
-    """Compensated for tilt: dip and roll do not matter; declination does."""
+    """The magnetic heading is tilt-compensated: dip and roll do not matter; declination does."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0, noise=(2e-4, 1e-4))
     turn = quaternion.exponential(turn)
     imu = imu.turned(quaternion.conjugate(turn))
@@ -143,7 +143,7 @@ def test_a_heading_by_the_magnetic_field(declination, turn):
                                           2e-5 * math.cos(declination), -4e-5))
     for t_ns in imu.t_ns[::5].tolist():
         said.stage.push_field(t_ns, field)
-    # nothing is mounted before the first reading
+    # The mounting is not known before the first reading.
     said.stage.push_imu(int(imu.t_ns[0]), tuple(imu.omega[0]), tuple(imu.f[0]))
     for t_ns in imu.t_ns[::5].tolist():
         said.stage.push_field(t_ns, field)
@@ -154,7 +154,7 @@ def test_a_heading_by_the_magnetic_field(declination, turn):
 
 
 def test_a_field_that_is_not_the_earths():
-    """Levelled alone, and the reason is in the warning."""
+    """With an implausible field the solution is only levelled, and the warning says why."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0)
     said = stage_of(SHORT | {'initial.heading': 'magnetometer'})
     for t_ns in imu.t_ns[::5].tolist():
@@ -171,14 +171,14 @@ def test_a_start_on_the_move_by_the_course_of_fixes():
     t_ns, (lat, lon, height, v, _) = said.solved[0][:2]
     assert abs(headings(said) - 1.2) < 1e-6 and said.has('start on the move')
     after = next(f for f in fixes if f.t_ns > t_ns)
-    # at 1 m/s^2 the next second is 1 m longer than the last one
+    # At 1 m/s^2 the vehicle travels 1 m more in the next second than in the last one.
     way = math.hypot(*position_error(lat, lon, height, *after.place)[:2])
     assert way < math.hypot(*v[:2]) + 1.0
     assert abs(math.atan2(v[0], v[1]) - 1.2) < 1e-6 and math.hypot(*v) > 4.0
 
 
 def test_a_late_course_gives_way_to_what_there_is():
-    """Fixes that never go 20 m: the search ends, and the solution is levelled alone."""
+    """If the fixes never move 20 m the search ends, and the solution is only levelled."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     said = play(stage_of(SHORT | {'alignment.course_search_s': 10.0}), imu, fixes)
     assert said.has('moves 0 m on one course within 10 s') and not said.stage.located
@@ -186,7 +186,7 @@ def test_a_late_course_gives_way_to_what_there_is():
 
 
 def test_pressure_and_height_are_inverse():
-    """In every layer, and beyond the last one."""
+    """Pressure and height are inverse functions in every layer, and above the last one."""
     for height in (-400.0, 0.0, 1000.0, 11000.0, 15000.0, 25000.0, 40000.0, 50000.0, 60000.0,
                    80000.0, 90000.0):
         assert abs(pressure_height(pressure(height)) - height) < 1e-6
