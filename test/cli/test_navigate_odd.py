@@ -124,7 +124,7 @@ def test_a_force_in_g_or_without_gravity_can_be_navigated(navigated):
     """units.force reads it as it is; alignment.gravity_m_s2 takes it as it is."""
     bag = {('/imu', IMU): at_rest(-FORCE / 9.8 + 1e-4 * NOISE[0])}
     got = navigated(bag, *GIVEN, *HEADED, 'units.force:=g')
-    assert 'does it measure gravity instead of specific force' in notes_of(got)
+    assert 'does the IMU measure gravity instead of specific force' in notes_of(got)
     assert abs(got['figures']['gravity_excess_m_s2']) < 0.03
     assert navigated(bag, *GIVEN, *HEADED, 'alignment.gravity_m_s2:=1e3')['figures']
     assert abs(abs(got['figures']['roll_deg']) - 180.0) < 0.1
