@@ -18,9 +18,9 @@ from support.studies import spread
 
 RUNS = 16
 EVERY_NS = 60 * 10**9
-# horizontal position and velocity, and attitude: what aids and sensors can move
+# Horizontal position and velocity, and attitude: the states that aids and sensors affect.
 STATES = [0, 1, 3, 4, 6, 7, 8]
-# errors of the model and no others: biases, and white noise
+# Only errors that are in the model: biases, and white noise.
 IMU = ('gyro.errors.turn_on_bias_sigma_deg_h:=[0.05, 0.05, 0.05]',
        'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
        'accelerometer.errors.turn_on_bias_sigma_ug:=[200.0, 200.0, 200.0]',
@@ -35,7 +35,7 @@ CASES = {'velocity meter': ('window.cycles:=100',),
 
 
 class StampedAtItsEnd(ErrorStateFilter):
-    """The mean of the window taken for the velocity at its end, as conventional filters do."""
+    """Uses the mean over the window as the velocity at its end, as conventional filters do."""
 
     def velocity_model(self, ins, fix):
         """Compare the fix with the present velocity, on which eta has no effect."""
@@ -50,10 +50,11 @@ class StampedAtItsEnd(ErrorStateFilter):
 
 def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch, figures):
     """
-    Ten minutes on a straight leg, the heading weaving: NIS 2 of two, and 82.
+    The mean NIS is 2 with the exact model, and 82 if the mean is used as the velocity at the end.
 
-    NIS of 60 fixes, 95 % chi-square interval; of the other within a quarter of what the weave
-    makes of the lateral velocity in the window, 1.05 V A / sqrt 2.
+    Ten minutes on a straight leg with weaving heading. The NIS of 60 fixes is within the 95 %
+    chi-square interval; that of the wrong filter is within a quarter of the value caused by the
+    weave of the lateral velocity in a window, 1.05 V A / sqrt 2.
     """
     points = ('motion.route.points.latitude_deg:=[55.0, 57.0]',
               'motion.route.points.longitude_deg:=[37.0, 39.0]', 'motion.route.wind_m_s:=0.0')
@@ -82,7 +83,7 @@ def consistency_of(assignments):
 
 
 def by_time(entry):
-    """Return what fixes are sorted by."""
+    """Return the key by which fixes are sorted."""
     return entry[:2]
 
 
@@ -120,10 +121,10 @@ def consistency(assignments, run):
 @pytest.mark.parametrize('case', CASES)
 def test_errors_and_innovations_are_as_large_as_the_filter_says(case, figures):
     """
-    NEES of 16 runs at each minute, and NIS of all fixes, in their 95 % chi-square intervals.
+    NEES of 16 runs at each minute, and NIS of all fixes, are in their 95 % chi-square intervals.
 
-    Ten minutes are looked at, one of which may lie outside by chance, as 1 in 20 do; their mean
-    lies in the interval of one of them, as what is left of the errors goes on from one to another.
+    One of the ten minutes may be outside by chance, as 1 in 20 are. The mean over the minutes must
+    be in the interval of a single one, because the errors of successive minutes are correlated.
     """
     found = spread(consistency, [CASES[case]] * RUNS, range(RUNS))
     nees = np.mean([f[0] for f in found], axis=0)

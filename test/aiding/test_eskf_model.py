@@ -1,9 +1,9 @@
 """
-Every matrix of a linear error model of an aiding filter against differences of two flights.
+Check every matrix of the linear error models of the aiding filters against differences of flights.
 
-Parametrised over the filters of the table that name states; a filter that is added to the table
-is checked without a change here. Errors are added by the filter's own ``correct``, so that its
-signs are checked too.
+The tests run for all filters of the table that name states; a new filter of the table is checked
+without a change here. Errors are added with the filter's own ``correct``, so that its signs are
+checked too.
 """
 
 import math
@@ -30,19 +30,19 @@ LEVER = (2.0, -1.0, 0.5)
 CASES = {'cruise': ((150.0, 130.0, 0.0), 0.3, (0.0, 0.0, 0.001)),
          'climbing turn': ((-180.0, 60.0, 12.0), 2.1, (0.01, 0.02, 0.02))}
 LINEAR = [name for name in FILTERS if filter_class(name).states]
-# Errors that are added: so large that rounding does not matter, so small that they act linearly.
+# Errors that are added: large enough for rounding, small enough for linearity.
 SIZES = {'position': 10.0, 'velocity': 0.1, 'attitude': 1e-4, 'accelerometer_bias': 1e-3,
          'acceleration': 1e-3, 'gyro_bias': 1e-5}
 OWN_SIZE = 1e-4
-# Bounds of a row beside a part of its entry, for the effect of the added error: rounding, and for
-# the vertical velocity the change of gravity with latitude and the square of height, which the
-# model leaves out. Of the mean velocity: the third order in time, over the length of the window.
+# Absolute bounds in addition to a relative one, for the effect of the added error: rounding, and
+# for the vertical velocity the change of gravity with latitude and with the square of height,
+# which the model neglects. For the mean velocity: third order in time, over the window length.
 FLOORS = {'position': 2e-7, 'velocity': 1e-11, 'velocity_u': 2e-8, 'attitude': 1e-13,
           'accelerometer_bias': 1e-15, 'acceleration': 1e-15, 'gyro_bias': 1e-17}
 MEAN_FLOOR = 2e-8 / TIME_S
-# Terms of second order in time are summed over ten steps, which resolves them to a tenth.
+# Terms of second order in time are summed over ten steps, so that they are accurate to a tenth.
 GRAIN = 1.2 / STEPS
-# The strapdown resolves an increment in the axes of the start of a step, off by rate x step.
+# The strapdown resolves an increment in the axes at the start of a step: error of rate x step.
 STEP_GRAIN = 1e-3
 
 
@@ -108,7 +108,7 @@ def errors(one, other):
 
 
 def size_of(state):
-    """Return the error of a state that is added."""
+    """Return the size of the error to add to a state."""
     return SIZES.get(state.rpartition('_')[0], OWN_SIZE)
 
 
@@ -130,7 +130,7 @@ def check_transition(cls, case):
             apart = abs(0.5 * (up[state] - down[state]) - phi[row, k] * size)
             assert apart <= bound, (state, states[k], apart, part)
             worst = max(worst, apart / bound)
-        # The rows of the filter's own states, as far as they act on the innovation.
+        # Check the rows of the filter's own states through their effect on the innovation.
         _, h = nominal.velocity()
         expected, of_now = h[:, k], 0.0
         if cls.observed_at == 'end':
@@ -151,7 +151,7 @@ def check_present(cls, case, model):
     assert h.shape == (len(z), len(cls.states))
     for k, size in enumerate(map(size_of, cls.states)):
         up, down = (model(nominal.with_error(k, s), nominal)[0] for s in (size, -size))
-        # Rounding of 6e6 m over the change, and the curvature of the Earth over 10 m.
+        # Rounding of 6e6 m relative to the change, and the curvature of the Earth over 10 m.
         np.testing.assert_allclose((up - down) / (2.0 * size), h[:, k], rtol=1e-6,
                                    atol=1e-9 + 1e-11 / size, err_msg=cls.states[k])
     return h
@@ -165,7 +165,7 @@ def velocity_model(flight, nominal):
 @pytest.mark.parametrize('case', CASES.values(), ids=CASES)
 @pytest.mark.parametrize('name', LINEAR)
 def test_transition_is_the_derivative_of_the_strapdown(name, case):
-    """Over ten samples; a wrong sign would be twice its part of the entry, see GRAIN."""
+    """The transition over ten samples agrees with differences; a wrong sign would show (GRAIN)."""
     worst = check_transition(filter_class(name), case)
     print(f'{name}: largest deviation, in parts of its bound: {worst:.3f}')
 
@@ -173,26 +173,26 @@ def test_transition_is_the_derivative_of_the_strapdown(name, case):
 @pytest.mark.parametrize('case', CASES.values(), ids=CASES)
 @pytest.mark.parametrize('name', [n for n in LINEAR if filter_class(n).observed_at == 'end'])
 def test_velocity_matrix_is_the_derivative_of_the_innovation(name, case):
-    """By present errors; that of errors at the start of the window is checked with the above."""
+    """With respect to present errors; for errors at the start of the window see the test above."""
     check_present(filter_class(name), case, velocity_model)
 
 
 @pytest.mark.parametrize('case', CASES.values(), ids=CASES)
 @pytest.mark.parametrize('name', [n for n in LINEAR if FILTERS[n].takes_gnss])
 def test_gnss_matrix_is_the_derivative_of_the_innovation(name, case):
-    """Position and velocity of the antenna, with its lever arm."""
+    """Position and velocity of the antenna agree with differences, including its lever arm."""
     check_present(filter_class(name), case, Flight.gnss)
 
 
 def test_every_filter_with_a_covariance_is_checked():
-    """A filter that reports standard deviations names its states."""
+    """A filter that reports standard deviations names its states, so that it is checked."""
     weighing = [name for name in FILTERS
                 if filter_class(name).sigmas is not AidingFilter.sigmas]
     assert weighing == LINEAR and {'window_kf', 'eskf'} <= set(LINEAR)
 
 
 def test_the_eskf_observes_what_it_should():
-    """The velocity meter by five states, GNSS by position, velocity, attitude and gyro bias."""
+    """The meter depends on five states; GNSS on position, velocity, attitude and gyro bias."""
     case = CASES['climbing turn']
     for model, observed in (
             (velocity_model, ('eta_x', 'eta_y', 'mounting', 'scale_x', 'scale_z')),
@@ -246,6 +246,6 @@ class WrongAntenna(ErrorStateFilter):
     (WrongTransition, check_transition, ()), (WrongMean, check_transition, ()),
     (WrongMeter, check_present, (velocity_model,)), (WrongAntenna, check_present, (Flight.gnss,))])
 def test_a_wrong_matrix_is_found(cls, check, more):
-    """Each check fails for one wrong entry."""
+    """Each check fails if one entry of its matrix is wrong."""
     with pytest.raises(AssertionError):
         check(cls, CASES['climbing turn'], *more)

@@ -1,4 +1,4 @@
-"""The paper's scheme as printed and corrected: what a turn does to it, and where it is stable."""
+"""The scheme of Ivanov (2015) as printed and corrected: its error in turns, and its stability."""
 
 import math
 
@@ -16,9 +16,9 @@ EXACT = {'initial.velocity_sigma_m_s': 0.0, 'initial.tilt_sigma_mrad': 0.0,
 
 def fly(motion, filter_name, windows, gain=0.4, bias=(0.0, 0.0), offset=(0.0, 0.0)):
     """
-    Return the Results of perfect fixes, and the errors of acceleration left after each.
+    Return the results of perfect fixes, and the acceleration errors that remain after each.
 
-    bias: forward and left, m/s^2, added to perfect readings; offset, m/s, to the fixes.
+    bias: added to perfect readings, forward and left, m/s^2; offset: added to the fixes, m/s.
     """
     navigator = AidedNavigator(build(AidedNavigatorSettings, {
         **EXACT, 'filter': filter_name, 'gain': gain, 'window.cycles': CYCLES}))
@@ -35,11 +35,12 @@ def fly(motion, filter_name, windows, gain=0.4, bias=(0.0, 0.0), offset=(0.0, 0.
 
 def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2(figures):
     """
-    Perfect data in a flat turn of 1.2 deg/s at 200 m/s: 2 w V = 8.378 m/s^2; corrected: none.
+    In a flat turn with perfect data the printed scheme sees an error of 8.378 m/s^2, ours zero.
 
-    Bounds: in 40 s the meridians converge by 1e-5 of the turn, and its radii change by as much,
-    so that the printed innovation is 2 w V within 1e-4.  The corrected scheme is exact in a turn;
-    there the attitude rounds in each step and tilts gravity, by 2^-52 at most in each of 4000.
+    At 1.2 deg/s and 200 m/s, 2 w V = 8.378 m/s^2. Bounds: in 40 s the meridians converge by 1e-5
+    of the turn, and its radii change by as much, so that the printed innovation is 2 w V within
+    1e-4. The corrected scheme is exact in a turn; rounding of the attitude tilts gravity by at
+    most 2^-52 in each of 4000 steps.
     """
     printed, _ = fly(circle(), 'paper', 4)
     corrected, _ = fly(circle(), 'paper_corrected', 4)
@@ -56,7 +57,7 @@ def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2(figures):
 
 
 def test_the_printed_scheme_refuses_a_turn_and_says_so():
-    """Nothing is corrected, and the reason names the way out."""
+    """In a turn nothing is corrected, and the reason tells which filters to use."""
     results, left = fly(circle(), 'paper', 3)
     assert not any(r.taken for r in results)
     assert results[-1].reason.startswith('filter paper refuses a window in which the body turns')
@@ -72,14 +73,14 @@ def roots(gain):
 @pytest.mark.parametrize('gain', [0.1, 0.172, 0.5, 0.9, 1.0])
 def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
     """
-    On a straight leg e_{k+1} = e_k - K (e_k + e_{k-1}): every error obeys the recursion.
+    On a straight leg every error obeys the recursion e_{k+1} = e_k - K (e_k + e_{k-1}).
 
-    Bound: 1 % of the first error, for Schuler's oscillation over two minutes and gravity.
+    Bound: 1 % of the first error, for the Schuler oscillation over two minutes and for gravity.
     """
     bias = (0.02, -0.03)
     results, left = fly(straight(), 'paper', 13, gain, bias)
     assert all(r.taken for r in results[1:])
-    # the last window before each correction holds what was left of the bias
+    # The last window before each correction contains the remaining bias.
     for k in range(2, len(left)):
         predicted = left[k - 1] - gain * (left[k - 1] + left[k - 2])
         np.testing.assert_allclose(left[k], predicted, atol=4e-4)
@@ -88,16 +89,16 @@ def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
     if gain < 1.0:
         assert ratio < 3.0 * len(left) * roots(gain).max() ** (len(left) - 1) + 0.02
     else:
-        # the roots are +-i: after three periods of four windows the error is what it was, but for
-        # 1 % a window
+        # The roots are +-i: after three periods of four windows the error has its first value
+        # again, to within 1 % per window.
         assert roots(gain).max() == pytest.approx(1.0)
         assert ratio == pytest.approx(1.0, abs=0.01 * len(left))
 
 
 def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
-    """The largest root is least where both meet, K = 3 - 2 sqrt 2; it reaches 1 at K = 1."""
+    """The largest root is smallest at K = 3 - 2 sqrt 2, where both have equal size; 1 at K = 1."""
     gains = np.linspace(0.001, 1.2, 100000)
-    # the larger root of the quadratic, for all gains at once
+    # The larger root of the quadratic, for all gains at once.
     a, b = 1.0 - gains, np.emath.sqrt((1.0 - gains) ** 2 - 4.0 * gains)
     largest = np.maximum(np.abs(a + b), np.abs(a - b)) / 2.0
     best = gains[largest.argmin()]
@@ -110,9 +111,9 @@ def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
 @pytest.mark.parametrize('gain', [0.3, 0.5, 1.0, 1.9])
 def test_the_corrected_scheme_is_stable_up_to_a_gain_of_2(gain):
     """
-    On a straight leg e_{k+1} = (1 - K) e_k; bound as above.
+    On a straight leg e_{k+1} = (1 - K) e_k, to within 1 % of the first error.
 
-    In a turn a velocity error that is left over turns in b, and is taken for an acceleration.
+    In a turn a remaining velocity error rotates in b and would appear as an acceleration.
     """
     _, left = fly(straight(), 'paper_corrected', 9, gain, (0.02, -0.03))
     for k in range(2, len(left)):
@@ -121,10 +122,10 @@ def test_the_corrected_scheme_is_stable_up_to_a_gain_of_2(gain):
 
 
 def test_a_constant_offset_of_the_instrument_is_never_seen():
-    """Only differences of window means enter: the absolute velocity is not observed."""
+    """Only differences of window means are used: a constant velocity offset is unobservable."""
     for name in ('paper', 'paper_corrected'):
         exact, _ = fly(straight(), name, 4)
         off, _ = fly(straight(), name, 4, offset=(3.0, -2.0))
-        # the sums over a window of 200 m/s round to 1e-11 m/s^2
+        # Sums over a window of 200 m/s are rounded to 1e-11 m/s^2.
         np.testing.assert_allclose([r.innovation for r in off[1:]],
                                    [r.innovation for r in exact[1:]], atol=1e-9)

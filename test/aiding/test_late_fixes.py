@@ -1,4 +1,4 @@
-"""Late fixes: restored, taken and advanced again, and those that no fix can be refused."""
+"""Late fixes are processed at their own instant; impossible fixes are rejected."""
 
 from dataclasses import replace
 import math
@@ -19,7 +19,7 @@ SECONDS = 12
 MOTION = circle()
 SAMPLES = samples_of(MOTION, 100 * SECONDS + 1, (0.01, -0.02, 0.0))
 METER_FIXES = perfect_fixes(MOTION, 2 * SECONDS, CYCLES, (0.3, -0.2), (0.5, 0.6))
-# The printed scheme is for straight legs: in the turn above it would take no fix at all.
+# The printed scheme is for straight legs: it would use no fix in the turn of the other flight.
 LEG = straight()
 LEG_SAMPLES = samples_of(LEG, 100 * SECONDS + 1, (0.01, -0.02, 0.0))
 LEG_FIXES = [(METER, fix) for fix in perfect_fixes(LEG, 2 * SECONDS, CYCLES, (0.3, -0.2),
@@ -27,7 +27,7 @@ LEG_FIXES = [(METER, fix) for fix in perfect_fixes(LEG, 2 * SECONDS, CYCLES, (0.
 
 
 def gnss_fixes(off=(1.0, -2.0, 0.5)):
-    """Return GNSS fixes of every second, off by metres."""
+    """Return GNSS fixes every second with a constant error, m."""
     truth = MOTION.at(np.arange(SECONDS + 1) * 1_000_000_000)
     return [GnssFix(t, lat + off[1] / 6.4e6, lon + off[0] / 3.7e6, height + off[2], tuple(v),
                     (2.0, 2.0, 3.0), (0.1, 0.1, 0.2), arrival_ns=t)
@@ -40,21 +40,21 @@ FIXES = [(METER, fix) for fix in METER_FIXES] + [(GNSS, fix) for fix in gnss_fix
 
 
 def navigator(name='eskf', **more):
-    """Return a navigator of short windows."""
+    """Return a navigator with short windows."""
     return AidedNavigator(build(AidedNavigatorSettings, {
         'filter': name, 'window.cycles': CYCLES, 'gnss_model.use': name == 'eskf',
         'meter_model.mounting_sigma_arcmin': 20.0, **more}))
 
 
 def fly(nav, fixes, samples=SAMPLES):
-    """Step through; return what became of the fixes."""
+    """Step through the samples; return the judged fixes."""
     for source, fix in fixes:
         nav.take(source, fix)
     return [taken for sample in samples for taken in nav.step(*sample)]
 
 
 def late(fixes, delays_ns):
-    """Return the fixes with arrivals delayed one by one."""
+    """Return the fixes with individual delays of arrival."""
     return [(source, replace(fix, arrival_ns=fix.t_ns + d))
             for (source, fix), d in zip(fixes, delays_ns)]
 
@@ -62,7 +62,7 @@ def late(fixes, delays_ns):
 @pytest.mark.parametrize('name', [f for f in FILTERS if f != 'free'])
 @pytest.mark.parametrize('seed', range(3))
 def test_late_fixes_give_the_solution_of_punctual_ones_to_the_bit(name, seed):
-    """Delays of up to four seconds, in any order of arrival: same solution, same covariance."""
+    """Delays of up to four seconds, in any order of arrival, change neither solution nor P."""
     punctual, delayed = navigator(name), navigator(name)
     fixes, samples = (LEG_FIXES, LEG_SAMPLES) if name == 'paper' else (FIXES, SAMPLES)
     fixes = [f for f in fixes if f[0] == METER or name == 'eskf']
@@ -78,7 +78,7 @@ def test_late_fixes_give_the_solution_of_punctual_ones_to_the_bit(name, seed):
 
 
 def test_an_innovation_is_that_of_the_instant_of_the_fix():
-    """A fix taken late has the innovation and NIS of the punctual one."""
+    """A fix processed late has the innovation and NIS of the punctual one."""
     one = METER_FIXES[7]
     punctual = fly(navigator(), [(METER, one)])
     delayed = fly(navigator(), late([(METER, one)], [2_345_000_000]))
@@ -87,7 +87,7 @@ def test_an_innovation_is_that_of_the_instant_of_the_fix():
 
 
 def test_a_fix_older_than_the_buffer_is_not_taken():
-    """One sentence says how old it was; nothing else changes."""
+    """The reason tells the age of the fix; nothing else changes."""
     nav, free = navigator(buffer_s=2.0), navigator(buffer_s=2.0)
     taken = fly(nav, late(FIXES[:1], [5 * 10**9]))
     fly(free, [])
@@ -97,7 +97,7 @@ def test_a_fix_older_than_the_buffer_is_not_taken():
 
 
 def test_a_fix_that_comes_twice_is_taken_once():
-    """The second one is not taken, and says so."""
+    """The second one is not used, and the reason says so."""
     nav, once = navigator(), navigator()
     taken = fly(nav, [FIXES[3], FIXES[3]])
     fly(once, [FIXES[3]])
@@ -107,7 +107,7 @@ def test_a_fix_that_comes_twice_is_taken_once():
 
 
 def test_a_window_that_the_solution_does_not_cover_is_not_taken():
-    """The solution begins inside the first window."""
+    """The fix of a window that begins before the solution is not used."""
     nav = navigator()
     taken = fly(nav, [FIXES[0], FIXES[1]], SAMPLES[10:])
     assert [t.outcome.taken for t in taken] == [False, True]
@@ -141,7 +141,7 @@ NAN = math.nan
     (GNSS, replace(GNSS_FIX, velocity_sigma=(1.0, NAN, 1.0)), 'expected positive ones'),
 ])
 def test_what_can_be_no_fix_is_refused_in_one_sentence(source, fix, sentence):
-    """The fix is dropped with its sentence, and the navigator goes on as if it had not come."""
+    """An impossible fix is dropped with one sentence; the navigator continues as if without it."""
     nav, without = navigator(), navigator()
     with pytest.raises(StreamFault) as refusal:
         nav.take(source, fix)
@@ -154,7 +154,7 @@ def test_what_can_be_no_fix_is_refused_in_one_sentence(source, fix, sentence):
 
 
 def test_a_fix_from_the_future_is_refused():
-    """It is further ahead of the newest reading than a fix may be late."""
+    """A fix further ahead of the newest reading than a fix may be late is rejected."""
     nav = navigator(buffer_s=2.0)
     fly(nav, [], SAMPLES[:100])
     with pytest.raises(StreamFault, match='is from the future, the newest IMU sample is of '
@@ -164,7 +164,7 @@ def test_a_fix_from_the_future_is_refused():
 
 
 def test_an_invalid_fix_says_why():
-    """Drop-outs and outages reach the navigator as fixes that are none."""
+    """Drop-outs and outages reach the navigator as invalid fixes with a reason."""
     invalid = replace(METER_FIX, velocity=(NAN, NAN), sigma=(NAN, NAN), status='calm water')
     outage = no_gnss_fix(2 * 10**9, 'outage', 2 * 10**9)
     taken = fly(navigator(), [(METER, invalid), (GNSS, outage)])
@@ -173,7 +173,7 @@ def test_an_invalid_fix_says_why():
 
 
 def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
-    """Its innovation is beyond the gate while it lasts; the fixes after it are taken."""
+    """The innovation is beyond the gate during the jump; later fixes are used."""
     fixes = gnss_fixes((0.1, 0.1, 0.0))
     jumped = [replace(f, lat=f.lat + 1000.0 / 6.4e6) if 5 <= k <= 8 else f
               for k, f in enumerate(fixes)]
@@ -184,14 +184,14 @@ def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
     print(f'NIS of the jump {taken[6].outcome.nis:.3g}')
     assert refused == [5, 6, 7, 8]
     assert taken[6].outcome.reason == 'its innovation is beyond the gate'
-    # the same but for where the steps of the covariance end
+    # Equal except for the ends of the covariance propagation steps.
     np.testing.assert_allclose(nav.solution[3], without.solution[3], atol=1e-6)
     off = math.hypot(nav.solution[0] - without.solution[0], nav.solution[1] - without.solution[1])
     assert off * 6.4e6 < 1e-3
 
 
 def test_gnss_aids_the_eskf_only():
-    """The other filters say so at construction."""
+    """The other filters reject gnss_model.use at construction."""
     with pytest.raises(ValueError, match='gnss_model.use is true with filter window_kf; expected '
                                          'a filter that takes GNSS: eskf'):
         navigator('window_kf', **{'gnss_model.use': True})
@@ -204,7 +204,7 @@ number = st.floats(-300.0, 300.0)
 @given(st.lists(st.tuples(st.sampled_from(FIXES), number, number,
                           st.floats(1e-6, 1e4), st.integers(0, 3 * 10**9)), max_size=12))
 def test_the_covariance_stays_positive_and_the_solution_finite(changes):
-    """Whatever the velocities, sigmas and delays of fixes, gate off."""
+    """With any velocities, sigmas and delays of fixes, P stays positive without a gate."""
     nav = navigator(gate_probability=0.0)
     for (source, fix), x, y, sigma, delay in changes:
         if source == METER:

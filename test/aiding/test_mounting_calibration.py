@@ -1,4 +1,4 @@
-"""Azimuth and mounting error while GNSS works: in the filter, by (27), and by least squares."""
+"""Azimuth and mounting error with GNSS: by the filter, by equation (27), by least squares."""
 
 from dataclasses import replace
 import math
@@ -43,7 +43,7 @@ def fixes_of(settings, blocks):
 
 
 def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
-    """A free INS of mid grade, two turns: 20 arcmin recovered to 2 by (27), and k_z as well."""
+    """A mid-grade free INS, two turns: 20 arcmin are found to within 2 by (27), and k_z too."""
     settings, blocks = flight
     model = settings.aided_navigator
     free = navigate_aided(replace(model, filter='free',
@@ -61,7 +61,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
     assert abs(found.dpsi - true) < 4.0 * found.dpsi_sigma + 0.3 * ARCMIN
     assert mu / ARCMIN == pytest.approx(MOUNTING, abs=2.0)
     assert found.k_z == pytest.approx(K_Z, abs=4.0 * found.k_z_sigma)
-    # (27) itself is for an instrument without k_z
+    # Equation (27) by itself assumes k_z = 0.
     plain = settings.velocity_meter
     plain = replace(plain, surrogate=replace(plain.surrogate, k_z=0.0))
     _, meter = fixes_of(replace(settings, velocity_meter=plain), blocks)
@@ -71,7 +71,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
 
 
 def test_the_filter_recovers_20_arcmin_to_2(flight):
-    """The eskf with GNSS: mu within 2 arcmin and three of its sigmas, k_z within three."""
+    """The eskf with GNSS finds mu to within 2 arcmin and three sigmas, k_z within three."""
     settings, blocks = flight
     run = navigate_aided(settings.aided_navigator, blocks, *make_instruments(settings))
     errors = run.errors
@@ -82,32 +82,32 @@ def test_the_filter_recovers_20_arcmin_to_2(flight):
 
 
 def turned_and_scaled(velocity, total, k_z):
-    """Return what a meter reads that is turned by a small angle, rad, and scaled across."""
+    """Return the reading of a meter rotated by a small angle, rad, with a lateral scale error."""
     x, z = velocity.T
     return np.stack([x, (1.0 + k_z) * (z + total * x)], axis=1)
 
 
 def test_exact_data_give_exact_estimates():
-    """Without noise the azimuth, the mounting and the scale come out to rounding."""
+    """Without noise azimuth, mounting and scale are exact to rounding."""
     t = np.arange(300.0)
     course = np.radians(30.0 + 60.0 / (1.0 + np.exp(-(t - 150.0) / 10.0)))
     v = 200.0 * np.stack([np.sin(course), np.cos(course)], axis=1)
     dpsi = 1.5e-3
-    # heading computed too far clockwise: the velocity it integrates turns clockwise
+    # Computed heading too far clockwise: the integrated velocity is rotated clockwise.
     turned = dpsi * np.stack([v[:, 1], -v[:, 0]], axis=1)
     off = 0.05 + 1e-3 * t[:, np.newaxis] * (1.0, -1.0)
     found, _ = azimuth_error(t, v + turned - turned[0] + off, v)
     assert found == pytest.approx(dpsi, abs=1e-12)
     computed = np.stack([np.full(40, 200.0), np.linspace(-8.0, 8.0, 40)], axis=1)
     read = turned_and_scaled(computed, 6e-3, 0.03)
-    # the lateral velocities cancel in the sum, the scale of the rest does not
+    # The lateral velocities cancel in the sum, the scale error of the remainder does not.
     assert mounting_sum(read, computed) == pytest.approx(1.03 * 6e-3, abs=1e-12)
     total, _, k_z, _ = least_squares(read, computed)
     assert (total, k_z) == pytest.approx((6e-3, 0.03), abs=1e-12)
 
 
 def test_wind_on_one_side_spoils_the_sum_and_not_the_least_squares():
-    """A mean drift times k_z adds to (27); the regression on V_z1N takes it out."""
+    """A mean drift times k_z adds to (27); the regression on V_z1N removes it."""
     computed = np.stack([np.full(40, 200.0), np.linspace(2.0, 8.0, 40)], axis=1)
     read = turned_and_scaled(computed, 6e-3, 0.05)
     assert mounting_sum(read, computed) - 1.05 * 6e-3 == pytest.approx(0.05 * 5.0 / 200.0)
@@ -115,7 +115,7 @@ def test_wind_on_one_side_spoils_the_sum_and_not_the_least_squares():
 
 
 def test_what_cannot_show_an_azimuth_is_refused():
-    """A straight flight, and too few fixes: one sentence each."""
+    """A straight flight and too few fixes are rejected, with one sentence each."""
     t = np.arange(60.0)
     v = np.tile((100.0, 170.0), (60, 1))
     with pytest.raises(ValueError, match='expected a turn, in which the azimuth error shows'):

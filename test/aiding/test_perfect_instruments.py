@@ -1,4 +1,4 @@
-"""Instruments without errors: their fixes are used, with the least sigma that is reported."""
+"""Fixes of instruments without errors are used, with the smallest sigma that is reported."""
 
 from support import aided_runs
 
@@ -8,7 +8,7 @@ ZEROS = ('surrogate.sigma_x_m_s:=0.0', 'surrogate.sigma_z_m_s:=0.0', 'surrogate.
 
 
 def test_fixes_without_errors_are_taken():
-    """Neither dropped nor refused."""
+    """Fixes with zero errors are neither dropped nor rejected."""
     settings = aided_runs.settings(*ZEROS)
     _, _, found = aided_runs.flown(settings)
     assert not found.faults

@@ -1,4 +1,4 @@
-"""Many samples at once or one at a time, compiled or plain: the same bits."""
+"""Many samples at once or one at a time, compiled or plain, give the same bits."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ SAMPLES = samples_of(MOTION, 100 * SECONDS + 1, (0.01, -0.02, 0.0))
 IMU = ImuSamples(np.array([s[0] for s in SAMPLES]), np.array([s[1] for s in SAMPLES]),
                  np.array([s[2] for s in SAMPLES]))
 TRUTH = MOTION.at(IMU.t_ns)
-# On time, and so late that the navigator goes back over several snapshots.
+# Fixes on time, and fixes so late that the navigator goes back over several snapshots.
 FIXES = [replace(fix, arrival_ns=fix.t_ns + late) for fix, late in zip(
     perfect_fixes(MOTION, 2 * SECONDS, CYCLES, (0.3, -0.2), (0.5, 0.6)),
     np.random.default_rng(5).choice((0, 0, 120_000_000, 2_500_000_000), 2 * SECONDS).tolist())]
@@ -29,12 +29,12 @@ VARIANTS = {'truth': {}, 'free': {'vertical.channel': 'free'},
 
 
 def settings_of(name, **values):
-    """Return AidedNavigatorSettings of short windows."""
+    """Return AidedNavigatorSettings with short windows."""
     return build(AidedNavigatorSettings, {'filter': name, 'window.cycles': CYCLES, **values})
 
 
 def one_by_one(settings):
-    """Return the states, sigmas and JudgedFixes of single samples, as live."""
+    """Return the states, sigmas and JudgedFixes from single samples, as live."""
     navigator = AidedNavigator(settings)
     waiting = [(f.arrival_ns, 'velocity_meter', f) for f in FIXES]
     waiting.sort(key=lambda entry: entry[:2])
@@ -50,7 +50,7 @@ def one_by_one(settings):
 
 
 def in_blocks(settings, cuts):
-    """Return the same of blocks."""
+    """Return the states, sigmas and JudgedFixes from blocks of samples."""
     edges = [0, *sorted(cuts), len(IMU)]
     blocks = [(IMU[a:b], TRUTH[a:b]) for a, b in zip(edges[:-1], edges[1:]) if a < b]
     run = navigate_aided(settings, blocks, Reported(FIXES))
@@ -64,7 +64,7 @@ def in_blocks(settings, cuts):
 @pytest.mark.parametrize('variant', VARIANTS)
 @pytest.mark.parametrize('tier', ('plain', 'compiled'))
 def test_blocks_have_the_bits_of_single_samples(name, variant, tier, monkeypatch):
-    """Random cuts, late fixes: the same solutions, standard deviations and fixes taken."""
+    """Random cuts and late fixes: the same solutions, standard deviations and used fixes."""
     if tier == 'compiled':
         if compilation.compiled(segment.fly) is None:
             pytest.skip('Numba is not installed')
@@ -82,7 +82,7 @@ def test_blocks_have_the_bits_of_single_samples(name, variant, tier, monkeypatch
 
 
 class CountingFilter(AidingFilter):
-    """Follows every sample itself, as a filter of a user may."""
+    """Processes every sample itself, as a user's filter may."""
 
     def __init__(self, settings, ins):
         super().__init__(settings, ins)
@@ -102,7 +102,7 @@ class CountingFilter(AidingFilter):
 
 
 def test_a_filter_that_follows_every_sample_is_stepped(monkeypatch):
-    """A filter that overrides ``step`` sees every sample, also again after late fixes."""
+    """A filter that overrides ``step`` gets every sample, and again after late fixes."""
     monkeypatch.setitem(FILTERS, 'counting', FilterEntry(f'{__name__}:CountingFilter'))
     monkeypatch.setattr('ins_sim.core.aiding.navigator.filter_class', lambda _: CountingFilter)
     settings = replace(settings_of('conventional'), filter='counting')
@@ -115,12 +115,12 @@ def test_a_filter_that_follows_every_sample_is_stepped(monkeypatch):
 
 @pytest.mark.parametrize('bad', (123, 456))
 def test_a_reading_that_is_no_number_is_named_and_the_solution_starts_anew(bad):
-    """The sentence names the sample, wherever it lies in a block; on_fault reset goes on."""
+    """The sentence names the sample at any place in a block; with on_fault reset it continues."""
     f = IMU.f.copy()
     f[bad, 1] = np.nan
     imu = ImuSamples(IMU.t_ns, IMU.omega, f)
     run = navigate_aided(settings_of('eskf'), [(imu, TRUTH)], Reported(FIXES))
     assert run.faults[0].startswith(
-        f'the solution at {bad / 100:.9f} s is no number any more; expected finite readings')
+        f'the solution at {bad / 100:.9f} s is not finite; expected finite readings')
     # The sample itself begins the new solution: its reading is not integrated.
     assert len(run.states) == len(IMU) and np.isfinite(run.states.v_n).all()

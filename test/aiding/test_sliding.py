@@ -1,4 +1,4 @@
-"""The conventional filter on windows that slide, punctual and late, offline and on streams."""
+"""The conventional filter with sliding windows: punctual and late fixes, offline and live."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ SLIDING = (('filter', 'conventional'), ('window.slide_cycles', 50), ('gnss_model
 
 
 def sliding_fixes(lead=0):
-    """Return the perfect fixes of the leg that end every STEP cycles, from the first whole one."""
+    """Return perfect fixes of the leg, every STEP cycles from the first complete window on."""
     v_b = body_velocity(LEG.at(np.arange(COUNT) * DT_NS))[:, :2]
     return [VelocityFix((end - CYCLES) * DT_NS, end * DT_NS, CYCLES,
                         tuple(v_b[end - CYCLES:end + 1].mean(axis=0).tolist()), (1.0, 1.0),
@@ -31,7 +31,7 @@ def sliding_fixes(lead=0):
 
 
 def navigator(**more):
-    """Return a conventional navigator of sliding windows."""
+    """Return a conventional navigator with sliding windows."""
     return AidedNavigator(build(AidedNavigatorSettings, {
         'filter': 'conventional', 'window.cycles': CYCLES, 'window.slide_cycles': STEP,
         'initial.velocity_sigma_m_s': 1.0, 'initial.tilt_sigma_mrad': 0.0,
@@ -39,7 +39,7 @@ def navigator(**more):
 
 
 def fly(nav, fixes, samples=SAMPLES):
-    """Return the judged fixes, and the error of the velocity (n, 2) at every sample."""
+    """Return the judged fixes, and the velocity error (n, 2) at every sample."""
     judged, errors = [], []
     for fix in fixes:
         nav.take(METER, fix)
@@ -52,9 +52,9 @@ def fly(nav, fixes, samples=SAMPLES):
 @pytest.mark.parametrize('gain', [0.5, 2.0, 15.0])
 def test_a_fix_takes_away_its_part_of_the_error(gain):
     """
-    e *= 1 - K_v T_s at every fix, from the first whole window on.
+    Each fix multiplies the error by 1 - K_v T_s, from the first complete window on.
 
-    Bounds: gravity, Coriolis and the turning of the level axes change 1 m/s by 1e-4 in 6 s.
+    Bounds: gravity, Coriolis and the rotation of the level axes change 1 m/s by 1e-4 in 6 s.
     """
     judged, errors = fly(navigator(gain_per_s=gain), sliding_fixes())
     assert [j.t_ns // DT_NS for j in judged if j.outcome.taken] == list(range(CYCLES, COUNT, STEP))
@@ -65,7 +65,7 @@ def test_a_fix_takes_away_its_part_of_the_error(gain):
 
 
 def test_a_window_that_began_before_the_solution_is_not_taken():
-    """Those that begin with it, or later, are."""
+    """Only windows that begin with the solution or later are used."""
     judged, _ = fly(navigator(), sliding_fixes(), SAMPLES[25:])
     refused = [j.t_ns // DT_NS for j in judged if not j.outcome.taken]
     assert refused == [50, 60, 70]
@@ -74,7 +74,7 @@ def test_a_window_that_began_before_the_solution_is_not_taken():
 
 @pytest.mark.parametrize('seed', range(2))
 def test_late_fixes_give_the_bits_of_punctual_ones(seed):
-    """Delays of up to two seconds, in any order of arrival."""
+    """Delays of up to two seconds, in any order of arrival, give the same bits."""
     fixes = [fix for fix in sliding_fixes() if fix.end_ns <= 400 * DT_NS]
     punctual, delayed = navigator(), navigator()
     judged, _ = fly(punctual, fixes)
@@ -86,7 +86,7 @@ def test_late_fixes_give_the_bits_of_punctual_ones(seed):
 
 
 def test_on_streams_it_is_the_offline_run_in_any_order():
-    """A sample waits for the fix of every slide; places as in test_stream."""
+    """In any order the live stream gives the offline run; tolerances as in test_stream."""
     chosen, offline, streams = scene(*SLIDING)
     outputs, faults, stream = run_stream(streams, np.random.default_rng(0), chosen)
     again, _, _ = run_stream(streams, np.random.default_rng(1), chosen)
@@ -96,7 +96,7 @@ def test_on_streams_it_is_the_offline_run_in_any_order():
         [offline.errors.attitude, offline.errors.velocity, offline.errors.position],
         axis=1)).max(axis=(0, 2))
     assert off[2] < 8e-9 and off[1] < 1e-11 and off[0] < 1e-14
-    # from 2 s to 12 s every 0.5 s, of which the last arrive after the end
+    # Fixes every 0.5 s from 2 s to 12 s; the last ones arrive after the end.
     taken = [j.t_ns for j in stream.judged if j.outcome.taken]
     assert taken == [j.t_ns for j in offline.judged if j.outcome.taken]
     assert taken == [2_000_000_000 + k * 500_000_000 for k in range(20)]
@@ -104,7 +104,7 @@ def test_on_streams_it_is_the_offline_run_in_any_order():
 
 @pytest.mark.parametrize('name', [n for n, entry in FILTERS.items() if not entry.takes_sliding])
 def test_filters_that_follow_a_window_refuse_those_that_overlap(name):
-    """In one sentence that names the parameter."""
+    """A filter that needs whole windows rejects sliding ones, and names the parameter."""
     with pytest.raises(ValueError, match=f'window.slide_cycles is 10 with filter {name}, which '
                                          'needs windows that do not overlap; expected 0, or '
                                          'filter free or conventional'):
@@ -113,7 +113,7 @@ def test_filters_that_follow_a_window_refuse_those_that_overlap(name):
 
 
 def test_an_unstable_gain_is_refused():
-    """The limit is two over the time between fixes; of free nothing is asked."""
+    """gain_per_s must be less than two over the time between fixes; filter free ignores it."""
     with pytest.raises(ValueError, match='gain_per_s is 20 1/s, and window.slide_cycles is 10; '
                                          'expected less than 20 1/s'):
         navigator(gain_per_s=20.0)
@@ -121,7 +121,7 @@ def test_an_unstable_gain_is_refused():
 
 
 def test_fixes_that_end_between_slides_are_refused():
-    """The meter slides by another step."""
+    """Fixes of a meter that slides by another step are rejected."""
     nav = navigator()
     with pytest.raises(StreamFault, match='ends inside a window; expected a multiple of 0.1 s of '
                                           'motion time .window.slide_cycles must be the same'):

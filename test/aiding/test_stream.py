@@ -1,4 +1,4 @@
-"""The aided navigator on streams: the order in which things come changes nothing."""
+"""The aided navigator on live streams: the order of arrival changes nothing."""
 
 from hypothesis import given, settings, strategies as st
 import numpy as np
@@ -12,10 +12,10 @@ SECOND = 1_000_000_000
 
 def test_the_stream_is_the_offline_run():
     """
-    Solution and errors to the rounding of the truth, which passes through the map.
+    A live run equals the offline run to the rounding of the truth, which passes through the map.
 
-    As in test_live_graph: a place is 1e-9 m in a double, a few of which add up; an attitude
-    rounds at 1e-15.
+    As in test_live_graph: a position has 1e-9 m in its last digit, a few of which add up; an
+    attitude is rounded at 1e-15.
     """
     _, offline, streams = scene()
     outputs, faults, stream = run_stream(streams, np.random.default_rng(0))
@@ -36,7 +36,7 @@ def test_the_stream_is_the_offline_run():
 @settings(max_examples=6, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_any_order_gives_the_same_bits(seed):
-    """IMU, truth and fixes may overtake each other by any amount."""
+    """IMU, truth and fixes may overtake each other arbitrarily: the bits are the same."""
     _, _, streams = scene()
     first, _, _ = run_stream(streams, np.random.default_rng(0))
     again, faults, _ = run_stream(streams, np.random.default_rng(seed))
@@ -46,7 +46,7 @@ def test_any_order_gives_the_same_bits(seed):
 @settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_after_a_gap_of_the_imu_alone_any_order_gives_the_same_bits(seed):
-    """What waits when the gap comes has its turn; fixes that came before are known behind it."""
+    """Samples waiting at the gap are processed first; earlier fixes remain known after it."""
     _, _, streams = scene()
     streams = {**streams, 'push_imu': [e for e in streams['push_imu']
                                        if not 5.2 < e[0] / SECOND < 5.6]}
@@ -59,7 +59,7 @@ def test_after_a_gap_of_the_imu_alone_any_order_gives_the_same_bits(seed):
 
 
 def test_a_jump_back_begins_anew_whoever_jumps_first():
-    """The second run is the first one again, fixes of the new run coming before or after."""
+    """The second run equals the first, whether fixes of the new run come before or after."""
     _, _, streams = scene()
     expected, _, _ = run_stream(streams, np.random.default_rng(0))
     for names in ((METER, GNSS, 'push_truth', 'push_imu'),
@@ -69,7 +69,7 @@ def test_a_jump_back_begins_anew_whoever_jumps_first():
             push(stream, name, event, faults)
         assert not faults
         outputs = []
-        # the first event of each stream in this order, then the rest at random
+        # The first events of the streams in this order, the others at random.
         for name in names:
             outputs += push(stream, name, streams[name][0], faults)
         rest = {name: events[1:] for name, events in streams.items()}
@@ -81,7 +81,7 @@ def test_a_jump_back_begins_anew_whoever_jumps_first():
 
 
 def test_fixes_of_the_run_before_are_passed_over():
-    """They come when the samples have jumped back already, and none is taken for the new run's."""
+    """Fixes of the old run that arrive after the jump back of the samples are ignored."""
     _, _, streams = scene()
     expected, _, _ = run_stream(streams, np.random.default_rng(0))
     late = {METER: 1, GNSS: 2}

@@ -1,4 +1,4 @@
-"""Fixes that are late, bad, missing or from the future: what is said, and what goes on."""
+"""Fixes that are late, bad, missing or from the future: messages, and how the run continues."""
 
 from dataclasses import replace
 import math
@@ -18,19 +18,19 @@ SECOND = 1_000_000_000
 
 
 def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
-    """Without its fixes samples wait; told to go on, they go; a late fix still counts."""
+    """Samples wait for a silent source until told to continue; its late fixes still count."""
     chosen, _, streams = scene()
     expected, _, on_time = run_stream(streams, np.random.default_rng(0))
     stream, outputs, faults = AidedStream(chosen.aided_navigator), [], []
     for name in (GNSS, 'push_truth', 'push_imu'):
         for event in streams[name]:
             outputs += push(stream, name, event, faults)
-    # the window that ends at 2 s is there at 2.13 s
+    # The fix of the window that ends at 2 s arrives at 2.13 s.
     assert stream.awaited == [METER] and outputs[-1][0] == 212 * SECOND // 100
     outputs += stream.go_on_without(METER)
     assert outputs[-1][0] == 12 * SECOND and not stream.waiting
     assert outputs[-1] != expected[-1]
-    # all of them late; another sample takes them where they belong
+    # All fixes arrive late; the next sample processes them at their own instants.
     for _, fix in streams[METER]:
         assert not stream.push_fix(METER, fix)
     t, omega, f = streams['push_imu'][-1]
@@ -48,7 +48,7 @@ def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
 
 
 def test_whatever_waits_is_bounded():
-    """Of a source that never delivers: no truth is lost of the readings that wait for it."""
+    """With a source that never delivers, waiting readings are limited and no truth is lost."""
     _, _, streams = scene()
     stream = AidedStream(scene()[0].aided_navigator, 50)
     outputs, faults = [], []
@@ -63,7 +63,7 @@ def test_whatever_waits_is_bounded():
 
 
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():
-    """A window of another length is refused in a sentence; the samples go on without it."""
+    """A fix with another window is rejected with one sentence; the samples do not wait for it."""
     from dataclasses import replace
     chosen, _, streams = scene()
     stream, faults = AidedStream(chosen.aided_navigator), []
@@ -77,18 +77,18 @@ def test_a_bad_fix_is_dropped_and_holds_nothing_up():
 
 @pytest.mark.parametrize('first_ns, t_ns, missing', [
     (0, 0, []), (0, 69_999_999, []), (0, 70_000_000, [GNSS]), (0, 2_130_000_000, [METER, GNSS]),
-    # one that begins inside a window waits for the next whole one
+    # A solution that begins inside a window waits for the next whole window.
     (10_000_000, 1_060_000_000, []), (10_000_000, 1_070_000_000, [GNSS]),
     (10_000_000, 4_120_000_000, [GNSS]), (10_000_000, 4_130_000_000, [METER, GNSS])])
 def test_what_is_due(first_ns, t_ns, missing):
-    """By period and latency of both, from the first sample on."""
+    """Due fixes follow from period and latency of both sources, from the first sample on."""
     schedule = FixSchedule(scene()[0].aided_navigator, (METER, GNSS))
     assert schedule.missing(first_ns) == []
     assert schedule.missing(t_ns) == missing
 
 
 def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
-    """A receiver with another epoch: one sentence, and its later fixes count."""
+    """A receiver with another epoch: one sentence, and its later valid fixes are used."""
     _, _, streams = scene()
     stream, outputs, faults = AidedStream(scene()[0].aided_navigator), [], []
     for name, event in mixed(streams, np.random.default_rng(5)):
@@ -104,7 +104,7 @@ def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
 
 
 def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
-    """/diagnostics: a GNSS jump is a warning with its instant, an outage only a count."""
+    """In /diagnostics a GNSS jump is a warning with its instant, an outage only a count."""
     stream = AidedStream(chosen_settings(VALUES).aided_navigator)
     health = AidingHealth(stream)
     gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
@@ -119,7 +119,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
 
 
 def test_a_missing_instrument_stays_wrong_until_it_delivers():
-    """While the first sample waits, and while it is gone on without."""
+    """A missing instrument is reported while the first sample waits and until it delivers."""
     _, _, streams = scene()
     stream = AidedStream(scene()[0].aided_navigator)
     health = AidingHealth(stream)
@@ -127,7 +127,7 @@ def test_a_missing_instrument_stays_wrong_until_it_delivers():
         stream.push_truth(*truth)
     for sample in streams['push_imu'][:50]:
         stream.push_imu(*sample)
-    # a moment is in order
+    # A short wait is normal.
     assert health.describe()[0] == ''
     assert health.describe()[0] == 'waiting for a fix of gnss'
     stream.go_on_without(GNSS)
@@ -138,7 +138,7 @@ def test_a_missing_instrument_stays_wrong_until_it_delivers():
 
 
 def test_other_windows_hold_nothing_up():
-    """A meter with another window.cycles: refused, and none of ours is waited for."""
+    """Fixes of a meter with another window.cycles are rejected, and no sample waits for others."""
     _, _, streams = scene()
     stream, faults = AidedStream(scene()[0].aided_navigator), []
     wrong = [replace(fix, cycles=100, start_ns=fix.end_ns - SECOND) for _, fix in streams[METER]]
@@ -156,6 +156,6 @@ def test_other_windows_hold_nothing_up():
     ({'gnss.latency_ms': 20000.0}, 'gnss.latency_ms is 20000 ms; expected at most buffer_s, 10 s'),
     ({'window.latency_ms': 10001.0}, 'window.latency_ms is 10001 ms; expected at most buffer_s')])
 def test_settings_that_cannot_aid_are_refused(values, sentence):
-    """One sentence each, at construction."""
+    """Invalid combinations are rejected with one sentence each, at construction."""
     with pytest.raises(ValueError, match=sentence):
         AidedNavigator(build(AIDING['aided_navigator'], values))

@@ -60,7 +60,7 @@ BAD = [
     ({('/imu', IMU): resting()}, ['initial.position:=given'], 'the heading is unknown'),
     ({('/imu', IMU): resting()}, ['initial.position:=given', 'initial.heading:=gyrocompass'],
      'too coarse'),
-    ({('/imu', IMU): resting(5)}, [], 'expected at least 10 samples behind the start'),
+    ({('/imu', IMU): resting(5)}, [], 'expected at least 10 samples after the start'),
     ({('/imu', IMU): resting()}, ['start_s:=100.0'], 'start_s is 100 s'),
     ({('/imu', IMU): resting()}, ['initial.attitude:=imu'], 'hold no orientation'),
     ({('/imu', IMU): resting()}, ['initial.attitude:=reference'], 'no reference has an attitude'),

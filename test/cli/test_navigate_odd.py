@@ -111,7 +111,7 @@ def test_fixes_at_zero_can_be_meant(navigated):
     (FORCE / 9.8, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g? (units.'),
     (-FORCE / 9.8, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g?'),
     (FORCE * 1000.0 / 9.8, 'is 1000.0 m/s^2; expected 9.8: is it in mg? (units.force:=mg'),
-    (FORCE * 0.0, 'is 0.0 m/s^2; expected 9.8: was gravity taken off it? (it may differ by'),
+    (FORCE * 0.0, 'is 0.0 m/s^2; expected 9.8: was gravity removed? (it may differ by'),
     (FORCE * 3.0, 'mean specific force at rest is 29.4 m/s^2; expected 9.8 (it may differ')])
 @pytest.mark.parametrize('start', [HEADED, ('initial.attitude:=given', 'initial.velocity:=given'),
                                    (*HEADED, 'mounting.source:=level')])
@@ -124,7 +124,7 @@ def test_a_force_in_g_or_without_gravity_can_be_navigated(navigated):
     """units.force converts it; alignment.gravity_m_s2 accepts it as it is."""
     bag = {('/imu', IMU): at_rest(-FORCE / 9.8 + 1e-4 * NOISE[0])}
     got = navigated(bag, *GIVEN, *HEADED, 'units.force:=g')
-    assert 'does it measure gravity instead of specific force' in notes_of(got)
+    assert 'does the IMU measure gravity instead of specific force' in notes_of(got)
     assert abs(got['figures']['gravity_excess_m_s2']) < 0.03
     assert navigated(bag, *GIVEN, *HEADED, 'alignment.gravity_m_s2:=1e3')['figures']
     assert abs(abs(got['figures']['roll_deg']) - 180.0) < 0.1
@@ -139,8 +139,8 @@ def test_a_transform_that_is_no_rotation_is_refused_by_name(q, said, navigated):
     """Only a transform between both frames is checked; a given mounting avoids it."""
     bag = {('/imu', IMU): at_rest(), ('/tf_static', TF): tf_messages(T_NS[0], {
         ('base_link', 'mast'): (0.0, 0.0, 0.0, 1.0), ('mast', 'imu_link'): q})}
-    assert f'to imu_link has the rotation {said}, which is not a rotation' in navigated(
-        bag, *GIVEN, *HEADED)
+    assert f'/tf_static from mast to imu_link has the rotation {said}, which is not a ' in \
+        navigated(bag, *GIVEN, *HEADED)
     given = navigated(bag, *GIVEN, *HEADED, 'mounting.source:=given')
     assert given['figures']['mounting_xyzw'] == [0.0, 0.0, 0.0, 1.0]
 
@@ -214,7 +214,7 @@ def test_readings_that_are_zero_in_turns_are_recognised(navigated):
     assert 'the specific force is exactly zero in 500 of 1000 samples and the angular rate in ' \
         '500 others: the driver seems to send them in turns' in navigated(bag, *GIVEN, *HEADED)
     got = navigated(bag, *GIVEN, *HEADED, 'accept.zero_readings:=fill')
-    assert 'drawn straight between their neighbours' in notes_of(got)
+    assert 'interpolated linearly between their neighbours' in notes_of(got)
     assert abs(got['figures']['gravity_excess_m_s2'] + 0.015) < 1e-3
 
 
@@ -269,7 +269,7 @@ def test_nanoseconds_of_more_than_a_second_are_named(navigated):
 def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
     """An alignment that uses the whole record is mentioned in the refusal."""
     said = navigated({('/imu', IMU): resting()}, *GIVEN, 'initial.heading:=given')
-    assert 'fewer than 10 samples behind the start at 19.980000000 s' in said
+    assert 'fewer than 10 samples after the start at 19.980000000 s' in said
     assert 'Found on the way: 1000 samples of bag /imu in 19.980 s' in said
     assert 'stationary from 0.000000000 s for 19.980 s' in said
 

@@ -90,7 +90,7 @@ def test_husky_as_if_its_imu_lay_flat(shared_data, tmp_path, capsys):
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out')
     capsys.readouterr()
     assert abs(summary['figures']['roll_deg']) > 80.0
-    assert any('is the IMU mounted turned?' in note for note in summary['notes'])
+    assert any('Is the IMU mounted rotated?' in note for note in summary['notes'])
 
 
 def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Conventions of motions: axes, angles, heading, what an IMU at rest reads."""
+"""Conventions of motions: axes, angles, heading, readings of an IMU at rest."""
 
 import math
 
@@ -8,12 +8,12 @@ from scipy.spatial.transform import Rotation
 from ins_sim.core.earth import ellipsoid
 from support.conventional import matrix, motion_of
 
-# RFU to FLU: forward is +y, left is -x of (right, forward, up)
+# RFU to FLU: forward is +y, left is -x of (right, forward, up).
 FLU_FROM_RFU = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def test_attitude_of_the_paper():
-    """C of (right, forward, up) is Rz(psi) Rx(theta) Ry(gamma); ours is that of (F, L, U)."""
+    """C of (right, forward, up) is Rz(psi) Rx(theta) Ry(gamma) (Bogdanov and Fomichev 2018)."""
     motion = motion_of('static', motion__psi_deg=20.0, motion__theta_deg=10.0,
                        motion__gamma_deg=-35.0)
     c = Rotation.from_euler('ZXY', [20.0, 10.0, -35.0], degrees=True).as_matrix()
@@ -22,7 +22,7 @@ def test_attitude_of_the_paper():
 
 
 def test_psi_zero_looks_north_theta_lifts_the_nose_gamma_lowers_the_right_wing():
-    """Signs a person can check: psi turns towards west."""
+    """Signs that can be checked by hand; positive psi turns from north towards west."""
     def axes(**angles):
         q = motion_of('static', **{'motion__theta_deg': 0.0, **angles}).at(np.array([0])).q_nb[0]
         return matrix(q).T
@@ -37,10 +37,10 @@ def test_psi_zero_looks_north_theta_lifts_the_nose_gamma_lowers_the_right_wing()
 
 def test_heading_of_flights_is_clockwise():
     """
-    The cruise flies the course of 300 deg, north-west, and looks along it.
+    The cruise flies a course of 300 deg, north-west, with the nose along it.
 
-    The heading sways by up to 0.8 deg about the course, and the nose stands 3.8 deg up at most,
-    which shortens its level part by 0.0022.
+    The heading sways by up to 0.8 deg about the course, and the nose is up by at most 3.8 deg,
+    which shortens its level component by 0.0022.
     """
     cruise = motion_of('cruise').at(np.array([2_000_000_000_000]))
     forward = matrix(cruise.q_nb[0])[:, 0]
@@ -50,7 +50,7 @@ def test_heading_of_flights_is_clockwise():
 
 
 def test_imu_at_rest_reads_gravity_up_and_earth_rate():
-    """REP-145: +g on z at rest; angular velocity relative to inertial space."""
+    """At rest an IMU reads +g on z and the rate relative to inertial space (REP-145)."""
     truth = motion_of('static', motion__theta_deg=0.0).at(np.array([0]))
     lat = math.radians(55.0)
     np.testing.assert_allclose(truth.f_ib_b[0], [0, 0, ellipsoid.gravity(math.sin(lat), 0.0)],

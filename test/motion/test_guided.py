@@ -1,4 +1,4 @@
-"""The guided motion: closed forms, one pose, what is known when, wind, turns and closure."""
+"""The guided motion: closed forms, derivatives, known interval, wind, turns and closure."""
 
 import math
 
@@ -16,7 +16,7 @@ FORCE, LAG_S = 20.0, 0.4
 
 
 def test_closed_forms_solve_the_equations():
-    """Against steps of RK4 of 0.1 ms, whose error is (1e-4/0.4)^4/120 of the command a second."""
+    """Closed forms agree with RK4 of 0.1 ms, error (1e-4/0.4)^4/120 of the command per second."""
     history, period_ns = SteeredHistory(FORCE, LAG_S, 200_000_000, (100.0, -2.0)), 200_000_000
     rng, state, command = np.random.default_rng(2), np.array([100.0, -2.0, 0.0]), 0.0
 
@@ -40,7 +40,7 @@ def test_closed_forms_solve_the_equations():
 
 
 def test_before_the_first_command_it_flies_straight():
-    """The motion continued without a command, back to any time; and after ``begin`` again."""
+    """Without a command the motion is straight, at any earlier time and again after ``begin``."""
     motion = guided(offset_m=50.0, offset_rate_m_s=1.5)
     motion.begin(2_000_000_000)
     states = motion.states(np.array([-3_000_000_000, 0, 2_000_000_000]))
@@ -53,7 +53,7 @@ def test_before_the_first_command_it_flies_straight():
 
 
 def test_what_is_not_known_is_refused():
-    """The future, the forgotten past, commands at another time, and commands that are none."""
+    """The future, the forgotten past, commands at another time and NaN commands are rejected."""
     motion = fly(guided(), 2.0)
     assert motion.end_s == 2.0 and motion.known_ns == 2_000_000_000
     for ask in (lambda: motion.at(np.array([2_000_000_001])), lambda: motion.one(2_000_000_001)):
@@ -70,7 +70,7 @@ def test_what_is_not_known_is_refused():
 
 
 def test_any_cutting_gives_the_same_bits():
-    """Blocks, single instants, before and after more commands, and with the past forgotten."""
+    """Blocks, single instants, later commands and a forgotten past do not change any bit."""
     route = {'wind_m_s': 8.0, 'wind_from_deg': 250.0, 'gust_m_s': 0.5}
     t_ns = instants(6.0, 2_500_000)
     whole = fly(guided(route), 8.0).at(t_ns)
@@ -93,12 +93,12 @@ def test_any_cutting_gives_the_same_bits():
                          ids=('calm', 'wind'))
 def test_differences_of_the_pose(route):
     """
-    Velocity, force and rate are those of the pose, by central differences within the periods.
+    Velocity, force and rate agree with central differences of the pose within the periods.
 
-    Control periods of 0.5 s, and steps of 25 ms, three to either side: latitude, longitude and an
-    ECEF coordinate round to 2^-30 m each, which the first difference takes 1.84 times over h and
-    the second 6.1 times over h^2; v_z and beta change by exp(-t/0.4), whose seventh derivatives
-    times h^6/140 are below 1e-9.
+    Control periods of 0.5 s, steps of 25 ms, three to either side. Latitude, longitude and ECEF
+    coordinates are rounded to 2^-30 m, which contributes 1.84 times over h to the first difference
+    and 6.1 times over h^2 to the second. v_z and beta change as exp(-t/0.4), whose seventh
+    derivatives times h^6/140 are below 1e-9.
     """
     motion, h_ns = fly(guided(route, control_rate_hz=2.0), 40.0), 25_000_000
     h_s = h_ns * 1e-9
@@ -129,12 +129,12 @@ def test_differences_of_the_pose(route):
 
 
 def test_pose_and_its_first_derivatives_are_continuous():
-    """Over control instants at which the command turns or jumps."""
+    """Pose and first derivatives are continuous where the command changes slope or jumps."""
     motion = fly(guided(), 30.0)
     edges = instants(25.0)[1:]
     before, after = motion.at(edges), motion.at(edges + 1)
     assert np.abs(after.q_nb - before.q_nb).max() < 2e-9
-    # beta' is up to 0.5 rad/s, beta'' up to 0.26 rad in a period over 0.4 s: 65 rad/s^2.
+    # beta' is up to 0.5 rad/s; beta'' up to 0.26 rad in a period over 0.4 s: 65 rad/s^2.
     assert np.abs(after.omega_ib_b - before.omega_ib_b).max() < 1e-7
     assert np.abs(after.f_ib_b - before.f_ib_b).max() < 20.0 * 0.5 * 2e-9
 
@@ -153,13 +153,13 @@ def test_attitude_and_side_force_are_those_of_the_sideslip():
     assert z == pytest.approx(states.z, abs=1e-3) and v_z == pytest.approx(states.v_z, abs=1e-4)
     chi = np.arctan2(truth.v_n[:, 0], truth.v_n[:, 1]) - np.arctan2(states.v_z, 200.0)
     right = f_n[:, 0] * np.cos(chi) - f_n[:, 1] * np.sin(chi)
-    # The bank gives up the Coriolis force on the track: 200 m/s x 2 Omega sin(lat) = 0.024.
+    # Without bank the Coriolis force on the track is missing: 200 m/s x 2 Omega sin(lat) = 0.024.
     turning = right + FORCE * states.beta
     assert np.ptp(turning) < 1e-3 and abs(turning.mean()) < 0.03
 
 
 def test_in_wind_the_force_takes_the_sideslip_in_the_air():
-    """Commanded beta is that to the air; over ground the drift angle of the wind comes on top."""
+    """The commanded beta is relative to the air; over ground the drift angle of wind is added."""
     wind = {'wind_m_s': 20.0, 'wind_from_deg': 120.0, 'attack_deg': 0.0}
     motion = fly(guided(wind), 20.0)
     truth, states = motion.at(instants(20.0)), motion.states(instants(20.0))
@@ -170,7 +170,7 @@ def test_in_wind_the_force_takes_the_sideslip_in_the_air():
 
 
 def test_turns_are_those_of_the_route():
-    """Steered on the leg, straight beside the track in the turn: z and v_z go on."""
+    """z and v_z are continuous: steered on the leg, parallel to the track in the turn."""
     motion = guided(offset_m=0.0)
     start, end = motion.turns[0]
     fly(motion, end + 1.1, lambda t: 0.02 if t < 5.0 else 0.0 if t < 10.0 else (
@@ -185,6 +185,6 @@ def test_turns_are_those_of_the_route():
 
 
 def test_a_weave_is_refused():
-    """In one sentence."""
+    """A guided motion with a weave is rejected with one sentence."""
     with pytest.raises(ValueError, match='weave_deg is 1 deg with motion.kind guided; expected 0'):
         guided({'weave_deg': 1.0})

@@ -1,4 +1,4 @@
-"""Gusts: variance, spectrum, independence of seeds and axes, and how far they carry."""
+"""Gusts: variance, spectrum, independence of seeds and axes, and displacement."""
 
 import math
 
@@ -21,26 +21,26 @@ def velocity(gusts, t):
 
 
 def test_variance_and_distance():
-    """Each axis has its standard deviation in every hour, and goes metres, not kilometres."""
+    """In every hour each axis has its standard deviation, and the displacement is metres only."""
     t = np.arange(0.0, 3600.0, 0.1)
     rms, far = [], []
     for seed in range(24):
         gusts = Gusts(SIGMA, LENGTH, AIRSPEED, seed)
         rms.append(np.sqrt((velocity(gusts, t) ** 2).mean(axis=0)))
         far.append([np.abs(d.value).max() for d in gusts.displacement(t)])
-        # the sum of the amplitudes
+        # Bound: the sum of the amplitudes.
         assert (np.array(far[-1]) <= (gusts.amplitude / gusts.rates).sum(axis=1)).all()
     rms, far = np.array(rms), np.array(far)
     print(f'\n24 seeds, one hour: rms {rms.min():.4f} to {rms.max():.4f} m/s (0.5), displaced by '
           f'{far.min():.1f} to {far.max():.1f} m at most')
-    # lines are drawn apart, but for neighbours: one pair in phase has twice 2/LINES of the
-    # variance, as much again as its lines have alone
+    # Lines are drawn apart, except for neighbours: a pair in phase has 2/LINES of the variance
+    # more, as much as the two lines alone.
     assert np.abs(rms / SIGMA - 1.0).max() < 1.0 / LINES
     assert far.max() < 40.0
 
 
 def test_spectrum_is_of_first_order():
-    """The mean correlation over seeds is the transform of the cut density; so is the spectrum."""
+    """Correlation and spectrum, averaged over seeds, agree with the truncated density."""
     rates = np.array([Gusts(SIGMA, LENGTH, AIRSPEED, s).rates for s in SEEDS]).ravel()
     span = math.atan(HIGHEST) - math.atan(LOWEST)
     worst = 0.0
@@ -48,12 +48,12 @@ def test_spectrum_is_of_first_order():
         values = np.cos(rates * lag)
         expected = quad(lambda w: math.cos(w * lag) * TAU / (1.0 + (w * TAU) ** 2) / span,
                         LOWEST / TAU, HIGHEST / TAU, limit=500)[0]
-        # the frequencies of one seed are stratified: the mean errs by less than if independent
+        # The frequencies of a seed are stratified: the mean errs less than independent ones would.
         sigmas = abs(values.mean() - expected) / (values.std() / math.sqrt(len(values)))
         print(f'\nlag {lag:g} s: correlation {values.mean():.4f}, density {expected:.4f}, '
               f'exp(-t/tau) {math.exp(-lag / TAU):.4f}', end='')
         worst = max(worst, sigmas)
-        # what the cut takes off: 6 % of the variance
+        # The truncation removes 6 % of the variance.
         assert abs(expected - math.exp(-lag / TAU)) < 0.065
     assert worst < 4.0
     t, dt = np.arange(0.0, 2000.0, 0.1), 0.1
@@ -66,28 +66,28 @@ def test_spectrum_is_of_first_order():
         model = SIGMA ** 2 * 4.0 * TAU / (1.0 + (2.0 * math.pi * f[band] * TAU) ** 2)
         ratio = power[band].sum() / model.sum()
         print(f'{low:g} to {2 * low:g}: {ratio:.3f}')
-        # the variance that is cut off is put inside; half a line of each component of 120 in
-        # or out of the octave is one standard deviation, as they are stratified
+        # The truncated variance is redistributed inside; the standard deviation is half a line of
+        # each component of 120 in or out of the octave, because lines are stratified.
         lines = LINES / span * np.diff(np.arctan(2.0 * math.pi * TAU * np.array((1, 2)) * low))[0]
         assert abs(ratio / (0.5 * math.pi / span) - 1.0) < 4.0 * 0.5 / lines / math.sqrt(120)
 
 
 def test_axes_and_seeds_are_independent():
-    """Correlations of axes and of seeds are those of independent processes."""
+    """Correlations between axes and between seeds are those of independent processes."""
     t = np.arange(0.0, 3000.0, 0.1)
     flights = [velocity(Gusts(SIGMA, LENGTH, AIRSPEED, seed), t) for seed in range(12)]
     all_axes = np.concatenate(flights, axis=1) / SIGMA
     correlation = all_axes.T @ all_axes / len(t) - np.eye(36)
     off = np.sqrt((correlation[~np.eye(36, dtype=bool)] ** 2).mean())
-    # the mean of the product of two has the variance tau/T, the density being raised by what is
-    # cut off; four standard deviations of the rms of 630
+    # The mean of the product of two has the variance tau/T; the density is raised to replace the
+    # truncated part. Bound: four standard deviations of the rms of 630.
     expected = 0.5 * math.pi / (math.atan(HIGHEST) - math.atan(LOWEST)) * math.sqrt(TAU / 3000.0)
     print(f'\nrms correlation of 630 pairs {off:.4f}, independent {expected:.4f}')
     assert off < expected * (1.0 + 4.0 / math.sqrt(2 * 630))
 
 
 def test_the_flight_has_its_gusts():
-    """Another seed is another flight; the same seed the same; the gust is in the velocity."""
+    """The seed determines the flight, and the gust is part of the velocity."""
     motion, calm = route(GUSTS), route()
     t_ns = instants(motion, 1.0)
     truth, still = motion.at(t_ns), calm.at(t_ns)
@@ -96,14 +96,14 @@ def test_the_flight_has_its_gusts():
     assert np.abs(other.v_n - truth.v_n).max() > 0.5
     difference = truth.v_n - still.v_n - gust_velocity(motion, t_ns)
     print(f'\nvelocity less calm velocity less gust: {np.abs(difference).max():.1e} m/s')
-    # 40 m of displacement in axes that turn by 5e-5 rad/s
+    # 40 m of displacement in axes that turn at 5e-5 rad/s.
     assert np.abs(difference).max() < 2e-3
     rms = np.sqrt((gust_velocity(motion, t_ns) ** 2).mean(axis=0))
     assert np.abs(rms - 0.5).max() < 0.05
 
 
 def test_any_cutting_gives_the_same_bits():
-    """One instant, two, or a thousand at a time, and each sinusoid added by itself."""
+    """One, two or a thousand instants at a time, and separate sinusoids, give the same bits."""
     gusts = Gusts(SIGMA, LENGTH, AIRSPEED, 3)
     t = np.arange(1000) * 0.0137
     whole = np.array([axis.c for axis in gusts.displacement(t)])

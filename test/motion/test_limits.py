@@ -1,4 +1,4 @@
-"""Motions that leave what the simulation can hold are refused in a sentence."""
+"""Motions beyond the limits of the simulation are rejected with one sentence."""
 
 import math
 
@@ -19,18 +19,18 @@ SPINNING = {'motion.kind': 'two_axis', 'motion.two_axis.psi_rate_rad_s': 100.0,
 
 
 def words(values):
-    """Return the words of the command line that give values."""
+    """Return the command-line arguments that set the values."""
     return [word for name, value in values.items() for word in ('-p', f'{name}:={value}')]
 
 
 @pytest.mark.parametrize('values, at', [
-    # The cruise goes north by half of its 100 m/s and more; 0.1 deg are 11.1 km.
+    # The cruise flies north at half of its 100 m/s or more; 0.1 deg are 11.1 km.
     (POLAR, 'the motion is past the pole at'),
     ({'motion.kind': 'sinusoids', 'motion.sinusoids.position_m': '[0.0, 50000.0, 0.0]',
       'datum.latitude_deg': -89.9}, 'the motion is past the pole at')])
 @pytest.mark.parametrize('verb', ['simulate', 'predict'])
 def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys):
-    """Before the run, wherever in it the pole is passed."""
+    """The motion is rejected before the run, wherever in it the pole is passed."""
     more = ['-o', str(tmp_path / 'run')] if verb == 'simulate' else []
     assert main([verb, *more, *words(values)]) == 2
     said = capsys.readouterr().err
@@ -39,7 +39,7 @@ def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys)
 
 
 def test_a_motion_near_the_pole_is_flown():
-    """6 km from 89.9 degrees do not reach it."""
+    """A motion of 6 km from latitude 89.9 degrees does not reach the pole and is accepted."""
     chosen = settings({**POLAR, 'motion.kind': 'racetrack'}).motion_generator
     motion = make_motion(chosen.motion, chosen.datum, chosen.earth)
     t_ns = np.arange(400) * SECOND
@@ -47,7 +47,7 @@ def test_a_motion_near_the_pole_is_flown():
 
 
 def test_a_generator_without_an_end_looks_ahead():
-    """An endless flight past the pole is refused before its first message."""
+    """An endless flight past the pole is rejected before its first message."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = settings({**POLAR, 'duration_s': 0.0})
     with pytest.raises(ValueError, match='past the pole'):
@@ -55,7 +55,7 @@ def test_a_generator_without_an_end_looks_ahead():
 
 
 def test_half_a_turn_a_sample_is_refused(tmp_path, capsys):
-    """100 rad/s at 25 Hz is 4 rad a sample, which would read 4 - 2 pi: -57 rad/s."""
+    """100 rad/s at 25 Hz is 4 rad per sample, which would be read as 4 - 2 pi: -57 rad/s."""
     sentence = ('turns at 100 rad/s, 4 rad in an interval of the IMU; expected less than half a '
                 'turn, 3.14 rad: raise rate_hz of imu_sensor above 31.83 Hz, or set output '
                 'integrated')
@@ -71,7 +71,7 @@ def test_half_a_turn_a_sample_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize('block', [True, False])
 def test_half_a_turn_a_sample_on_a_stream_of_truth(block):
-    """The truth of 1000 Hz turns by 0.1 rad a step, the IMU of 25 Hz by 4 rad."""
+    """The truth at 1000 Hz turns by 0.1 rad per step, but the IMU at 25 Hz by 4 rad: rejected."""
     chosen = settings({**SPINNING, 'rate_hz': 1000.0, 'duration_s': 0.1}, source='stream')
     slow = settings(SPINNING, source='stream').imu_sensor
     generator = chosen.motion_generator
@@ -86,7 +86,7 @@ def test_half_a_turn_a_sample_on_a_stream_of_truth(block):
 
 
 def test_a_fast_rotation_is_read_right():
-    """20 turns a second at 1 kHz: the reading is the rate, and that of the integrated output."""
+    """With 20 turns per second at 1 kHz the readings are right, for both kinds of output."""
     fast = {**SPINNING, 'motion.two_axis.psi_rate_rad_s': 40.0 * math.pi}
     for rate_hz, output in ((1000.0, 'rotation_vector'), (25.0, 'integrated')):
         chosen = settings({**fast, 'rate_hz': rate_hz, 'output': output, 'input': output},
@@ -95,16 +95,16 @@ def test_a_fast_rotation_is_read_right():
         generator = chosen.motion_generator
         motion = make_motion(generator.motion, generator.datum, generator.earth)
         omega = np.concatenate([b.omega for b in imu_blocks(chosen, motion)])[1:]
-        # The Earth adds 7.3e-5 rad/s at most.
+        # The Earth adds at most 7.3e-5 rad/s.
         assert np.abs(omega[:, 2] - 40.0 * math.pi).max() < 1e-4
 
 
 @pytest.mark.parametrize('gravity', ['free_air', 'second_order'])
 def test_the_physics_holds_at_the_limits(gravity):
     """
-    A minute at 7.9 km/s and 400 km, and of 20 turns a second at 500 km: the run closes.
+    A minute at 7.9 km/s and 400 km height, and 20 turns per second at 500 km, closes to 1 mm.
 
-    To 1e-3 m, as a flight does: the position rule is of second order in the step.
+    The position rule is of second order in the step, as for any flight.
     """
     route = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (50.0, 55.0, 56.0),
              'motion.route.points.longitude_deg': (0.0, 20.0, 40.0), 'vertical.channel': 'free',

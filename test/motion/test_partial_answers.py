@@ -1,4 +1,4 @@
-"""Attitude and specific force alone are those of the whole truth, whatever the motion."""
+"""Attitude and specific force alone are those of the whole truth, for any motion."""
 
 import ins_sim
 from ins_sim.core.attitude import quaternion
@@ -16,7 +16,7 @@ T_NS = 10_000_000 * np.arange(1000, 1300)
 
 
 def check(motion):
-    """Check what a motion says of attitude and of force against its truth."""
+    """Compare the attitude and the force of a motion with its truth."""
     truth = motion.at(T_NS)
     q_nb = tuple(truth.q_nb.T)
     lat, lon, q = motion.attitude_at(T_NS)
@@ -25,7 +25,7 @@ def check(motion):
     assert np.array_equal(motion.body_force_at(T_NS), truth.f_ib_b.T)
     lat, lon, f_n = motion.force_at(T_NS)
     assert (lat == truth.lat).all() and (lon == truth.lon).all()
-    # The truth was turned into b, and here back again: two products of some ten roundings each.
+    # The truth was resolved in b, and is rotated back here: two products of some ten roundings.
     expected = quaternion.rotate(q_nb, tuple(truth.f_ib_b.T))
     off = [np.abs(a - b).max() for a, b in zip(f_n, expected)]
     assert max(off) < 20.0 * np.finfo(float).eps * np.abs(expected).max()
@@ -33,7 +33,7 @@ def check(motion):
 
 @pytest.mark.parametrize('kind', [kind for kind in MOTIONS if kind != 'recording'])
 def test_every_motion_of_the_table(kind):
-    """At some instants, asked alone or with others."""
+    """Every motion of the table, at instants requested alone or with others."""
     if kind == 'route':
         motion = ins_sim.open_motion(ins_sim.read_settings('route_flight'))
     elif kind == 'guided':
@@ -45,31 +45,31 @@ def test_every_motion_of_the_table(kind):
 
 
 def test_a_recorded_flight(flown):
-    """It overrides what the motions in closed form do."""
+    """A recorded flight, which overrides the methods of closed-form motions."""
     check(flown[0])
 
 
 class AtAlone(ins_sim.Motion):
-    """A motion of somebody's own, which only has ``at``."""
+    """A user's motion that only has ``at``."""
 
     def __init__(self, inner):
         self._inner = inner
 
     def at(self, t_ns):
-        """Return the truth of another motion a second later."""
+        """Return the truth of another motion one second later."""
         later = self._inner.at(np.asarray(t_ns) + 10 ** 9)
         return Truth(**{**later.arrays(), 't_ns': t_ns})
 
 
 class Turned(type(make_motion(MotionSettings(), Datum(), Earth()))):
-    """A motion in closed form whose ``at`` is another one's."""
+    """A motion in closed form whose ``at`` is that of another motion."""
 
     at = AtAlone.at
     _inner = make_motion(MotionSettings(kind='aggressive'), Datum(), Earth())
 
 
 def test_a_motion_of_ones_own_with_at_alone():
-    """Everything is answered by it, even where the class above could do without."""
+    """All answers are derived from ``at``, even if the base class has faster ones."""
     check(AtAlone(make_motion(MotionSettings(kind='cruise'), Datum(), Earth())))
     closed = make_motion(MotionSettings(kind='two_axis'), Datum(), Earth())
     closed.__class__ = Turned
@@ -77,7 +77,7 @@ def test_a_motion_of_ones_own_with_at_alone():
 
 
 def test_an_attitude_made_of_derivatives():
-    """The order that its derivatives cost is found out."""
+    """The order that is lost by the derivatives in the attitude is determined automatically."""
     def pose(t):
         level = t.constant(0.0)
         angle = taylor.sin(t * 0.3)

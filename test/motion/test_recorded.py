@@ -1,4 +1,4 @@
-"""Recorded flights: what the splines must reproduce and what they may not depend on."""
+"""Recorded flights: what the splines must reproduce, and what must not affect them."""
 
 import math
 
@@ -19,7 +19,7 @@ FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.c
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_spline_passes_through_every_recorded_sample(shared_data, name):
-    """Interpolation: to the rounding of radians, of the splines' offsets and of the stamps."""
+    """The spline interpolates to the rounding of radians, of its offsets and of the stamps."""
     path = shared_data / 'flights' / name
     motion = load(path, on_gap=FLIGHTS[name])
     rows = read_rows(path)
@@ -37,40 +37,40 @@ def test_spline_passes_through_every_recorded_sample(shared_data, name):
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_rate_and_acceleration_are_continuous_at_the_samples(shared_data, name):
-    """C2: across a sample the rate moves by its slope (times 2 ns), the slope not at all."""
+    """C2: across a sample the rate changes by its slope (times 2 ns), the slope not at all."""
     motion = load(shared_data / 'flights' / name, on_gap=FLIGHTS[name], rotation=False)
     knots = motion._knots[20:-20]
     d = 1000
     rate = [motion.at(knots + k * d).omega_ib_b for k in (-2, -1, 1, 2)]
     before, after = (rate[1] - rate[0]) / (d * 1e-9), (rate[3] - rate[2]) / (d * 1e-9)
     jerk = np.abs(motion.at(knots[:-1]).omega_ib_b).max() / np.diff(knots).min() ** 2 * 1e18
-    # The slopes are 3 us apart, and differences of rates over 1 us keep 1e-16/1e-6 of the rates.
+    # The slopes are 3 us apart, and differences of rates over 1 us round to 1e-16/1e-6 of a rate.
     assert np.abs(after - before).max() < 3.0 * d * 1e-9 * 20.0 * jerk + 1e-8
     assert np.abs(rate[2] - rate[1]).max() < 2.1 * d * 1e-9 * np.abs(before).max() + 1e-9
 
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_rate_and_velocity_are_those_of_the_pose(shared_data, name):
-    """Central difference of quaternion and position over 2 ms against rate and velocity."""
+    """Rate and velocity agree with central differences of quaternion and position over 2 ms."""
     motion = load(shared_data / 'flights' / name, on_gap=FLIGHTS[name], smoothing_s=2.0,
                   rotation=False)
     t_ns = np.linspace(0.0, motion.end_s * 1e9, 500).astype(np.int64)
     d = 10 ** 6
     a, x, b = (motion.at(t_ns + k * d) for k in (-1, 0, 1))
     moved = (Rotation.from_quat(a.q_nb).inv() * Rotation.from_quat(b.q_nb)).as_rotvec()
-    # omega_in of a non-rotating Earth: the transport rate only.
+    # omega_in for a non-rotating Earth: the transport rate only.
     transport = Rotation.from_quat(x.q_nb).inv().apply(np.stack([
         -(b.lat - a.lat), (b.lon - a.lon) * np.cos(x.lat), (b.lon - a.lon) * np.sin(x.lat)], -1))
     rate = (moved + transport) / (2.0 * d * 1e-9)
-    # Truncation d^2/6 times the third derivative; 2 s of smoothing leave the steps of the circuit
-    # jerks of 1500 m/s^3 and less than 100 rad/s^3.
+    # Truncation d^2/6 times the third derivative. With 2 s of smoothing the steps of the circuit
+    # cause jerks of 1500 m/s^3 and less than 100 rad/s^3.
     assert np.abs(rate - x.omega_ib_b).max() < 1e-6 / 6.0 * 100.0
     up = (b.height - a.height) / (2.0 * d * 1e-9)
     assert np.abs(up - x.v_n[:, 2]).max() < 1e-6 / 6.0 * 3000.0
 
 
 def test_recorded_closed_form_converges(tmp_path):
-    """Pose errs by h^6 and h^4, so force by h^4 and rate by h^3: halving h divides by 16 and 8."""
+    """Force errs by h^4 and rate by h^3: halving h divides the errors by 16 and 8."""
     motion = make_motion(MotionSettings(kind='aggressive'), Datum(),
                          Earth())
     t_ns = np.linspace(0.0, 30e9, 997).astype(np.int64)
@@ -82,7 +82,7 @@ def test_recorded_closed_form_converges(tmp_path):
                        ('f_ib_b', 'omega_ib_b')])
         assert np.abs(np.abs((x.q_nb * y.q_nb).sum(1)) - 1.0).max() < 1e-9
     ratio = np.array(errors[0]) / errors[1]
-    # The force is resolved by an attitude that errs by h^4 too: both orders, less a tenth.
+    # The force is resolved with an attitude that errs by h^4 too: both orders, less a tenth.
     assert ratio[0] > 2.0 ** 3.6 and ratio[1] > 2.0 ** 2.7
     assert errors[1][0] < 1e-2 and errors[1][1] < 1e-3
 

@@ -44,7 +44,7 @@ def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
 
 
 def test_wraps_of_heading_roll_and_longitude_change_nothing(tmp_path):
-    """A turn through north, a roll through 180, a flight over the date line: smooth."""
+    """A turn through north, a roll through 180 deg and a flight over the date line are smooth."""
     t = np.arange(201) * 0.1
     heading, roll, lon = 350.0 + 2.0 * t, 170.0 + t, 179.99 + 0.002 * t
     plain = load(write(tmp_path / 'plain.csv', t, lon=lon, roll=0.0, heading=heading % 360.0))
@@ -62,7 +62,7 @@ def test_wraps_of_heading_roll_and_longitude_change_nothing(tmp_path):
 
 @pytest.mark.parametrize('window_s', (0.5, 1.0))
 def test_smoothing_is_a_boxcar(tmp_path, window_s):
-    """A sinusoid of frequency f keeps sin(pi f T) / (pi f T) of itself, -3 dB at 0.443 / T."""
+    """A sinusoid of frequency f is reduced to sin(pi f T) / (pi f T), -3 dB at 0.443 / T."""
     f, t = 0.4429 / window_s, np.arange(3001) * 0.02
     wave = np.sin(2.0 * math.pi * f * t)
     path = write(tmp_path / 'r.csv', t, height=100.0 + wave, roll=wave)
@@ -74,7 +74,7 @@ def test_smoothing_is_a_boxcar(tmp_path, window_s):
     expected = math.sqrt(0.5) * (y.height - 100.0)
     # Spline errors (2 pi f h)^4 / 720, and 1e-4 of the constant 0.4429.
     assert np.abs(x.height - 100.0 - expected).max() < 1.2e-4
-    # Mean of quaternions: third order in a degree.
+    # The mean of quaternions errs by third order in a degree.
     roll = recorder_angles(x.q_nb)[0]
     assert np.abs(roll - expected).max() < 2.5e-4
 
@@ -88,7 +88,7 @@ def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
 
 @pytest.mark.parametrize('largest', (1e-3, 0.1, 1.0, 3.0, 6.0))
 def test_exponential_series_is_the_rotation_and_its_rate(largest):
-    """Against SciPy for the rotation (rounding), against q' = q (0, omega) / 2 for the rate."""
+    """The rotation agrees with SciPy to rounding, the rate with q' = q (0, omega) / 2."""
     rng = np.random.default_rng(2)
     r = rng.standard_normal((3, 500))
     r *= largest * rng.random(500) / np.sqrt((r * r).sum(0))
@@ -116,7 +116,7 @@ def test_gzip_is_the_plain_file(tmp_path, flown):
 
 
 def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
-    """A float of 1.7e9 s resolves 0.24 us; the text is read as decimal."""
+    """Stamps are parsed as decimals: a float of 1.7e9 s would resolve only 0.24 us."""
     stamps = [f'17000000{k // 10:02d}.{k % 10}00000001' for k in range(101)]
     lines = [','.join(COLUMNS)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
     path = tmp_path / 'r.csv'
@@ -136,7 +136,7 @@ def test_outside_the_recording_is_a_sentence(flown):
 
 
 def test_rounding_noise_is_what_rounding_does(tmp_path):
-    """Rounded heights of a level flight: force noise of the prediction within 5 % (n = 4000)."""
+    """The predicted force noise of rounded heights in level flight is right to 5 % (n = 4000)."""
     rng = np.random.default_rng(1)
     t = np.arange(4000) * 0.1
     # A slow random wander decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
@@ -153,14 +153,14 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
 
 
 def test_unrounded_flight_draws_no_warning(flown, tmp_path):
-    """Nor does one of few decimals that needs no more: 10 m/s written to 0.1 m at 100 Hz."""
+    """No warning either for few decimals that are exact: 10 m/s written to 0.1 m at 100 Hz."""
     assert flown[0].warnings == []
     t = np.arange(1001) * 0.01
     assert load(write(tmp_path / 'r.csv', t, height=10.0 * t, digits='.12g')).warnings == []
 
 
 def test_single_precision_is_seen_through_its_decimals(tmp_path):
-    """Latitudes of float32 printed in full are rounded to 2^-18 deg = 0.42 m."""
+    """The resolution of float32 latitudes printed in full is found: 2^-18 deg = 0.42 m."""
     t = np.arange(501) * 0.1
     lat = np.float32(55.0 + 3e-4 * np.sin(0.3 * t)).astype(float)
     path = write(tmp_path / 'r.csv', t, lat=lat)
@@ -169,7 +169,7 @@ def test_single_precision_is_seen_through_its_decimals(tmp_path):
 
 
 def test_spline_gain_is_the_gain_of_the_spline():
-    """Impulse through make_interp_spline: root of the sum of squares of its second derivative."""
+    """The gain is the root of the sum of squares of the spline's response to an impulse."""
     from scipy.interpolate import make_interp_spline
     t = np.arange(201.0)
     impulse = make_interp_spline(t, (t == 100.0).astype(float), k=5)

@@ -227,7 +227,7 @@ def test_correction_steps_are_reported_not_refused(folder):
 
 @pytest.mark.parametrize('fault', ('gap', 'jump', 'back'))
 def test_cut_keeps_the_part_that_holds_start(folder, fault):
-    """100 s at 10 Hz, a fault at 60 s: 3 s of pad stay free on both sides of either part."""
+    """100 s at 10 Hz with a fault at 60 s: 3 s at both ends of either part are kept as pads."""
     table = rows(1001)
     for k, row in enumerate(table[600:], 600):
         if fault == 'jump':

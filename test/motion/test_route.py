@@ -1,4 +1,4 @@
-"""The flight along a route: one pose, great circles, turns, wind and weave."""
+"""The flight along a route: derivatives, great circles, turns, wind and weave."""
 
 import math
 
@@ -14,7 +14,7 @@ from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from ins_sim.core.timeseries.histories import Truth
 
 AIRSPEED = 200.0
-# central differences of sixth order: first and second derivative
+# Central differences of sixth order: first and second derivative.
 FIRST = np.array((-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0)) / 60.0
 SECOND = np.array((2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0)) / 180.0
 
@@ -25,18 +25,18 @@ def local(truth):
 
 
 @pytest.mark.parametrize('groups, h_s, v_bound, f_bound, rate_bound', [
-    # sixth-order truncation of turns of 5 s roll-in; rounding of 1e-9 m, twice over h, and h^2
+    # Sixth-order truncation, turns with 5 s of roll-in; rounding of 1e-9 m, twice over h and h^2.
     ((WIND,), 0.1, 1e-7, 3e-6, 3e-6),
-    # and of gusts up to 8 rad/s: 0.16 m/s x 8^6 h^6 / 140, x 8^7 h^6 / 560
+    # The same with gusts up to 8 rad/s: 0.16 m/s x 8^6 h^6 / 140, x 8^7 h^6 / 560.
     ((ROUGH,), 0.05, 5e-6, 2e-5, 3e-6)], ids=('calm', 'rough'))
 def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
-    """Differences of Earth-fixed positions and attitudes give what the truth says."""
+    """Truth agrees with differences of Earth-fixed positions and attitudes."""
     motion = route(*groups)
     rng = np.random.default_rng(3)
     t = rng.uniform(1.0, motion.end_s, 2000)
     for start, end in motion.turns:
         t = np.concatenate([t, np.linspace(start - 2.0, end + 2.0, 1000)])
-    # differences do not reach over the joints, where the third derivative of the bank steps
+    # Differences must not span the joints, where the third derivative of the bank has steps.
     joints = [x for start, end in motion.turns for x in (start, start + 5.0, end - 5.0, end)]
     t = t[np.abs(t[:, None] - joints).min(axis=1) > 3.1 * h_s]
     t_ns, h_ns = np.round(t * 1e9).astype(np.int64), round(h_s * 1e9)
@@ -59,7 +59,7 @@ def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
         turned = np.array(quaternion.multiply(quaternion.conjugate(q_eb[3 - k]), q_eb[3 + k])).T
         return np.array([quaternion.logarithm(q) for q in turned.tolist()]) / (2 * k * h_s)
 
-    # fourth order by Richardson; the Earth turns as well
+    # Fourth order by Richardson extrapolation; the rotation of the Earth is added.
     omega = (4.0 * mean_rate(1) - mean_rate(2)) / 3.0 + np.stack(
         quaternion.rotate_back(q_eb[3], spin), axis=-1)
     rate = np.abs(omega - truth.omega_ib_b).max()
@@ -69,24 +69,24 @@ def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
 
 
 def test_truth_has_no_steps():
-    """Around every knot of the turns velocity, force, attitude and rate go on: C1 rates."""
+    """Velocity, force, attitude and rate are continuous at all knots of turns, the rates C1."""
     motion = route(WIND)
     for start, end in motion.turns:
         for joint in (start, start + 5.0, end - 5.0, end):
             t_ns = round(joint * 1e9) + np.arange(-4, 5)
             truth = motion.at(t_ns)
-            # within 8 ns no more than the slopes there allow, and rounding
+            # Within 8 ns the change is limited by the slopes there, and by rounding.
             assert np.abs(np.diff(truth.v_n, axis=0)).max() < 1e-8
             assert np.abs(np.diff(truth.f_ib_b, axis=0)).max() < 1e-6
             assert np.abs(np.diff(truth.omega_ib_b, axis=0)).max() < 1e-9
-            # the slope of the rate changes by its own slope, 0.2 rad/s^3, times 2 ms
+            # In 2 ms the slope of the rate changes by its own slope, 0.2 rad/s^3, times 2 ms.
             slopes = [np.diff(motion.at(np.array((t, t + 1000000))).omega_ib_b, axis=0) / 1e-3
                       for t in (t_ns[0] - 1000000, t_ns[-1])]
             assert np.abs(slopes[1] - slopes[0]).max() < 2e-3
 
 
 def test_calm_legs_are_great_circles_at_constant_airspeed():
-    """Without weave and gusts Z is zero on the legs; the airspeed is constant in turns as well."""
+    """Without weave and gusts Z is zero on legs, and the airspeed is constant also in turns."""
     motion = route(WIND)
     t_ns = instants(motion, 0.1)
     truth, free = motion.at(t_ns), on_legs(motion, t_ns)
@@ -97,32 +97,32 @@ def test_calm_legs_are_great_circles_at_constant_airspeed():
                                                      speed[~free] - AIRSPEED))
     print(f'\n|Z| on legs {beside:.2e} m; airspeed off by {legs:.2e} m/s on legs, '
           f'{turns:.2e} in turns; furthest inside a corner {np.abs(z).max():.0f} m')
-    # a few roundings of radians; the expansions leave out 5e-12 of the velocity in the roll-in
+    # A few roundings of radians; the expansions neglect 5e-12 of the velocity in the roll-in.
     assert beside < 2e-8 and legs < 1e-11 and turns < 2e-9
     assert (np.diff(np.array(motion.route.starts)[leg[free]] + x[free]) > 0.0).all()
 
 
 def test_the_flight_starts_and_arrives_at_its_points():
-    """The first point at zero, the last one at end_s, and it goes on beyond either."""
+    """From the first point at zero to the last at end_s; the motion extends beyond both."""
     motion = route(WIND, WEAVE)
     ends = motion.at(np.array((0, round(motion.end_s * 1e9)), dtype=np.int64))
     x = [leg.to_xz(ends.lat[k], ends.lon[k]) for k, leg in ((0, motion.route.legs[0]),
                                                             (1, motion.route.legs[-1]))]
     assert x[0] == pytest.approx((0.0, 0.0), abs=1e-7)
-    # the weave, 14 m beside and by the crab ahead, where it stands at the arrival
+    # The weave displaces by 14 m to the side, and by the crab ahead at its phase at the arrival.
     assert x[1] == pytest.approx((motion.route.legs[-1].length, 0.0), abs=14.0)
     calm = route(WIND)
     end_ns = round(calm.end_s * 1e9)
     arrived = calm.at(np.array((-10 ** 9, end_ns, end_ns + 10 ** 9)))
     x, z = calm.route.legs[-1].to_xz(arrived.lat[1:], arrived.lon[1:])
-    # half a nanosecond of arrival
+    # The arrival is rounded to half a nanosecond.
     assert x[0] == pytest.approx(calm.route.legs[-1].length, abs=2e-7)
     assert 190.0 < x[1] - x[0] < 210.0 and np.abs(z).max() < 1e-8
     assert -210.0 < calm.route.legs[0].to_xz(arrived.lat[0], arrived.lon[0])[0] < -190.0
 
 
 def test_turns_are_coordinated_at_their_rate():
-    """In the hold: 1.2 deg/s of heading, bank atan(V psi'/g), next to no side force."""
+    """In the constant part: 1.2 deg/s of heading, bank atan(V psi'/g), nearly no side force."""
     motion = route(attack_deg=0.0)
     for start, end in motion.turns:
         t_ns = np.round(np.arange(start, end, 0.01) * 1e9).astype(np.int64)
@@ -138,12 +138,12 @@ def test_turns_are_coordinated_at_their_rate():
               f'bank {np.degrees(roll[hold]).mean():.3f} deg, off by '
               f'{np.degrees(np.abs(roll - bank)[1:-1].max()):.1e} deg; side force '
               f'{np.abs(truth.f_ib_b[:, 1]).max():.4f} m/s^2')
-        # the great circle's own share of the rate: V/R0 tan(lat) = 4.8e-5 rad/s
+        # The great circle's own contribution to the rate: V/R0 tan(lat) = 4.8e-5 rad/s.
         assert np.abs(np.abs(rate[hold]) - math.radians(1.2)).max() < 5e-5
-        # numerical slope of the heading
+        # Error of the numerical derivative of the heading.
         assert np.abs(roll - bank)[1:-1].max() < 1e-4
-        # sin(bank) times normal less standard gravity, 0.009, Eotvos' 2 Omega V cos(lat), 0.0163,
-        # and V^2/R0, 0.0063 m/s^2
+        # sin(bank) times three terms: normal minus standard gravity, 0.009; Eotvos effect
+        # 2 Omega V cos(lat), 0.0163; V^2/R0, 0.0063 m/s^2.
         assert np.abs(truth.f_ib_b[:, 1]).max() < 0.4 * (0.009 + 0.0163 + 0.0063)
         assert np.abs(pitch).max() < 1e-12
 
@@ -159,13 +159,13 @@ def test_the_nose_is_in_the_wind():
         off = np.abs(in_body(truth, air_velocity(motion, truth)) - expected).max(axis=1)
         print(f'\n{groups}: off by {off[free].max():.2e} m/s on legs, {off[~free].max():.2e} in '
               'turns')
-        # rough: weave and gusts displace by up to 40 m, in axes that turn by 5e-5 rad/s on legs;
-        # the weave by 14 m, in axes that turn by 0.021 rad/s in turns
+        # Rough flight: weave and gusts displace by up to 40 m in axes that turn at 5e-5 rad/s on
+        # legs, the weave by 14 m in axes that turn at 0.021 rad/s in turns.
         assert off[free].max() < on_leg and off[~free].max() < in_turn
 
 
 def test_wind_triangle():
-    """North along a meridian, wind from the west: drift asin(8/200), speed sqrt(200^2 - 8^2)."""
+    """North with wind from the west: drift asin(8/200), ground speed sqrt(200^2 - 8^2)."""
     motion = route({'points.latitude_deg': (55.0, 56.0), 'points.longitude_deg': (37.0, 37.0)},
                    wind_m_s=8.0, wind_from_deg=270.0, attack_deg=0.0)
     truth = motion.at(instants(motion, 1.0))
@@ -176,15 +176,15 @@ def test_wind_triangle():
         -math.asin(8.0 / 200.0), abs=1e-10)
     assert speed == pytest.approx(math.sqrt(200.0 ** 2 - 8.0 ** 2), abs=1e-9)
     v_b = in_body(truth, truth.v_n)
-    # the wind pushes to the right of the nose, as the velocity meter sees it: V_z1 > 0; the bank
-    # against Coriolis' force, 0.14 deg, takes 3e-6 of it
+    # Wind from the left: the velocity meter sees drift to the right of the nose, V_z1 > 0. The
+    # bank against the Coriolis force, 0.14 deg, reduces it by 3e-6.
     assert -v_b[:, 1] == pytest.approx(8.0 * math.sqrt(1 - 0.04 ** 2), rel=4e-6)
 
 
 def test_the_weave_is_flown():
-    """Heading +-1 deg and the track +-V A/w with a period of 25 s, at constant airspeed."""
+    """Heading +-1 deg and track +-V A/w with a period of 25 s, at constant airspeed."""
     points = {'points.latitude_deg': (0.0, 0.0), 'points.longitude_deg': (37.0, 39.0)}
-    # with an attack angle the banking would turn the nose as well
+    # With an angle of attack the banking would turn the nose as well.
     motion = route(points, WEAVE, attack_deg=0.0)
     t_ns = instants(motion, 0.01)
     truth = motion.at(t_ns)
@@ -200,14 +200,14 @@ def test_the_weave_is_flown():
     assert heading.max() == pytest.approx(1.0, abs=1e-6)
     assert heading.min() == pytest.approx(-1.0, abs=1e-6)
     assert np.diff(ups) == pytest.approx(25.0, abs=0.011)
-    # 2 J1(A) = A (1 - A^2/8); R0 against the radius at the equator, 1.1e-3
+    # 2 J1(A) = A (1 - A^2/8); R0 differs from the radius at the equator by 1.1e-3.
     assert z.max() == pytest.approx(expected, rel=2e-3)
     assert np.abs(course - heading).max() < 1e-6
     assert np.abs(speed - AIRSPEED).max() < 1e-9
 
 
 def test_a_slipping_weave_swings_the_nose_and_not_the_track():
-    """Heading +-1 deg, the track straight, so that the nose slips by the weave; no bank for it."""
+    """Heading +-1 deg with a straight track: the nose slips by the weave, without bank."""
     points = {'points.latitude_deg': (0.0, 0.0), 'points.longitude_deg': (37.0, 38.0)}
     motion, calm = (route(points, weave, attack_deg=0.0) for weave in (
         {**WEAVE, 'weave': 'slipping'}, {}))
@@ -227,7 +227,7 @@ def test_a_slipping_weave_swings_the_nose_and_not_the_track():
 
 
 def test_any_cutting_gives_the_same_bits():
-    """Truth of blocks cut at random is that of the whole."""
+    """Truth in randomly cut blocks has the bits of the whole."""
     motion = route(ROUGH)
     t_ns = instants(motion, 0.05)
     whole = motion.at(t_ns)
@@ -245,10 +245,10 @@ def test_any_cutting_gives_the_same_bits():
        st.floats(0.0, 360.0), st.floats(0.5, 3.0))
 def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     """
-    Random corners, winds and rates: every leg a great circle, the last point reached.
+    With random corners, winds and rates every leg is a great circle and the last point is reached.
 
-    The slowest turn has a radius of up to 25 km.  By 150 deg, and 10 more where meridians meet, it
-    starts r tan(80 deg) = 142 km before its point: two fit on a leg of 333 km.
+    The slowest turn has a radius of up to 25 km. A turn by 150 deg, plus 10 where meridians
+    converge, starts r tan(80 deg) = 142 km before its point: two of them fit on a leg of 333 km.
     """
     lats, lons = [lat], [lon]
     for turn in (*turns, 0.0):
@@ -265,10 +265,10 @@ def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     x, z = motion.route.to_xz(truth.lat, truth.lon, leg)
     assert np.abs(z[free]).max() < 2e-8
     way = np.linalg.norm(np.diff(truth.v_n, axis=0), axis=1)
-    # half a second of the turn
+    # Bound: half a second of the turn.
     assert way.max() < 0.51 * (AIRSPEED + wind) * math.radians(rate)
     last = motion.at(np.array([round(motion.end_s * 1e9)]))
     assert motion.route.legs[-1].to_xz(last.lat, last.lon)[0][0] == pytest.approx(
         motion.route.legs[-1].length, abs=1e-6)
-    # quaternions keep their sign
+    # Quaternions keep their sign.
     assert ((truth.q_nb[1:] * truth.q_nb[:-1]).sum(axis=1) > 0.9).all()

@@ -1,4 +1,4 @@
-"""Routes that cannot be flown are refused in one sentence; extreme ones that can are flown."""
+"""Routes that cannot be flown are rejected with one sentence; extreme ones that can are flown."""
 
 from support.flown import instants, on_legs, route, WIND
 import numpy as np

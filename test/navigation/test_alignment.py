@@ -1,4 +1,4 @@
-"""Self-alignment at a standstill: the textbook's error equations, whatever the mounting."""
+"""Self-alignment at a standstill satisfies the textbook error equations for any mounting."""
 
 from dataclasses import replace
 import math
@@ -51,10 +51,10 @@ def errors(q, q_true):
        heading=st.floats(0.0, 6.28), how=st.sampled_from(['given', 'tf']))
 def test_any_mounting_navigates_alike(turn, lat, heading, how):
     """
-    A perfect IMU, mounted anyhow: the attitude of the vehicle to rounding, and no drift.
+    With a perfect IMU in any mounting, the attitude is exact to rounding and nothing drifts.
 
-    A rounding of 1e-15 in the rotated rate is 1e-15 / cos(lat) rad of heading; the standstill
-    then drifts by less than g 1e-14 t^2 / 2, far below a micrometre in 50 s.
+    A rounding error of 1e-15 in the rotated rate causes 1e-15 / cos(lat) rad of heading error; the
+    solution at rest then drifts by less than g 1e-14 t^2 / 2, far below a micrometre in 50 s.
     """
     q_nb = tuple(from_compass(0.2, -0.1, heading)[0].tolist())
     rotation = Rotation.from_euler('xyz', turn, degrees=True)
@@ -85,9 +85,9 @@ ANGLE = st.floats(-3.1, 3.1)
 def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
         roll, pitch, heading, lat, force, rate, size):
     """
-    With any attitude and latitude: the error equations of the coarse alignment.
+    At any attitude and latitude the errors obey the equations of coarse alignment.
 
-    tilt <= asin(b_a / |f|): a vector b_a added to f turns it by no more.
+    tilt <= asin(b_a / |f|): adding a vector b_a to f rotates f by no more.
     heading <= b_g / (Omega cos lat) + tan(lat) b_a / g + second order, which is bounded by the
     square of both errors together.
     """
@@ -101,7 +101,7 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
     g = ellipsoid.gravity(math.sin(lat), 0.0)
     tilt_bound = math.asin(size[0] / (g - size[0]))
     first = size[1] * DEG_H / (OMEGA * math.cos(lat)) + math.tan(abs(lat)) * size[0] / g
-    # the horizontal part of a rotation vector of length d is d/2 / sin(d/2) times the tilt
+    # The level part of a rotation vector of length d is d/2 / sin(d/2) times the tilt.
     half = 0.5 * math.hypot(tilt, azimuth)
     assert tilt <= tilt_bound * (half / math.sin(half) if half else 1.0) + 1e-12
     assert azimuth <= first + 2.0 * (first + tilt_bound) ** 2 + 1e-9
@@ -110,7 +110,7 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
 @settings(max_examples=100, deadline=None)
 @given(roll=ANGLE, pitch=st.floats(-1.4, 1.4), heading=st.floats(0.0, 6.28))
 def test_level_takes_the_given_heading(roll, pitch, heading):
-    """Of a perfect force and a heading the attitude comes back whole."""
+    """A perfect force and a given heading determine the whole attitude."""
     q_nb = from_compass(roll, pitch, heading)[0]
     force = np.array(quaternion.rotate_back(q_nb, (0.0, 0.0, 9.8)))
     back = to_compass(np.array(alignment.level_attitude(force, heading)))
@@ -119,7 +119,7 @@ def test_level_takes_the_given_heading(roll, pitch, heading):
 
 
 def test_a_vertical_forward_axis_has_no_heading():
-    """It is said, not computed."""
+    """With a vertical forward axis ValueError is raised instead of computing a heading."""
     with pytest.raises(ValueError, match='forward axis is within 1 deg of the vertical'):
         alignment.level_attitude(np.array([9.8, 0.01, 0.0]), 0.0)
 
@@ -128,9 +128,9 @@ def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
     """
     Over 200 seeds of white noise the normalised squared heading error has mean 1.
 
-    The standard error is estimated from sine and cosine of five frequencies, so that the ratio is
-    Student's t with 10 degrees: variance 10/8.  Its sum over the seeds is held to the 99.9 %
-    quantiles of chi-square with 200 degrees, widened by that variance.
+    The standard error is estimated from sine and cosine at five frequencies, so that the ratio is
+    Student's t with 10 degrees of freedom: variance 10/8. Its sum over the seeds must be within
+    the 99.9 % quantiles of chi-square with 200 degrees of freedom, widened by that variance.
     """
     lat, q_nb = 0.9, tuple(from_compass(0.1, -0.2, 1.0)[0].tolist())
     squares, sizes = [], []
@@ -151,11 +151,11 @@ def test_the_standard_error_of_gyrocompassing_is_that_of_its_errors(capsys):
 
 def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
     """
-    A ring-laser IMU at rest for 120 s, of the shipped preset, at heading 77 deg.
+    The shipped ring-laser preset at rest for 120 s at heading 77 deg aligns within its bounds.
 
-    Bounds: the level within the mean accelerometer error over g, the heading within the mean
-    gyro error over Omega cos(lat) plus tan(lat) times the level's; both mean errors are known,
-    reading less truth.  And the heading within 3 of its own standard errors and that bias.
+    Bounds: the tilt is within the mean accelerometer error over g; the heading is within the mean
+    gyro error over Omega cos(lat) plus tan(lat) times the tilt bound. Both mean errors are known,
+    as reading minus truth. The heading is also within 3 standard errors plus that bias.
     """
     chosen = parameter_files.read([resources.config('imu_navigation_rlg')], [
         'motion.kind:=static', 'motion.psi_deg:=-77.0', 'motion.theta_deg:=3.0',
@@ -191,9 +191,9 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
 @pytest.mark.parametrize('bias, trust', [(0.0, True), (0.1, True), (5.0, False), (500.0, False)])
 def test_gyros_too_coarse_are_not_trusted(bias, trust):
     """
-    A bias that shows as more than heading_sigma_deg in length or upward part is refused.
+    The heading is rejected if the visible bias would turn it by more than heading_sigma_deg.
 
-    2 deg at latitude 50 deg are 15.04 cos(50) sin(2) = 0.34 deg/h.
+    2 deg at latitude 50 deg correspond to 15.04 cos(50) sin(2) = 0.34 deg/h.
     """
     lat = math.radians(50.0)
     imu = resting((0.0, 0.0, 0.0, 1.0), lat, bias=(np.array([0.0, 0.0, bias * DEG_H]),
@@ -204,7 +204,7 @@ def test_gyros_too_coarse_are_not_trusted(bias, trust):
 
 
 def test_the_bias_is_the_mean_rate_less_that_of_the_earth():
-    """Exactly what was put in comes out, at any attitude."""
+    """The gyro bias is found exactly at any attitude: mean rate minus Earth rate."""
     lat, q_nb = -0.5, tuple(from_compass(2.0, 0.3, 4.0)[0].tolist())
     bias = np.array([1e-3, -2e-3, 3e-3])
     still = standstill.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
@@ -228,7 +228,7 @@ def moving(seconds_each, rate_hz=50.0, seed=3):
 
 
 def test_the_standstill_is_found_where_it_is():
-    """First one long enough, no longer than asked, and never a window that moves."""
+    """The first standstill that is long enough is found, not longer than asked, without motion"""
     imu = moving([3.0, 4.0, 20.0, 5.0, 40.0])
     limits = AlignmentSettings()
     still = standstill.find_standstill(imu, limits)
@@ -241,7 +241,7 @@ def test_the_standstill_is_found_where_it_is():
 
 
 def test_uniform_motion_is_no_standstill_where_the_reference_moves():
-    """No IMU tells rest from uniform motion; the speed of the reference does."""
+    """An IMU cannot tell rest from uniform motion; the speed of the reference can."""
     imu = moving([20.0])
     with pytest.raises(ValueError, match='in 20 quiet windows the reference moves faster'):
         standstill.find_standstill(imu, AlignmentSettings(), lambda t: np.full(len(t), 11.0))
@@ -251,7 +251,7 @@ def test_uniform_motion_is_no_standstill_where_the_reference_moves():
 
 
 def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
-    """Turned in between within a gap: both sides are quiet, the means differ."""
+    """If the IMU is tilted in a gap, both sides are quiet, but their means differ."""
     imu = moving([20.0])
     force = np.where((imu.t_ns >= 10_000_000_000)[:, None], [1.0, 0.0, 9.75], imu.f)
     still = standstill.find_standstill(replace(imu, f=force), AlignmentSettings())
@@ -261,7 +261,7 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
 @settings(max_examples=100, deadline=None)
 @given(force=UNIT, yaw=ANGLE)
 def test_levelling_the_mounting_brings_the_force_up(force, yaw):
-    """And by the shortest turn: its axis is level."""
+    """Levelling uses the shortest rotation: its axis is level."""
     q = mounting.levelled_mounting(np.array(force), yaw)
     up = np.array(quaternion.rotate(q, tuple(force))) / np.linalg.norm(force)
     assert np.abs(up - [0.0, 0.0, 1.0]).max() < 1e-12
@@ -270,14 +270,14 @@ def test_levelling_the_mounting_brings_the_force_up(force, yaw):
 
 
 def test_mounting_angles_are_those_of_urdf():
-    """Fixed axes x, y, z: SciPy's 'xyz'."""
+    """Mounting angles rotate about fixed axes x, y, z, as SciPy's 'xyz'."""
     q = angles.from_rpy(0.3, -0.7, 2.0)
     assert np.abs(np.array(q) - Rotation.from_euler('xyz', [0.3, -0.7, 2.0]).as_quat()).max() \
         < 1e-15
 
 
 def test_the_chain_of_transforms():
-    """Up and down the tree; wrong names are named."""
+    """Transforms are chained up and down the tree; the error for a wrong name says which."""
     a, b, c = (tuple(q) for q in Rotation.random(3, random_state=1).as_quat())
     tree = {('base_link', 'mast'): a, ('mast', 'imu'): b, ('base_link', 'gnss'): c}
     assert mounting.chained_mounting({}, 'base_link', 'imu') is None

@@ -1,4 +1,4 @@
-"""Blocks of the inertial navigator: the bits of single steps, plain and compiled, any cutting."""
+"""Blocks of the inertial navigator give the bits of single steps, compiled or not, however cut."""
 
 from ins_sim.core.attitude.integration import KINDS
 from ins_sim.core.motion.factory import make_motion
@@ -32,7 +32,7 @@ def navigator(kind, channel, output):
 
 
 def rows_of_steps(navigator, imu, truth):
-    """Return all outputs of single steps, one list of floats a sample."""
+    """Return all outputs of single steps, one list of floats per sample."""
     rows = []
     for k, sample in enumerate(zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()),
                                    map(tuple, imu.f.tolist()))):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.studies import FLIGHT, prediction_of, settings, study
 
-# the Gulfstream's cruise from 748 s on; the circuit from the air start to before the landing
+# The Gulfstream's cruise from 748 s on; the circuit from the start in the air to before landing.
 FLIGHTS = [*(pytest.param(('cruise_gv_acclip_rf01.csv.gz', start_s, 3600.0, {}),
                           marks=pytest.mark.slow) for start_s in (1000.0, 9000.0)),
            ('uavcircuit_umn_thor_fl75.csv.gz', 3.0, 600.0,
@@ -22,17 +22,17 @@ def flight(folder, name, start_s, duration_s, more):
 @pytest.mark.parametrize('row', FLIGHTS, ids=lambda r: f'{r[0][:10]} {r[1]:g}')
 def test_recorded_flights_close(row, shared_data, figures):
     """
-    The twin is the closure; what the delays add is what the linear model predicts.
+    Without delays a recorded flight closes; delays add what the linear model predicts.
 
-    Within 1 % of the largest error, as for the closed-form motions (test_prediction): at most
-    metres, which is the paper's conclusion.
+    The prediction is within 1 % of the largest error, as for the closed-form motions
+    (test_prediction). The errors are metres at most, as Bogdanov and Fomichev 2018 conclude.
     """
     values = flight(shared_data / 'flights', *row)
     errors, twin = study(values)
     closure = np.abs(twin.position[:, :2]).max()
     added = (errors.position - twin.position)[:, :2]
     late = np.abs(added).max()
-    # the prediction has a step of 0.1 s
+    # The prediction has a step of 0.1 s.
     predicted = prediction_of(settings(values)).position[:, :2]
     off = np.abs(added[::10][:len(predicted)] - predicted[:len(added[::10])]).max() / late
     print(f'\n{row[0]} from {row[1]:g} s, {row[2]:g} s: closure {closure:.2e} m (1e-2), '

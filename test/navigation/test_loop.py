@@ -1,4 +1,4 @@
-"""The loop over samples: what it does at gaps and faults, and which outputs are published."""
+"""The loop over samples: handling of gaps and faults, and selection of the published outputs."""
 
 from ins_sim.core.navigation.loop import Decimation, NavigationLoop
 from ins_sim.core.navigation.recorded import RecordedLoop
@@ -9,13 +9,13 @@ DT_NS = 10_000_000
 
 
 class Steps:
-    """A navigator that puts out how many samples it has taken, from the second on."""
+    """A navigator whose output is the number of samples processed, from the second on."""
 
     def __init__(self):
         self.count = 0
 
     def step(self, t_ns, *sample):
-        """Return the count, or raise what the sample holds."""
+        """Return the count, or raise the exception that the sample holds."""
         for fault in sample:
             raise fault
         self.count += 1
@@ -27,19 +27,19 @@ class Steps:
 
 
 def stamps(*indices):
-    """Return samples of the stamps k dt."""
+    """Return samples with the stamps k dt."""
     return [(k * DT_NS,) for k in indices]
 
 
 def test_gap_stops():
-    """The sentence of the fault is that of the live node."""
+    """A gap raises ValueError with the same sentence as in the live node."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='stop')
     with pytest.raises(ValueError, match='imu has a gap from 0.020000000 s to 0.050000000 s'):
         list(loop.run(stamps(0, 1, 2, 5)))
 
 
 def test_gap_starts_anew():
-    """A new navigator takes the sample behind the gap; the output of each is told."""
+    """After a gap a new navigator processes the next sample, and its outputs are returned."""
     faults = []
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset', faults=faults)
     assert list(loop.run(stamps(0, 1, 2, 5, 6))) == [(1, 2, True), (2, 3, True), (4, 2, True)]
@@ -47,7 +47,7 @@ def test_gap_starts_anew():
 
 
 def test_blocks_are_one_run():
-    """Cut anywhere, samples give the same outputs; a gap between two blocks is one too."""
+    """Samples cut into any blocks give the same outputs; a gap between blocks is found too."""
     samples = stamps(0, 1, 2, 3, 7, 8, 9)
     whole = [(o, d) for _, o, d in NavigationLoop(Steps, DT_NS, 2, 'reset').run(samples)]
     for cut in range(len(samples) + 1):
@@ -57,14 +57,14 @@ def test_blocks_are_one_run():
 
 
 def test_a_repeated_stamp_is_dropped():
-    """As live: the navigator never sees an interval of zero, and does not start anew."""
+    """As live, a repeated stamp is dropped: no interval of zero, and no restart."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     assert [o for _, o, _ in loop.run(stamps(0, 1, 1, 2))] == [2, 3]
     assert 'imu repeats the stamp' in loop.faults[0]
 
 
 def test_jitter_is_no_gap():
-    """A fifth of the period either way is allowed, and no more."""
+    """Jitter of up to a fifth of the period either way is allowed, and no more."""
     late = DT_NS // 5
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     assert len(list(loop.run([(0,), (DT_NS + late,), (2 * DT_NS,), (3 * DT_NS,)]))) == 3
@@ -73,7 +73,7 @@ def test_jitter_is_no_gap():
 
 
 def test_decimation_counts_periods_from_the_first_output():
-    """Behind a gap the same instants are published as without it."""
+    """After a gap the same instants are published as without it."""
     loop = NavigationLoop(Steps, DT_NS, 3, 'reset')
     samples = stamps(0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13)
     due = [samples[k][0] // DT_NS for k, _, due in loop.run(samples) if due]
@@ -81,7 +81,7 @@ def test_decimation_counts_periods_from_the_first_output():
 
 
 def test_decimation_begins_again_when_time_jumps_back():
-    """The first output is published, and the first one behind a jump back to before it."""
+    """The first output is published, and the first one after a jump back to before it."""
     decimation = Decimation(4, DT_NS)
     assert decimation.begins(5 * DT_NS) and decimation.due(5 * DT_NS)
     assert not decimation.begins(6 * DT_NS) and not decimation.due(6 * DT_NS)
@@ -91,7 +91,7 @@ def test_decimation_begins_again_when_time_jumps_back():
 
 
 def test_a_fault_of_the_navigator_is_a_fault_of_the_loop():
-    """One that calls for a restart gives the sample to a new navigator, once."""
+    """A fault that requires a restart passes the sample to a new navigator, once."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     bad = StreamFault('diverged', restart=True)
     with pytest.raises(StreamFault, match='diverged'):
@@ -102,7 +102,7 @@ def test_a_fault_of_the_navigator_is_a_fault_of_the_loop():
 
 
 def test_recorded_loop_ends_at_a_gap_or_bridges_it():
-    """Steps of any length up to the limit follow; the gap is told by its length and start."""
+    """Steps up to the limit are accepted; a gap is reported with its length and start."""
     samples = stamps(0, 1, 3, 4, 9, 10)
     loop = RecordedLoop(Steps, float(DT_NS), 2.5 * DT_NS, bridges_ns=0)
     assert [k for k, _, _ in loop.run(samples)] == [1, 2, 3]

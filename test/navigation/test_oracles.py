@@ -1,7 +1,7 @@
 """
-The reference figures of runs with delays (docs/explanation/validation.md), printed and held.
+Reference figures of runs with delays (docs/explanation/validation.md), printed and checked.
 
-Tolerances: half a unit of the last digit that the published table gives, unless said otherwise.
+Tolerances: half a unit of the last digit in the published table, unless stated otherwise.
 """
 
 import numpy as np
@@ -38,7 +38,8 @@ def grouped(row):
     """
     Return a row as a parameter whose tests share one run: one worker computes it once.
 
-    Theta -30 deg is of the everyday run, theta 0 of the slow one: each is an hour with its twin.
+    Rows with theta -30 deg are in the everyday run, those with theta 0 in the slow one: each is a
+    simulation of an hour, with its twin.
     """
     marks = [pytest.mark.xdist_group(f'{row[0]:g}')]
     return pytest.param(*row, marks=marks if row[0] else [*marks, pytest.mark.slow])
@@ -50,7 +51,7 @@ def largest(errors):
 
 
 def check_cell(figures, theta, detuning, north, east, tol_n, tol_e):
-    """Hold a cell, and its zero-delay twin at the floor of 1e-4 m."""
+    """Check a cell against its figures, and its zero-delay twin against the floor of 1e-4 m."""
     errors, twin = study(cell(theta, detuning))
     n, e = largest(errors)
     floor = largest(twin).max()
@@ -66,27 +67,27 @@ def check_cell(figures, theta, detuning, north, east, tol_n, tol_e):
 
 @pytest.mark.parametrize('theta, detuning, north, east, tol_n, tol_e', map(grouped, TABLE))
 def test_table_of_motion_2(theta, detuning, north, east, tol_n, tol_e, figures):
-    """Two of its eight cells, one of them in the slow run."""
+    """Two of the eight published cells of motion 2, one of them in the slow run."""
     check_cell(figures, theta, detuning, north, east, tol_n, tol_e)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('row', REST, ids=lambda row: f'{row[0]:g} {row[1]:g}')
 def test_rest_of_the_table_of_motion_2(row, figures):
-    """The other six."""
+    """The other six of the eight published cells of motion 2."""
     check_cell(figures, *row)
 
 
 @pytest.mark.parametrize('theta, published', map(grouped, [(-30.0, 0.0334932), (0.0, 0.0257831)]))
 def test_drift_of_motion_2(theta, published, figures):
-    """The paper's (19): 1/8 psi'^2 tau cos(theta) (1 - sin(theta)) about East."""
+    """Drift by Bogdanov and Fomichev 2018, (19): 1/8 psi'^2 tau cos(theta) (1 - sin(theta))."""
     errors, _ = study(cell(theta, 0.0))
     drift = errors.drift[-1] * DEG_PER_HOUR
     formula = 0.125 * 1e-6 * np.cos(np.radians(theta)) * (1 - np.sin(np.radians(theta)))
     print(f'\nmotion 2, theta {theta:g}: drift {drift} deg/h, (19) {formula * DEG_PER_HOUR:.7f}')
     figures.record(f'oracles.motion_2.{theta:g}.drift', drift[0], 'deg/h', published, 'published')
     assert formula * DEG_PER_HOUR == pytest.approx(published, abs=5e-8)
-    # (19) neglects the rotation of the Earth in w: 1e-4 relative, plus (w dt)^2 / 4
+    # (19) neglects the rotation of the Earth in w: 1e-4 relative, plus (w dt)^2 / 4.
     assert drift[0] == pytest.approx(published, rel=1e-4 + 0.01 ** 2 / 4)
     assert np.abs(drift[1:]).max() < 1e-4 * published
 
@@ -111,7 +112,7 @@ def test_motion_1(figures):
 
 
 def check_flight(figures, values, north, east):
-    """Hold error less twin of a flight of section 7, and its twin at the floor."""
+    """Check error minus twin of a flight of section 7, and its twin against the floor."""
     errors, twin = study(values)
     n, e = np.abs(errors.position - twin.position).max(axis=0)[[1, 0]]
     floor = largest(twin).max()
@@ -139,15 +140,16 @@ def test_the_cruise(figures):
 @pytest.mark.slow
 def test_racetrack_errs_by_metres_at_most(figures):
     """
-    The paper's conclusion, real flights give at most metres in an hour, by the linear model.
+    The racetrack errs by metres at most in an hour, as predicted by the linear model.
 
-    No figure is published for this flight. The model has to predict the whole history of the error
-    within 1 % of its largest value, as in test_prediction.
+    This is a conclusion of Bogdanov and Fomichev 2018 for real flights; no figure is published for
+    this one. The model must predict the whole history of the error to within 1 % of its largest
+    value, as in test_prediction.
     """
     errors, twin = study(RACETRACK)
     added = errors.position - twin.position
     n, e = np.abs(added).max(axis=0)[[1, 0]]
-    # the prediction has a step of 0.1 s
+    # The prediction has a step of 0.1 s.
     predicted = prediction_of(settings(RACETRACK)).position
     off = np.abs(added[::10][:len(predicted)] - predicted[:len(added[::10])]).max() / max(n, e)
     print(f'\nracetrack: |dN| {n:.4f}, |dE| {e:.4f}, predicted within {off:.1e} of it, twin '
@@ -160,10 +162,10 @@ def test_racetrack_errs_by_metres_at_most(figures):
 @pytest.mark.slow
 def test_schuler_period(figures):
     """
-    The period of 2 pi sqrt(R_N / g) fits 5065.2 s.
+    The fitted Schuler period agrees with 2 pi sqrt(R_N / g), 5065.2 s.
 
-    A constant drift gives a (t - sin(w t) / w); the boundary term [R T w](0) of the attitude
-    error, a tilt at the start, gives b (1 - cos(w t)).
+    A constant drift causes a (t - sin(w t) / w); the boundary term [R T w](0) of the attitude
+    error, an initial tilt, causes b (1 - cos(w t)).
     """
     errors, _ = study(SCHULER)
     t = (errors.t_ns - errors.t_ns[0]) * 1e-9
@@ -177,6 +179,6 @@ def test_schuler_period(figures):
     theory = 2 * np.pi * np.sqrt(ellipsoid.radii(s)[0] / ellipsoid.gravity(s, 0.0))
     print(f'\nSchuler period {period:.3f} s, 2 pi sqrt(R_N / g) = {theory:.3f} s (5065.2)')
     figures.record('oracles.schuler_period', period, 's', theory, '2 pi sqrt(R_N / g)')
-    # the published figure is a fit as well: ours meets the theory, and the theory rounds to it
+    # The published figure is a fit as well: ours agrees with theory, which rounds to the figure.
     assert period == pytest.approx(theory, abs=0.01)
     assert theory == pytest.approx(5065.2, abs=0.05)

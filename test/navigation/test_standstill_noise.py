@@ -1,4 +1,4 @@
-"""The standard error of a gyrocompass: bias of the gyros, a base that rocks, noise by its rate."""
+"""Standard error of a gyrocompass with gyro bias, on a rocking base, and noise at any rate."""
 
 import math
 
@@ -26,7 +26,7 @@ DEG_H = math.radians(1.0) / 3600.0
 
 
 def heading_error(q_nb, q_true):
-    """Return the heading less the true one, rad."""
+    """Return the heading minus the true one, rad."""
     error = float(to_compass(np.array(q_nb))[2] - to_compass(np.array(q_true))[2])
     return math.remainder(error, 2.0 * math.pi)
 
@@ -43,10 +43,11 @@ def fog(seed):
 
 def test_the_heading_of_fog_gyros_is_within_what_is_stated():
     """
-    1 deg/h at latitude 55 degrees turn the heading by 1 / (15.04 cos 55) = 6.64 degrees.
+    The heading error of the FOG preset agrees with its standard error over 24 draws.
 
-    Over 24 draws the error over its standard error has the mean square 1: chi-square of 24
-    degrees, 99.9 % quantiles 0.34 and 2.13 of it.
+    1 deg/h at latitude 55 degrees turns the heading by 1 / (15.04 cos 55) = 6.64 degrees. The mean
+    square of error over standard error is 1 to within the 99.9 % quantiles of chi-square with 24
+    degrees of freedom, 0.34 and 2.13.
     """
     squares, largest = [], 0.0
     for seed in range(24):
@@ -67,7 +68,7 @@ def test_the_heading_of_fog_gyros_is_within_what_is_stated():
 @pytest.mark.parametrize('given, trusted', [({}, False), ({'sigma': 1.0}, False),
                                             ({'sigma': 0.01}, True)])
 def test_navigate_asks_for_the_bias_or_assumes_10_deg_h(given, trusted):
-    """A perfect record says nothing of the bias: what is trusted is what the user knows of it."""
+    """A record does not show the gyro bias: trust in the heading depends on the setting."""
     q_nb = tuple(from_compass(0.0, 0.0, 1.0)[0].tolist())
     rate = quaternion.rotate_back(q_nb, (0.0, OMEGA * math.cos(LAT), OMEGA * math.sin(LAT)))
     force = (0.0, 0.0, ellipsoid.gravity(math.sin(LAT), 0.0))
@@ -91,7 +92,7 @@ def test_navigate_asks_for_the_bias_or_assumes_10_deg_h(given, trusted):
 
 
 def rocking(seed, frequency_hz, noise):
-    """Return 61 s at 100 Hz on a base that rocks by 0.01 degree about East and North."""
+    """Return 61 s at 100 Hz on a base that rocks by 0.01 degree about east and north."""
     rng = np.random.default_rng(seed)
     t = np.arange(6100) * 0.01
     w, a = 2.0 * math.pi * frequency_hz, math.radians(0.01)
@@ -111,10 +112,10 @@ def rocking(seed, frequency_hz, noise):
 @pytest.mark.parametrize('frequency_hz', [0.43, 0.83, 1.27, 1.71, 3.37])
 def test_a_parked_vehicle_that_rocks(frequency_hz, noise):
     """
-    The error over its standard error is between 0.25 and 4, root mean square of 40 draws.
+    On a rocking base the rms of error over standard error, 40 draws, is between 0.25 and 4.
 
-    The angle is bounded: after 60 s the mean rate errs by 0.01 degree over 60 s at most twice,
-    while windows of 1 s, taken to be independent, scatter by many times that.
+    The angle is bounded: after 60 s the error of the mean rate is at most twice 0.01 degree over
+    60 s, while windows of 1 s, if treated as independent, scatter by many times that.
     """
     ratios, sigmas = [], []
     for seed in range(40):
@@ -131,8 +132,10 @@ def test_a_parked_vehicle_that_rocks(frequency_hz, noise):
 
 def test_of_white_noise_it_is_the_scatter_over_root_n():
     """
-    60 windows: 30 degrees of freedom, so that the mean square of 300 draws is within 4 of its
-    standard deviations, sqrt(2 / 30 / 900), and noise that walks has far more than its scatter.
+    For white noise the standard error is the standard deviation over root n.
+
+    60 windows give 30 degrees of freedom, so that the mean square of 300 draws is within 4 of its
+    standard deviations, sqrt(2 / 30 / 900). For random-walk noise the result is far larger.
     """
     rng = np.random.default_rng(1)
     squares = [standard_error(rng.standard_normal((600, 3)), 60) ** 2 * 600 for _ in range(300)]
@@ -144,9 +147,10 @@ def test_of_white_noise_it_is_the_scatter_over_root_n():
 @pytest.mark.parametrize('rate_hz', [100.0, 8000.0])
 def test_noise_is_judged_by_its_rate(rate_hz):
     """
-    0.2 m/s^2 a sample at 8 kHz is 0.022 at 100 Hz, the noise of a MEMS IMU at rest.
+    The noise limit is independent of the rate: 0.2 m/s^2 at 8 kHz is accepted, at 100 Hz not.
 
-    At 100 Hz a scatter of 0.2 is an engine, or a hand: beyond the limit of 0.15.
+    0.2 m/s^2 per sample at 8 kHz is 0.022 at 100 Hz, the noise of a MEMS IMU at rest. At 100 Hz a
+    scatter of 0.2 comes from an engine or a hand: above the limit of 0.15.
     """
     rng = np.random.default_rng(0)
     n = round(7.0 * rate_hz)
@@ -159,6 +163,6 @@ def test_noise_is_judged_by_its_rate(rate_hz):
         return
     still = standstill.find_standstill(imu, AlignmentSettings())
     assert still.together == 20 and still.windows >= 5
-    # 0.2 / sqrt(20), of 400 means a window
+    # 0.2 / sqrt(20), for 400 means in a window.
     assert still.force_sd == pytest.approx(0.2 / math.sqrt(20.0), rel=0.05)
     assert still.rate_sd == pytest.approx(0.04 / math.sqrt(20.0), rel=0.05)

@@ -122,7 +122,7 @@ def test_a_jump_is_not_steered_by_until_the_solution_has_gone_on():
         assert (command.beta == 0.0) == bool(command.why)
     assert made.notes == [
         'the solution jumps by 2992 m to the right at 0.040000000 s; expected at most '
-        'guidance.jump_m, 1000 m: the vehicle flies straight until the solution has gone on '
+        'guidance.jump_m, 1000 m: the vehicle flies straight until the solution has continued '
         'without a jump for 0.05 s']
     assert made.counts == {'jump': 8}
 

@@ -1,4 +1,4 @@
-"""Whether a filter knows how far it is off: its errors normalised by its own covariance, NEES."""
+"""Consistency of a filter: its errors normalised by its own covariance (NEES)."""
 
 from typing import Any, NamedTuple
 
@@ -7,16 +7,16 @@ import numpy as np
 from .kalman import normalised_square
 
 ENU, BODY = 'enu', 'xyz'
-# The groups of states whose errors are normalised together; the last one is all of them.
+# Groups of states whose errors are normalised together; the last one holds all states.
 BLOCKS = ('position', 'velocity', 'attitude', 'state')
 
 
 class FilterNote(NamedTuple):
     """
-    What a filter says at an instant.
+    State names, covariance and estimates of a filter at one instant.
 
-    states, given, covariance, estimates: those of the AidingFilter; biases: of gyros, rad/s, and
-    accelerometers, m/s^2, which are taken off the readings.
+    states, given, covariance, estimates: see AidingFilter; biases: estimated biases of the gyros
+    (rad/s) and of the accelerometers (m/s^2), which are subtracted from the readings.
     """
 
     states: tuple
@@ -35,10 +35,10 @@ def note_of(navigator):
 
 class TrueValues(NamedTuple):
     """
-    What the filter estimates beside the solution, as it is.
+    True values of what the filter estimates besides the solution.
 
-    gyro, accelerometer: biases by axis of b, rad/s and m/s^2, or None where nobody can say;
-    meter: mounting error, rad, forward and lateral scale error of the velocity meter.
+    gyro, accelerometer: biases by axis of b, rad/s and m/s^2, or None if unknown; meter: mounting
+    error (rad), forward and lateral scale error of the velocity meter.
     """
 
     gyro: tuple | None
@@ -48,10 +48,14 @@ class TrueValues(NamedTuple):
 
 def state_errors(note, level, true):
     """
-    Return {name of a state: its error}, estimate less truth, of the states with a known truth.
+    Return {state name: estimate minus truth} for the states with a known truth.
 
-    level: attitude, velocity and position error, as of ``navigation.errors.level_errors``; true:
-    TrueValues.
+    Parameters
+    ----------
+    note : FilterNote
+    level : attitude, velocity and position errors, see ``navigation.errors.level_errors``
+    true : TrueValues
+
     """
     attitude, velocity, position = level
     found = {}
@@ -70,12 +74,22 @@ def state_errors(note, level, true):
 
 def nees(note, level, true):
     """
-    Return NEES and degrees of freedom of each of BLOCKS, two lists; NaN and 0 of an empty one.
+    Return the NEES and the degrees of freedom of each of BLOCKS.
 
-    Arguments as of ``state_errors``.  e' P^-1 e of the errors e of the states of a block and
-    their part P of the covariance (Bar-Shalom, Li and Kirubarajan, "Estimation with Applications
-    to Tracking and Navigation", 2001, 5.4): chi-square with as many degrees of freedom as states,
-    if the filter is consistent.  Without a covariance all blocks are empty.
+    The NEES is e' P^-1 e with the errors e of the states of a block and their part P of the
+    covariance. If the filter is consistent it is chi-square with as many degrees of freedom as
+    there are states (Bar-Shalom, Li and Kirubarajan, "Estimation with Applications to Tracking
+    and Navigation", 2001, 5.4).
+
+    Parameters
+    ----------
+    note, level, true : see ``state_errors``
+
+    Returns
+    -------
+    nees : list of float, NaN for a block without states
+    freedom : list of int, 0 for a block without states; all blocks are empty without a covariance
+
     """
     errors = {} if note.covariance is None else state_errors(note, level, true)
     found, freedom = [], []
@@ -92,7 +106,7 @@ def _normalised(errors, covariance, places):
         return np.nan
     part = covariance[np.ix_(places, places)]
     scale = np.sqrt(np.diagonal(part))
-    # Of the correlations, so that metres and radians weigh alike.
+    # Normalise P to correlations first: metres and radians then have comparable magnitudes.
     try:
         return normalised_square(np.array(errors) / scale,
                                  part / np.multiply.outer(scale, scale))

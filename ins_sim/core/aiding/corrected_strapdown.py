@@ -1,4 +1,4 @@
-"""The strapdown that can be corrected: biases taken off the readings, errors off the solution."""
+"""A strapdown that can be corrected: biases of the readings and errors of the solution."""
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.integration import turn
@@ -19,18 +19,18 @@ def take_reading(constants, biases, carry, t_ns, omega, f, height, v_u):
 
     Parameters
     ----------
-    constants : start_ns; rate of the Earth, rad/s; whether the readings are plain integrals;
-        vertical channel; terms of gravity, one of ``ellipsoid.GRAVITY_TERMS``
-    biases : of the gyros, rad/s, and of the accelerometers, m/s^2, which are subtracted
-    carry : t_ns; ``mechanization.PLACE``; q_ib; q_nb; velocity in b (m/s); rate, rad/s, and
-        integrals of the last interval
-    t_ns, omega, f : the reading, rad/s and m/s^2
-    height, v_u : m, m/s, at t_ns, for the channel FROM_TRUTH
+    constants : tuple of start_ns; rotation rate of the Earth (rad/s); whether the readings are
+        plain integrals; vertical channel; gravity terms, one of ``ellipsoid.GRAVITY_TERMS``
+    biases : biases of the gyros (rad/s) and of the accelerometers (m/s^2), which are subtracted
+    carry : tuple of t_ns; ``mechanization.PLACE``; q_ib; q_nb; velocity in b (m/s); rate (rad/s)
+        and integrals of the last interval
+    t_ns, omega, f : the reading: its instant, rad/s and m/s^2
+    height, v_u : true height (m) and vertical velocity (m/s) at t_ns, for the channel FROM_TRUTH
 
     Returns
     -------
     carry : as above, at t_ns
-    delta_v : velocity increment in b at the start of the interval, m/s
+    delta_v : velocity increment, resolved in b at the start of the interval, m/s
 
     """
     start_ns, spin, integrated, channel, gravity = constants
@@ -57,16 +57,16 @@ class CorrectedStrapdown(Placed):
     ----------
     t_ns, omega, f : the sample at the start, rad/s and m/s^2
     dt : length of its interval, s
-    place : latitude, longitude, height, v_n, q_nb then
+    place : latitude (rad), longitude (rad), height (m), v_n (m/s), q_nb at that sample
     spin : rotation rate of the Earth, rad/s
     integrated : whether readings are plain integrals
     channel : vertical channel, FREE or FROM_TRUTH
-    gravity : one of ``ellipsoid.GRAVITY_TERMS``
+    gravity : gravity terms, one of ``ellipsoid.GRAVITY_TERMS``
 
     Attributes
     ----------
-    constants, carry : as of ``take_reading``; the properties are read from them
-    gyro_bias, accelerometer_bias : what is taken off the readings, rad/s and m/s^2, in b
+    constants, carry : see ``take_reading``; the properties are read from them
+    gyro_bias, accelerometer_bias : biases subtracted from the readings, in b, rad/s and m/s^2
 
     """
 
@@ -100,7 +100,7 @@ class CorrectedStrapdown(Placed):
 
     @property
     def q_nb(self):
-        """Return the attitude, as it was set or found at the end of the last interval."""
+        """Return q_nb as last corrected, or as found at the end of the last interval."""
         return self.carry[3]
 
     @property
@@ -110,7 +110,7 @@ class CorrectedStrapdown(Placed):
 
     @property
     def rate(self):
-        """Return the last reading of the gyros less its bias, rad/s."""
+        """Return the last gyro reading minus its bias, rad/s."""
         return self.carry[5]
 
     @property
@@ -120,7 +120,7 @@ class CorrectedStrapdown(Placed):
 
     @property
     def biases(self):
-        """Return what is taken off gyros, rad/s, and accelerometers, m/s^2."""
+        """Return the subtracted biases of the gyros (rad/s) and accelerometers (m/s^2)."""
         return self.gyro_bias, self.accelerometer_bias
 
     @property
@@ -135,10 +135,18 @@ class CorrectedStrapdown(Placed):
 
     def take(self, t_ns, omega, f, height=0.0, v_u=0.0):
         """
-        Take the reading of the interval that ends at t_ns; return its velocity increment, m/s.
+        Process the reading of the interval that ends at t_ns; return its velocity increment.
 
-        omega, f: rad/s and m/s^2; height, v_u: m, m/s, at its end for the channel FROM_TRUTH.  The
-        increment is in b at the start of the interval, biases taken off.
+        Parameters
+        ----------
+        t_ns : end of the interval
+        omega, f : (3,) reading, rad/s and m/s^2
+        height, v_u : true height (m) and vertical velocity (m/s) at t_ns, for FROM_TRUTH
+
+        Returns
+        -------
+        (3,) velocity increment without biases, resolved in b at the start of the interval, m/s
+
         """
         self.carry, delta_v = take_reading(self.constants, self.biases, self.carry, t_ns, omega,
                                            f, height, v_u)
@@ -146,10 +154,13 @@ class CorrectedStrapdown(Placed):
 
     def correct(self, position=ZERO, velocity=ZERO, turned=ZERO):
         """
-        Take off estimated errors, solution less truth, East, North, Up.
+        Subtract estimated errors (solution minus truth, east, north, up) from the solution.
 
-        position m; velocity m/s; turned: rotation vector of the attitude, q_nb = exp(turned)
-        q_nb_true, rad.
+        Parameters
+        ----------
+        position, velocity : (3,) m and m/s
+        turned : (3,) rotation vector of the attitude error, q_nb = exp(turned) q_nb_true, rad
+
         """
         t_ns, place, _, q_nb, _, rate, last = self.carry
         lat, lon, height, v_e, v_n, v_u, *rest = place
@@ -162,7 +173,7 @@ class CorrectedStrapdown(Placed):
         self._set(t_ns, place, quaternion.normalise(quaternion.multiply(back, q_nb)), rate, last)
 
     def add_biases(self, gyro=ZERO, accelerometer=ZERO):
-        """Take more off the readings from now on, rad/s and m/s^2 in b."""
+        """Increase the biases subtracted from the readings, (3,) rad/s and m/s^2 in b."""
         self.gyro_bias = tuple(a + b for a, b in zip(self.gyro_bias, gyro))
         self.accelerometer_bias = tuple(a + b for a, b in zip(self.accelerometer_bias,
                                                               accelerometer))

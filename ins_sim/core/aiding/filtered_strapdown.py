@@ -11,9 +11,10 @@ class FilteredStrapdown:
     """
     A CorrectedStrapdown, an AidingFilter and the start of the open window; a copy is a snapshot.
 
-    window_ns, step_ns: length of the windows of the velocity meter, and from end to end; of those
-    that overlap no filter has sums, and each step counts as one.  takes_segments: whether the
-    filter can take many samples at once, because it does not follow every one itself.
+    window_ns: length of the windows of the velocity meter; step_ns: distance between their ends.
+    For overlapping windows the filters have no sums over the window; each step is then treated as
+    a window.  takes_segments: whether many samples can be processed at once, because the filter
+    does not override ``step``.
     """
 
     def __init__(self, ins, filter_, window_ns, step_ns):
@@ -39,21 +40,23 @@ class FilteredStrapdown:
 
     @property
     def is_finite(self):
-        """Return whether the solution is a number: a sum is finite only if all of it is."""
+        """Return whether the solution is finite; a sum is finite only if all terms are."""
         lat, _, height, v_e, v_n, v_u, *_ = self.ins.carry[1]
         return math.isfinite(v_e + v_n + v_u + lat + height)
 
     def cut(self, samples, first, stop, event_ns):
         """
-        Return the end of the Samples from first on that need no work until the last one.
+        Return the end of the samples, from first on, that can be processed in one go.
 
-        event_ns: when there is work at the latest; stop: the end at the latest.
+        Only the last of them may need work by the filter or the navigator.
+
+        event_ns: latest instant at which work is due; stop: latest end.
         """
         if not self.takes_segments:
             return first + 1
         end_ns = self._window_end_ns
         if self.ins.carry[0] >= end_ns:
-            # It is over: the samples are of the next one.
+            # That window is over: the samples belong to the next one.
             end_ns += self._step_ns
         event_ns = min(event_ns, end_ns)
         left = self.filter.samples_left()
@@ -63,27 +66,28 @@ class FilteredStrapdown:
 
     def begin_window(self):
         """
-        Begin the window of the next sample, if it is another one.
+        Begin a window if the next sample belongs to a new one.
 
-        Not at the end of the window, so that the fix of that instant still finds its sums.
+        This is not done at the end of the window, so that the fix of that instant still finds its
+        sums.
         """
         if self.ins.carry[0] >= self._window_end_ns:
             self.filter.begin_window(self.ins)
             self._open_window()
 
     def fly(self, samples, first, stop, out=None):
-        """Advance over samples as ``cut`` returns them, up to the work at the last one."""
+        """Advance over samples as ``cut`` returns them, except for the work at the last one."""
         ins, filter_ = self.ins, self.filter
         ins.carry, filter_.sums = samples.fly(ins.constants, ins.biases, ins.carry, filter_.sums,
                                               samples.columns, first, stop, out)
 
     def pause(self):
-        """Let the filter do its work at the last sample."""
+        """Call the filter's ``pause`` if it is due at the last sample."""
         if self.filter.samples_left() == 0:
             self.filter.pause(self.ins)
 
     def advance(self, samples, first, stop):
-        """Advance over samples as ``cut`` returns them."""
+        """Advance over samples as ``cut`` returns them, including the filter's own work."""
         self.begin_window()
         if self.takes_segments:
             self.fly(samples, first, stop)

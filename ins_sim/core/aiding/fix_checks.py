@@ -1,4 +1,4 @@
-"""Fixes that cannot be fixes, each refused in one sentence."""
+"""Checks that reject impossible fixes, each with one sentence."""
 
 import math
 
@@ -8,7 +8,7 @@ from ins_sim.core.timeseries import bounds
 
 
 def check_velocity(fix, window, dt_ns):
-    """Raise StreamFault (fix dropped) unless a VelocityFix covers a window of these settings."""
+    """Raise StreamFault (fix dropped) unless a VelocityFix has the window of the settings."""
     where, cycles = f'velocity_meter: fix at {seconds(fix.end_ns)}', window.cycles
     window_ns, step_ns = cycles * dt_ns, window.step_cycles * dt_ns
     if fix.cycles != cycles or fix.end_ns - fix.start_ns != window_ns:
@@ -26,7 +26,7 @@ def check_velocity(fix, window, dt_ns):
 
 
 def check_ahead(source, t_ns, newest_ns, ahead_ns):
-    """Raise StreamFault (fix dropped) for an instant too far ahead of the newest IMU sample."""
+    """Raise StreamFault (fix dropped) if a fix is too far ahead of the newest IMU sample."""
     if t_ns > newest_ns + ahead_ns:
         raise _dropped(f'{source}: fix at {seconds(t_ns)} is from the future, the newest IMU '
                        f'sample is of {seconds(newest_ns)}; expected a fix at most '

@@ -1,4 +1,4 @@
-"""The measurement update of a Kalman filter, and what tells whether it is consistent."""
+"""The measurement update of a Kalman filter, and statistics to test its consistency."""
 
 import numpy as np
 
@@ -10,7 +10,8 @@ def innovation(p, h, r):
     """
     Return S = H P H' + R and the gain P H' S^-1.
 
-    p (n, n) covariance; h (m, n); r (m, m).  Raises numpy.linalg.LinAlgError where S is singular.
+    p (n, n): covariance; h (m, n): measurement matrix; r (m, m): measurement covariance.  Raises
+    numpy.linalg.LinAlgError if S is singular.
     """
     ph = product(p, h.T)
     s = product(h, ph) + r
@@ -19,7 +20,7 @@ def innovation(p, h, r):
 
 def joseph(p, h, r, gain):
     """
-    Return the covariance after an update, symmetric and positive whatever the gain.
+    Return the covariance after an update; symmetric and positive definite for any gain.
 
     (I - K H) P (I - K H)' + K R K' (Bucy and Joseph 1968; Groves 3.58).
     """
@@ -29,13 +30,13 @@ def joseph(p, h, r, gain):
 
 
 def normalised_square(z, s):
-    """Return z' S^-1 z: of an innovation the NIS, of an error the NEES."""
+    """Return z' S^-1 z: the NIS if z is an innovation, the NEES if z is a state error."""
     return dot(z, solve(s, z))
 
 
 def chi_square_tail(square, freedom):
     """
-    Return the probability that chi-square of an even number of degrees of freedom is larger.
+    Return the probability that a chi-square variable exceeds ``square``; freedom must be even.
 
     exp(-x/2) sum (x/2)^k / k!, k below freedom / 2 (Abramowitz and Stegun 26.4.5).
     """
@@ -51,5 +52,5 @@ def is_covariance(p):
     scale = np.sqrt(np.abs(np.diagonal(p)))
     if not np.isfinite(p).all() or not (np.diagonal(p) > 0.0).all():
         return False
-    # Of the correlations, so that metres and radians weigh alike.
+    # Test the correlations, so that metres and radians have comparable magnitudes.
     return is_positive_definite(p / np.multiply.outer(scale, scale))

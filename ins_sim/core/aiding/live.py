@@ -1,9 +1,9 @@
 """
-The aided navigator on live streams: IMU, truth and fixes, whatever the order they come in.
+The aided navigator on live streams: IMU, truth and fixes, in whatever order they arrive.
 
-A sample waits until every fix that is due by it is known, so that a live run gives the numbers of
-the offline run.  What is due the settings say: both instruments report every window, and every
-instant, valid or not.
+A sample waits until every fix that is due by then has arrived, so that a live run gives the same
+numbers as the offline run. The settings tell which fixes are due: both instruments report every
+window or instant, valid or not.
 """
 
 from bisect import insort
@@ -18,40 +18,40 @@ from ins_sim.core.streams.restarts import LastStamps, RestartDetector
 from .fix_checks import check_ahead, check_gnss, check_velocity
 from .navigator import AidedNavigator, GNSS, METER
 
-# further than lock-step or a busy machine lets the IMU lag behind the instruments
+# Longer than the IMU can lag behind the instruments in lock-step or on a busy machine.
 AHEAD_NS = 60_000_000_000
 
 
 class FixSchedule:
-    """Which fixes are due; settings: AidedNavigatorSettings; sources: that are waited for."""
+    """Knows which fixes are due; settings: AidedNavigatorSettings; sources: those waited for."""
 
     def __init__(self, settings, sources):
         window, dt_ns = settings.window, period_ns(settings.rate_hz)
         gnss_ns = period_ns(settings.gnss.rate_hz)
-        # period; how long after the first sample the first fix may be; latency
+        # For each source: period; time from the first sample to the first fix at most; latency.
         periods = {METER: (window.step_cycles * dt_ns, window.cycles * dt_ns,
                            round(1e6 * window.latency_ms)),
                    GNSS: (gnss_ns, 0, round(1e6 * settings.gnss.latency_ms))}
         self._periods = {source: periods[source] for source in sources}
-        # runs: the samples are the first, a source the second
+        # Compares the run of the samples (the first stream) with that of each source (the second).
         self.forget()
         self.begin()
 
     def forget(self):
-        """Forget what has come."""
+        """Forget all fixes that have arrived."""
         self._newest, self._runs = {}, defaultdict(RestartDetector)
         self._stamps = defaultdict(LastStamps)
         self.silent = set()
 
     def begin(self):
-        """Count from the next sample on; what has come stays known."""
+        """Count from the next sample on; the fixes that have arrived remain known."""
         self._first = {}
 
     def missing(self, t_ns):
-        """Return the sources whose fix is due by the sample t_ns and has not come."""
+        """Return the sources whose fix is due by the sample t_ns and has not arrived."""
         late = []
         for source, (step_ns, lead_ns, latency_ns) in self._periods.items():
-            # a window is reported that was seen from its start
+            # Only a window that was seen from its start is reported.
             first_ns = self._first.setdefault(source, -(-t_ns // step_ns) * step_ns + lead_ns)
             due_ns = (t_ns - latency_ns) // step_ns * step_ns
             if due_ns >= first_ns and source not in self.silent and (
@@ -61,19 +61,20 @@ class FixSchedule:
         return late
 
     def of_the_past(self, source, t_ns):
-        """Return whether a fix goes on with the run before that of the samples."""
+        """Return whether a fix belongs to a run before that of the samples."""
         return self._runs[source].first_is_ahead and t_ns > self._newest[source]
 
     def came(self, source, t_ns, sample_ns):
         """
-        Take note of a fix, valid or not; return whether it is not a repeated one.
+        Register a fix, valid or not; return False if it repeats the last one.
 
-        sample_ns: where the samples are, or None.
+        sample_ns: instant of the newest sample, or None.
         """
         self.silent.discard(source)
         newest_ns, runs = self._newest.get(source), self._runs[source]
         self._newest[source] = t_ns
-        # the instant of the last fix again: that of the new run if the samples have begun one
+        # The instant equals that of the last fix: a repetition, unless the samples have begun a
+        # new run, to which this fix then belongs.
         if t_ns == newest_ns and not runs.first_is_ahead:
             return False
         stamps = self._stamps[source]
@@ -84,18 +85,18 @@ class FixSchedule:
         return True
 
     def jump_back(self, t_ns):
-        """Follow the samples back to t_ns; return the sources still to follow."""
+        """Follow the samples back to t_ns; return the sources that have yet to jump back."""
         for source, newest_ns in self._newest.items():
             self._runs[source].first_jumps(t_ns, newest_ns)
         return {source for source, runs in self._runs.items() if runs.first_is_ahead}
 
     def return_back(self):
-        """Take note that the samples have jumped back by a stray alone."""
+        """Register that the jump back of the samples was a single stray sample."""
         for runs in self._runs.values():
             runs.first_returns()
 
     def give_up(self, source):
-        """Wait for a source no longer, until it delivers again."""
+        """Stop waiting for a source until it delivers again."""
         self.silent.add(source)
         self._runs.pop(source, None)
 
@@ -104,7 +105,7 @@ class AidedStream(MatchedStreams):
     """
     An AidedNavigator on live streams; outputs are (t_ns, solution, errors, sigmas).
 
-    errors as of errors.level_errors; sigmas as of the filter, or None.  ``judged`` collects a
+    errors: see errors.level_errors; sigmas: those of the filter, or None.  ``judged`` collects a
     JudgedFix for every fix that was processed; the owner empties it.
     """
 
@@ -114,12 +115,12 @@ class AidedStream(MatchedStreams):
         super().__init__(settings, truth_length)
 
     def begin(self):
-        """Forget the solution.  Fixes are no state: those that have come stay."""
+        """Discard the solution. The fixes that have arrived are kept."""
         self.navigator = AidedNavigator(self._settings)
         self._schedule.begin()
 
     def rejoin(self):
-        """Start anew as if all streams began now."""
+        """Start anew, as if all streams began now."""
         self._schedule.forget()
         self._fixes = []
         super().rejoin()
@@ -136,26 +137,26 @@ class AidedStream(MatchedStreams):
 
     @property
     def silent(self):
-        """Return the sources that are waited for no longer."""
+        """Return the sources that are no longer waited for."""
         return sorted(self._schedule.silent)
 
     def go_on_without(self, source):
-        """Wait no longer for a source until it delivers again; return the outputs."""
+        """Stop waiting for a source until it delivers again; return the outputs."""
         self._schedule.give_up(source)
         return self.match()
 
     def go_on(self):
-        """Go on without the sources that the oldest sample waits for; return the outputs."""
+        """Stop waiting for the sources that the oldest sample needs; return the outputs."""
         outputs = []
         for source in self.awaited:
             self.faults.append(StreamFault(
                 f'no fix of {source} while {len(self._imu)} readings came; expected it within '
-                'topics.depth of them: going on without it until it delivers again', False))
+                'topics.depth of them: continuing without it until it delivers again', False))
             outputs += self.go_on_without(source)
         return outputs
 
     def push_imu(self, t_ns, omega, f):
-        """Take the IMU sample of stamp t_ns (motion time)."""
+        """Process the IMU sample with stamp t_ns (motion time)."""
         if self._imu_stamps.was_of_the_past(t_ns):
             self._schedule.return_back()
         elif self._last_ns is not None and t_ns < self._last_ns and \
@@ -166,39 +167,39 @@ class AidedStream(MatchedStreams):
 
     def push_fix(self, source, fix):
         """
-        Take a fix of METER or GNSS, on time or late; return the outputs.
+        Process a fix of METER or GNSS, on time or late; return the outputs.
 
-        Raises StreamFault for a fix that cannot be one; it is dropped, and nothing waits for it:
-        match() then goes on.  A repeated one is passed over, and one that jumps back begins a new
-        history of its source.
+        A repeated fix is ignored. A fix that jumps back in time begins a new history of its
+        source. Raises StreamFault for an impossible fix; it is dropped, and no sample waits for
+        it: call match() to continue.
         """
         if self._schedule.of_the_past(source, fix.t_ns):
             return []
         if self._last_ns is not None:
-            # before it counts as the newest of its source
+            # Check before the fix is registered as the newest of its source.
             check_ahead(source, fix.t_ns, self._last_ns, AHEAD_NS)
         if not self._schedule.came(source, fix.t_ns, self._last_ns):
             return []
         self._fixes = [entry for entry in self._fixes
                        if entry[1] != source or entry[2].t_ns < fix.t_ns]
         if source == METER and fix.cycles != self._settings.window.cycles:
-            # with other windows there is none to wait for
+            # A source with other windows never delivers the fixes that the schedule expects.
             self._schedule.silent.add(source)
         if source == METER:
             check_velocity(fix, self._settings.window, self._dt_ns)
         else:
             check_gnss(fix)
         insort(self._fixes, (fix.arrival_ns, source, fix), key=lambda entry: entry[:2])
-        # those of a minute of motion time or more: without readings none is ever taken
+        # Keep a minute of motion time or more: without readings no fix would ever be removed.
         del self._fixes[:-self._truth.maxlen]
         return self.match()
 
     def held(self, t_ns):
-        """Return whether a fix is due that has not come."""
+        """Return whether a fix is due that has not arrived."""
         return bool(self._schedule.missing(t_ns))
 
     def advance(self, t_ns, omega, f, truth):
-        """Take matched samples, and the fixes that are there by then; return the outputs."""
+        """Process matched samples and the fixes that have arrived by then; return the outputs."""
         self.navigator.take_arrived(self._fixes, t_ns)
         judged = self.navigator.step(t_ns, omega, f, truth)
         if judged is None:

@@ -1,10 +1,10 @@
 """
-The mounting error of the velocity meter and the azimuth error of the INS, while GNSS works.
+Calibrate the mounting error of the velocity meter and the azimuth error of the INS with GNSS.
 
-Two estimates that are independent of the filter's own: the azimuth error from the velocity error
-of a free INS in a turn, and the sum of both from the lateral velocity (Ivanov 2015, equation 27;
-docs/theory/aided_navigation.md). Signs: mu > 0 for antennas turned left, dpsi > 0 for a
-computed heading too far clockwise.
+Both estimates are independent of the filter. The azimuth error follows from the velocity error of
+a free INS in a turn; the sum of azimuth and mounting error follows from the lateral velocity
+(Ivanov 2015, equation 27; docs/theory/aided_navigation.md). Signs: mu > 0 if the antennas are
+turned left, dpsi > 0 if the computed heading is too far clockwise.
 """
 
 from dataclasses import dataclass
@@ -15,16 +15,17 @@ import numpy as np
 from ins_sim.core.earth.rates import body_velocity
 from ins_sim.core.timeseries.histories import NavStates
 
-# Longest span whose velocity errors a quadratic in time describes.
+# Longest span over which the velocity error of a free INS is close to a quadratic in time.
 SPAN_NS = 600_000_000_000
 
 
 @dataclass(frozen=True)
 class MountingCalibration:
     """
-    Estimates and their standard deviations, from the residuals as if they were white.
+    Estimates and their standard deviations, which assume white residuals.
 
-    What of a free INS no quadratic follows is not in that of dpsi: at mid grade 0.7 arcmin.
+    The sigma of dpsi leaves out the part of the INS error that is not quadratic in time: 0.7
+    arcmin for a mid-grade INS.
 
     dpsi: azimuth error, rad; total: mu + dpsi by equation (27), rad; fitted, k_z: mu + dpsi and
     the lateral scale error by least squares.
@@ -40,12 +41,12 @@ class MountingCalibration:
 
     @property
     def two_manoeuvres(self):
-        """Return mu of equation (27) and the turn, rad."""
+        """Return mu by equation (27) and the turn, rad."""
         return self.total - self.dpsi
 
     @property
     def least_squares(self):
-        """Return mu of the least squares and the turn, rad, and its standard deviation."""
+        """Return mu by least squares and the turn, and its standard deviation, rad."""
         variance = self.fitted_sigma * self.fitted_sigma + self.dpsi_sigma * self.dpsi_sigma
         return self.fitted - self.dpsi, math.sqrt(variance)
 
@@ -101,9 +102,18 @@ def azimuth_error(t_s, v_ins, v_gnss):
     """
     Return the azimuth error dpsi and its standard deviation, rad.
 
-    t_s (n,) s; v_ins, v_gnss (n, 2) East, North, m/s, in which the vehicle turns.  The error of a
-    free INS is a quadratic in time, for tilt and gyros, and -dpsi times the change of e_up x V;
-    least squares over all.  Raises ValueError where the velocity does not turn.
+    The velocity error of a free INS is modelled as a quadratic in time (tilt and gyro errors) plus
+    -dpsi times the change of e_up x V; all are fitted by least squares.
+
+    Parameters
+    ----------
+    t_s : (n,) instants, s
+    v_ins, v_gnss : (n, 2) east and north velocity during a turn, m/s
+
+    Raises
+    ------
+    ValueError : if the velocity does not turn
+
     """
     spread = np.linalg.svd(v_gnss - v_gnss.mean(axis=0), compute_uv=False) / math.sqrt(len(t_s))
     if spread[0] < 0.05 * np.linalg.norm(v_gnss, axis=1).mean():
@@ -113,7 +123,7 @@ def azimuth_error(t_s, v_ins, v_gnss):
     powers = np.stack([np.ones_like(scale), scale, scale ** 2], axis=1)
     rows = np.zeros((len(t_s), 2, 7))
     rows[:, 0, 0:3] = rows[:, 1, 3:6] = powers
-    # -dpsi e_up x V = dpsi (V_N, -V_E)
+    # The term is -dpsi e_up x V = dpsi (V_N, -V_E).
     rows[:, 0, 6], rows[:, 1, 6] = v_gnss[:, 1], -v_gnss[:, 0]
     x, sigma = _fit(rows.reshape(-1, 7), (v_ins - v_gnss).reshape(-1))
     return float(x[6]), float(sigma[6])
@@ -121,21 +131,25 @@ def azimuth_error(t_s, v_ins, v_gnss):
 
 def mounting_sum(read, computed):
     """
-    Return mu + dpsi, rad, by equation (27): sum(V_z - V_z1N) / sum(V_x).
+    Return mu + dpsi, rad, by equation (27) of Ivanov (2015): sum(V_z - V_z1N) / sum(V_x).
 
-    read, computed (n, 2): forward and right velocity by the meter, and that of GNSS resolved by
-    the INS, m/s.
+    Parameters
+    ----------
+    read : (n, 2) forward and right velocity measured by the meter, m/s
+    computed : (n, 2) GNSS velocity, resolved forward and right with the attitude of the INS, m/s
+
     """
     return float((read[:, 1] - computed[:, 1]).sum() / read[:, 0].sum())
 
 
 def least_squares(read, computed):
     """
-    Return mu + dpsi (rad), its sigma, k_z and its sigma, unaffected by cross-wind.
+    Return mu + dpsi (rad), its sigma, k_z and its sigma; a cross-wind has no effect.
 
-    Least squares of V_z - V_z1N on [V_x, V_z1N] (docs/theory/aided_navigation.md); parameters
-    as in ``mounting_sum``. The fix is first rotated by the mounting error and then scaled, so
-    that the first coefficient is (1 + k_z)(mu + dpsi).
+    V_z - V_z1N is fitted by [V_x, V_z1N] in the least-squares sense
+    (docs/theory/aided_navigation.md); parameters as in ``mounting_sum``. The meter first rotates
+    the velocity by the mounting error and then scales it, so that the first coefficient is
+    (1 + k_z)(mu + dpsi).
     """
     rows = np.stack([read[:, 0], computed[:, 1]], axis=1)
     x, sigma = _fit(rows, read[:, 1] - computed[:, 1])
@@ -152,7 +166,7 @@ def _fit(rows, values):
 
 
 def _windows(states, t_ns, v_gnss, meter):
-    """Return the meter's and the computed mean velocities (n, 2), forward and right."""
+    """Return the mean velocities by the meter and by the INS, (n, 2), forward and right, m/s."""
     inside = (states.t_ns >= t_ns[0]) & (states.t_ns <= t_ns[-1])
     now = states.t_ns[inside]
     v_n = np.stack([np.interp(now, t_ns, v_gnss[:, 0]), np.interp(now, t_ns, v_gnss[:, 1]),
@@ -177,7 +191,7 @@ def _windows(states, t_ns, v_gnss, meter):
 
 
 def _covered(fix, t_ns):
-    """Return whether GNSS works all through a window: no gap in its fixes."""
+    """Return whether there are GNSS fixes throughout a window, without a gap."""
     step = int(np.diff(t_ns).min())
     first, last = np.searchsorted(t_ns, (fix.start_ns, fix.end_ns), side='right')
     span = t_ns[max(0, first - 1):last + 1]

@@ -28,12 +28,12 @@ from .past import FixEntry, FlownSamples, Past
 METER, GNSS = 'velocity_meter', 'gnss'
 
 
-# A fix that was processed: its source, its instant (ns of motion time) and the FixOutcome.
+# A processed fix: its source, its instant (ns of motion time) and the FixOutcome.
 JudgedFix = namedtuple('JudgedFix', 'source t_ns outcome')
 
 
 class DivergedSolution(StreamFault):
-    """The solution is no number any more, or its covariance is none."""
+    """The solution is not finite, or its covariance is not positive definite."""
 
 
 def filter_class(name):
@@ -45,8 +45,8 @@ class AidedNavigator:
     """
     Strapdown and filter of one IMU.
 
-    Samples are given by ``step``, fixes by ``take`` in any order; a fix is processed at the
-    sample that reaches its ``arrival_ns``.
+    Samples enter through ``step``, fixes through ``take`` in any order; a fix is processed at the
+    first sample that reaches its ``arrival_ns``.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class AidedNavigator:
     Attributes
     ----------
     sources : tuple of str
-        The instruments that aid: METER, GNSS.
+        The instruments whose fixes are used: METER, GNSS.
     """
 
     def __init__(self, settings):
@@ -91,7 +91,7 @@ class AidedNavigator:
 
     @property
     def takes_segments(self):
-        """Return whether there is a solution, and ``run`` can take more than one sample of it."""
+        """Return whether the solution has started and ``run`` can process several samples."""
         return self._flight is not None and self._flight.takes_segments
 
     @property
@@ -101,10 +101,19 @@ class AidedNavigator:
 
     def step(self, t_ns, omega, f, truth):
         """
-        Take the reading that ends at t_ns; return a list of JudgedFix, or None before the start.
+        Process the reading whose interval ends at t_ns.
 
-        omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb), which starts the
-        solution, with the initial errors, and then is the altimeter.
+        Parameters
+        ----------
+        t_ns : instant
+        omega, f : tuples of three, rad/s and m/s^2
+        truth : (lat, lon, height, v_n, q_nb). It starts the solution, together with the initial
+            errors; later only its height and vertical velocity are used, as an altimeter.
+
+        Returns
+        -------
+        list of JudgedFix, or None before the start
+
         """
         if self._flight is None:
             if self._first_ns is None:
@@ -117,28 +126,28 @@ class AidedNavigator:
             self._flight.advance(one, 0, 1)
             self._past.add_samples(one, 0, 1)
             if not self._flight.is_finite:
-                raise DivergedSolution(f'the solution at {seconds(t_ns)} is no number any '
-                                       'more; expected finite readings', restart=True)
+                raise DivergedSolution(f'the solution at {seconds(t_ns)} is not finite; '
+                                       'expected finite readings', restart=True)
         self._keep()
         return self._due()
 
     def run(self, samples, first, stop, out, put_out):
         """
-        Take samples as ``step`` does, but none at which a fix arrives; return their end.
+        Process samples as ``step`` does, up to the first at which a fix arrives; return their end.
 
-        That is the first of them, if the solution is no number at a sample: ``step`` then finds
-        out at which.
+        If the solution is not finite at some sample, no sample is processed and first is returned;
+        ``step`` then finds out which one it is.
 
         Parameters
         ----------
         samples : segment.Samples
         first, stop : int
-            The samples that may be taken, stop not included; the solution has started before.
+            Range of samples that may be processed, stop excluded; the solution must have started.
         out : flat array
             The solution at each sample is written into it, see ``segment.fly``.
         put_out : callable
-            Called with the range of samples whose solutions are written, while the filter is as
-            it is at these samples.
+            Called with the range of samples whose solutions have been written, while the filter
+            still has its state at these samples.
         """
         flight = self._flight
         if self._pending:
@@ -163,8 +172,8 @@ class AidedNavigator:
         """
         Keep a fix until the samples reach its arrival_ns.
 
-        source: METER or GNSS.  Raises StreamFault, in one sentence, for a fix that cannot be
-        one: from the future, with another window, without a positive variance, NaN.
+        source: METER or GNSS.  Raises StreamFault, with one sentence, for an impossible fix: from
+        the future, with another window, without a positive variance, NaN.
         """
         if source == METER:
             check_velocity(fix, self._settings.window, self._dt_ns)
@@ -176,10 +185,10 @@ class AidedNavigator:
 
     def take_arrived(self, waiting, t_ns):
         """
-        Take the fixes that have arrived by t_ns out of a list, as ``take`` does.
+        Move the fixes that have arrived by t_ns from a list to the navigator, as ``take`` does.
 
-        waiting: (arrival_ns, source, fix) in the order of arrival.  A fix that is refused has left
-        the list too.
+        waiting: (arrival_ns, source, fix) in the order of arrival.  A rejected fix is also removed
+        from the list.
         """
         while waiting and waiting[0][0] <= t_ns:
             _, source, fix = waiting.pop(0)
@@ -203,7 +212,7 @@ class AidedNavigator:
                                          self._window_ns, self._step_ns)
 
     def _keep(self):
-        """Take a snapshot now and then, before the fixes of now."""
+        """Take a snapshot if one is due, before the fixes of this instant are processed."""
         if self.ins.t_ns >= self._past.next_ns:
             self._past.add_snapshot(self._flight)
             self._past.forget(self.ins.t_ns)

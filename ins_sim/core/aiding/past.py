@@ -1,4 +1,4 @@
-"""What a navigator keeps of its past, to go back to the instant of a fix that comes late."""
+"""Snapshots, samples and fixes of the recent past, for processing fixes that arrive late."""
 
 from bisect import bisect_right, insort
 from collections import deque
@@ -19,7 +19,7 @@ class FixEntry(NamedTuple):
 
 
 class FlownSamples(NamedTuple):
-    """Samples that were flown: those from first to stop, stop not included."""
+    """Samples that were processed: those from first to stop, stop excluded."""
 
     samples: Samples
     first: int
@@ -27,11 +27,11 @@ class FlownSamples(NamedTuple):
 
     @property
     def end_ns(self):
-        """Return the stamp of the last one."""
+        """Return the stamp of the last sample."""
         return self.samples.t_ns[self.stop - 1]
 
     def after(self, t_ns):
-        """Return those after an instant."""
+        """Return the samples after an instant."""
         return self._replace(first=bisect_right(self.samples.t_ns, t_ns, self.first, self.stop))
 
 
@@ -39,27 +39,27 @@ class Past:
     """
     Snapshots, and the samples and fixes since the first of them.
 
-    buffer_ns: how far back a fix may be; dt_ns: sampling period, by which a sample may be later
-    than the fix that was taken at it.
+    buffer_ns: largest age of a fix; dt_ns: sampling period. A fix is processed at the next sample,
+    up to one period after its own instant.
     """
 
     def __init__(self, buffer_ns, dt_ns):
         self._buffer_ns, self._dt_ns = buffer_ns, dt_ns
         self._snapshots, self._flown, self._fixes = deque(), deque(), []
-        # When the next snapshot is due.
+        # Instant at which the next snapshot is due.
         self.next_ns = -math.inf
 
     @property
     def start_ns(self):
-        """Return the instant of the first snapshot, the earliest a fix may have."""
+        """Return the instant of the first snapshot: the earliest that a fix may have."""
         return self._snapshots[0].ins.t_ns
 
     def add_samples(self, samples, first, stop):
-        """Remember samples that were flown."""
+        """Remember samples that were processed."""
         self._flown.append(FlownSamples(samples, first, stop))
 
     def add_fix(self, entry):
-        """Remember a FixEntry; return whether none of a later instant is known."""
+        """Remember a FixEntry; return whether it is the latest of all known ones."""
         insort(self._fixes, entry, key=_instant)
         return self._fixes[-1] is entry
 
@@ -74,7 +74,7 @@ class Past:
         self.next_ns = flight.ins.t_ns + SNAPSHOT_NS
 
     def forget(self, t_ns):
-        """Forget what no fix that may come at an instant needs."""
+        """Forget everything too old to be needed by a fix that arrives at t_ns."""
         oldest_ns = t_ns - self._buffer_ns
         while len(self._snapshots) > 1 and self._snapshots[1].ins.t_ns <= oldest_ns:
             self._snapshots.popleft()
@@ -85,9 +85,9 @@ class Past:
 
     def go_back(self, t_ns):
         """
-        Forget the snapshots after an instant.
+        Forget the snapshots after an instant and go back to the last one before it.
 
-        Return a copy of the last one before it, the FlownSamples and the FixEntries since.
+        Return a copy of that snapshot, and the FlownSamples and FixEntries since.
         """
         while self._snapshots[-1].ins.t_ns > t_ns:
             self._snapshots.pop()

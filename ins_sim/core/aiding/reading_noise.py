@@ -1,4 +1,4 @@
-"""What an aided navigator believes of a single reading of its gyros."""
+"""Variance that an aided navigator assumes for a single gyro reading."""
 
 from ins_sim.core.numerics.units import DEG, DEG_H, SQRT_H
 
@@ -7,8 +7,8 @@ def rate_variance(settings):
     """
     Return the variance of the angular velocity about each axis, (rad/s)^2.
 
-    settings: AidedNavigatorSettings.  It is that of the white noise of a sample and of the bias
-    at the start.
+    It is the sum of the variances of the white noise of one sample and of the initial bias.
+    settings: AidedNavigatorSettings.
     """
     model = settings.imu_model
     white = model.angle_random_walk_deg_sqrt_h * DEG / SQRT_H

@@ -1,4 +1,4 @@
-"""Runs of samples without a correction: the strapdown and the sums of a filter, in one loop."""
+"""Advance the strapdown and the sums of a filter over uncorrected samples, in one loop."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -7,17 +7,22 @@ from ins_sim.core.numerics import compilation
 from . import corrected_strapdown
 from .velocity_window import sums_after
 
-# What the loop writes of each sample: latitude, longitude, height, v_n, q_nb.
+# Number of values per sample that the loop writes: latitude, longitude, height, v_n, q_nb.
 ROW = 10
 
 
 def fly(constants, biases, carry, sums, columns, first, stop, out):
     """
-    Advance over the samples first to stop, stop not included; return carry and sums.
+    Advance over the samples from first to stop, stop excluded; return carry and sums.
 
-    constants, biases, carry: as of ``corrected_strapdown.take_reading``; sums: plain tuple, as of
-    ``velocity_window.WindowSums``; columns: as of ``Samples``; out: flat, ROW floats for each
-    sample, or None.
+    Parameters
+    ----------
+    constants, biases, carry : see ``corrected_strapdown.take_reading``
+    sums : a plain tuple of the fields of ``velocity_window.WindowSums``
+    columns : see ``Samples``
+    first, stop : range of samples
+    out : flat array, receives ROW floats for each sample; or None
+
     """
     t_ns, omega, f, height, up = columns
     for k in range(first, stop):
@@ -40,10 +45,10 @@ def fly(constants, biases, carry, sums, columns, first, stop, out):
 
 class Samples(NamedTuple):
     """
-    Readings of an IMU in columns, and the loop that flies them.
+    Readings of an IMU in columns, and the loop that advances over them.
 
-    t_ns: list of the stamps; columns: stamps (n,), rates (3 n,), rad/s, forces (3 n,), m/s^2, and
-    height (n,), m, and vertical velocity (n,), m/s, of the truth, flat arrays or lists; fly:
+    t_ns: list of the stamps; columns: flat arrays or lists of the stamps (n,), rates (3 n,) rad/s,
+    specific forces (3 n,) m/s^2, true height (n,) m and true vertical velocity (n,) m/s; fly:
     ``fly`` or its compiled copy.
     """
 
@@ -60,7 +65,7 @@ class Samples(NamedTuple):
 
 
 def samples_of(t_ns, omega, f, height, up):
-    """Return the Samples of arrays: t_ns (n,) int64, omega and f (n, 3), height and up (n,)."""
+    """Return Samples from arrays: t_ns (n,) int64, omega and f (n, 3), height and up (n,)."""
     columns = tuple(a.ravel() for a in (t_ns, omega, f, height, up))
     fast = compilation.compiled_if_it_pays(fly, len(t_ns))
     if fast is None:
@@ -69,5 +74,5 @@ def samples_of(t_ns, omega, f, height, up):
 
 
 def one_sample(t_ns, omega, f, height, up):
-    """Return the Samples of a single one: stamp, tuples of rates and forces, and floats."""
+    """Return Samples of a single reading: stamp, tuples of rates and forces, and floats."""
     return Samples([t_ns], ([t_ns], omega, f, (height,), (up,)), fly)

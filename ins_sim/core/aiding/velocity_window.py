@@ -1,8 +1,8 @@
 """
-Sums over the current window of the velocity meter, as the filters need them.
+Sums over the current window of the velocity meter, as needed by the filters.
 
-Each sum is a tuple of floats, and a function returns it one cycle later. A filter has the sums
-that it asks for; the others are None, and stay None.
+Each sum is a tuple of floats; a function returns its value one sampling cycle later. A filter has
+the sums that it asks for in ``needs``; the others stay None.
 """
 
 from typing import NamedTuple
@@ -18,9 +18,9 @@ from ins_sim.core.numerics import elementary
 
 class BodyMean(NamedTuple):
     """
-    Mean velocity in b over the window so far, by the trapezoid of its cycles.
+    Mean velocity in b over the window so far, by the trapezoid rule.
 
-    time_s: length of the window so far; path: integral of the velocity forward and left, m.
+    time_s: length of the window so far; path: integral of the forward and left velocity, m.
     """
 
     time_s: float = 0.0
@@ -34,13 +34,13 @@ class BodyMean(NamedTuple):
 
 class Integrals(NamedTuple):
     """
-    The matrices of the window, of the level axes (East, North) and the body's (forward, left).
+    Matrices of the window, between level axes (east, north) and body axes (forward, left).
 
     a1 = sum C T_c, a2 = sum A1 T_c, b1 = sum C^T T_c / T, b2 = sum C^T A1 T_c / T
     (docs/theory/aided_navigation.md). They map a constant error of the acceleration in b (a1, a2,
-    b2) or of the velocity in n (b1) to the errors at the end of the window: a1 to velocity, a2 to
-    position, b1 and b2 to the mean velocity in b. Here each is four floats, row by row, b1 and b2
-    times T.
+    b2) or of the velocity in n (b1) to errors at the end of the window: a1 to velocity, a2 to
+    position, b1 and b2 to the mean velocity in b. Here each matrix is four floats, row by row;
+    b1 and b2 are stored multiplied by T.
     """
 
     a1: tuple = (0.0, 0.0, 0.0, 0.0)
@@ -49,7 +49,7 @@ class Integrals(NamedTuple):
     b2: tuple = (0.0, 0.0, 0.0, 0.0)
 
     def matrices(self, time_s):
-        """Return a1, a2, b1, b2, each (2, 2), of a window of that length."""
+        """Return a1, a2, b1, b2, each (2, 2), of a window of length time_s."""
         a1, a2, b1, b2 = (np.array(x).reshape(2, 2) for x in self)
         return a1, a2, b1 / time_s, b2 / time_s
 
@@ -62,7 +62,7 @@ class DoubleIntegral(NamedTuple):
 
 
 class Force(NamedTuple):
-    """Integral of the specific force in b, m/s, over some samples, and their time, s."""
+    """Integral of the specific force in b over some samples, m/s, and their duration, s."""
 
     steps: int = 0
     time_s: float = 0.0
@@ -71,10 +71,11 @@ class Force(NamedTuple):
 
 class WindowSums(NamedTuple):
     """
-    All sums of a filter, or None.
+    All sums of a filter; those it does not ask for are None.
 
-    mean: BodyMean; integrals: Integrals; accelerations: DoubleIntegral of the acceleration in b,
-    and of its part rate x velocity; turned: turn about the vertical axis of b, rad; force: Force.
+    mean: BodyMean; integrals: Integrals; accelerations: two DoubleIntegrals, of the acceleration
+    in b and of its part rate x velocity; turned: rotation about the vertical axis of b, rad;
+    force: Force.
     """
 
     mean: tuple
@@ -87,11 +88,17 @@ class WindowSums(NamedTuple):
 def sums_after(mean, integrals, accelerations, turned, force, before, after, position, rate,
                delta_v, dt):
     """
-    Return WindowSums a cycle later, as a plain tuple.
+    Return WindowSums one cycle later, as a plain tuple.
 
-    mean to force: the sums before; before, after: q_nb, velocity in b and in n, m/s, at the ends
-    of the cycle; position: latitude and longitude (rad) and height (m) at its end; rate: rad/s;
-    delta_v: velocity increment in b of the start, m/s; dt: its length, s.
+    Parameters
+    ----------
+    mean, integrals, accelerations, turned, force : the sums before the cycle, see WindowSums
+    before, after : q_nb, velocity in b and in n (m/s), at the start and end of the cycle
+    position : latitude (rad), longitude (rad) and height (m) at the end of the cycle
+    rate : (3,) angular rate, rad/s
+    delta_v : (3,) velocity increment, resolved in b at the start, m/s
+    dt : length of the cycle, s
+
     """
     return (mean_after(mean, before[1], after[1], dt),
             None if integrals is None else integrals_after(integrals, before[0], after[0], dt),
@@ -102,7 +109,7 @@ def sums_after(mean, integrals, accelerations, turned, force, before, after, pos
 
 
 def mean_after(mean, before, after, dt):
-    """Return a BodyMean a cycle later: velocities in b at its ends, m/s, and its length, s."""
+    """Return a BodyMean one cycle of dt (s) later; before, after: velocity in b at its ends."""
     time_s, path = mean
     half = 0.5 * dt
     return time_s + dt, (path[0] + half * (before[0] + after[0]),
@@ -110,7 +117,7 @@ def mean_after(mean, before, after, dt):
 
 
 def integrals_after(integrals, q_start, q_end, dt):
-    """Return Integrals a cycle later: the attitudes q_nb at its ends, and its length, s."""
+    """Return Integrals one cycle of dt (s) later; q_start, q_end: q_nb at its ends."""
     a1, a2, b1, b2 = integrals
     m = dcm_of(middle_attitude(q_start, q_end))
     c = (m[0], m[1], m[3], m[4])
@@ -132,7 +139,7 @@ def _weighted(total, x, weight):
 
 def accelerations_after(accelerations, before, after, position, dt):
     """
-    Return the DoubleIntegrals of the acceleration a cycle later; arguments as of sums_after.
+    Return the DoubleIntegrals of the acceleration one cycle later; arguments as in sums_after.
 
     The acceleration is resolved in a level frame that does not turn about the vertical while the
     vehicle follows a great circle.
@@ -149,13 +156,13 @@ def accelerations_after(accelerations, before, after, position, dt):
 
 
 def twice_integrated(total, increment, dt):
-    """Return a DoubleIntegral a cycle later: increment of the velocity, m/s, in dt, s."""
+    """Return a DoubleIntegral later by dt (s), in which the velocity grows by increment (m/s)."""
     (a, b), half = total, 0.5 * dt
     return ((a[0] + increment[0], a[1] + increment[1]),
             (b[0] + dt * a[0] + half * increment[0], b[1] + dt * a[1] + half * increment[1]))
 
 
 def force_after(force, delta_v, dt):
-    """Return a Force a cycle later: the velocity increment, m/s, in dt, s."""
+    """Return a Force later by dt (s), in which the velocity grows by delta_v (m/s)."""
     steps, time_s, f = force
     return steps + 1, time_s + dt, (f[0] + delta_v[0], f[1] + delta_v[1], f[2] + delta_v[2])

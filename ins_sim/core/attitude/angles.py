@@ -1,4 +1,4 @@
-"""Angles of attitude: roll, pitch and compass heading of q_nb, rotations about axes, and back."""
+"""Roll, pitch and compass heading of q_nb, rotations about axes, and the inverse conversions."""
 
 import math
 
@@ -10,9 +10,9 @@ from . import quaternion
 
 def from_compass(roll, pitch, heading):
     """
-    Return q_nb (n, 4) of (n,) roll (right side down), pitch (nose up), heading (clockwise).
+    Return q_nb (n, 4) from (n,) roll (right side down), pitch (nose up), heading (clockwise), rad.
 
-    It is ``attitude.from_angles`` with psi = -heading.
+    Equal to ``from_angles`` with psi = -heading.
     """
     angles = (-np.asarray(heading, dtype=float), pitch, roll)
     q = from_angles(*(taylor.Series(np.atleast_1d(np.asarray(a, dtype=float))[None])
@@ -21,10 +21,10 @@ def from_compass(roll, pitch, heading):
 
 
 def to_compass(q_nb):
-    """Return roll, pitch, heading (0 to 2 pi) of q_nb (..., 4)."""
+    """Return roll, pitch, heading (0 to 2 pi), rad, of q_nb (..., 4)."""
     q = np.moveaxis(np.asarray(q_nb, dtype=float), -1, 0)
     zero, one = np.zeros_like(q[0]), np.ones_like(q[0])
-    # the vertical in b gives roll and pitch, the forward axis in n the heading
+    # The vertical resolved in b gives roll and pitch; the forward axis in n gives the heading.
     up = quaternion.rotate_back(q, (zero, zero, one))
     east, north, _ = quaternion.rotate(q, (one, zero, zero))
     pitch = elementary.atan2(up[0], np.sqrt(up[1] * up[1] + up[2] * up[2]))
@@ -33,7 +33,7 @@ def to_compass(q_nb):
 
 
 def within_half_turn_deg(angle):
-    """Return an angle, deg, within +-180; the bits of one that is there already are kept."""
+    """Return an angle, deg, reduced to +-180; an angle already in that range keeps its bits."""
     return np.where(np.abs(angle) <= 180.0, angle, (angle + 180.0) % 360.0 - 180.0)
 
 
@@ -46,10 +46,10 @@ def about_axis(axis, angle):
 
 def from_angles(psi, theta, gamma):
     """
-    Return q_nb (FLU to ENU) of Series psi (counter-clockwise), theta, gamma.
+    Return q_nb (FLU to ENU) of Series psi (counter-clockwise), theta, gamma, rad.
 
-    The paper's C = Rz(psi) Rx(theta) Ry(gamma) acts on (right, forward, up); on (forward, left,
-    up) it is Rz(psi + 90 deg) Ry(-theta) Rx(gamma).
+    C = Rz(psi) Rx(theta) Ry(gamma) of Bogdanov and Fomichev 2018 acts on axes (right, forward,
+    up); on (forward, left, up) it is Rz(psi + 90 deg) Ry(-theta) Rx(gamma).
     """
     sz, cz = taylor.sincos((psi + 0.5 * math.pi) * 0.5)
     sy, cy = taylor.sincos(theta * -0.5)
@@ -60,7 +60,7 @@ def from_angles(psi, theta, gamma):
 
 
 def from_rpy(roll, pitch, yaw):
-    """Return q_bs of roll, pitch, yaw about the fixed axes x, y, z (URDF), floats, rad."""
+    """Return q_bs from roll, pitch, yaw about the fixed axes x, y, z (URDF), floats, rad."""
     return quaternion.multiply(
         quaternion.exponential((0.0, 0.0, yaw)),
         quaternion.multiply(quaternion.exponential((0.0, pitch, 0.0)),
@@ -68,5 +68,5 @@ def from_rpy(roll, pitch, yaw):
 
 
 def roll_of_matrix(c):
-    """Return gamma of C_nb = Rz Ry(-theta) Rx(gamma), nine floats, rad."""
+    """Return gamma, rad, from C_nb = Rz Ry(-theta) Rx(gamma), nine floats row by row."""
     return elementary.atan2(c[7], c[8])

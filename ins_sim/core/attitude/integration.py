@@ -35,7 +35,7 @@ def step_poisson(c, rates, dt):
 
 
 def bortz_factor(d2):
-    """Return (1 - (d / 2) cot(d / 2)) / d^2 of d^2; the series below 0.01 is good to 1e-16."""
+    """Return (1 - (d / 2) cot(d / 2)) / d^2, given d^2; the series below 0.01 errs by 1e-16."""
     if d2 < 0.01:
         return 1.0 / 12.0 + d2 * (1.0 / 720.0 + d2 * (1.0 / 30240.0 + d2 / 1209600.0))
     half = 0.5 * math.sqrt(d2)
@@ -45,7 +45,7 @@ def bortz_factor(d2):
 
 def bortz_rate(theta, w):
     """
-    Return the derivative of the rotation vector theta, rad/s.
+    Return the derivative of the rotation vector theta (rad) at the rate w, rad/s.
 
     theta' = w + theta x w / 2 + bortz_factor theta x (theta x w) (Bortz 1971;
     docs/theory/tuned_gyro.md, Orientation). Singular at |theta| = 2 pi.
@@ -57,7 +57,7 @@ def bortz_rate(theta, w):
 
 
 def step_euler_vector(theta, rates, dt):
-    """Return the rotation vector after one RK4 step, at most pi long (dt |w| well below pi)."""
+    """Return the rotation vector after one RK4 step, |theta| <= pi (dt |w| well below pi)."""
     (w1, w2, w3, w4), (x, y, z), half = rates, theta, 0.5 * dt
     a, b, c = bortz_rate(theta, w1)
     d, e, f = bortz_rate((x + half * a, y + half * b, z + half * c), w2)
@@ -70,10 +70,10 @@ def step_euler_vector(theta, rates, dt):
 
 def step_quaternion(q, rates, dt):
     """
-    Return the quaternion after one step, exact for a constant rate, of fourth order otherwise.
+    Return the quaternion after one step: exact for a constant rate, otherwise of fourth order.
 
-    Rotation vector of the step: Simpson's mean and the coning dt^2 / 12 w_start x w_end (Magnus
-    expansion of the parabola through the rates).
+    The rotation vector of the step is the mean rate by Simpson's rule times dt plus the coning
+    term dt^2 / 12 w_start x w_end (Magnus expansion of the parabola through the rates).
     """
     w1, w2, w3, w4 = rates
     c, s, t = quaternion.cross(w1, w4), dt / 6.0, dt * dt / 12.0
@@ -84,7 +84,7 @@ def step_quaternion(q, rates, dt):
 
 
 def turn(q, phi):
-    """Return the unit quaternion q after the rotation vector phi, rad."""
+    """Return the unit quaternion q rotated further by the rotation vector phi, rad."""
     return quaternion.normalise(quaternion.multiply(q, quaternion.exponential(phi)))
 
 
@@ -92,7 +92,7 @@ def _same(q):
     return q
 
 
-# Of each algorithm: its step (as of Orientation.step), and its state of a quaternion.
+# For each algorithm: its step function, and the function from a quaternion to its state.
 ALGORITHMS = {'poisson': (step_poisson, dcm_of),
               'euler_vector': (step_euler_vector, quaternion.logarithm),
               'quaternion': (step_quaternion, _same)}
@@ -100,7 +100,7 @@ ALGORITHMS = {'poisson': (step_poisson, dcm_of),
 
 def turned(state, phi, dt):
     """
-    Return the state of an algorithm after the rotation vector phi, rad, at a constant rate.
+    Return the state of an algorithm after a rotation by phi, rad, at a constant rate over dt, s.
 
     state: nine floats (poisson), three (euler_vector) or four (quaternion, exact for any dt).
     """
@@ -113,7 +113,7 @@ def turned(state, phi, dt):
 
 
 def quaternion_of_state(state):
-    """Return the unit quaternion of the state of an algorithm."""
+    """Return the unit quaternion from the state of an algorithm."""
     if len(state) == 4:
         return state
     if len(state) == 9:
@@ -123,10 +123,10 @@ def quaternion_of_state(state):
 
 class Orientation:
     """
-    The attitude of b by one of KINDS.
+    The attitude of b, integrated by one of KINDS.
 
-    kind: poisson, euler_vector or quaternion; q: the initial q_nb, unit.  state: nine, three or
-    four floats that can be kept and set back.
+    kind: poisson, euler_vector or quaternion; q: initial q_nb, a unit quaternion.  state: nine,
+    three or four floats, which can be saved and restored.
     """
 
     def __init__(self, kind, q=quaternion.IDENTITY):
@@ -136,11 +136,11 @@ class Orientation:
         self.state = state_of(tuple(q))
 
     def step(self, rates, dt):
-        """Advance by dt, s; rates: four vectors at start, middle, middle, end, rad/s."""
+        """Advance by dt, s; rates: four vectors at start, middle, middle and end, rad/s."""
         self.state = self._step(self.state, rates, dt)
 
     def advance(self, phi, dt):
-        """Advance by the rotation vector phi, rad, of an interval dt, s, at its constant rate."""
+        """Advance by the rotation vector phi, rad, over an interval dt, s, at constant rate."""
         self.state = turned(self.state, phi, dt)
 
     @property

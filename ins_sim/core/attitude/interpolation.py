@@ -12,11 +12,22 @@ from . import quaternion
 
 def hermite_coefficients(h, d, w_start, w_end):
     """
-    Return the vectors c1, c2, c3 of r(s) = c1 s + c2 s^2 + c3 s^3, q(s) = q_start exp(r(s)).
+    Return the coefficients of the cubic rotation vector between two samples.
 
-    h: interval, s; d: rotation vector from q_start to q_end, rad; w: rate of b relative to the
-    frame of q, resolved in b, rad/s.  The end rate passes through the inverse right Jacobian of
-    the rotation vector to second order.  Components may be floats or arrays.
+    The attitude is q(s) = q_start exp(r(s)) with r(s) = c1 s + c2 s^2 + c3 s^3, s in s since the
+    start. The end rate is mapped by the inverse right Jacobian of the rotation vector, to second
+    order. Components may be floats or arrays.
+
+    Parameters
+    ----------
+    h : length of the interval, s
+    d : rotation vector from q_start to q_end, rad
+    w_start, w_end : rate of b relative to the frame of q, resolved in b, rad/s
+
+    Returns
+    -------
+    c1, c2, c3
+
     """
     dw = quaternion.cross(d, w_end)
     ddw = quaternion.cross(d, dw)
@@ -34,8 +45,9 @@ def newton_differences(last, value, r1, r2, r3):
     """
     Return the divided differences d0..d3 at a new sample, newest first.
 
-    last: those at the sample before; value: the new vector; r1, r2, r3: reciprocals of the times
-    back to the last three samples, 1/s, zero where there is none (the order then is lower).
+    last: the differences at the sample before; value: the new vector; r1, r2, r3: reciprocals of
+    the times since the last three samples, 1/s, zero for a sample that does not exist; the order
+    is then lower.
     """
     x, y, z = value
     d = [value]
@@ -53,13 +65,13 @@ def newton_value(differences, s0, s1, s2):
 
 
 def continuous_quaternions(q):
-    """Return (n, 4) quaternions with the signs that make neighbours differ least."""
+    """Return (n, 4) quaternions with signs chosen so that neighbours differ least."""
     x, y, z, w = (q[1:] * q[:-1]).T
     back = x + y + z + w < 0.0
     return q * np.concatenate([[1.0], np.cumprod(np.where(back, -1.0, 1.0))])[:, None]
 
 
 def middle_attitude(q_start, q_end):
-    """Return the attitude half-way between two that are near."""
+    """Return the attitude half-way between two nearby attitudes."""
     return quaternion.normalise((0.5 * (q_start[0] + q_end[0]), 0.5 * (q_start[1] + q_end[1]),
                                  0.5 * (q_start[2] + q_end[2]), 0.5 * (q_start[3] + q_end[3])))

@@ -6,7 +6,7 @@ import numpy as np
 
 
 def dcm_of(q):
-    """Return C_nb as nine floats, row by row, of a unit quaternion q_nb."""
+    """Return C_nb as nine floats, row by row, given a unit quaternion q_nb."""
     x, y, z, w = q
     return (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
             2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
@@ -14,7 +14,7 @@ def dcm_of(q):
 
 
 def quaternion_of(c):
-    """Return the unit quaternion of nine floats C_nb, row by row (Shepperd 1978)."""
+    """Return the unit quaternion, given C_nb as nine floats, row by row (Shepperd 1978)."""
     trace = c[0] + c[4] + c[8]
     x2, y2, z2 = 1.0 + 2.0 * c[0] - trace, 1.0 + 2.0 * c[4] - trace, 1.0 + 2.0 * c[8] - trace
     w2 = 1.0 + trace
@@ -32,13 +32,13 @@ def quaternion_of(c):
 
 def turned_back(c, m):
     """
-    Return C' M C of nine numbers C, row by row, and a symmetric M, nine too; floats or arrays.
+    Return C' M C, nine numbers, for C and a symmetric M, both nine numbers row by row.
 
-    It is the covariance in b of what has the covariance M in n, with C = C_nb.
+    With C = C_nb it converts a covariance M in n to b. The numbers may be floats or arrays.
     """
     a, b, d, e, f, g, h, i, j = c
     xx, xy, xz, _, yy, yz, _, _, zz = m
-    # the columns of M C
+    # Columns of M C.
     ux, vx, wx = (xx * a + xy * e) + xz * h, (xy * a + yy * e) + yz * h, (xz * a + yz * e) + zz * h
     uy, vy, wy = (xx * b + xy * f) + xz * i, (xy * b + yy * f) + yz * i, (xz * b + yz * f) + zz * i
     uz, vz, wz = (xx * d + xy * g) + xz * j, (xy * d + yy * g) + yz * j, (xz * d + yz * g) + zz * j
@@ -48,11 +48,11 @@ def turned_back(c, m):
 
 
 def skew(v):
-    """Return the matrix of v x."""
+    """Return the matrix (3, 3) of the cross product v x."""
     x, y, z = v
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
 
 
 def attitude_matrix(q_nb):
-    """Return C_nb (3, 3)."""
+    """Return C_nb (3, 3), given q_nb."""
     return np.array(dcm_of(q_nb)).reshape(3, 3)

@@ -8,7 +8,7 @@ IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
 
 def multiply(p, q):
-    """Return p q: q_ac = multiply(q_ab, q_bc)."""
+    """Return the product p q: q_ac = multiply(q_ab, q_bc)."""
     px, py, pz, pw = p
     qx, qy, qz, qw = q
     return (pw * qx + px * qw + py * qz - pz * qy,
@@ -28,7 +28,7 @@ def cross(a, b):
 
 
 def rotate(q, v):
-    """Return C v for the quaternion q of C: v + 2 w (u x v) + 2 u x (u x v)."""
+    """Return C v, where q is the quaternion of C: v + 2 w (u x v) + 2 u x (u x v)."""
     x, y, z, w = q
     a, b, c = v
     tx = 2.0 * (y * c - z * b)
@@ -40,17 +40,17 @@ def rotate(q, v):
 
 
 def rotate_back(q, v):
-    """Return C^T v for the quaternion q of C."""
+    """Return C^T v, where q is the quaternion of C."""
     x, y, z, w = q
     return rotate((-x, -y, -z, w), v)
 
 
-# Square of the longest rotation vector that ``small_exponential`` is for, rad^2.
+# Square of the longest rotation vector that ``small_exponential`` accepts, rad^2.
 SMALL2 = 0.09
 
 
 def small_exponential(phi):
-    """Return the quaternion of a rotation vector of at most 0.3 rad, to rounding."""
+    """Return the quaternion of a rotation vector of at most 0.3 rad, exact to rounding."""
     x, y, z = phi
     a2 = x * x + y * y + z * z
     a4 = a2 * a2
@@ -62,7 +62,7 @@ def small_exponential(phi):
 
 
 def exponential(phi):
-    """Return the quaternion of a rotation vector, floats, rad."""
+    """Return the quaternion of a rotation vector phi, rad; floats."""
     x, y, z = phi
     a2 = x * x + y * y + z * z
     if a2 <= SMALL2:
@@ -75,13 +75,14 @@ def exponential(phi):
 
 def logarithm(q):
     """
-    Return the rotation vector (at most pi long) of a quaternion of any norm, rad.
+    Return the rotation vector (length at most pi, rad) of a quaternion of any norm.
 
-    The atan2 form: the acos(trace) form loses half the digits (1.35 m in an hour at 1 kHz).
+    The atan2 form is used, because the acos(trace) form loses half the digits (1.35 m in an hour
+    at 1 kHz).
     """
     x, y, z, w = q
     n = elementary.sqrt(x * x + y * y + z * z)
-    # of a unit quaternion so near to one that the squares underflow
+    # Identity: q is so near to a rotation by zero that the squares underflow.
     tiny = elementary.as_number(n < 1e-150)
     sign = 1.0 - elementary.as_number(w < 0.0) * 2.0
     s = sign * 2.0 * (elementary.atan2(n, abs(w)) / (n + tiny) * (1.0 - tiny) + tiny)
@@ -89,14 +90,14 @@ def logarithm(q):
 
 
 def normalise(q):
-    """Return q with its norm, one to within 1e-8, corrected to one by a Newton step."""
+    """Return q scaled to norm one by a Newton step; its norm must be one to within 1e-8."""
     x, y, z, w = q
     s = 1.5 - 0.5 * (x * x + y * y + z * z + w * w)
     return x * s, y * s, z * s, w * s
 
 
 def shorter(theta):
-    """Return the same rotation by at most pi: theta (1 - 2 pi / d) where d > pi."""
+    """Return the same rotation with a length of at most pi: theta (1 - 2 pi / d) if d > pi."""
     x, y, z = theta
     d2 = x * x + y * y + z * z
     if d2 <= math.pi * math.pi:

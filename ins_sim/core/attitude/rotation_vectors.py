@@ -1,8 +1,8 @@
 """
 Exponential of many rotation vectors at once.
 
-Components are arrays of one shape; the result is that of ``quaternion.exponential``, which takes
-floats, to the last bit.
+The result has the same bits as that of ``quaternion.exponential``, which takes floats. Components
+are arrays of one shape.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from . import quaternion
 
 
 def exponentials(phi):
-    """Return the quaternions of rotation vectors, three arrays, rad."""
+    """Return the quaternions of rotation vectors phi (three arrays, rad)."""
     x, y, z = phi
     a2 = x * x + y * y + z * z
     small = a2 <= quaternion.SMALL2

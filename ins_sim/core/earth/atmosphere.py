@@ -1,27 +1,26 @@
 """
-The standard atmosphere: static pressure by height.
+The standard atmosphere: static pressure as a function of height.
 
-Source: ISO 2533:1975, U.S. Standard Atmosphere 1976, table 4: layers of geopotential height.
+Source: ISO 2533:1975; U.S. Standard Atmosphere 1976, table 4: layers of geopotential height.
 """
 
 from ins_sim.core.numerics.elementary import exp, log
 
-# Of each layer: its base (m), the temperature there (K) and how it changes with height (K/m).
+# For each layer: height of its base (m), temperature there (K), temperature gradient (K/m).
 LAYERS = ((0.0, 288.15, -0.0065), (11000.0, 216.65, 0.0), (20000.0, 216.65, 0.001),
           (32000.0, 228.65, 0.0028), (47000.0, 270.65, 0.0), (51000.0, 270.65, -0.0028),
           (71000.0, 214.65, -0.002), (84852.0, 186.946, 0.0))
 SEA_LEVEL_PA = 101325.0
-# g0 M / R, K/m
+# g0 M / R, K/m.
 LAPSE = 9.80665 * 0.0289644 / 8.31432
 
 
 def pressure(height):
     """
-    Return the static pressure, Pa, at a height, m, of any size.
+    Return the static pressure, Pa, at any height, m.
 
-    The height, which is that above the ellipsoid, is taken for the geopotential one: they differ
-    by the undulation of the geoid and by h^2 / R, 16 m at 10 km.  Above the last layer the
-    temperature stays what it is.
+    The height above the ellipsoid is used as geopotential height. They differ by the undulation
+    of the geoid and by h^2 / R, 16 m at 10 km. Above the last layer the temperature is constant.
     """
     found = SEA_LEVEL_PA
     for k, (base, temperature, rate) in enumerate(LAYERS):
@@ -49,7 +48,7 @@ def pressure_height(static_pa):
 
 
 def _ratio(rise, temperature, rate):
-    """Return the pressure after a rise in a layer over that at its base."""
+    """Return the pressure after a rise (m) in a layer, relative to that at its base."""
     if rate == 0.0:
         return exp(max(-700.0, -LAPSE * rise / temperature))
     return exp(-LAPSE / rate * log((temperature + rate * rise) / temperature))

@@ -1,9 +1,9 @@
 """
 The WGS-84 Earth: radii, normal gravity, rotation, Cartesian coordinates.
 
-Every formula is written with operators only, so that it takes floats (kernels), arrays (records)
-and Taylor series (motions) alike.  Source: Groves, "Principles of GNSS, Inertial, and Multisensor
-Integrated Navigation Systems", 2nd ed., section 2.4; constants: NIMA TR8350.2.
+Formulas that take floats, arrays and Taylor series alike are written with operators only.
+Source: Groves, "Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems", 2nd
+ed., section 2.4; constants: NIMA TR8350.2.
 """
 
 import math
@@ -12,25 +12,26 @@ from ins_sim.core.numerics.elementary import atan2, shorter_turn, sincos, sqrt
 
 SEMI_MAJOR = 6378137.0
 ECCENTRICITY2 = 6.6943799901413e-3
-# semi-minor over semi-major axis, 1 - f
+# Ratio of the semi-minor to the semi-major axis, 1 - f.
 FLATTENING = math.sqrt(1.0 - ECCENTRICITY2)
 ROTATION_RATE = 7.292115e-5
-# of the sphere that legs of great circles lie on
+# Radius of the sphere used for great-circle legs, m.
 MEAN_RADIUS = 6371000.0
 GRAVITY_EQUATOR = 9.7803253359
 GRAVITY_FORMULA = 0.00193185265241
-# The first and the second order of normal gravity in height above the surface (Heiskanen and
-# Moritz, "Physical Geodesy", 2-123; Groves 2.139): 1 - h (a0 - a1 sin^2 lat) + a2 h^2.
+# Normal gravity to second order in height h above the surface, relative to that at the surface:
+# 1 - h (a0 - a1 sin^2 lat) + a2 h^2 (Heiskanen and Moritz, "Physical Geodesy", 2-123; Groves
+# 2.139).
 GRAVITY_RATIO = 0.00344978650684
 SECOND_ORDER = (2.0 / SEMI_MAJOR * (2.0 - FLATTENING + GRAVITY_RATIO),
                 4.0 / SEMI_MAJOR * (1.0 - FLATTENING), 3.0 / (SEMI_MAJOR * SEMI_MAJOR))
-# What the functions of gravity take for each choice of settings.place.Earth.gravity. None, and no
-# other value, lets compiled code leave the other choice out.
+# Argument ``terms`` of the gravity functions for each value of settings.place.Earth.gravity. With
+# None, and only with None, the compiler can leave out the code of the other choice.
 GRAVITY_TERMS = {'free_air': None, 'second_order': SECOND_ORDER}
 
 
 def rotation_rate(rotates):
-    """Return the rotation rate of an Earth that rotates or does not, rad/s."""
+    """Return the rotation rate of the Earth, rad/s, or zero if it does not rotate."""
     return ROTATION_RATE if rotates else 0.0
 
 
@@ -38,10 +39,16 @@ def radii_and_gravity(sin_lat, height, terms):
     """
     Return the meridian radius R_N, the transverse radius R_E, m, and normal gravity, m/s^2.
 
-    Groves 2.105, 2.106; gravity downward along the ellipsoid normal by Somigliana's formula
-    (Groves 2.134) with the free-air term (1 - 2 h / a), or with terms, SECOND_ORDER.
-    1 / sqrt(1 - e^2 sin^2) is the binomial series in x = e^2 sin^2 <= 0.0067; what is left out is
+    Radii: Groves 2.105, 2.106. Gravity points down along the ellipsoid normal: Somigliana's
+    formula (Groves 2.134) with the free-air term (1 - 2 h / a), or with the SECOND_ORDER terms.
+    1 / sqrt(1 - e^2 sin^2) is the binomial series in x = e^2 sin^2 <= 0.0067 with a remainder
     below 1e-18.
+
+    Parameters
+    ----------
+    sin_lat, height : sine of latitude, and height above the ellipsoid (m)
+    terms : one of GRAVITY_TERMS
+
     """
     sin2 = sin_lat * sin_lat
     x = sin2 * ECCENTRICITY2
@@ -58,12 +65,12 @@ def radii_and_gravity(sin_lat, height, terms):
 
 
 def radii(sin_lat):
-    """Return the meridian radius R_N and the transverse radius R_E, m."""
+    """Return the meridian radius R_N and the transverse radius R_E, m, at a latitude."""
     return radii_and_gravity(sin_lat, 0.0, None)[:2]
 
 
 def gravity(sin_lat, height, terms=None):
-    """Return normal gravity, m/s^2, downward along the ellipsoid normal; terms: GRAVITY_TERMS."""
+    """Return normal gravity, m/s^2, down along the ellipsoid normal; terms: of GRAVITY_TERMS."""
     return radii_and_gravity(sin_lat, height, terms)[2]
 
 
@@ -76,10 +83,11 @@ def ecef(sin_lat, cos_lat, sin_lon, cos_lon, height):
 
 def geodetic_directions(x, y, z):
     """
-    Return sine and cosine of latitude and of longitude, and height (m), of a point in e, floats.
+    Return sine and cosine of latitude, sine and cosine of longitude, and height of a point in e.
 
-    Bowring's start and Newton-like fixed point in the reduced latitude; three rounds reach the
-    rounding floor (1e-9 m) from -10 km to 1000 km.  On the axis the longitude is zero.
+    Bowring's starting value and a Newton-like fixed point in the reduced latitude; three
+    iterations are exact to rounding (1e-9 m) from -10 km to 1000 km. On the axis of the Earth the
+    longitude is zero. Floats, m.
     """
     p = sqrt(x * x + y * y)
     sin_lon, cos_lon = (y / p, x / p) if p > 0.0 else (0.0, 1.0)
@@ -95,7 +103,7 @@ def geodetic_directions(x, y, z):
 
 
 def _direction(y, x):
-    """Return sine and cosine of the angle of (x, y), floats that are not both zero."""
+    """Return sine and cosine of the angle of the vector (x, y), floats, not both zero."""
     r = sqrt(x * x + y * y)
     return y / r, x / r
 
@@ -108,26 +116,27 @@ def geodetic(x, y, z):
 
 def level_angles(east, north, sin_lat, cos_lat, height):
     """
-    Return the changes of latitude and longitude, rad, over distances East and North, m.
+    Return the changes of latitude and longitude, rad, for distances east and north, m.
 
-    The radii are those at the latitude given; rates, m/s, give angular rates.
+    The radii are evaluated at the given latitude. Velocities, m/s, give angular rates, rad/s.
     """
     r_n, r_e = radii(sin_lat)
     return north / (r_n + height), east / ((r_e + height) * cos_lat)
 
 
 def level_metres(d_lat, d_lon, sin_lat, cos_lat, height):
-    """Return the distances East and North, m, of changes of latitude and longitude, rad."""
+    """Return the distances east and north, m, for changes of latitude and longitude, rad."""
     r_n, r_e = radii(sin_lat)
     return d_lon * (r_e + height) * cos_lat, d_lat * (r_n + height)
 
 
 def moved(lat, lon, height, enu):
     """
-    Return latitude, longitude and height of a point East, North, Up (m) of another.
+    Return latitude, longitude (rad) and height (m) of a point moved by east, north, up (m).
 
-    Metres become angles by the radii at the first point, a float, which leaves the straight
-    offset d by d^2 / 2R: 1e-5 m in 10 m and 0.1 m in 1 km. The offset may be arrays or Series.
+    Metres are converted to angles with the radii at the starting point. For an offset d along a
+    straight line the error is d^2 / 2R: 1e-5 m in 10 m and 0.1 m in 1 km. The starting point
+    consists of floats; the offset may be floats, arrays or Series.
     """
     east, north, up = enu
     d_lat, d_lon = level_angles(east, north, *sincos(lat), height)
@@ -136,7 +145,7 @@ def moved(lat, lon, height, enu):
 
 def offset(lat, lon, height, other):
     """
-    Return East, North, Up, m, from a point to another; the inverse of ``moved``.
+    Return the offset east, north, up, m, from a point to another; the inverse of ``moved``.
 
     other: (lat, lon, height). Longitudes may differ by whole turns.
     """
@@ -144,7 +153,7 @@ def offset(lat, lon, height, other):
 
 
 def offset_at(lat, lon, height, other, sin_lat, cos_lat):
-    """Return ``offset``, sine and cosine of the latitude being known."""
+    """Return ``offset`` if sine and cosine of the latitude are already known."""
     east, north = level_metres(other[0] - lat, shorter_turn(other[1] - lon), sin_lat, cos_lat,
                                height)
     return east, north, other[2] - height

@@ -1,8 +1,8 @@
 """
 Frames on the Earth: the map frame m of the datum, and the local level frame n at a position.
 
-The map frame is Cartesian, its axes are East, North, Up in the plane tangent to the ellipsoid at
-the datum.
+The map frame is Cartesian with axes east, north, up; its plane is tangent to the ellipsoid at the
+datum.
 """
 
 import math
@@ -18,10 +18,10 @@ ROOT_HALF = math.sqrt(0.5)
 
 class MapFrame:
     """
-    Change between geodetic coordinates with n-frame attitude and velocity, and m.
+    Conversion between m and geodetic coordinates with attitude and velocity in n.
 
-    datum: settings.Datum; rotation: whether the Earth rotates.  omega_ie_m: rate of the Earth in
-    m, rad/s, a tuple of floats.
+    datum: settings.Datum; rotation: whether the Earth rotates.  omega_ie_m: rate of the Earth,
+    resolved in m, rad/s, a tuple of floats.
     """
 
     def __init__(self, datum, rotation):
@@ -33,7 +33,7 @@ class MapFrame:
         self.omega_ie_m = (0.0, spin * cl, spin * sl)
 
     def pose(self, lat, lon, height, v_n, q_nb):
-        """Return r_m (n, 3) m, q_mb (n, 4) and v_b (n, 3) m/s of arrays; v_b is C_bn v_n."""
+        """Return r_m (n, 3) m, q_mb (n, 4), v_b = C_bn v_n (n, 3) m/s; arguments are arrays."""
         components = self.pose_one(lat, lon, height, np.moveaxis(v_n, -1, 0),
                                    np.moveaxis(q_nb, -1, 0))
         return tuple(np.stack(c, axis=-1) for c in components)
@@ -47,7 +47,7 @@ class MapFrame:
             quaternion.rotate_back(q_nb, v_n)
 
     def q_mn(self, lat, lon):
-        """Return the attitude of n in m at positions, floats or arrays."""
+        """Return the quaternion of n relative to m at positions, floats or arrays."""
         return quaternion.multiply(quaternion.conjugate(self._q_em), level_frame(lat, lon))
 
     def attitude(self, truth):
@@ -66,21 +66,22 @@ class MapFrame:
 
 
 def inertial_attitude(lat, inertial_lon, q_nb):
-    """Return q_ib of an attitude in the local level frame at the inertial longitude."""
+    """Return q_ib, given q_nb at a latitude and an inertial longitude, rad."""
     return quaternion.multiply(level_frame(lat, inertial_lon), q_nb)
 
 
 def level_frame(lat, inertial_lon):
     """
-    Return the attitude of n in i at a latitude and inertial longitude, rad; in e at a longitude.
+    Return the quaternion of n relative to i, or relative to e if given the longitude in e.
 
-    C_en = Rz(lon + 90 deg) Rx(90 deg - lat), ENU to ECEF; floats or arrays.
+    C_en = Rz(lon + 90 deg) Rx(90 deg - lat), ENU to ECEF; latitude and (inertial) longitude in
+    rad, floats or arrays.
     """
     return frame_of_halves(*sincos(0.5 * lat), *sincos(0.5 * inertial_lon))
 
 
 def frame_of_halves(sin_lat, cos_lat, sin_lon, cos_lon):
-    """Return ``level_frame`` of the sines and cosines of half the angles."""
+    """Return ``level_frame``, given the sines and cosines of half the angles."""
     sx, cx = (cos_lat - sin_lat) * ROOT_HALF, (cos_lat + sin_lat) * ROOT_HALF
     sz, cz = (sin_lon + cos_lon) * ROOT_HALF, (cos_lon - sin_lon) * ROOT_HALF
     return cz * sx, sz * sx, sz * cx, cz * cx

@@ -1,14 +1,14 @@
 """
-Orthodromic coordinates: along and across great circles between turning points.
+Orthodromic coordinates: distances along and across great circles between turning points.
 
-The sphere has the Earth's mean radius R0; a point lies on it at its geocentric latitude,
-tan(phi_c) = (1 - e^2) tan(phi), and its longitude.  On the leg from u1 to u2, unit vectors,
+The sphere has the Earth's mean radius R0; a point is represented on it by its geocentric latitude,
+tan(phi_c) = (1 - e^2) tan(phi), and its longitude. On the leg between the unit vectors u1 and u2,
 
     n = u1 x u2 / |u1 x u2|,  e2 = n x u1,  X = R0 atan2(u.e2, u.u1),  Z = -R0 asin(u.n)
 
-X runs along the leg from its first point, Z to its right (Ivanov 2015;
-docs/theory/orthodromic.md). Lengths on the sphere differ from those on the ellipsoid by up to 0.6
-%.
+X increases along the leg from its first point, Z to its right (Ivanov 2015;
+docs/theory/orthodromic.md). Lengths on the sphere differ from those on the ellipsoid by up to
+0.6 %.
 """
 
 import math
@@ -20,12 +20,13 @@ from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 from . import ellipsoid
 from .sphere_metric import FLATTENING2
 
-# Two points less than this apart, or from opposite, rad, have no great circle to speak of (6 m).
+# Smallest angle between two points, and to the antipode, rad (6 m): for closer ones the great
+# circle through them is ill-conditioned.
 LEAST_ANGLE = 1e-6
 
 
 def unit_vector(lat, lon):
-    """Return the three components, in e, of the points at geodetic lat, lon (rad)."""
+    """Return the unit vectors in e, three components, of points at geodetic lat, lon (rad)."""
     (sl, cl), (sin_lon, cos_lon) = sincos(lat), sincos(lon)
     sl = FLATTENING2 * sl
     norm = sqrt(sl * sl + cl * cl)
@@ -33,13 +34,13 @@ def unit_vector(lat, lon):
 
 
 def coordinates(u):
-    """Return geodetic lat, lon (rad) of three components of any length, in e."""
+    """Return geodetic lat, lon (rad) of vectors of any length in e, three components."""
     p = sqrt(u[0] * u[0] + u[1] * u[1])
     return atan2(u[2], FLATTENING2 * p), atan2(u[1], u[0])
 
 
 def dot(a, b):
-    """Return the scalar product of three components each."""
+    """Return the scalar product of two vectors of three components."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -47,8 +48,8 @@ class Leg:
     """
     The great circle from (lat1, lon1) to (lat2, lon2), rad, floats.
 
-    length: from point to point, m.  u1, u2, n, e2: three floats each, in e.  Methods take floats
-    or arrays.  Raises ValueError where the points are the same or antipodes.
+    length: distance between the points, m.  u1, u2, n, e2: unit vectors in e, three floats each.
+    Methods take floats or arrays.  Raises ValueError if the points coincide or are antipodes.
     """
 
     def __init__(self, lat1, lon1, lat2, lon2):
@@ -62,7 +63,7 @@ class Leg:
                 f'the leg from {math.degrees(lat1):.9g}, {math.degrees(lon1):.9g} deg to '
                 f'{math.degrees(lat2):.9g}, {math.degrees(lon2):.9g} deg joins {kind}; expected '
                 'points with one great circle through them')
-        # of a short leg the product is not quite square to u1, which would be read as Z
+        # For a short leg the product is not exactly normal to u1, which would appear as Z.
         slip = dot(normal, self.u1)
         normal = tuple(x - slip * u for x, u in zip(normal, self.u1))
         size = sqrt(dot(normal, normal))
@@ -74,7 +75,7 @@ class Leg:
         """Return X, Z (m) of points at geodetic lat, lon (rad); X within half a turn."""
         u = unit_vector(lat, lon)
         along, across = dot(u, self.u1), dot(u, self.e2)
-        # atan2 for the asin: as exact far from the leg as near it
+        # atan2 instead of asin: equally exact near the leg and far from it.
         return (ellipsoid.MEAN_RADIUS * atan2(across, along),
                 -ellipsoid.MEAN_RADIUS * atan2(dot(u, self.n),
                                                sqrt(along * along + across * across)))
@@ -84,7 +85,7 @@ class Leg:
         return coordinates(self.direction(x, z))
 
     def direction(self, x, z):
-        """Return the unit vector, three components in e, of points at X, Z (m)."""
+        """Return the unit vectors in e, three components, of points at X, Z (m)."""
         (sin_x, cos_x), (sin_z, cos_z) = (sincos(d / ellipsoid.MEAN_RADIUS) for d in (x, z))
         along, across, side = cos_z * cos_x, cos_z * sin_x, -sin_z
         return tuple(along * p + across * q + side * r
@@ -92,18 +93,18 @@ class Leg:
 
     def course(self, lat, lon):
         """
-        Return chi, rad clockwise from north, of the direction of X at points lat, lon (rad).
+        Return chi, the direction of increasing X, rad clockwise from north, at points lat, lon.
 
-        Small displacements and velocities turn by it: E = X sin(chi) + Z cos(chi),
+        It rotates small displacements and velocities: E = X sin(chi) + Z cos(chi),
         N = X cos(chi) - Z sin(chi).
         """
         return course_of(unit_vector(lat, lon), self.n)
 
 
 def course_of(u, n):
-    """Return the course at u of the circle about the pole n, three components each, rad."""
+    """Return the course, rad, at u of the great circle with the pole n; three components each."""
     ahead = quaternion.cross(n, u)
-    # East is (-u_y, u_x, 0)/p and north (-u_x u_z, -u_y u_z, p^2)/p
+    # East is (-u_y, u_x, 0)/p and north is (-u_x u_z, -u_y u_z, p^2)/p.
     east = u[0] * ahead[1] - u[1] * ahead[0]
     north = (u[0] * u[0] + u[1] * u[1]) * ahead[2] - u[2] * (u[0] * ahead[0] + u[1] * ahead[1])
     return atan2(east, north)
@@ -111,14 +112,15 @@ def course_of(u, n):
 
 class GreatCircleRoute:
     """
-    Legs from turning point to turning point.
+    A route of great-circle legs between turning points.
 
-    lat, lon: rad, sequences of two or more.  legs: a Leg each; starts: the way along the route to
-    the first point of each, m; length: of all, m.  Raises ValueError in a sentence.
+    The change from one leg to the next is at the bisector: the great circle through the turning
+    point that halves the angle between the legs, so that a turn flown inside the corner changes
+    legs at its middle. Legs are followed in order only, so that a route may cross itself.
 
-    One leg gives way to the next at the bisector: the great circle through the turning point that
-    halves the angle between them, so that a turn flown inside the corner changes legs in its
-    middle.  Legs only go forwards: a route may cross itself.
+    lat, lon: turning points, rad, sequences of two or more.  legs: a Leg for each pair; starts:
+    distance along the route to the first point of each leg, m; length: total, m.  Raises
+    ValueError, with one sentence, for an invalid route.
     """
 
     def __init__(self, lat, lon):
@@ -145,14 +147,14 @@ class GreatCircleRoute:
             raise ValueError(f'motion.route.points: {error}') from None
 
     def leg_at(self, lat, lon, leg=0):
-        """Return the index of the leg at lat, lon (rad, floats), coming from an earlier leg."""
+        """Return the index of the leg at lat, lon (rad, floats); leg: index of an earlier leg."""
         u = unit_vector(lat, lon)
         while leg < len(self._ahead) and dot(u, self._ahead[leg]) > 0.0:
             leg += 1
         return leg
 
     def legs_at(self, lat, lon):
-        """Return the indices (n,) of the legs of a history lat, lon (n,), rad, in its order."""
+        """Return the indices (n,) of the legs along a history lat, lon (n,), rad, in order."""
         u, index = unit_vector(lat, lon), np.zeros(len(lat), dtype=np.int64)
         first = 0
         for ahead in self._ahead:
@@ -164,7 +166,7 @@ class GreatCircleRoute:
         return index
 
     def to_xz(self, lat, lon, leg):
-        """Return X, Z (m) on the legs of index leg; X from the first point of each leg."""
+        """Return X, Z (m) on the legs with index leg; X from the first point of each leg."""
         if not isinstance(lat, np.ndarray):
             return self.legs[leg].to_xz(lat, lon)
         x, z = np.empty_like(lat), np.empty_like(lat)
@@ -175,7 +177,7 @@ class GreatCircleRoute:
 
 
 def _bisector(before, after):
-    """Return the direction at a turning point halfway between the legs' own."""
+    """Return the direction at a turning point half-way between the directions of its legs."""
     corner = after.u1
     return tuple(a + b for a, b in zip(quaternion.cross(before.n, corner),
                                        quaternion.cross(after.n, corner)))

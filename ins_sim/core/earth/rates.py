@@ -9,9 +9,9 @@ from . import ellipsoid
 
 def rate_of_n(lat, height, v_n, earth_rotation):
     """
-    Return omega_in_n (n, 3), rad/s, of lat (n,) rad, height (n,) m, v_n (n, 3) m/s.
+    Return omega_in_n (n, 3), rad/s, given lat (n,) rad, height (n,) m, v_n (n, 3) m/s.
 
-    Groves 5.44, in ENU; without rotation of the Earth it is omega_en_n.
+    Groves 5.44, in ENU; if the Earth does not rotate the result is omega_en_n.
     """
     s, c = sincos(lat)
     lat_rate, lon_rate = ellipsoid.level_angles(v_n[:, 0], v_n[:, 1], s, c, height)
@@ -20,13 +20,13 @@ def rate_of_n(lat, height, v_n, earth_rotation):
 
 
 def rate_on_earth(lat, q_nb, omega_ib_b, spin):
-    """Return the rate of b relative to an Earth of that spin, resolved in b, floats, rad/s."""
+    """Return the rate of b relative to the Earth (its rate: spin), in b, floats, rad/s."""
     sin, cos = sincos(lat)
     turn = quaternion.rotate_back(q_nb, (0.0, spin * cos, spin * sin))
     return omega_ib_b[0] - turn[0], omega_ib_b[1] - turn[1], omega_ib_b[2] - turn[2]
 
 
 def body_velocity(record):
-    """Return C_bn v_n (n, 3), m/s, of a record with q_nb and v_n."""
+    """Return the velocity C_bn v_n (n, 3), m/s, of a record with q_nb and v_n."""
     return np.stack(quaternion.rotate_back(np.moveaxis(record.q_nb, -1, 0),
                                            np.moveaxis(record.v_n, -1, 0)), axis=-1)

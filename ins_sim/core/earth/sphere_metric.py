@@ -1,8 +1,8 @@
 """
-Metres on the ellipsoid and angles on the sphere of the great circles (``great_circle``).
+Conversion of metres on the ellipsoid to angles on the sphere of ``great_circle``.
 
-A velocity (V_E, V_N) at a height h moves the point on the sphere by p = m_E V_E to the East and
-q = m_N V_N to the North,
+A velocity (V_E, V_N) at a height h moves the point on the sphere at the rates p = m_E V_E to the
+east and q = m_N V_N to the north,
 
     m_E = 1/((R_E + h) D),  m_N = (1 - e^2)/((R_N + h) D^2),
     D^2 = cos^2 lat + (1 - e^2)^2 sin^2 lat                                        (rad/s)
@@ -16,7 +16,7 @@ SQUASH = 1.0 - FLATTENING2 * FLATTENING2
 
 
 def sphere_metric(sin_lat, cos_lat, height):
-    """Return m_E, m_N (1/m), and how their logarithms change with latitude."""
+    """Return m_E, m_N (1/m), and the derivatives of their logarithms with latitude."""
     r_n, r_e = ellipsoid.radii(sin_lat)
     d2 = 1.0 - SQUASH * (sin_lat * sin_lat)
     w2 = 1.0 - ellipsoid.ECCENTRICITY2 * (sin_lat * sin_lat)
@@ -28,10 +28,10 @@ def sphere_metric(sin_lat, cos_lat, height):
 
 def direction_on_earth(m_e, m_n, chi):
     """
-    Return East, North of the unit vector on the ellipsoid of a course on the sphere.
+    Return east and north on the ellipsoid of the unit vector along a course on the sphere.
 
-    m_e, m_n: of ``sphere_metric``; chi: rad, clockwise from north.  The third is the length, m,
-    of the displacement that moves the point on the sphere by one radian.
+    m_e, m_n: see ``sphere_metric``; chi: course, rad clockwise from north.  The third value
+    returned is the length, m, of the displacement that moves the point on the sphere by 1 rad.
     """
     sin_chi, cos_chi = sincos(chi)
     east, north = sin_chi / m_e, cos_chi / m_n
@@ -43,15 +43,17 @@ def across_leg(leg, lat, lon, height, v_n):
     """
     Return the offset z to the right of a leg, m, and its rate v_z, m/s, of a vehicle.
 
-    leg: great_circle.Leg; lat, lon: rad; height: m; v_n: East, North, Up, m/s; floats or arrays.
-    Metres are those of the ellipsoid at that height: the coordinate Z of the leg is metres on the
-    sphere, up to 0.6 % different.  The velocity is taken across the line of constant Z.
+    Both are in metres on the ellipsoid at the height of the vehicle. The coordinate Z of the leg
+    is in metres on the sphere, which differ by up to 0.6 %. The velocity component is normal to
+    the line of constant Z.
+
+    leg: great_circle.Leg; lat, lon: rad; height: m; v_n: east, north, up, m/s; floats or arrays.
     """
     _, z = leg.to_xz(lat, lon)
     m_e, m_n, _, _ = sphere_metric(*sincos(lat), height)
     chi = leg.course(lat, lon)
     east, north, _ = direction_on_earth(m_e, m_n, chi)
     sin_chi, cos_chi = sincos(chi)
-    # A metre of Z moves the point by cos(chi)/m_E to the East and by -sin(chi)/m_N to the North.
+    # A metre of Z moves the point by cos(chi)/m_E to the east and by -sin(chi)/m_N to the north.
     metres = (cos_chi / m_e * north + sin_chi / m_n * east) / ellipsoid.MEAN_RADIUS
     return z * metres, v_n[0] * north - v_n[1] * east

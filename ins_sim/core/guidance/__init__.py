@@ -1,6 +1,6 @@
 """
-Guidance: autopilots, and the steering that passes a navigation solution to them.
+Guidance: autopilots, and the steering that supplies them with a navigation solution.
 
 ``linear_loop`` computes where the closed loop with an aided navigator is stable; ``error_loop``
-simulates this loop in a reduced form.
+simulates it in a reduced form.
 """

@@ -1,4 +1,4 @@
-"""Phase margin of a loop whose navigator is corrected by sliding windows (latency budget)."""
+"""Latency margin of a loop whose navigator is corrected by sliding windows."""
 
 import math
 from typing import NamedTuple
@@ -15,11 +15,9 @@ POINTS = 20001
 
 class PhaseMargin(NamedTuple):
     """
-    Phase margin of a loop.
+    Crossover frequency (rad/s), phase margin there (rad), and additional latency it allows (s).
 
-    crossover: frequency at which the gain is one, rad/s; margin: phase margin there, rad; delay_s:
-    additional latency that reduces the margin to zero, s. Margin and delay are negative if the
-    loop is unstable without additional latency.
+    Margin and latency are negative for an unstable loop.
     """
 
     crossover: float
@@ -29,30 +27,24 @@ class PhaseMargin(NamedTuple):
 
 def aided_margin(loop, aiding, k_z=0.0):
     """
-    Return the phase margin of a lateral loop, opened at the command.
+    Return the PhaseMargin of a LateralLoop opened at the command, or None if the gain is never 1.
 
-    A correction in every control period is assumed. Navigators with contiguous windows are slower
-    than the loop; for them ``margin.phase_margin``, with exact navigation, is a good approximation
-    (docs/theory/closed_loop.md).
+    A correction every control period is assumed. Navigators with contiguous windows are slower
+    than the loop; for them the margin with exact navigation, ``margin.phase_margin``, is a good
+    approximation. If the gain is one at several frequencies, the one with the smallest latency
+    margin is returned.
 
     Parameters
     ----------
     loop : LateralLoop
-    aiding : linear_loop.Aiding
-        Of kind ``conventional`` with sliding windows.
-    k_z : float
-        Lateral scale factor error of the meter.
+    aiding : Aiding of kind conventional with sliding windows
+    k_z : lateral scale error of the meter
 
-    Returns
-    -------
-    PhaseMargin or None
-        If the gain is one at several frequencies, the margin with the smallest ``delay_s``; None
-        if it is one nowhere.
     """
     omega = np.geomspace(1e-4, 1.0, POINTS) * math.pi / loop.period_s
     found = _returned(loop, aiding, k_z, np.exp(1j * omega * loop.period_s))
     angle = np.unwrap(np.angle(found))
-    # At low frequencies the loop is a double integrator with a phase of -180 deg.
+    # At low frequencies the loop is a double integration with -180 deg.
     angle -= 2.0 * math.pi * round((angle[0] + math.pi) / (2.0 * math.pi))
     size = np.log(np.abs(found))
     margins = []
@@ -68,13 +60,10 @@ def aided_margin_sentence(generator, navigator):
     """
     Return the warning that the latency makes the loop unstable, or None.
 
-    None also for filters other than ``conventional`` on sliding windows, and if the control
-    period differs from the cycle of the meter.
+    Only filter conventional with sliding windows is examined, and only if the control instants
+    are cycles of the meter; otherwise None is returned.
 
-    Parameters
-    ----------
-    generator : MotionGeneratorSettings
-    navigator : AidedNavigatorSettings
+    generator: MotionGeneratorSettings; navigator: AidedNavigatorSettings.
     """
     window, rate_hz = navigator.window, navigator.rate_hz
     if navigator.filter != 'conventional' or not (window.slides and navigator.meter_model.use):

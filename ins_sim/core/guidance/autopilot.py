@@ -1,4 +1,4 @@
-"""The interface of the autopilots, which users can extend, and the lookup of their classes."""
+"""The interface of the autopilots, a public point of extension, and their look-up by name."""
 
 from ins_sim.core.numerics.located import located
 from ins_sim.settings.guidance import AUTOPILOTS
@@ -6,12 +6,12 @@ from ins_sim.settings.guidance import AUTOPILOTS
 
 class Autopilot:
     """
-    Base class of the autopilots: estimated offset in, commanded sideslip out.
+    Base class of the autopilots: from the estimated offset to the commanded sideslip.
 
-    ``Steering`` makes one object for a run. It calls ``reset`` when the autopilot is engaged and
-    after every turn, and then ``command`` once for each control period. It limits the command,
-    and it does not call the autopilot in turns or without a solution. An autopilot may keep any
-    state between calls; successive calls are one control period apart.
+    ``Steering`` creates one object for a run. It calls ``reset`` when the autopilot is engaged and
+    after every turn, and then ``command`` once per control period. It limits the command, and it
+    does not call the autopilot in turns or without a solution. An autopilot may keep any state
+    between the calls, which follow each other at the control period.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Autopilot:
         self.settings = settings
 
     def reset(self):
-        """Restart: the next call of ``command`` is the first."""
+        """Start anew: the next command is the first."""
 
     def command(self, t_ns, z, v_z):
         """
@@ -40,16 +40,16 @@ class Autopilot:
         Returns
         -------
         float
-            Positive: track to the right of the nose, a force to the left.
+            Positive: the track is to the right of the nose, the side force acts to the left.
         """
         raise NotImplementedError
 
     def gains(self):
-        """Return the gains of z, rad/m, and v_z, rad s/m; None if the autopilot is not linear."""
+        """Return the gains of z (rad/m) and v_z (rad s/m) of a linear autopilot, or None."""
         return None
 
 
 def make_autopilot(settings):
-    """Return the Autopilot that GuidanceSettings name."""
+    """Return the Autopilot named by GuidanceSettings."""
     name = settings.autopilot
     return located(AUTOPILOTS[name].location, f'autopilot {name}')(settings)

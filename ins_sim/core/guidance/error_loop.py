@@ -1,9 +1,9 @@
 """
 Reduced simulation of the loop of vehicle, autopilot and aided navigator, many flights at once.
 
-It contains the plant of ``linear_plant`` with a limited command, and the errors of the estimates.
-It contains neither the Earth nor the readings of an IMU, and therefore simulates a hundred flights
-in a fraction of the time of one complete flight. For small angles it equals ``linear_loop``.
+It consists of the plant of ``linear_plant`` with a limited command and the errors of the
+estimates. Without the Earth and IMU readings it simulates a hundred flights in a fraction of the
+time of one full simulation; for small angles it agrees with ``linear_loop``.
 """
 
 from collections import deque
@@ -16,9 +16,9 @@ from .linear_plant import after_period
 
 class ReducedCases(NamedTuple):
     """
-    The parameters in which the n flights differ, arrays of shape (n,).
+    Parameters in which the flights differ, (n,) each.
 
-    gain: see ``linear_loop.Aiding``; k_z: lateral scale factor error; offset: z at the start, m.
+    gain: see ``linear_loop.Aiding``; k_z: lateral scale error; offset: initial z, m.
     """
 
     gain: np.ndarray
@@ -27,12 +27,7 @@ class ReducedCases(NamedTuple):
 
 
 class ReducedFlights(NamedTuple):
-    """
-    Histories of n flights at m instants.
-
-    t_s: instants (m,), s; z: offset, m, beta: sideslip, rad, error_z and error_v: errors of z, m,
-    and of its rate, m/s; each (m, n).
-    """
+    """Histories at t_s (m,), s: z (m), beta (rad), errors of z (m) and v_z (m/s), (m, n)."""
 
     t_s: np.ndarray
     z: np.ndarray
@@ -43,22 +38,22 @@ class ReducedFlights(NamedTuple):
 
 def fly_reduced(loop, aiding, cases, duration_s, most_rad, engaged_s=0.0, forward=True):
     """
-    Simulate the flights of some cases and return one row every ten control periods.
+    Simulate the flights of cases; return ReducedFlights, one row every ten control periods.
 
     Parameters
     ----------
     loop : LateralLoop
     aiding : linear_loop.Aiding
-        Its gain is not used; the cases contain the gains.
+        Its gain is not used; the cases have their own.
     cases : ReducedCases
     duration_s : float
     most_rad : float
-        Limit of the absolute value of the command.
+        Limit of the magnitude of the command.
     engaged_s : float
-        The autopilot steers from this time on; before it the command is zero.
+        The autopilot steers from this time on; before, the command is zero.
     forward : bool
-        Whether the forward velocity is aided too, as by the filters. Its error, of second order
-        in beta, couples into the lateral channel if the nose points away from the leg.
+        Whether the forward velocity is aided too, as in the filters. Its error, of second order
+        in beta, couples into the lateral one if the nose is off the leg.
 
     Returns
     -------
@@ -117,14 +112,14 @@ class _Lateral:
         self._now = now
 
     def end_step(self, k):
-        """Correct the estimates if a complete window ends after k periods."""
+        """Correct the estimates if a whole window ends after k periods."""
         self._ends.append(self._sums)
         if k >= self._aiding.cycles:
             self._correct(*(self._sums - self._ends[0]) / self._aiding.cycles)
             self._now = self._of_means()
 
     def _of_means(self):
-        """Return V sin(beta) and the error of the computed value."""
+        """Return V sin(beta) and the error of the computed value: the quantities to average."""
         beta = self._state[2]
         return np.array((self._loop.speed * np.sin(beta), self._velocity * np.cos(beta)))
 
@@ -148,16 +143,15 @@ class _Lateral:
 
 class _TwoChannels(_Lateral):
     """
-    Both channels, which are coupled if the nose points away from the leg.
+    Both channels; a heading off the leg couples them.
 
-    Vectors are complex numbers: the real part is along the leg (or the nose), the imaginary part
-    to its right. V along the leg is constant; the nose differs from the leg by atan(v_z/V) - beta.
+    Complex numbers: the real part is along the leg, or along the nose, the imaginary part to the
+    right. V along the leg is constant; the nose is off the leg by atan(v_z/V) - beta.
     """
 
     def __init__(self, loop, aiding, cases, most_rad):
         zero = np.zeros(len(cases.k_z), dtype=complex)
-        # Errors of the velocity in axes of the leg, corrections of the acceleration in axes of the
-        # nose.
+        # Errors of the velocity along the leg; corrections of the acceleration along the nose.
         self._both = self._corrections = zero
         self._a1 = self._b2 = zero
         super().__init__(loop, aiding, cases, most_rad)
@@ -187,7 +181,7 @@ class _TwoChannels(_Lateral):
         return np.arctan2(v, self._loop.speed) - beta
 
     def _of_means(self):
-        """Return the ground velocity and the error of the computed one, in axes of the nose."""
+        """Return the velocity over ground and the error of the computed one, along the nose."""
         turn = np.exp(-1j * self._nose())
         return np.array(((self._loop.speed + 1j * self._state[1]) * turn, self._both * turn))
 

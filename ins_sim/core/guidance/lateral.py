@@ -1,10 +1,10 @@
-"""Autopilots of the lateral channel: return to the leg, or hold the course along it."""
+"""The autopilots of the lateral channel: return to the leg, or fly parallel to it."""
 
 from .autopilot import Autopilot
 
 
 def lateral_command(gains, z, v_z):
-    """Return the commanded sideslip k1 z + k2 v_z, rad; gains: (k1, rad/m; k2, rad s/m)."""
+    """Return k1 z + k2 v_z, rad; gains: k1 (rad/m) and k2 (rad s/m)."""
     k1, k2 = gains
     return k1 * z + k2 * v_z
 
@@ -27,7 +27,7 @@ class LateralAutopilot(Autopilot):
 
 
 class CourseHold(LateralAutopilot):
-    """Fly parallel to the leg at the present offset: only the rate of the offset is controlled."""
+    """Flies parallel to the leg at any offset: only the rate of the offset is controlled."""
 
     def __init__(self, settings):
         super().__init__(settings)

@@ -1,18 +1,17 @@
 """
-Stability of the loop of vehicle, autopilot and aided navigator, exact in discrete time.
+Stability limits of the loop of vehicle, autopilot and aided navigator, exact in discrete time.
 
-From one correction of the navigator to the next the loop is linear. The state x contains the
-estimates of z and of its rate, beta, the command, the delayed commands of the latency, and the
-state of the navigator. With the reading w of the meter
+Between two corrections of the navigator everything is linear. The state x holds the estimates of z
+and of its rate, beta, the command, the commands delayed by the latency, and the state of the
+navigator; w is the reading of the meter:
 
     x+ = A x + b w,   w = (1 + k_z) D p,   p = c x
 
-p is the mean lateral velocity V beta since the last correction. D averages it over a window: 1, or
-(1 - Q^-n)/(n (1 - Q^-1)) for windows of n steps, where Q is the operator of one step forward.
-Errors that no measurement shows are not part of x: that of the absolute position and, for
-paper_corrected, that of the absolute velocity.
-Hence (1 + k_z) D(Q) c (Q - A)^-1 b = 1, which on the unit circle gives the limits of k_z
-(docs/theory/closed_loop.md).
+p is the mean lateral velocity V beta since the last correction, and D averages it over a window:
+1, or for windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), where Q is the operator of one step
+forward. Errors that are unobservable (the absolute position, and for paper_corrected the absolute
+velocity) are not in x. The characteristic equation is (1 + k_z) D(Q) c (Q - A)^-1 b = 1; on the
+unit circle it gives the limits of k_z.
 """
 
 import math
@@ -23,7 +22,7 @@ from scipy.linalg import schur
 
 from .linear_plant import after_period
 
-# Number of points on the unit circle between which real values of k_z are searched.
+# Number of points of the unit circle at which real values of k_z are searched for.
 POINTS = 2000
 # Responses smaller than this are rounding errors and are ignored.
 ROUNDING = 1e-9
@@ -34,9 +33,9 @@ class Aiding(NamedTuple):
     """
     A navigator aided by a meter with windows of N cycles; a cycle is a control period.
 
-    kind: one of KINDS; cycles: N; step: cycles between the ends of successive windows, a divisor
-    of N (N itself for paper_corrected); gain: for conventional the fraction of the error that a
-    fix removes (K_v times the step if windows slide), for paper_corrected K.
+    kind: one of KINDS; cycles: N; step: cycles between the ends of windows, a divisor of N, and N
+    for paper_corrected; gain: for conventional the fraction of the error that a fix removes (K_v
+    times the step if windows slide), for paper_corrected K.
     """
 
     kind: str
@@ -46,14 +45,14 @@ class Aiding(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """Growth, 1/s, and frequency, rad/s, of the mode that grows fastest."""
+    """Growth rate, 1/s, and frequency, rad/s, of the mode that grows fastest."""
 
     growth: float
     frequency: float
 
 
 class StabilityLimit(NamedTuple):
-    """A lateral scale factor error k_z at which a mode is undamped; its frequency, rad/s."""
+    """A lateral scale error k_z at which a mode is undamped; its frequency, rad/s."""
 
     k_z: float
     frequency: float
@@ -61,10 +60,10 @@ class StabilityLimit(NamedTuple):
 
 class StabilityLimits(NamedTuple):
     """
-    The limits of k_z nearest to zero, one of each sign; None if a sign has no limit.
+    The StabilityLimits nearest to zero, one of each sign; None if there is none of that sign.
 
-    unstable: number of modes that grow at k_z = 0. The limits bound the stable range only if it
-    is 0.
+    unstable: number of modes that grow at k_z = 0. Only if it is zero do the limits bound the
+    stable range.
     """
 
     positive: StabilityLimit | None
@@ -82,21 +81,11 @@ def growth(loop, aiding, k_z):
     """
     Return the fastest growing mode at a lateral scale factor error k_z.
 
-    The time grows with the cube of N/step: a second for some hundred steps in a window.
-
-    Parameters
-    ----------
-    loop : LateralLoop
-    aiding : Aiding
-    k_z : float
-
-    Returns
-    -------
-    Mode
+    The cost is of the order (N/step)^3: a second for some hundred steps in a window.
     """
     a, b, c = _step(loop, aiding)
     n, size = aiding.cycles // aiding.step, len(a)
-    # The state is x followed by the means of the n - 1 previous steps.
+    # Append to x the means of the n - 1 previous steps.
     whole = np.zeros((size + n - 1,) * 2)
     whole[:size, :size] = a + (1.0 + k_z) / n * np.outer(b, c)
     whole[:size, size:] = (1.0 + k_z) / n * b[:, None]
@@ -120,9 +109,7 @@ def limits(loop, aiding):
     loop : LateralLoop
     aiding : Aiding
 
-    Returns
-    -------
-    StabilityLimits
+    Frequencies are those seen at the corrections: at most pi over the time between them.
     """
     response = _Response(_step(loop, aiding), aiding.cycles // aiding.step)
     step_s, n = aiding.step * loop.period_s, aiding.cycles // aiding.step
@@ -137,7 +124,7 @@ def limits(loop, aiding):
         middle = 0.5 * (low + high)
         same = response.at(middle * step_s).imag * sign > 0.0
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    # At the highest frequency the response is real.
+    # At the highest frequency all values are real.
     places = np.append(low, highest)
     real = response.at(places * step_s).real
     found = [StabilityLimit(1.0 / x - 1.0, w) for x, w in zip(real.tolist(), places.tolist())
@@ -149,10 +136,10 @@ def limits(loop, aiding):
 
 def _unstable(roots, values):
     """
-    Return the number of modes that grow at k_z = 0, by the argument principle.
+    Return the number of modes that grow at k_z = 0, by the principle of the argument.
 
-    roots: eigenvalues of A; values: response along the upper half of the unit circle, from near 1
-    to -1, where it is real.
+    values: the response along the upper half of the unit circle, from near 1 to -1, where it is
+    real; roots: eigenvalues of A.
     """
     around = np.unwrap(np.angle(1.0 - values))
     turns = 2.0 * (around[-1] - around[0]) / (2.0 * math.pi)
@@ -162,10 +149,10 @@ def _unstable(roots, values):
 
 class _Response:
     """
-    The response D(Q) c (Q - A)^-1 b on the unit circle.
+    The response D(Q) c (Q - A)^-1 b on the unit circle; n: steps of a window.
 
-    The Schur form of A makes the cost at each Q quadratic, not cubic, in the number of states,
-    which matters for long latencies. n: steps of a window.
+    It uses the Schur form of A, so that the cost at each Q is the square, not the cube, of the
+    number of states, which is large for a long latency.
     """
 
     def __init__(self, step, n):
@@ -183,7 +170,7 @@ class _Response:
 
 
 def window_mean(q, n):
-    """Return D(Q): the mean over n steps of a quantity that grows by the factor q in each step."""
+    """Return D(Q): the mean over n steps of a quantity that grows by the factor q in each."""
     return 1.0 if n == 1 else (1.0 - q ** -n) / (n * (1.0 - 1.0 / q))
 
 
@@ -201,7 +188,7 @@ def _step(loop, aiding):
     before = np.array((e['z'], e['v'], e['beta'], e['command'], command))
     rows['z'], rows['v'], rows['beta'] = after_period(loop) @ before
     rows['sum_beta'] += 0.5 * (e['beta'] + rows['beta'])
-    # An error of the acceleration is integrated into velocity and position.
+    # A constant error of the acceleration is integrated over the step.
     rows['z'] += 0.5 * h * h * e['acceleration']
     rows['v'] += h * e['acceleration']
     rows['error'] += h * e['acceleration']
@@ -209,7 +196,7 @@ def _step(loop, aiding):
     x = np.linalg.matrix_power(np.array([rows[name] for name in names]), aiding.step)
     now = dict(zip(names, x))
     mean = loop.speed / aiding.step * now['sum_beta']
-    # Coefficient of the reading w of the meter in each state.
+    # Coefficient of the meter's reading w in each state.
     read = {name: 0.0 for name in names}
     correct = _conventional if aiding.kind == 'conventional' else _paper_corrected
     correct(loop, aiding, now, mean, read)
@@ -221,9 +208,9 @@ def _step(loop, aiding):
 
 def _conventional(loop, aiding, now, mean, read):
     """
-    Subtract the fraction ``gain`` of the innovation from the velocity.
+    Subtract the fraction gain of the innovation from the velocity.
 
-    The state ``error`` is e_v. The fix is taken for the velocity at the end of its window.
+    The state error is e_v. The fix is used as the velocity at the end of its window.
     """
     innovation = loop.speed * now['beta'] + now['error']
     for name in ('v', 'error'):
@@ -234,9 +221,9 @@ def _conventional(loop, aiding, now, mean, read):
 
 def _paper_corrected(loop, aiding, now, mean, read):
     """
-    Subtract dW = K nu from the acceleration, T dW from the velocity, T^2/2 dW from the position.
+    Subtract dW = K nu from the acceleration, T dW from velocity, T^2/2 dW from position.
 
-    The state ``error`` is e_v minus z' of the last window; nu = (its mean + mean of V beta - w)/T.
+    The state error is e_v minus z' of the last window: nu = (mean of it + mean of V beta - w)/T.
     """
     span = aiding.cycles * loop.period_s
     nu, by_read = (now['sum_error'] / aiding.cycles + mean) / span, -1.0 / span

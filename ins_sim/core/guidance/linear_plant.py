@@ -1,7 +1,7 @@
 """
-Linear model of vehicle and autopilot, from one control instant to the next.
+Linear model of vehicle and autopilot of a lateral loop, from one control instant to the next.
 
-Offset z to the right of the leg, its rate v, and the sideslip beta under a command u:
+z is the offset to the right of the leg, v its rate, beta the sideslip, u the command:
 
     z' = v,  v' = -Z_b beta,  beta' = (u - beta)/tau_b,  u = k1 z_est + k2 v_est
 """
@@ -16,11 +16,11 @@ from .autopilot import make_autopilot
 
 class LateralLoop(NamedTuple):
     """
-    A vehicle that an autopilot holds on its leg.
+    A vehicle that an autopilot keeps on its leg.
 
-    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b, s; k1: rad/m; k2: rad/(m/s);
-    period_s: control period, s; latency: in whole periods; ramps: whether the command changes
-    linearly over a period (otherwise it jumps).
+    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b; k1: rad/m; k2: rad/(m/s);
+    period_s: time between control instants; latency: in whole periods; ramps: True if the command
+    changes linearly over a period, False if it jumps.
     """
 
     speed: float
@@ -35,9 +35,9 @@ class LateralLoop(NamedTuple):
 
 def lateral_loop(generator):
     """
-    Return the LateralLoop of MotionGeneratorSettings in still air.
+    Return the LateralLoop of MotionGeneratorSettings, without wind.
 
-    Return None if the autopilot is not linear.
+    Return None for an autopilot without gains.
     """
     guided, guidance = generator.motion.guided, generator.guidance
     gains = make_autopilot(guidance).gains()
@@ -52,7 +52,7 @@ def after_period(loop):
     """
     Return the matrix (3, 5) from the start to the end of a control period.
 
-    It maps (z, v, beta, old command, new command) at the start to (z, v, beta) at the end.
+    Its columns multiply z, v, beta, the old and the new command at the start of the period.
     """
     h = loop.period_s
 

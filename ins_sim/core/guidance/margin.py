@@ -1,4 +1,4 @@
-"""Stability of an autopilot with exact navigation."""
+"""Phase margin of an autopilot with exact navigation."""
 
 import math
 
@@ -10,20 +10,10 @@ HALVINGS = 60
 
 def phase_margin(gains, force, lag_s, delay_s):
     """
-    Return the phase margin of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)), rad.
+    Return the phase margin, rad, of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)).
 
-    Return None if both gains are zero.
-
-    Parameters
-    ----------
-    gains : (float, float)
-        k1, rad/m, and k2, rad s/m.
-    force : float
-        Side force, m/s^2 per rad of sideslip.
-    lag_s : float
-        Time constant of the sideslip, s.
-    delay_s : float
-        Latency plus one control period (a command is reached at the end of its period), s.
+    gains: k1 (rad/m) and k2 (rad s/m); force: m/s^2 per rad; delay_s: latency plus control period,
+    because the command is reached at the end of a period.  Return None if the gains are zero.
     """
     k1, k2 = gains
     if k1 == k2 == 0.0:

@@ -1,4 +1,4 @@
-"""Select the solution by which an autopilot steers, and decide when to fly straight."""
+"""Steering: which solution the autopilot gets, and when the vehicle flies straight."""
 
 from bisect import bisect_right
 from collections import deque
@@ -10,7 +10,7 @@ from ins_sim.core.numerics.instants import seconds
 from .autopilot import make_autopilot
 from .margin import phase_margin
 
-# Reasons for which an autopilot does not steer.
+# Reasons why an autopilot does not steer.
 NOT_ENGAGED, TURN, NO_SOLUTION = 'not engaged', 'in a turn', 'no solution'
 NO_NUMBER, JUMP, OLD, NO_COMMAND = 'no number', 'jump', 'old', 'no command'
 # The autopilot steers, at the limit of the command.
@@ -19,11 +19,10 @@ LIMITED = 'limited'
 
 class SteeringCommand(NamedTuple):
     """
-    The command at a control instant, and the estimate on which it is based.
+    The command at a control instant, and its origin.
 
-    t_ns: motion time, ns; beta: commanded sideslip, rad; z, v_z: estimated offset, m, and its
-    rate, m/s, zero without a solution; why: '' if the autopilot steers, otherwise the reason for
-    which the vehicle flies straight.
+    t_ns: the instant; beta: sideslip, rad; z, v_z: the estimate, m and m/s, zero without one; why:
+    '' if the autopilot steers, otherwise the reason why the vehicle flies straight.
     """
 
     t_ns: int
@@ -35,13 +34,12 @@ class SteeringCommand(NamedTuple):
 
 class Steering:
     """
-    An autopilot and the navigation solutions by which it steers.
+    An autopilot with the solutions it uses.
 
-    ``take`` receives solutions; ``command`` computes the command of a control instant from the
-    newest solution that is at least ``latency_s`` old. The vehicle flies straight (command zero)
-    until the autopilot is engaged, in turns, and if the solution is missing, not finite or too
-    old. After a jump of the solution it flies straight until ``timeout_s`` has passed without
-    another jump.
+    ``take`` receives solutions; ``command`` answers a control instant from the newest solution
+    that is at least ``latency_s`` old. The vehicle flies straight (command zero) until the
+    autopilot is engaged, in turns, and if the solution is missing, not finite or too old. After a
+    jump of the solution it flies straight until ``timeout_s`` has passed without another jump.
 
     Parameters
     ----------
@@ -54,9 +52,9 @@ class Steering:
     ----------
     engaged : bool
     notes : list of str
-        Messages about events that occurred for the first time; the owner empties the list.
+        Sentences about events that occurred for the first time; the owner empties it.
     counts : dict
-        {why: number of control instants} for each reason to fly straight, and for LIMITED.
+        {why: number of control instants} at which the vehicle flew straight, and of LIMITED.
     """
 
     def __init__(self, settings, legs, turns=()):
@@ -70,14 +68,14 @@ class Steering:
         self.reset()
 
     def reset(self):
-        """Clear all state; the next control instant is the first of a run."""
+        """Forget all solutions; the next control instant is the first of a run."""
         self._solutions, self._used, self._jumped_ns = deque(), None, None
         self._engage_ns, self.engaged, self._steers = None, False, False
         self._scheduled = True
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it starts to steer at the end of the turn (noted)."""
+        """Engage the autopilot; in a turn it takes over at the end of the turn, with a note."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '
@@ -97,17 +95,10 @@ class Steering:
 
     def take(self, t_ns, solution):
         """
-        Receive a solution.
+        Store a solution of motion time t_ns, ns.
 
-        A solution that is not later than earlier ones replaces those with the same or a later
-        stamp.
-
-        Parameters
-        ----------
-        t_ns : int
-            Motion time, ns.
-        solution : tuple
-            (lat, lon, height, v_n, ...): rad, rad, m, and East, North, Up m/s.
+        solution: (lat, lon, height, v_n, ...), rad, m and m/s.  If its stamp is not later than the
+        last one, it replaces all solutions from that stamp on.
         """
         solutions = self._solutions
         while solutions and solutions[-1][0] >= t_ns:
@@ -147,12 +138,12 @@ class Steering:
         return SteeringCommand(t_ns, beta, z, v_z, why)
 
     def give_up(self, why):
-        """Count a control instant at which the autopilot does not steer, and why."""
+        """Count a control instant at which the autopilot does not steer, by reason."""
         self._steers = False
         self._count(why)
 
     def _estimate(self, t_ns):
-        """Return z, v_z and the reason for which they cannot be used, or ''."""
+        """Return z, v_z, and '' or the reason why they must not be used."""
         wanted_ns, solutions = t_ns - self._latency_ns, self._solutions
         while len(solutions) > 1 and solutions[1][0] <= wanted_ns:
             solutions.popleft()
@@ -171,13 +162,13 @@ class Steering:
         return z, v_z, why
 
     def _use(self, t_ns, stamp_ns, solution):
-        """Convert a solution to offset and rate, and check it for numbers and jumps."""
+        """Use a solution for steering from now on."""
         lat, lon, height, v_n = solution[:4]
         index = self._leg_index(t_ns)
         last, why = self._used, ''
         if not math.isfinite(lat + lon + height + v_n[0] + v_n[1]):
-            self._say(NO_NUMBER, f'the solution at {seconds(stamp_ns)} is no number; expected one '
-                      'to steer by: the vehicle flies straight until it is one')
+            self._say(NO_NUMBER, f'the solution at {seconds(stamp_ns)} is not finite; expected '
+                      'a finite one: the vehicle flies straight until there is one')
             self._used = stamp_ns, 0.0, 0.0, NO_NUMBER, index
             return
         z, v_z = across_leg(self._legs[index], lat, lon, height, v_n)
@@ -188,7 +179,7 @@ class Steering:
                 self._say(JUMP, f'the solution jumps by {z - expected:.4g} m to the right at '
                           f'{seconds(stamp_ns)}; expected at most guidance.jump_m, '
                           f'{self._jump:g} m: the vehicle flies straight until the solution has '
-                          f'gone on without a jump for {self._timeout_ns * 1e-9:g} s')
+                          f'continued without a jump for {self._timeout_ns * 1e-9:g} s')
         if self._jumped_ns is not None:
             if 0 <= stamp_ns - self._jumped_ns <= self._timeout_ns:
                 why = JUMP
@@ -205,7 +196,7 @@ class Steering:
 
 
 def _number(value):
-    """Return the command of an autopilot as a finite float, or None."""
+    """Return the value that an autopilot commands as a finite float, or None."""
     try:
         value = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -217,10 +208,7 @@ def margin_sentence(settings, guided):
     """
     Return the warning that the latency makes the loop unstable with exact navigation, or None.
 
-    Parameters
-    ----------
-    settings : GuidanceSettings
-    guided : GuidedSettings
+    Exact navigation is assumed.  settings: GuidanceSettings; guided: GuidedSettings.
     """
     gains = make_autopilot(settings).gains()
     if gains is None:
@@ -233,4 +221,4 @@ def margin_sentence(settings, guided):
     return (f'guidance.latency_s is {settings.latency_s:g} s and the control period '
             f'{period_s:g} s, which leaves the loop a phase '
             f'margin of {math.degrees(margin):.1f} deg; expected more than 0: it is unstable '
-            'with exact navigation already')
+            'even with exact navigation')

@@ -1,4 +1,4 @@
-"""Motions on one spot, as on a test bench, in closed form."""
+"""Motions at a fixed place, as on a test bench, in closed form."""
 
 import math
 
@@ -21,11 +21,11 @@ BODY_AXES = {'x': 0, 'y': 1, 'z': 2}
 
 class BenchMotion(Motion):
     """
-    A motion on one spot.
+    A motion at a fixed place, with an optional small excursion about it.
 
     attitude, constants: a function of ``bench_attitudes`` and its constants; datum: Datum of the
-    spot; excursion: path about it, E, N, U in m of the series of time, or None; earth: Earth;
-    period_s: as of Motion.
+    place; excursion: function from the Series of time to the displacement east, north, up (m), or
+    None; earth: Earth; period_s: see Motion.
     """
 
     def __init__(self, attitude, constants, datum, excursion, earth, period_s):
@@ -40,7 +40,7 @@ class BenchMotion(Motion):
         super().__init__(pose, 2, earth.rotation, period_s, self._path, earth.gravity)
         self._still = None
         if excursion is None:
-            # One instant tells velocity, rate and specific force in n of all.
+            # The place is fixed: velocity, rate and specific force in n are the same at all times.
             found = translation(*self._path(taylor.Series.time(np.zeros(1), 2)), earth.rotation,
                                 earth.gravity)
             self._still = tuple(tuple(float(x[0]) for x in vector) for vector in found)
@@ -58,7 +58,7 @@ class BenchMotion(Motion):
         return truth_of(t_ns, self._spot, *self._still, self._attitude(self._constants, t))
 
     def attitude_at(self, t_ns):
-        """Return latitude, longitude, floats if nothing moves, and q_nb (n, 4)."""
+        """Return latitude and longitude (floats if the place is fixed) and q_nb (n, 4)."""
         t = np.asarray(t_ns) * 1e-9
         q_nb = np.empty((len(t), 4))
         run(attitudes.ROWS[self._attitude], len(t), (self._constants, t), q_nb, self._rows)
@@ -73,13 +73,13 @@ class BenchMotion(Motion):
             out[:, k] = component
 
     def force_at(self, t_ns):
-        """Return latitude, longitude and specific force in n, floats if nothing moves."""
+        """Return latitude, longitude and specific force in n; floats if the place is fixed."""
         if self._still is None:
             return super().force_at(t_ns)
         return *self._spot[:2], self._still[2]
 
     def body_force_at(self, t_ns):
-        """Return the specific force in b, three arrays."""
+        """Return the specific force in b, three arrays (n,), m/s^2."""
         if self._still is None:
             return super().body_force_at(t_ns)
         return quaternion.rotate_back(self.attitude_at(t_ns)[2].T, self._still[2])
@@ -107,7 +107,7 @@ def _rocking(motion):
 
 
 def _two_axis(motion):
-    """Motion 2: psi and gamma run uniformly, theta stands."""
+    """Motion 2: psi and gamma change at constant rates, theta is constant."""
     s = motion.two_axis
     psi_rate = s.psi_rate_rad_s + s.detuning_rad_s
     constants = (psi_rate, math.radians(motion.psi_deg), math.radians(motion.theta_deg),
@@ -116,7 +116,7 @@ def _two_axis(motion):
 
 
 def _common_period(*rates):
-    """Return the common period of uniform rotations if it is at most 64 turns, else None."""
+    """Return the common period of constant-rate rotations if it is at most 64 turns, else None."""
     rates = [abs(r) for r in rates if r]
     if not rates:
         return None
@@ -129,7 +129,7 @@ def _common_period(*rates):
 
 
 def _coning(motion):
-    """The axis k of the body describes a cone: rotation vector A (cos w t, sin w t) across k."""
+    """Coning: the body axis k describes a cone; rotation vector A (cos w t, sin w t) across k."""
     s = motion.coning
     k = BODY_AXES[s.axis]
     sine, cosine = elementary.sincos(0.5 * math.radians(s.half_angle_deg))
@@ -139,7 +139,7 @@ def _coning(motion):
 
 
 def _sculling(motion):
-    """Rocking about the vertical; ``_vibration`` is the other half."""
+    """Rocking about the vertical; ``_vibration`` is the translational part of sculling."""
     s = motion.sculling
     constants = (_base(motion), LEVEL_AXES['up'], math.radians(s.amplitude_deg),
                  TWO_PI * s.frequency_hz)
@@ -190,7 +190,7 @@ def _harmonics(motion):
             raise ValueError(f'motion.harmonics.{name}_phase_deg has {len(phases)} entries; '
                              f'expected {len(amplitudes)}, one for each of '
                              f'motion.harmonics.{name}_deg')
-        # At least one, so that compiled code knows what an entry is.
+        # At least one entry, so that the compiler can infer the type of the entries.
         angles.append((math.radians(getattr(motion, f'{name}_deg')),
                        tuple(map(math.radians, amplitudes)) or (0.0,),
                        tuple(map(math.radians, phases)) or (0.0,)))
@@ -206,7 +206,7 @@ def bench_motion(motion, datum, earth):
     """
     Return the bench motion of MotionSettings at a Datum; earth: Earth.
 
-    Raises ValueError on settings that no motion can have.
+    Raises ValueError for settings that describe no valid motion.
     """
     attitude, constants, period_s = _ATTITUDES.get(motion.kind, _static)(motion)
     excursion = _PATHS.get(motion.kind, _no_path)(motion)

@@ -1,9 +1,9 @@
 """
-The attitudes of the bench motions: pure functions ``(constants, t) -> q_nb``.
+Attitudes of the bench motions: pure functions ``(constants, t) -> q_nb``.
 
-t is a float, an array, or a Taylor series, s; the bits are the same, so that the truth, which
-needs derivatives, and compiled loops share one source. ROWS has the loop of each over the instants
-t, which writes rows of four into the flat sequence out.
+t is the time in s: a float, an array, or a Taylor series. All give the same bits, so that the
+truth, which needs derivatives, and the compiled loops share these functions. ROWS holds, for each
+function, the loop over instants t that writes rows of four into the flat sequence out.
 
 Constants are tuples of floats: ``base`` is an attitude, ``axis`` a unit vector, w an angular
 frequency in rad/s; angles and phases are in rad.
@@ -27,7 +27,7 @@ def wave(amplitude, w, phase, t):
 
 
 def static(constants, t):
-    """Return the base at all times; constants: base."""
+    """Return the same attitude at all times; constants: base."""
     x, y, z, w = constants
     none = t * 0.0
     return none + x, none + y, none + z, none + w
@@ -53,7 +53,7 @@ def two_axis(constants, t):
 
 def coning(constants, t):
     """
-    Let an axis of the body describe a cone.
+    Let a body axis describe a cone.
 
     The rotation vector is A (u cos w t + v sin w t); constants: base, u, v, sine and cosine of
     A / 2, w.
@@ -66,19 +66,19 @@ def coning(constants, t):
 
 
 def sinusoids(constants, t):
-    """Let the angles swing; constants: of each angle mean, amplitude, w, phase."""
+    """Oscillate each angle as a sinusoid; constants: for each angle mean, amplitude, w, phase."""
     (a, b, c, d), (e, f, g, h), (i, j, k, m) = constants
     return from_angles(wave(b, c, d, t) + a, wave(f, g, h, t) + e, wave(j, k, m, t) + i)
 
 
 def harmonics(constants, t):
-    """Sum harmonics; constants: w of the first, of each angle mean, amplitudes, phases."""
+    """Sum harmonics; constants: fundamental w; for each angle mean, amplitudes, phases."""
     w, psi, theta, gamma = constants
     return from_angles(series(psi, w, t), series(theta, w, t), series(gamma, w, t))
 
 
 def series(angle, w, t):
-    """Return the mean and the harmonics of one angle."""
+    """Return the sum of the mean and the harmonics of one angle."""
     mean, amplitudes, phases = angle
     total = t * 0.0 + mean
     for k in range(len(amplitudes)):

@@ -1,4 +1,4 @@
-"""The motion that settings name, made by the maker in the table of motions."""
+"""Make the motion that the settings name, with the maker from the table of motions."""
 
 from ins_sim.core.numerics.located import located
 from .motion import Motion
@@ -18,9 +18,9 @@ def make_motion(motion, datum, earth_settings) -> Motion:
     Raises
     ------
     ValueError
-        On settings that no motion can have, a route that cannot be flown, a maker that cannot be
-        imported or returns no Motion, and on a recording, whose poses must be read from a file
-        (``ins_sim.io.motion.read_motion``).
+        For settings that describe no valid motion; a route that cannot be flown; a maker that
+        cannot be imported or returns no Motion; and a recording, whose poses must be read from a
+        file (``ins_sim.io.motion.read_motion``).
     """
     if motion.maker is None:
         raise ValueError(f'motion.kind is {motion.kind}, whose poses are in a file; expected a '

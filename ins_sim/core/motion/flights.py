@@ -1,4 +1,4 @@
-"""Three flights of an hour in closed form: cruise, racetrack and an aggressive one."""
+"""Three one-hour flights in closed form: a cruise, a racetrack and an aggressive flight."""
 
 import math
 
@@ -11,7 +11,8 @@ from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from .motion import Motion
 
 TWO_PI = 2.0 * math.pi
-# (angle, amplitude in deg, cycles per s times 2 pi = factor of p, phase) added to the base angles
+# Angle, amplitude (deg), angular frequency (rad/s, as a factor of p), phase. The oscillations are
+# added to the base angles.
 CRUISE_WOBBLE = {
     'gamma': ((1.0, 0.31, 0.0), (0.5, 0.73, 1.1), (0.2, 1.37, 0.4)),
     'theta': ((0.4, 0.19, 0.7), (0.3, 0.57, 2.1), (0.1, 1.91, 1.3)),
@@ -28,7 +29,7 @@ def _log_cosh(x):
 
 
 def _cruise(t):
-    """Return E, N, h: along-track speed and height by tanh steps, four side steps."""
+    """Return east, north, height: speed and height change by tanh steps; four side steps."""
     climb, slow = (t - 300.0) / 80.0, (t - 3200.0) / 80.0
     s = t * 100.0 + (taylor.log_cosh(climb) - taylor.log_cosh(slow)) * (65.0 * 80.0)
     s = s - 65.0 * 80.0 * (_log_cosh(300.0 / 80.0) - _log_cosh(3200.0 / 80.0))
@@ -54,14 +55,14 @@ def _aggressive(t):
 
 
 def _wobbling(angle, t, terms):
-    """Return an angle with the terms of a wobble added to it; both Series."""
+    """Return an angle plus the oscillations listed for it in terms; both are Series."""
     for amplitude_deg, frequency, phase in terms:
         angle = angle + taylor.sin(t * (TWO_PI * frequency) + phase) * math.radians(amplitude_deg)
     return angle
 
 
 def _flight(path, trim_deg, wobble):
-    """Return the maker of a pose and of its path: coordinated angles plus trim and wobble."""
+    """Return a function that makes the pose and the path, with coordinated angles plus wobble."""
     def at_datum(datum):
         lat0, lon0 = math.radians(datum.latitude_deg), math.radians(datum.longitude_deg)
         per_lon = ellipsoid.MEAN_RADIUS * elementary.cos(lat0)
@@ -76,7 +77,7 @@ def _flight(path, trim_deg, wobble):
             psi = taylor.atan2(v_east, v_north)
             theta = taylor.atan2(height.derivative(), speed)
             gamma = taylor.atan2(speed * psi.derivative(), t.constant(STANDARD_GRAVITY))
-            # The angles are known to an order that is two lower.
+            # Pitch and bank come from derivatives, so their order is two lower.
             low = taylor.Series(t.c[:len(gamma.c)])
             psi, theta, gamma = (_wobbling(angle, low, wobble[name]) for name, angle in (
                 ('psi', psi), ('theta', theta), ('gamma', gamma)))
@@ -94,6 +95,6 @@ FLIGHTS = {'cruise': _flight(_cruise, 3.0, CRUISE_WOBBLE),
 
 
 def flight_motion(motion, datum, earth):
-    """Return the flight that MotionSettings name, from a Datum; earth: Earth."""
+    """Return the flight named by MotionSettings, starting at a Datum; earth: Earth."""
     pose, path = FLIGHTS[motion.kind](datum)
     return Motion(pose, 3, earth.rotation, path=path, gravity=earth.gravity)

@@ -1,4 +1,4 @@
-"""The interface of a motion, and the check that it is long enough for a run."""
+"""The interface of a motion, and checks that a motion is valid for the whole run."""
 
 from collections.abc import Callable
 import math
@@ -12,42 +12,42 @@ from ins_sim.core.timeseries.histories import Truth
 from .truth import translation, truth_from_pose
 
 HALF_PI = 0.5 * math.pi
-# Instants at which the places of a run are looked at before it.
+# Number of instants at which the positions of a run are checked in advance.
 LOOKS = 1000
 
-# Latitude, longitude, and the attitude or the specific force there.
+# Latitude, longitude, and either the attitude or the specific force at that place.
 Answer = tuple[Any, Any, Any]
 
 
 class Motion:
     """
-    A motion: the place and the attitude of the vehicle as functions of time.
+    A motion: position and attitude of the vehicle as functions of time.
 
-    The constructor serves motions in closed form, which are valid at any time. A subclass that
-    overrides ``at`` may work in another way, as recorded flights do; its ``attitude_at``,
-    ``force_at`` and ``body_force_at`` then take their answers from ``at``, unless it overrides
-    them as well.
+    The constructor serves motions in closed form, which are valid at any time. A subclass may
+    instead override ``at``, as recorded flights do; its ``attitude_at``, ``force_at`` and
+    ``body_force_at`` are then derived from ``at``, unless it overrides them as well.
 
     Parameters
     ----------
     pose : callable
         Maps the Taylor series of time, in s, to four values: latitude and longitude (rad) and
+        Maps the Taylor series of time, in s, to four values: latitude and longitude (rad) and
         height above the ellipsoid (m), each a Series, and q_nb, a tuple of four Series.
-        ``core.numerics.taylor`` has the functions of a Series.
+        Functions of a Series are in ``core.numerics.taylor``.
     order : int
-        Order of these series. Two is enough, unless the pose is made of derivatives itself.
+        Order of these series. Two is enough, unless the pose itself contains derivatives.
     earth_rotation : bool
-        Whether the Earth turns.
+        Whether the Earth rotates.
     period_s : float, optional
         Period of the attitude. The prediction averages the drift over it.
     path : callable, optional
-        Maps the Taylor series of time, of order 2, to latitude, longitude and height alone,
-        where that is less work than the pose.
+        Maps the Taylor series of time, of order 2, to latitude, longitude and height alone, if
+        that is faster than the pose.
     gravity : str
-        How normal gravity falls with height, ``free_air`` or ``second_order``.
+        Dependence of normal gravity on height, ``free_air`` or ``second_order``.
     """
 
-    # The last motion time at which the motion may be used, s, and what happens then.
+    # The last motion time at which the motion may be used, s, and a name for that end.
     end_s = math.inf
     end_name = ''
     period_s: float | None = None
@@ -65,7 +65,7 @@ class Motion:
         self.period_s = period_s
 
     def __init_subclass__(cls, **keywords: Any) -> None:
-        """Let a class that overrides ``at`` alone answer everything by it."""
+        """Derive all other answers from ``at`` in a class that overrides only ``at``."""
         super().__init_subclass__(**keywords)
         if 'at' in vars(cls):
             for name, by_truth in (('attitude_at', _attitude_of), ('force_at', _force_of),
@@ -74,7 +74,7 @@ class Motion:
                     setattr(cls, name, by_truth)
 
     def check_end(self, end_s: float) -> None:
-        """Raise ValueError where a run up to motion time end_s, s, is longer than the motion."""
+        """Raise ValueError if a run up to motion time end_s, s, is longer than the motion."""
         if end_s > self.end_s:
             raise ValueError(f'start_s + duration_s is {end_s:g} s; expected at most '
                              f'{self.end_s:g} s, {self.end_name}')
@@ -95,7 +95,7 @@ class Motion:
 
     def attitude_at(self, t_ns: np.ndarray) -> Answer:
         """
-        Return what ``at`` returns of the attitude, in less time.
+        Return the position and attitude of ``at``, faster.
 
         Parameters
         ----------
@@ -105,13 +105,13 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats where the vehicle stays at its place.
+            Latitude and longitude, rad; floats if the place is fixed.
         q_nb : (n, 4) array
-            Attitude in the local level frame there.
+            Attitude relative to the local level frame.
         """
         seconds = np.asarray(t_ns) * 1e-9
         if self._attitude_order is None:
-            # The order that is lost by the derivatives that the attitude itself is made of.
+            # Add the order that is lost if the attitude itself is computed from derivatives.
             q_nb = self._pose(taylor.Series.time(seconds[:1], self._order))[3]
             self._attitude_order = self._order - min(len(x.c) - 1 for x in q_nb)
         lat, lon, _, q_nb = self._pose(taylor.Series.time(seconds, self._attitude_order))
@@ -130,9 +130,9 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats where the vehicle stays at its place.
+            Latitude and longitude, rad; floats if the place is fixed.
         f_n : tuple of three (n,) arrays
-            Specific force East, North, Up, m/s^2; floats where it is always the same.
+            Specific force east, north, up, m/s^2; floats if it is constant.
         """
         seconds = np.asarray(t_ns) * 1e-9
         if self._path_alone is None:
@@ -145,7 +145,7 @@ class Motion:
 
     def body_force_at(self, t_ns: np.ndarray) -> Any:
         """
-        Return what ``at`` returns of the specific force, in less time where the motion can.
+        Return the specific force of ``at``; faster for motions that support it.
 
         Parameters
         ----------
@@ -161,25 +161,25 @@ class Motion:
 
 
 def _attitude_of(motion, t_ns):
-    """Return ``attitude_at`` of a motion by its truth."""
+    """Return ``attitude_at`` of a motion, derived from its truth."""
     truth = motion.at(t_ns)
     return truth.lat, truth.lon, truth.q_nb
 
 
 def _force_of(motion, t_ns):
-    """Return ``force_at`` of a motion by its truth."""
+    """Return ``force_at`` of a motion, derived from its truth."""
     truth = motion.at(t_ns)
     f_n = quaternion.rotate(np.moveaxis(truth.q_nb, -1, 0), np.moveaxis(truth.f_ib_b, -1, 0))
     return truth.lat, truth.lon, f_n
 
 
 def _body_force_of(motion, t_ns):
-    """Return ``body_force_at`` of a motion by its truth."""
+    """Return ``body_force_at`` of a motion, derived from its truth."""
     return tuple(motion.at(t_ns).f_ib_b.T)
 
 
 def check_latitude(t_ns, lat):
-    """Raise ValueError where a latitude, rad, an array, is past a pole."""
+    """Raise ValueError if a latitude, rad, an array, is beyond a pole."""
     if len(lat) and not abs(lat).max() <= HALF_PI:
         k = int(np.argmax(abs(lat) > HALF_PI))
         raise ValueError(f'the motion is past the pole at {instants.seconds(t_ns[k])} of motion '
@@ -188,14 +188,14 @@ def check_latitude(t_ns, lat):
 
 
 def check_places(motion, start_s, span_s):
-    """Raise ValueError where a motion without an end leaves the Earth's latitudes in a span, s."""
+    """Raise ValueError if a motion without an end crosses a pole during the span, s."""
     if motion.end_s == math.inf:
         motion.force_at(np.round((start_s + span_s * np.arange(LOOKS + 1) / LOOKS) * 1e9
                                  ).astype(np.int64))
 
 
 def check_length(generator, motion):
-    """Raise ValueError unless the run is finite, lies within the motion and keeps to the Earth."""
+    """Raise ValueError unless the run is finite, within the motion, and does not pass a pole."""
     if generator.duration_s == 0.0:
         raise ValueError('duration_s is 0, endless; expected a length in s for an offline run')
     end_s = generator.start_s + generator.duration_s

@@ -1,4 +1,4 @@
-"""Truth from a pose: velocity, rate and specific force by differentiating one pose."""
+"""Truth from a pose: velocity, rate and specific force, by differentiation."""
 
 import numpy as np
 
@@ -12,9 +12,16 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation, gravity='free_
     """
     Return the Truth of a pose given as Taylor series.
 
-    t_ns (n,) int64; lat, lon, height: Series of order >= 2 (rad, rad, m); q_nb: tuple of four
-    Series of order >= 1; gravity: settings.place.Earth.gravity.  Rate omega_ib_b = C_bn omega_in_n
-    + 2 q* q'.
+    The rate is omega_ib_b = C_bn omega_in_n + 2 q* q'.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64
+    lat, lon, height : Series of order >= 2 (rad, rad, m)
+    q_nb : tuple of four Series of order >= 1
+    earth_rotation : whether the Earth rotates
+    gravity : see settings.place.Earth.gravity
+
     """
     moved = translation(lat, lon, height, earth_rotation, gravity)
     return truth_of(t_ns, (lat.value, lon.value, height.value), *moved, q_nb)
@@ -22,9 +29,9 @@ def truth_from_pose(t_ns, lat, lon, height, q_nb, earth_rotation, gravity='free_
 
 def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
     """
-    Return the Truth of ``translation`` and of an attitude given as Taylor series.
+    Return the Truth from the results of ``translation`` and an attitude given as Taylor series.
 
-    place: lat, lon, height.  Components are arrays (n,), or floats where nothing moves; q_nb:
+    place: lat, lon, height.  Components are arrays (n,), or floats if the place is fixed; q_nb:
     tuple of four Series of order >= 1.
     """
     q, omega_ib_b, f_ib_b = in_body(omega_in_n, f_n, q_nb)
@@ -42,10 +49,10 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
 
 def in_body(omega_in_n, f_n, q_nb):
     """
-    Return q_nb, omega_ib_b and f_ib_b of what ``translation`` returns and an attitude.
+    Return q_nb, omega_ib_b and f_ib_b, from the results of ``translation`` and an attitude.
 
-    q_nb: tuple of four Series of order >= 1; the result has their values, or floats of
-    InstantSeries.
+    q_nb: tuple of four Series of order >= 1; the results are arrays like their values, or floats
+    for an InstantSeries.
     """
     q = tuple(x.value for x in q_nb)
     q_rate = tuple(x.derivative().value for x in q_nb)
@@ -58,14 +65,16 @@ def in_body(omega_in_n, f_n, q_nb):
 
 def translation(lat, lon, height, earth_rotation, gravity='free_air'):
     """
-    Return velocity, rate omega_in_n and specific force in n of a path, three arrays each.
+    Return velocity, rate omega_in_n and specific force in n along a path, three arrays each.
 
-    lat, lon, height: Series of order >= 2 (rad, rad, m).  Velocity V_E = (R_E + h) cos(lat) lon',
-    V_N = (R_N + h) lat', V_U = h'; specific force f = V' + (2 Omega + rho) x V - g (Bogdanov and
-    Fomichev 2018, equation 25; Groves 5.53; docs/theory/truth.md).
+    Velocity V_E = (R_E + h) cos(lat) lon', V_N = (R_N + h) lat', V_U = h'; specific force
+    f = V' + (2 Omega + rho) x V - g (Bogdanov and Fomichev 2018, equation 25; Groves 5.53;
+    docs/theory/truth.md).
+
+    lat, lon, height: Series of order >= 2 (rad, rad, m); gravity: see settings.place.Earth.
     """
     lat_rate, lon_rate = lat.derivative(), lon.derivative()
-    # The second derivatives are in the rates.
+    # The rates already contain the second derivatives, so order 1 suffices for the rest.
     lat, near_height = lat.to_order(1), height.to_order(1)
     s, c = taylor.sincos(lat)
     meridian, transverse = ellipsoid.radii(s)

@@ -1,10 +1,12 @@
 """
 Coarse self-alignment at a standstill: level from gravity, heading from the rate of the Earth.
 
-TRIAD of two vectors that are known in n (Black, AIAA Journal 2, 1964; Groves, 2nd ed., section
-5.6): up, the specific force at rest, and the rate of the Earth, whose cross product with up
-points East.  A force bias b tilts by b / g; a rate bias along East turns by it over
-Omega cos(lat); a tilt about North turns by tan(lat) times it.
+TRIAD with two vectors that are known in the local level frame n (Black, AIAA Journal 2, 1964;
+Groves, 2nd ed., section 5.6): the specific force at rest, which points up, and the rate of the
+Earth, whose cross product with up points east.
+
+Errors: an accelerometer bias b tilts the attitude by b / g. A gyro bias b along east turns the
+heading by b / (Omega cos(lat)). A tilt about north turns the heading by tan(lat) times the tilt.
 """
 
 from dataclasses import dataclass
@@ -18,22 +20,28 @@ from ins_sim.core.numerics.elementary import sincos
 from ins_sim.core.numerics.fixed_order import dot, length
 from ins_sim.core.numerics.units import DEG_PER_HOUR
 
-# A vehicle that stands is not tilted by more, deg.
+# Largest tilt at a standstill that is accepted without asking, deg.
 UPRIGHT_DEG = 45.0
-TILTED = ('no vehicle stands so: is the IMU mounted turned? (mounting.rpy_deg, or mounting.source '
-          'level) Or does it measure gravity instead of specific force, which points up at rest?')
+TILTED = ('a vehicle rarely stands like this. Is the IMU mounted rotated? Then set '
+          'mounting.rpy_deg, or mounting.source level. Or does the IMU measure gravity instead of '
+          'specific force, which points up at rest?')
 
 
 @dataclass(frozen=True)
 class Gyrocompass:
     """
-    A gyrocompassing.
+    Result of a gyrocompass alignment.
 
-    q_nb, None where the mean rate is parallel to up; sigma: standard error of the heading from
-    the noise of the rate and from the bias of the gyros, rad; noise_sigma: that from the noise
-    alone; excess: length of the mean rate less that of the Earth, rad/s;
-    excess_up: the same of its part along up; both are the bias of the gyros, as far as it can
-    be seen; bias_sigma: standard deviation of it that was assumed, rad/s.
+    Attributes
+    ----------
+    q_nb : attitude, or None if the mean rate is parallel to up
+    sigma : standard error of the heading due to the gyro noise and the gyro bias, rad
+    noise_sigma : part of sigma due to the gyro noise alone, rad
+    excess : length of the mean rate minus the rate of the Earth, rad/s
+    excess_up : component of the mean rate along up minus that of the Earth rate, rad/s. Both
+        excesses show the part of the gyro bias that is observable at a standstill.
+    bias_sigma : assumed standard deviation of the gyro bias, rad/s
+
     """
 
     q_nb: tuple
@@ -44,7 +52,7 @@ class Gyrocompass:
     bias_sigma: float
 
     def describe(self):
-        """Return what was found, and of what its standard error is made."""
+        """Return a phrase with the standard error, its contributions and the rate excess."""
         return (f'standard error {math.degrees(self.sigma):.3g} deg, by noise '
                 f'{math.degrees(self.noise_sigma):.3g} deg and by the bias of '
                 f'{self.bias_sigma * DEG_PER_HOUR:.3g} deg/h of alignment.gyro_bias_sigma_deg_h; '
@@ -53,10 +61,21 @@ class Gyrocompass:
 
 def gyrocompass(still, lat, bias_sigma=0.0):
     """
-    Return the Gyrocompass of a Standstill at a latitude, rad.
+    Find the attitude at a standstill by gyrocompassing.
 
-    bias_sigma: standard deviation of the bias of the gyros, rad/s.  Its part along East turns the
-    heading and cannot be seen at a standstill.
+    The gyro bias along east turns the heading and cannot be observed at a standstill; its assumed
+    standard deviation therefore enters the standard error.
+
+    Parameters
+    ----------
+    still : Standstill, with the mean specific force and the mean rate
+    lat : latitude, rad
+    bias_sigma : standard deviation of the gyro bias, rad/s
+
+    Returns
+    -------
+    Gyrocompass
+
     """
     up = still.force / length(still.force)
     east = np.cross(still.rate, up)
@@ -74,17 +93,18 @@ def gyrocompass(still, lat, bias_sigma=0.0):
 
 
 def _spin(lat, rate=ellipsoid.ROTATION_RATE):
-    """Return the level (North) and upward rate of the Earth, rad/s."""
+    """Return the components of the rate of the Earth along north and up, rad/s."""
     s, c = sincos(lat)
     return rate * c, rate * s
 
 
 def is_trusted(compass, still, lat, sigma):
     """
-    Return whether a Gyrocompass can be believed to within sigma, rad.
+    Return whether the heading of a Gyrocompass is reliable to within sigma, rad.
 
-    Its standard error must not exceed sigma; nor may the bias that shows in length or upward part
-    of the mean rate, beyond three standard errors, be one that turns the heading by more.
+    Two conditions must hold. The standard error must not exceed sigma. The gyro bias visible in
+    ``excess`` and ``excess_up``, minus three standard errors of the rate, must be too small to
+    turn the heading by more than sigma.
     """
     allowed = sigma * _spin(lat)[0] + 3.0 * length(still.rate_error)
     return compass.sigma <= sigma and max(abs(compass.excess), abs(compass.excess_up)) <= allowed
@@ -92,9 +112,9 @@ def is_trusted(compass, still, lat, sigma):
 
 def trusted_gyrocompass(still, lat, limits):
     """
-    Return the Gyrocompass of a Standstill if it is to be taken, else None, and why not.
+    Return the Gyrocompass of a Standstill, or None and the reason if it is not reliable.
 
-    lat: rad; limits: AlignmentSettings.
+    lat: latitude, rad; limits: AlignmentSettings.
     """
     compass = gyrocompass(still, lat, limits.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
     if is_trusted(compass, still, lat, math.radians(limits.heading_sigma_deg)):
@@ -105,9 +125,18 @@ def trusted_gyrocompass(still, lat, limits):
 
 def level_attitude(force, heading):
     """
-    Return q_nb of a mean specific force (3,) at rest and a heading, clockwise, rad.
+    Return q_nb from a mean specific force at rest and a heading.
 
-    Raises ValueError where the forward axis is vertical, so that it has no heading.
+    Parameters
+    ----------
+    force : (3,) mean specific force in b, m/s^2
+    heading : clockwise from north, rad
+
+    Raises
+    ------
+    ValueError : if the forward axis is within about 1 deg of the vertical, where heading is
+        undefined
+
     """
     up = force / length(force)
     forward = np.array([1.0, 0.0, 0.0]) - up[0] * up
@@ -123,18 +152,18 @@ def level_attitude(force, heading):
 
 
 def _attitude(east, up):
-    """Return q_nb of the unit vectors East and up in b."""
+    """Return q_nb from the unit vectors east and up, both resolved in b."""
     return matrix.quaternion_of((*east.tolist(), *np.cross(up, east).tolist(),
                                  *up.tolist()))
 
 
 def gyro_bias(still, q_nb, lat, spin):
-    """Return the mean rate less that of the Earth, (3,) rad/s, of a Standstill; spin: rad/s."""
+    """Return the mean rate of a Standstill minus that of the Earth (spin, rad/s), (3,) rad/s."""
     earth_b = quaternion.rotate_back(q_nb, (0.0, *_spin(lat, spin)))
     return still.rate - np.array(earth_b)
 
 
 def bias_sentence(bias):
-    """Return the sentence on a gyro bias (3,), rad/s, that is taken off."""
+    """Return the sentence that reports a gyro bias (3,), rad/s, subtracted from the readings."""
     text = ', '.join(f'{b * DEG_PER_HOUR:.4g}' for b in bias)
     return f'gyro bias of the standstill taken off: {text} deg/h in base_link'

@@ -1,27 +1,39 @@
 """
-How the errors of position, velocity and attitude grow: the rows that all error models share.
+Linear growth of the errors of position, velocity and attitude, shared by all error models.
 
-The errors are those of ``errors.level_errors``, East, North, Up: position (m), velocity (m/s), and
-attitude phi (rad), each in its own n.  The columns behind them are the biases of accelerometers
-and gyros, as what is to be taken off the readings (m/s^2, rad/s, by body axis).
+The first nine states are the errors of ``errors.level_errors``, each east, north, up: position
+(m), velocity (m/s), and attitude phi (rad; computed and true attitude each relative to the level
+frame at its own position). The next six states are the biases of the accelerometers (m/s^2) and
+of the gyros (rad/s), by body axis; a bias is the value to subtract from the readings.
 """
 
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import product
 
-# How many errors have rows, the first ones; the others of a model are constant.
+# Number of states with rows in F: the first nine. All other states of a model are constant.
 GROWING = 9
 
 
 def inertial_rows(lat, height, v, c, f_n, spin):
     """
-    Return nine rows of 15 numbers of F of x' = F x.
+    Return the nine rows, with 15 columns, of F in x' = F x.
 
-    lat rad, height m, v (3,) m/s ENU; c: C_nb, nine floats; f_n (3,) specific force in n, m/s^2;
-    all floats or arrays; spin: rate of the Earth, rad/s.  The change of the radii with latitude
-    and that of gravity with latitude are left out, parts in 100 of the smallest terms.  Groves
-    section 14.2.4.
+    The change of the radii of curvature and of gravity with latitude is neglected: parts in 100 of
+    the smallest terms. Source: Groves, 2nd ed., section 14.2.4.
+
+    Parameters
+    ----------
+    lat, height : latitude (rad) and height (m), floats or arrays, as all that follow
+    v : (3,) velocity east, north, up, m/s
+    c : C_nb, nine numbers row by row
+    f_n : (3,) specific force in n, m/s^2
+    spin : rotation rate of the Earth, rad/s
+
+    Returns
+    -------
+    tuple of nine tuples of 15 numbers
+
     """
     v_e, v_n, v_u = v
     f_e, f_n, f_u = f_n
@@ -30,14 +42,15 @@ def inertial_rows(lat, height, v, c, f_n, spin):
     tan = sin / cos
     r_n, r_e = ellipsoid.radii(sin)
     r_n, r_e = r_n + height, r_e + height
-    # How the rates of the Earth (o) and of transport (t) change with position (n: with that to
-    # the north, u: up), per m, and the latter with velocity, per m/s.
+    # Derivatives of the Earth rate (o) and of the transport rate (t). The first index is the axis
+    # (e, n, u), the second the cause: n for northward position, u for height, both per m. by_e,
+    # by_n and up_by_e: derivatives of the transport rate with velocity, per m/s.
     o_un, o_nn = spin * cos / r_n, -spin * sin / r_n
     t_eu, t_nu = v_n / (r_n * r_n), -v_e / (r_e * r_e)
     t_un, t_uu = v_e / (r_e * cos * cos * r_n), -v_e * tan / (r_e * r_e)
     by_e, by_n = 1.0 / r_e, 1.0 / r_n
     up_by_e = tan / r_e
-    # Rate of n in inertial space, and the same with that of the Earth twice.
+    # w: rate of n in inertial space. x: the same plus the rate of the Earth once more.
     w_e, w_n, w_u = -v_n / r_n, spin * cos + v_e / r_e, spin * sin + v_e * tan / r_e
     x_n, x_u = w_n + spin * cos, w_u + spin * sin
     d_nn, d_un = 2.0 * o_nn, 2.0 * o_un + t_un
@@ -67,11 +80,20 @@ def inertial_rows(lat, height, v, c, f_n, spin):
 
 def change(f, dt):
     """
-    Return exp(F dt) less 1 to second order, in the rows and columns of F that are given.
+    Return N = exp(F dt) - 1 to second order in dt.
 
-    f: rows of F, the first GROWING of which are those of the first columns; only these columns
-    have rows that a change to second order needs.  F being that of mid-interval, what is left out
-    is of the order dt^3.
+    Evaluated with F at mid-interval, the remaining error is of order dt^3.
+
+    Parameters
+    ----------
+    f : the given rows of F; the first GROWING rows must belong to the first GROWING columns,
+        because only those states have rows that the second-order term needs
+    dt : length of the interval, s
+
+    Returns
+    -------
+    N, in the same rows and columns as f
+
     """
     a = f * dt
     return a + 0.5 * product(a[:, :GROWING], a[:GROWING])
@@ -79,10 +101,11 @@ def change(f, dt):
 
 def turn_by_position(lat, height):
     """
-    Return the turn of the computed n by an error of the position, rad/m, as three numbers.
+    Return the rotation of the computed level frame n caused by a position error, rad/m.
 
-    The turn is (a p_N, b p_E, c p_E) about East, North, Up; with the attitude error phi it is
-    the inertial attitude error, that of the attitude in a frame fixed to the Earth.
+    Returns a, b, c, where (a p_N, b p_E, c p_E) is the rotation about east, north, up for the
+    position error (p_E, p_N). Added to phi it gives the inertial attitude error: the attitude
+    error in a frame fixed to the Earth.
     """
     sin, cos = elementary.sincos(lat)
     r_n, r_e = ellipsoid.radii(sin)

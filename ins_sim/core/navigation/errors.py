@@ -1,8 +1,8 @@
 """
 Errors of the navigation solution against the truth, and their drift.
 
-The functions take floats (live) or arrays (offline) and are pure; ``ErrorMeter`` keeps what the
-drift carries from sample to sample.
+All functions are pure and take floats (live) or arrays (offline). ``ErrorMeter`` keeps the state
+of the drift from sample to sample.
 """
 
 from ins_sim.core.attitude import quaternion
@@ -12,16 +12,24 @@ from ins_sim.core.numerics import elementary
 
 
 def position_error(lat, lon, height, lat_t, lon_t, height_t):
-    """Return East, North, Up from the true point (..._t) to another, m."""
+    """Return the offset east, north, up of a point from the true point (..._t), m."""
     return ellipsoid.offset(lat_t, lon_t, height_t, (lat, lon, height))
 
 
 def level_errors(solution, truth):
     """
-    Return attitude, velocity and position errors of a solution, tuples of three.
+    Return the attitude, velocity and position errors of a solution, three tuples of three.
 
-    solution, truth: (lat, lon, height, v_n, q_nb), floats or arrays.  The attitude error is that
-    of q_nb, each in its own n: q_nb = exp(error) q_nb_true (phi-angle), rad.
+    Parameters
+    ----------
+    solution, truth : (lat, lon, height, v_n, q_nb) in rad, rad, m, m/s; floats or arrays
+
+    Returns
+    -------
+    attitude : rotation vector of the phi-angle error, q_nb = exp(error) q_nb_true, rad; each
+        attitude is relative to the level frame at its own position
+    velocity, position : solution minus truth, east, north, up, m/s and m
+
     """
     lat, lon, height, v, q_nb = solution
     lat_t, lon_t, height_t, v_t, q_nb_t = truth
@@ -30,23 +38,28 @@ def level_errors(solution, truth):
 
 
 def attitude_error(q_nb, q_nb_t):
-    """Return the rotation vector of a computed attitude, q_nb = exp(error) q_nb_t, rad."""
+    """Return the rotation vector, rad, from the true to the computed attitude: q = exp(.) q_t."""
     return quaternion.logarithm(quaternion.multiply(q_nb, quaternion.conjugate(q_nb_t)))
 
 
 def velocity_error(v, v_t):
-    """Return the velocity less the true one, m/s."""
+    """Return the velocity minus the true one, m/s."""
     return v[0] - v_t[0], v[1] - v_t[1], v[2] - v_t[2]
 
 
 def inertial_errors(state, truth, earth_angle):
     """
-    Return attitude, velocity and position errors of a strapdown, tuples of three.
+    Return the attitude, velocity and position errors of a strapdown, three tuples of three.
 
     The attitude error is inertial: the rotation from the true to the computed q_ib, resolved in n
-    (A_z' A_z^T of Bogdanov and Fomichev 2018; docs/theory/error_definitions.md).  state: (q_ib,
-    lat, lon, height, v); truth: (lat, lon, height, v_n, q_nb); earth_angle: rotation of e in i
-    since they coincided, rad; floats or arrays.
+    (A_z' A_z^T of Bogdanov and Fomichev 2018; docs/theory/error_definitions.md).
+
+    Parameters
+    ----------
+    state : (q_ib, lat, lon, height, v) in rad, rad, m, m/s; floats or arrays
+    truth : (lat, lon, height, v_n, q_nb)
+    earth_angle : rotation of e in i since they coincided, rad
+
     """
     q_ib, lat, lon, height, v = state
     lat_t, lon_t, height_t, v_t, q_nb_t = truth
@@ -58,26 +71,37 @@ def inertial_errors(state, truth, earth_angle):
     return delta, velocity_error(v, v_t), position
 
 
-# What ``drift`` carries: the last sample (latitude and inertial longitude of the truth, attitude
-# error), the accumulated error beta less that at the start, and over all samples their count and
-# the sums of t, t^2, beta and t beta.
+# Initial state of ``drift``. Members: the last sample (latitude and inertial longitude of the
+# truth, attitude error); the accumulated error beta relative to its start; and, over all samples,
+# the count and the sums of t, t^2, beta and t beta.
 NO_DRIFT = ((0.0, 0.0, (0.0, 0.0, 0.0)), (0.0, 0.0, 0.0), 0.0, 0.0, 0.0, (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0))
 
 
 def drift(carry, t, lat, lon, delta):
     """
-    Return the carry and the drift of the attitude, rad/s, after a sample.
+    Return the new state of the accumulation and the drift of the attitude after a sample.
 
     The growth of the error is accumulated as beta' = C_ni d(error_i), so that the rotation of n
     in inertial space does not count. The drift is the least-squares slope of beta over all
-    samples since the start.  t: time since the start, s; lat, lon: latitude and inertial
-    longitude of the truth, rad; delta: attitude error, rad.
+    samples since the start.
+
+    Parameters
+    ----------
+    carry : state of the accumulation, at first NO_DRIFT
+    t : time since the start, s
+    lat, lon : latitude and inertial longitude of the truth, rad
+    delta : (3,) attitude error, rad
+
+    Returns
+    -------
+    carry, drift : the new state, and the drift (3,), rad/s
+
     """
     last, beta, count, s_t, s_tt, s_b, s_tb = carry
     if count > 0.0:
         lat_0, lon_0, delta_0 = last
-        # turn of n in i over the interval, at its middle
+        # Rotation of n in i over the interval, evaluated at its middle.
         d_lon = elementary.shorter_turn(lon - lon_0)
         sin, cos = elementary.sincos(0.5 * (lat + lat_0))
         mean = (0.5 * (delta[0] + delta_0[0]), 0.5 * (delta[1] + delta_0[1]),
@@ -96,7 +120,7 @@ def drift(carry, t, lat, lon, delta):
 
 
 class ErrorMeter:
-    """Attitude, velocity and position errors in East, North, Up, and the drift of the attitude."""
+    """Measures attitude, velocity and position errors in east, north, up, and attitude drift."""
 
     def __init__(self, spin):
         self.spin = spin
@@ -104,9 +128,9 @@ class ErrorMeter:
 
     def measure(self, t_s, state, truth):
         """
-        Return attitude, velocity, position and drift, tuples of three floats.
+        Return attitude error, velocity error, position error and drift, tuples of three floats.
 
-        t_s: time since the start, s; state, truth: as of ``inertial_errors``.
+        t_s: time since the start, s; state, truth: see ``inertial_errors``.
         """
         earth_angle = self.spin * t_s
         delta, velocity, position = inertial_errors(state, truth, earth_angle)

@@ -1,10 +1,11 @@
 """
-The covariance of the errors of a strapdown that nothing corrects, by propagation alone.
+Covariance of the errors of an unaided strapdown, found by propagation alone.
 
-27 states: the nine of ``error_dynamics``, and by body axis the errors of the instruments, which
-stay: biases, scale factors and misalignments of accelerometers and gyros.  Beside them goes the
-error that is the same in every run (the initial errors that are given, non-orthogonality,
-asymmetry, g-sensitivity), nine numbers whose squares are added (docs/design/covariance.md).
+The model has 27 states: the nine of ``error_dynamics``, and the constant instrument errors by
+body axis: biases, scale factors and misalignments of accelerometers and gyros. The mean error,
+nine numbers that are the same in every run (given initial errors, non-orthogonality, asymmetry,
+g-sensitivity), is propagated separately; its squares are added to the variances
+(docs/design/covariance.md).
 """
 
 import numpy as np
@@ -17,11 +18,11 @@ from .error_dynamics import change, GROWING, inertial_rows, turn_by_position
 P, V, PHI, UP = slice(0, 3), slice(3, 6), slice(6, 9), (2, 5)
 BA, BG, SA, SG, MA, MG = (slice(k, k + 3) for k in range(9, 27, 3))
 SIZE = 27
-# A step ends after so long, s, or after so much of a turn, rad: its coefficients are those of its
-# middle.
+# Longest step, s, and largest rotation of the body in a step, rad. The coefficients of a step are
+# evaluated at its middle.
 STEP_S, STEP_RAD = 0.5, 0.6
-# Standard deviations of what is known: nothing is believed to be exact (m, m/s, rad; the
-# instruments m/s^2, rad/s, 1 and rad).
+# Standard deviations of exactly known states, so that P stays positive definite. Position m,
+# velocity m/s, attitude rad; instruments m/s^2, rad/s, scale factors 1, misalignments rad.
 KNOWN = np.array((1e-3,) * 3 + (1e-5,) * 3 + (1e-8,) * 3 + (1e-9,) * 3 + (1e-12,) * 3
                  + (1e-12,) * 12)
 NONE = (0.0,) * 12
@@ -32,9 +33,13 @@ def coefficients(lat, height, v, c, f_b, omega_b, spin, damping):
     """
     Return the GROWING rows of F, (9, 27).
 
-    lat to spin: as of ``inertial_rows``; f_b, omega_b (3,): readings by body axis; damping: c1,
-    c2 of a damped vertical channel, by which the height error acts on its rate and on that of the
-    vertical velocity, or zero.
+    Parameters
+    ----------
+    lat, height, v, c, spin : see ``error_dynamics.inertial_rows``
+    f_b, omega_b : (3,) readings by body axis, m/s^2 and rad/s
+    damping : c1, c2 of a damped vertical channel, zero without: the height error acts with c1 on
+        the rate of height and with c2 on that of vertical velocity
+
     """
     c_e, c_n, c_u = c[0:3], c[3:6], c[6:9]
     x, y, z = f_b
@@ -52,7 +57,7 @@ def coefficients(lat, height, v, c, f_b, omega_b, spin, damping):
 
 
 def _by_reading(row, reading):
-    """Return a row of C times the diagonal matrix of a reading, and times that of (reading x)."""
+    """Return a row of C times diag(reading), and the same row times the matrix (reading x)."""
     p, q, r = row
     x, y, z = reading
     return (p * x, q * y, r * z), (q * z - r * y, r * x - p * z, p * y - q * x)
@@ -60,9 +65,10 @@ def _by_reading(row, reading):
 
 def grown(p, n, noise):
     """
-    Return the covariance after a step: (1 + N) (P + Q/2) (1 + N)' + Q/2, symmetric as P is.
+    Return the covariance after a step, (1 + N) (P + Q/2) (1 + N)' + Q/2.
 
-    n: ``change`` of the coefficients; noise (27,): diagonal of Q, what white noise adds in a step.
+    The result is exactly symmetric if P is.  n: ``change`` of the coefficients; noise (27,):
+    diagonal of Q, the variance that white noise adds in a step.
     """
     half = 0.5 * noise
     p = p.copy()
@@ -78,26 +84,28 @@ def grown(p, n, noise):
 
 class FreeCovariance:
     """
-    Propagates the covariance beside an InertialNavigator, from its readings and its solution.
+    Propagates the error covariance beside an InertialNavigator, from readings and solution.
 
     Parameters
     ----------
-    variances : (27,) at the start; of attitude, that of the inertial attitude
-    densities : (27,) of white noise, per s
-    errors : (9,) that are given at the start, of attitude inertial
-    fixed : functions (input, specific force) -> error of accelerometers and of gyros, or None
-    spin : rate of the Earth, rad/s
+    variances : (27,) initial variances; those of attitude belong to the inertial attitude error
+    densities : (27,) white-noise densities, variance per s
+    errors : (9,) given initial errors; that of attitude is the inertial attitude error
+    fixed : functions (input, specific force) -> error of the accelerometers and of the gyros, or
+        None
+    spin : rotation rate of the Earth, rad/s
     held : whether height and vertical velocity come from the truth
-    damping : as of ``coefficients``
+    damping : see ``coefficients``
     dt_s : sampling period, s
     show : function of this object, called at the start and after each step, or None
 
     Attributes
     ----------
-    p : (27, 27), replaced at each step and never changed, as is
-    mean : (9,) error that is the same in every run
-    t_ns, solution : its instant, and lat, lon, height, v_n, q_nb then
-    show : as given; shown : what it has returned last
+    p : (27, 27) covariance; replaced at each step, never changed in place
+    mean : (9,) error that is the same in every run; also replaced, never changed in place
+    t_ns, solution : instant of the covariance; lat, lon, height, v_n, q_nb at that instant
+    show : as given
+    shown : the last result of ``show``
 
     """
 
@@ -114,7 +122,7 @@ class FreeCovariance:
     def begin(self, t_ns, solution):
         """Begin at the start of a navigator; solution: lat, lon, height, v_n, q_nb."""
         p, mean = np.diag(self._variances), self._errors.copy()
-        # of the attitude in its own n: the computed n turns with the position
+        # Convert to the error phi of the level attitude: the computed n turns with the position.
         a, b, c = turn_by_position(solution[0], solution[2])
         turn = np.eye(SIZE)
         turn[6, 1], turn[7, 0], turn[8, 0] = -a, -b, -c
@@ -132,7 +140,7 @@ class FreeCovariance:
             self.shown = self.show(self)
 
     def _level(self, p):
-        """Hold the up rows where the vertical channel is that of the truth, as the ESKF does."""
+        """Zero the vertical rows if the vertical channel follows the truth, as the ESKF does."""
         if self._held:
             for k in UP:
                 p[k, :] = p[:, k] = 0.0
@@ -140,7 +148,7 @@ class FreeCovariance:
         return p
 
     def take(self, t_ns, omega, f, navigator):
-        """Take the reading that has brought a navigator to t_ns."""
+        """Process the reading with which a navigator has advanced to t_ns."""
         dt = (t_ns - self._last_ns) * 1e-9
         self._last_ns = t_ns
         x, y, z = omega
@@ -150,7 +158,7 @@ class FreeCovariance:
             self._step(t_ns, navigator.solution)
 
     def take_block(self, t_ns, omega, f, states):
-        """Take readings (n,), (n, 3), (n, 3) and their NavStates; the bits are those of take."""
+        """Process readings (n,), (n, 3), (n, 3) and their NavStates; the same bits as ``take``."""
         if not len(t_ns):
             return
         dt = np.diff(t_ns, prepend=self._last_ns) * 1e-9
@@ -182,7 +190,7 @@ class FreeCovariance:
                   0.5 * (v_start[2] + v[2]))
         force, rate = (a * per_s, b * per_s, c * per_s), (x * per_s, y * per_s, z * per_s)
         f = coefficients(lat, height, middle, c_nb, force, rate, self._spin, self._damping)
-        # of an IMU slower than the steps, several
+        # If the IMU period exceeds the step length, split the interval into several steps.
         parts = max(1, int(time_s / self._step_s + 0.5))
         dt = time_s / parts
         n, noise, p, mean = change(f, dt), self._densities * dt, self.p, self.mean
@@ -193,7 +201,7 @@ class FreeCovariance:
         self._keep(t_ns, p, mean, solution)
 
     def _driven(self, f, c_nb, force, rate, dt):
-        """Return what the fixed errors of the instruments add to the nine errors, (9,)."""
+        """Return the nine errors (9,) that the fixed instrument errors add in a step."""
         u = np.zeros(GROWING)
         c = np.array(c_nb).reshape(3, 3)
         for rows, fixed, value in zip((V, PHI), self._fixed, (force, rate)):

@@ -11,11 +11,16 @@ from ins_sim.core.numerics.elementary import sincos, sqrt
 
 def two_sample_increments(alpha, nu, alpha_last, nu_last):
     """
-    Return the rotation vector and the rotated velocity increment of plain integrals.
+    Return the rotation vector and the rotated velocity increment from plain integrals.
 
-    alpha, nu: integrals of rate and specific force over this interval, ..._last over the one
-    before.  Coning: Savage part 1, equation 44 for one sample a cycle (alpha_last x alpha / 12);
-    velocity rotation in closed form and sculling: part 2, equations 44 and 59.
+    Coning: Savage part 1, equation 44 for one sample per cycle (alpha_last x alpha / 12). The
+    velocity rotation is in closed form; sculling: part 2, equations 44 and 59.
+
+    Parameters
+    ----------
+    alpha, nu : (3,) integrals of rate (rad) and specific force (m/s) over this interval
+    alpha_last, nu_last : the same over the interval before
+
     """
     coning = quaternion.cross(alpha_last, alpha)
     a, b = quaternion.cross(alpha_last, nu), quaternion.cross(nu_last, alpha)
@@ -30,7 +35,7 @@ def two_sample_increments(alpha, nu, alpha_last, nu_last):
 
 
 def rotation_factors(a2):
-    """Return (1 - cos a) / a^2 and (1 - sin(a) / a) / a^2 of the square of an angle a, rad."""
+    """Return (1 - cos a) / a^2 and (1 - sin(a) / a) / a^2, given a2, the square of a, rad^2."""
     if a2 < 0.01:
         return (0.5 - a2 * (1.0 / 24.0 - a2 * (1.0 / 720.0 - a2 * (
             1.0 / 40320.0 - a2 * (1.0 / 3628800.0)))),
@@ -48,10 +53,14 @@ def integrals(omega, f, dt):
 
 def fixed_rate_increments(integrated, now, last):
     """
-    Return the rotation vector and the velocity increment of an interval as long as the last.
+    Return the rotation vector and the velocity increment of one of several equal intervals.
 
-    integrated: whether the readings are plain integrals, else they are these increments; now,
-    last: ``integrals`` over this interval and the one before.
+    Parameters
+    ----------
+    integrated : True if the readings are plain integrals; False if they already are these
+        increments
+    now, last : ``integrals`` over this interval and the one before
+
     """
     if integrated:
         return two_sample_increments(now[0], now[1], last[0], last[1])
@@ -60,12 +69,19 @@ def fixed_rate_increments(integrated, now, last):
 
 def uneven_increments(kind, last, now, dt, dt_last):
     """
-    Return the rotation vector and the velocity increment of the interval that ends now.
+    Return the rotation vector and the velocity increment of an interval of any length.
 
-    kind: one of settings.recorded_imu.INPUTS; last, now: (omega, f) at the stamps; dt, dt_last:
-    this interval and the one before, s.  Rate and force are taken to be straight lines in time.
-    Two values at the ends of one interval have the cross products of twice their product with the
-    trapezoid; two means over unequal intervals those of the earlier one, scaled.
+    Rate and force are assumed linear in time. With two instantaneous values, at the ends of the
+    interval, the coning and sculling terms are twice the cross products of the end values, added
+    to the trapezoid rule. With two means over unequal intervals they are those of the earlier
+    mean, scaled to this interval.
+
+    Parameters
+    ----------
+    kind : what the readings are, one of settings.recorded_imu.INPUTS
+    last, now : (omega, f) at the two stamps, rad/s and m/s^2
+    dt, dt_last : length of this interval and of the one before, s
+
     """
     (w0, f0), (w1, f1) = last, now
     if kind == 'rotation_vector':

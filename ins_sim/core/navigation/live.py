@@ -1,4 +1,4 @@
-"""The strapdown on two live streams, IMU and truth."""
+"""The strapdown on two live streams: IMU and truth."""
 
 import math
 
@@ -10,10 +10,10 @@ from .navigator import InertialNavigator
 
 class Navigator(MatchedStreams):
     """
-    InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors, shown).
+    Runs an InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors, shown).
 
-    settings, truth_length: as of MatchedStreams; covariance: a FreeCovariance kept beside it,
-    whose ``shown`` of the instant is given with each output, or None.
+    settings, truth_length: see MatchedStreams.  covariance: a FreeCovariance to propagate beside
+    the navigator, or None; ``shown`` is its current ``shown``.
     """
 
     def __init__(self, settings, truth_length=TRUTH_LENGTH, covariance=None):
@@ -21,7 +21,7 @@ class Navigator(MatchedStreams):
         super().__init__(settings, truth_length)
 
     def begin(self):
-        """Forget the solution."""
+        """Discard the solution and start anew."""
         self._navigator = InertialNavigator(self._settings, self._covariance)
 
     @property
@@ -30,14 +30,14 @@ class Navigator(MatchedStreams):
         return self._navigator.navigates
 
     def advance(self, t_ns, omega, f, truth):
-        """Take matched samples; return the outputs."""
+        """Process matched samples; return the outputs."""
         errors = self._navigator.step(t_ns, omega, f, truth)
         if errors is None:
             return []
         solution = self._navigator.solution
         lat, lon, height, v, q = solution
-        # a sum is finite only if all of it is
+        # One sum tests all at once: it is finite only if every term is.
         if not math.isfinite(lat + lon + height + v[0] + v[1] + v[2] + q[0] + q[1] + q[2] + q[3]):
-            raise StreamFault(f'the solution at {seconds(t_ns)} is no number any more; expected '
+            raise StreamFault(f'the solution at {seconds(t_ns)} is not finite; expected '
                               'finite readings', restart=True)
         return [(t_ns, solution, errors, self._covariance and self._covariance.shown)]

@@ -1,4 +1,4 @@
-"""The loop over samples: gap rule, start anew after a fault, and decimation of the outputs."""
+"""The loop over samples: check for gaps, restart after a fault, decimate the outputs."""
 
 import numpy as np
 
@@ -7,34 +7,35 @@ from ins_sim.core.streams.faults import check_interval, is_regular, StreamFault
 
 class Decimation:
     """
-    Which outputs are published: every n-th sampling period, counted from the first output.
+    Selects the published outputs: every n-th sampling period, counted from the first output.
 
-    every: n; dt_ns: sampling period; first_ns: instant of the first output, or None.  Periods are
-    counted by the stamps, so that a gap does not shift the outputs behind it.
+    Periods are counted by the stamps, so that a gap does not shift the outputs after it.
+
+    every: n; dt_ns: sampling period; first_ns: instant of the first output, or None.
     """
 
     def __init__(self, every, dt_ns):
         self._every, self._dt_ns, self.first_ns = every, dt_ns, None
 
     def begins(self, t_ns):
-        """Return whether a run begins with the output of t_ns: the first, or time jumps back."""
+        """Return whether the output of t_ns begins a run: it is the first, or time jumped back."""
         if self.first_ns is None or t_ns < self.first_ns:
             self.first_ns = t_ns
             return True
         return False
 
     def due(self, t_ns):
-        """Return whether the outputs of t_ns, of a run that has begun, are published."""
+        """Return whether the output of t_ns, in a run that has begun, is published."""
         return (t_ns - self.first_ns + self._dt_ns // 2) // self._dt_ns % self._every == 0
 
     def due_rows(self, t_ns):
-        """Return the index, a slice or whole numbers, of those of outputs that are published."""
+        """Return the index of the published rows among outputs: a slice or an integer array."""
         return slice(None) if self._every == 1 else np.flatnonzero(self.due(t_ns))
 
 
 class WantedInstants(Decimation):
     """
-    Which outputs are published: the first one at or after each of some instants.
+    Selects the published outputs: the first one at or after each of the given instants.
 
     wanted_ns (m,): the instants, ascending; dt_ns: sampling period.  An instant whose sample is
     lost has no output.
@@ -45,26 +46,26 @@ class WantedInstants(Decimation):
         self._wanted_ns = wanted_ns
 
     def due(self, t_ns):
-        """Return whether the outputs of t_ns are published."""
+        """Return whether the output of t_ns is published."""
         return (np.searchsorted(self._wanted_ns, t_ns, side='right')
                 > np.searchsorted(self._wanted_ns, t_ns - self._dt_ns, side='right'))
 
     def numbers(self, t_ns):
-        """Return the numbers of the instants of which outputs at t_ns (n,) were published."""
+        """Return, for published outputs at t_ns (n,), the index of the instant of each."""
         return np.searchsorted(self._wanted_ns, t_ns - self._dt_ns, side='right')
 
 
 class NavigationLoop:
     """
-    Steps a navigator through samples of an IMU.
+    Steps a navigator through the samples of an IMU.
 
     Parameters
     ----------
-    make_navigator : returns a new navigator, whose step(t_ns, ...) takes a sample and returns an
-        output, or None as long as there is no solution
+    make_navigator : function that returns a new navigator, whose step(t_ns, ...) processes a
+        sample and returns an output, or None as long as there is no solution
     dt_ns : sampling period
-    output_every : as of Decimation
-    on_fault : ``stop`` to raise ValueError at a fault, else the navigator starts anew
+    output_every : decimation of the outputs, see Decimation
+    on_fault : ``stop`` to raise ValueError at a fault; otherwise the navigator starts anew
     faults : list to which a sentence is appended for every fault
 
     """
@@ -77,10 +78,11 @@ class NavigationLoop:
 
     def run(self, samples):
         """
-        Yield (index, output, due) of each sample at which there is a solution.
+        Yield (index, output, due) for each sample at which there is a solution.
 
-        samples: tuples, each the arguments of step; due: whether the output is published. A sample
-        that repeats the last stamp is dropped. Samples may come in several calls, as blocks.
+        samples: tuples of the arguments of ``step``; due: whether the output is published. A
+        sample that repeats the last stamp is dropped. Several calls continue one run, so that
+        samples may come in blocks.
         """
         for k, sample in enumerate(samples):
             t_ns = sample[0]
@@ -100,11 +102,13 @@ class NavigationLoop:
 
     def run_block(self, t_ns, *columns):
         """
-        Yield (first, output, due) of each stretch without a fault; the bits are those of ``run``.
+        Yield (first, output, due) for each stretch without a fault; the same bits as ``run``.
 
-        t_ns (n,); columns: the further arguments of the navigator's ``advance``, which takes a
-        stretch at once and returns its outputs, histories of the last samples of it.  first:
-        index of the first output; due: as of ``Decimation.due_rows``, from first.
+        The navigator's ``advance`` processes a whole stretch and returns its outputs; they belong
+        to the last samples of the stretch if the solution began within it.
+
+        t_ns (n,): the stamps; columns: the other arguments of ``advance``; first: index of the
+        first output; due: see ``Decimation.due_rows``, relative to first.
         """
         regular = np.ones(len(t_ns), dtype=bool)
         regular[1:] = is_regular(np.diff(t_ns), self.dt_ns)
@@ -125,7 +129,7 @@ class NavigationLoop:
                 start = stop + 1
 
     def _passes(self, t_ns):
-        """Handle the fault of a sample; return whether it is taken, by a new navigator."""
+        """Handle the fault of a sample; return whether a new navigator processes the sample."""
         try:
             self.check(t_ns, self._last_ns)
         except StreamFault as fault:
@@ -134,7 +138,7 @@ class NavigationLoop:
         return True
 
     def _take(self, sample):
-        """Step, again after each fault; a sample at which a new navigator fails too is refused."""
+        """Step; retry with a new navigator after a fault; drop the sample if that fails too."""
         restarted = False
         while True:
             try:
@@ -146,15 +150,15 @@ class NavigationLoop:
                 self.recover(fault)
 
     def check(self, t_ns, last_ns):
-        """Raise StreamFault unless t_ns is the sample that follows last_ns."""
+        """Raise StreamFault unless t_ns is the next sample after last_ns."""
         check_interval('imu', t_ns, last_ns, self.dt_ns)
 
     def step(self, *sample):
-        """Give a sample to the navigator; return its output."""
+        """Pass a sample to the navigator; return its output."""
         return self.navigator.step(*sample)
 
     def recover(self, fault):
-        """Make ready for the sample at a StreamFault; return whether the loop goes on."""
+        """Prepare for the sample at a StreamFault; return whether the loop continues."""
         if self._on_fault == 'stop':
             raise ValueError(str(fault))
         self.faults.append(str(fault))

@@ -1,4 +1,4 @@
-"""The inertial navigator of a simulated IMU: started from the truth, compared with the truth."""
+"""The inertial navigator of a simulated IMU: starts from the truth and is compared with it."""
 
 import math
 
@@ -19,11 +19,13 @@ CHANNELS = {'truth': FROM_TRUTH, 'free': FREE, 'damped': DAMPED}
 
 class InertialNavigator:
     """
-    The strapdown of one IMU, without aiding but for its vertical channel.
+    The strapdown of one IMU, unaided except for its vertical channel.
 
-    settings: StrapdownSettings.  The first sample after ``initial.after_s`` starts it at the
-    truth plus the initial errors; its increments serve only as the sample before.  covariance:
-    a FreeCovariance that is kept beside it, or None.
+    The first sample after ``initial.after_s`` starts the strapdown at the truth plus the initial
+    errors; its increments serve only as the previous sample of the next step.
+
+    settings: StrapdownSettings.  covariance: a FreeCovariance propagated beside the strapdown, or
+    None.
     """
 
     def __init__(self, settings, covariance=None):
@@ -47,16 +49,25 @@ class InertialNavigator:
 
     @property
     def carry(self):
-        """Return what ``whole_run.solve`` carries: orientation, PLACE, integrals and instant."""
+        """Return the state of ``whole_run.solve``: orientation, PLACE, integrals and instant."""
         ins = self._strapdown
         return ins.orientation, ins.place, self._last, ins.t_ns
 
     def step(self, t_ns, omega, f, truth):
         """
-        Take the reading that ends at t_ns; return the errors of the solution, or None before it.
+        Process the reading whose interval ends at t_ns.
 
-        omega, f: tuples, rad/s and m/s^2; truth: (lat, lon, height, v_n, q_nb) at t_ns.  The
-        errors are those of ``ErrorMeter``: attitude, velocity, position, drift.
+        Parameters
+        ----------
+        t_ns : instant
+        omega, f : tuples of three, rad/s and m/s^2
+        truth : (lat, lon, height, v_n, q_nb) at t_ns
+
+        Returns
+        -------
+        the errors of ``ErrorMeter`` (attitude, velocity, position, drift), or None before there is
+        a solution
+
         """
         ins = self._strapdown
         if ins is None:
@@ -76,9 +87,10 @@ class InertialNavigator:
 
     def advance(self, t_ns, omega, f, truth):
         """
-        Take samples without a gap; return NavStates and NavErrors of those with a solution.
+        Process samples without a gap; return NavStates and NavErrors of those with a solution.
 
-        t_ns (n,); omega, f (n, 3); truth: the Truth at t_ns.  The bits are those of ``step``.
+        t_ns (n,); omega, f (n, 3), rad/s and m/s^2; truth: the Truth at t_ns.  The results have
+        the same bits as those of ``step``.
         """
         first = 0
         while self._strapdown is None and first < len(t_ns) and self._waits(int(t_ns[first])):
@@ -137,7 +149,8 @@ class InertialNavigator:
         error = quaternion.exponential(tuple(map(math.radians, initial.attitude_error_deg)))
         ins = Strapdown(t_ns, (lat, lon, height, v, quaternion.multiply(error, q_nb)), self._spin,
                         self._channel, constants, self._settings.orientation, self._gravity)
-        # The attitude error is one of the inertial attitude, which the place does not change.
+        # The given attitude error is that of the inertial attitude, which does not depend on the
+        # position.
         lat, lon, off_height = ellipsoid.moved(lat, lon, height, initial.position_error_m)
         v_e, v_n, v_u = (a + b for a, b in zip(v, initial.velocity_error_m_s))
         if self._channel == FROM_TRUTH:

@@ -1,14 +1,13 @@
-"""What a strapdown shows of its position and velocity."""
+"""Read access to position and velocity, common to all strapdowns."""
 
 import copy
 
 
 class Placed:
     """
-    Base class of strapdowns, whose ``place`` is a ``mechanization.PLACE``.
+    Base class of the strapdowns that keep position and velocity as ``mechanization.PLACE``.
 
-    All their state is replaced, never changed, so that a copy is a snapshot and costs as little
-    as one.
+    The members are immutable and are replaced as a whole, so that a shallow copy is a snapshot.
     """
 
     place: tuple

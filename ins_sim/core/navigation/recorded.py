@@ -12,11 +12,16 @@ from .vertical_channel import DAMPED, damping, FREE, NO_DAMPING
 
 class RecordedNavigator:
     """
-    The strapdown of a recorded IMU, from an initial state at the first sample.
+    The strapdown of a recorded IMU, started with a given state at the first sample.
 
-    kind: one of settings.recorded_imu.INPUTS; spin: rate of the Earth, rad/s; initial: lat, lon,
-    height, v_n, q_nb; time_constant_s: of the damped vertical channel, None for the free one;
-    gravity: one of ``ellipsoid.GRAVITY_TERMS``.
+    Parameters
+    ----------
+    kind : what the readings are, one of settings.recorded_imu.INPUTS
+    spin : rotation rate of the Earth, rad/s
+    initial : lat, lon, height, v_n, q_nb at the first sample
+    time_constant_s : time constant of the damped vertical channel, None for the free one
+    gravity : terms of the gravity formula, one of ``ellipsoid.GRAVITY_TERMS``
+
     """
 
     def __init__(self, kind, spin, initial, time_constant_s=None, gravity=None):
@@ -41,17 +46,17 @@ class RecordedNavigator:
 
     def bridge_next(self, step_ns):
         """
-        Go straight from the last sample to the next one, in steps of about step_ns.
+        Bridge the gap between the last sample and the next one, in steps of about step_ns.
 
-        Rate and force between the two are taken to be straight lines in time.
+        Rate and force are interpolated linearly between the two samples.
         """
         self._bridge_ns = step_ns
 
     def step(self, t_ns, omega, f, height=0.0):
         """
-        Take the sample of stamp t_ns; return lat, lon, height, v_n, q_nb then.
+        Process the sample with stamp t_ns; return lat, lon, height, v_n, q_nb at that instant.
 
-        height: that of the reference, for the damping, m.
+        omega, f: rad/s and m/s^2; height: reference height for the damping, m.
         """
         if self._strapdown is None:
             self._strapdown = Strapdown(t_ns, self._initial, self._spin, self._channel,
@@ -82,11 +87,11 @@ class RecordedNavigator:
 
 class RecordedLoop(NavigationLoop):
     """
-    Steps a RecordedNavigator as far as a gap, or over all gaps by straight lines.
+    Steps a RecordedNavigator until the first gap, or across gaps by linear interpolation.
 
-    step_ns: typical step of the stamps; limit_ns: the longest one that is no gap; bridges_ns: the
-    longest gap that is bridged, 0 for none.  gap: the gap at which it has ended, or None; bridged:
-    how many were bridged.
+    step_ns: typical step of the stamps; limit_ns: longest step that is not a gap; bridges_ns:
+    longest gap that is bridged, 0 to bridge no gap.  gap: description of the gap that ended the
+    loop, or None; bridged: number of gaps bridged.
     """
 
     def __init__(self, make_navigator, step_ns, limit_ns, bridges_ns):
@@ -95,14 +100,14 @@ class RecordedLoop(NavigationLoop):
         self.gap, self.bridged = None, 0
 
     def check(self, t_ns, last_ns):
-        """Raise StreamFault for a gap; other steps may be of any length."""
+        """Raise StreamFault for a gap; shorter steps may have any length."""
         if t_ns - last_ns > self._limit_ns:
             self._gap_ns = t_ns - last_ns
             raise StreamFault(f'gap of {(t_ns - last_ns) * 1e-9:.6g} s from {seconds(last_ns)}',
                               restart=True)
 
     def recover(self, fault):
-        """Bridge the gap, or end; return whether the loop goes on."""
+        """Bridge the gap or end the loop; return whether the loop continues."""
         if self._gap_ns > self._bridges_ns:
             self.gap = str(fault)
             return False

@@ -1,12 +1,15 @@
-"""Instants of IMU samples from stamps with latency and jitter."""
+"""Instants of IMU samples, from stamps with latency and jitter."""
 
 
 class SampleClock:
     """
-    The instants of readings by their stamps, as StrapdownSettings say.
+    Converts the stamps of readings to the instants of the samples.
 
-    imu_time ``stamp``: the stamps themselves; ``nominal``: less the known latency, the nearest
-    multiples of the period dt_ns in motion time.  Raises ValueError for a latency with the former.
+    With imu_time ``stamp`` the stamps are taken as they are. With ``nominal`` the known latency is
+    subtracted and the result rounded to the nearest multiple of the period.
+
+    settings: StrapdownSettings; dt_ns: sampling period in motion time.  Raises ValueError if a
+    latency is given with ``stamp``.
     """
 
     def __init__(self, settings, dt_ns):
@@ -14,7 +17,7 @@ class SampleClock:
         self._nominal = settings.imu_time == 'nominal'
         if settings.imu_latency_us and not self._nominal:
             raise ValueError(f'imu_latency_us is {settings.imu_latency_us:g} us with imu_time '
-                             'stamp; expected imu_time nominal, which alone takes it off')
+                             'stamp; expected imu_time nominal, which alone subtracts it')
         self._shift_ns = dt_ns // 2 - round(1000.0 * settings.imu_latency_us)
 
     def instant(self, stamp_ns):

@@ -1,4 +1,4 @@
-"""The strapdown: position, velocity and attitude from increments."""
+"""The strapdown: position, velocity and attitude, integrated from increments."""
 
 import math
 
@@ -11,24 +11,24 @@ from .vertical_channel import FREE, NO_DAMPING
 
 class Strapdown(Placed):
     """
-    Position, velocity and attitude, advanced from increment to increment.
+    Position, velocity and attitude, advanced by one increment at a time.
 
     Parameters
     ----------
     t_ns : instant of the start
     place : latitude (rad), longitude (rad), height (m), v_n (m/s) and q_nb at the start
     spin : rotation rate of the Earth, rad/s
-    channel : vertical channel, as of ``mechanization.advance``
+    channel : vertical channel, see ``mechanization.advance``
     damping : c1, c2, c3 of the channel DAMPED
     orientation : attitude algorithm, one of ``integration.KINDS``
-    gravity : terms of the formula of gravity, one of ``ellipsoid.GRAVITY_TERMS``
+    gravity : terms of the gravity formula, one of ``ellipsoid.GRAVITY_TERMS``
 
     Attributes
     ----------
     t_ns : instant of the solution
-    place : position and velocity then, ``mechanization.PLACE``
-    orientation : state of the attitude algorithm then
-    q_ib : attitude relative to the inertial frame then
+    place : position and velocity at that instant, ``mechanization.PLACE``
+    orientation : state of the attitude algorithm at that instant
+    q_ib : attitude relative to the inertial frame at that instant
 
     """
 
@@ -48,18 +48,23 @@ class Strapdown(Placed):
                                            self.spin * self.elapsed_s)
 
     def set_attitude(self, q_nb):
-        """Replace the attitude by another one relative to n."""
+        """Replace the attitude, given relative to n."""
         q_ib = frames.inertial_attitude(self.lat, self.lon + self.spin * self.elapsed_s, q_nb)
         self.orientation = self._state_of(q_ib)
         self.q_ib = integration.quaternion_of_state(self.orientation)
 
     def advance(self, t_ns, phi, delta_v, height=0.0, v_u=0.0):
         """
-        Advance to t_ns.
+        Advance the solution to t_ns.
 
-        phi: rotation vector of the interval, rad; delta_v: its velocity increment in b at its
-        start, m/s; height, m, v_u, m/s: reference at its end for the channel FROM_TRUTH, of which
-        DAMPED takes the height.
+        Parameters
+        ----------
+        t_ns : end of the interval
+        phi : (3,) rotation vector of the interval, rad
+        delta_v : (3,) velocity increment, resolved in b at the start of the interval, m/s
+        height, v_u : reference height (m) and vertical velocity (m/s) at the end of the interval;
+            FROM_TRUTH uses both, DAMPED the height, FREE neither
+
         """
         dt = (t_ns - self.t_ns) * 1e-9
         self.place = mechanization.advance(
@@ -70,7 +75,7 @@ class Strapdown(Placed):
         self.t_ns = t_ns
 
     def resume(self, t_ns, orientation, place):
-        """Take the state that a loop over samples has come to."""
+        """Continue from the state at which a compiled loop over samples has ended."""
         self.t_ns, self.orientation, self.place = t_ns, orientation, place
         self.q_ib = integration.quaternion_of_state(orientation)
 
@@ -92,16 +97,17 @@ class Strapdown(Placed):
 
 def level_attitude(lat, lon, q_ib, earth_angle):
     """
-    Return q_nb of an inertial attitude at a position, floats or arrays.
+    Return q_nb from an inertial attitude and a position, floats or arrays.
 
-    earth_angle: rotation of e in i since they coincided, rad.
+    lat, lon: rad; q_ib: inertial attitude; earth_angle: rotation of e in i since they coincided,
+    rad.
     """
     return quaternion.multiply(quaternion.conjugate(frames.level_frame(lat, lon + earth_angle)),
                                q_ib)
 
 
 def runs_away(solution):
-    """Return whether a solution has left what the strapdown's formulas hold for."""
+    """Return whether a solution has diverged so far that the equations no longer apply."""
     lat, _, height, (x, y, z), _ = solution
     return not (abs(lat) < 0.4999 * math.pi and -1e5 < height < 1e6
                 and x * x + y * y + z * z < 1e10)

@@ -1,8 +1,8 @@
 """
-Loops of the strapdown over the samples of a block.
+Strapdown loops over the samples of a block.
 
-Each loop is a plain function of columns and calls the functions that the live navigator calls,
-so that ``numerics.compilation.run`` runs it in plain Python or compiled with the same bits.
+Each loop is a plain function of columns and calls the same functions as the live navigator.
+``numerics.compilation.run`` executes it in plain Python or compiled, with identical bits.
 """
 
 import numpy as np
@@ -13,19 +13,29 @@ from .errors import drift, inertial_errors
 from .increments import fixed_rate_increments, integrals
 from .strapdown import level_attitude
 
-# columns of a solution: lat, lon, height, v_n, q_ib
+# Number of columns of a solution: lat, lon, height, v_n, q_ib.
 SOLVED = 10
-# columns of what is found from it: q_nb, attitude, velocity and position error
+# Number of columns derived from it: q_nb; attitude, velocity and position errors.
 JUDGED = 13
 
 
 def solve(carry, spin, start_ns, channel, damping, gravity, integrated, t_ns, omega, f, height,
           v_u, out):
     """
-    Advance over samples; return the carry.
+    Advance the strapdown over samples; return the new carry.
 
-    carry: orientation, PLACE, integrals of the last sample, its instant (ns).  omega, f: three
-    columns side by side; height, v_u: of the truth.  out: SOLVED columns, row by row.
+    Parameters
+    ----------
+    carry : orientation, PLACE, integrals of the last sample, and its instant (ns)
+    spin : rotation rate of the Earth, rad/s
+    start_ns : instant at which e and i coincided
+    channel, damping, gravity : see ``strapdown.Strapdown``
+    integrated : whether the readings are plain integrals
+    t_ns : (n,) instants
+    omega, f : (3 n,) readings, the three axes of each sample side by side, rad/s and m/s^2
+    height, v_u : (n,) true height (m) and vertical velocity (m/s)
+    out : (SOLVED n,) solutions, written sample by sample
+
     """
     orientation, place, last, last_ns = carry
     q = integration.quaternion_of_state(orientation)
@@ -49,9 +59,10 @@ def solve(carry, spin, start_ns, channel, damping, gravity, integrated, t_ns, om
 
 def judge_one(spin, t_s, solved, truth):
     """
-    Return q_nb and the attitude, velocity and position error of one sample, or of arrays.
+    Return q_nb and the attitude, velocity and position errors, of one sample or of arrays.
 
-    solved: (lat, lon, height, v_n, q_ib); truth: (lat, lon, height, v_n, q_nb).
+    spin: rotation rate of the Earth, rad/s; t_s: time since the start, s; solved: (lat, lon,
+    height, v_n, q_ib); truth: (lat, lon, height, v_n, q_nb).
     """
     lat, lon, height, v, q_ib = solved
     earth_angle = spin * t_s
@@ -60,7 +71,7 @@ def judge_one(spin, t_s, solved, truth):
 
 
 def judge(spin, t_s, solved, lat, lon, height, v, q, out):
-    """Write ``judge_one`` of each sample; solved: SOLVED columns; out: JUDGED columns."""
+    """Write the result of ``judge_one`` for each sample, JUDGED columns, to out."""
     for k in range(len(t_s)):
         i, j, m, n = 3 * k, SOLVED * k, 4 * k, JUDGED * k
         q_nb, delta, velocity, position = judge_one(
@@ -87,7 +98,7 @@ def drifts(carry, spin, t_s, lat, lon, judged, out):
 
 
 def judge_arrays(spin, t_s, solved, lat, lon, height, v, q, out):
-    """Write what ``judge`` writes, by operations on whole columns."""
+    """Write the same as ``judge`` to out, by operations on whole columns."""
     found = judge_one(spin, t_s, (*solved[:, 0:3].T, solved[:, 3:6].T, solved[:, 6:10].T),
                       (lat, lon, height, v.T, q.T))
     out[:] = np.stack([x for vector in found for x in vector], axis=1)

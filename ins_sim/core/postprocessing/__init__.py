@@ -1,6 +1,5 @@
 """
-Navigation with a recorded IMU: clean the record, rotate it into the vehicle, find a start,
-navigate, compare with references.
+Navigation with a recorded IMU: clean the record, mount, find a start, navigate, compare.
 
 Start with ``navigate``.
 """

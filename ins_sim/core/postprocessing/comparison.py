@@ -1,4 +1,4 @@
-"""Errors of a recorded navigation at the stamps of a reference."""
+"""Errors of the navigation with a recorded IMU, at the stamps of a reference."""
 
 from dataclasses import dataclass
 import math
@@ -16,16 +16,10 @@ AFTER_S = (10.0, 30.0, 60.0)
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """
-    Solution minus reference in East, North, Up.
+    Solution minus reference, resolved in east, north, up: SampledTracks of (n, 3), or None.
 
-    Attributes
-    ----------
-    name : str
-        Name of the reference.
-    position, velocity : SampledTrack or None
-        Differences (n, 3), m and m/s.
-    attitude : SampledTrack or None
-        Rotation vector from the reference to the solution (n, 3), rad (Up: counter-clockwise).
+    name: name of the reference; position: m; velocity: m/s; attitude: rotation vector from the
+    reference to the solution, rad (Up: counter-clockwise).
     """
 
     name: str
@@ -37,7 +31,7 @@ class Comparison:
 @dataclass(frozen=True)
 class ErrorRow:
     """
-    Errors at the time ``after_s`` after the start; None if unknown.
+    Errors at some time after the start, None if unknown.
 
     vertical_m: positive up; speed_m_s: length of the horizontal velocity error; heading_deg:
     positive clockwise.
@@ -53,20 +47,10 @@ class ErrorRow:
 
 def compare_with_reference(states, reference):
     """
-    Compare a solution with a reference at the stamps of the reference.
+    Return the Comparison of NavStates, one for each segment, with a Reference, or None.
 
-    Between its samples the solution is interpolated linearly, its attitude by a constant rate.
-
-    Parameters
-    ----------
-    states : list of NavStates
-        One for each segment of the solution.
-    reference : Reference
-
-    Returns
-    -------
-    Comparison or None
-        None if the reference has no stamp within a segment.
+    Between its samples the solution is interpolated linearly, its attitude with a constant
+    rotation rate. None is returned if the reference has no stamp within a segment.
     """
     tracks = []
     for kind, errors in (('position', _position), ('velocity', _velocity),
@@ -112,20 +96,20 @@ def _attitude(states, t_ns, values):
 
 
 def _drawn(track, t_ns):
-    """Interpolate linearly at stamps within the track, without a limit on the step."""
+    """Return the values at stamps within the track, interpolated over steps of any length."""
     start = track.t_ns[0]
     return np.stack([np.interp(t_ns - start, track.t_ns - start, v) for v in track.values.T], -1)
 
 
 def error_rows(comparison, start_ns, end_ns):
-    """Return the ErrorRows at AFTER_S, if the solution is long enough, and at its end."""
+    """Return the ErrorRows AFTER_S after the start, while there is a solution, and at its end."""
     length_s = (end_ns - start_ns) * 1e-9
     return [_row(comparison, start_ns, after) for after in
             (*(a for a in AFTER_S if a < length_s), length_s)]
 
 
 def _row(comparison, start_ns, after_s):
-    """Return the errors at the stamps nearest to an instant, at most one second from it."""
+    """Return the errors at the stamp nearest to an instant, within one second."""
     def at(track):
         if track is None:
             return None

@@ -1,4 +1,4 @@
-"""Heading at a standstill, from the course of a reference after it."""
+"""Find the heading at a standstill from the subsequent course of a reference."""
 
 from collections import deque
 import math
@@ -13,7 +13,7 @@ from ins_sim.core.numerics.fixed_order import length
 
 def navigated_headings(imu, state, kind, spin):
     """
-    Navigate a record and yield (stamp, ns; heading, rad) after each sample but the first.
+    Yield stamp (ns) and heading (rad) for each sample of a RecordedImu after the first.
 
     state: (lat, lon, height, v_n, q_nb) at the first sample; kind, spin: see RecordedNavigator.
     """
@@ -26,17 +26,18 @@ def navigated_headings(imu, state, kind, spin):
 
 class CourseSearch:
     """
-    Search for the heading at a standstill in the displacements of a reference after it.
+    Finds the heading at a standstill from the subsequent displacements of a reference.
 
-    Each displacement between two stamps is rotated back by the change of heading since the start.
-    If the vehicle moves forwards, the sum points along the heading at the start. The noise of the
-    positions cancels in the sum except at its ends.
+    Each displacement between stamps is rotated back by the change of heading since the start.
+    The sum then points along the heading at the start, if the vehicle drives forwards. The
+    position noise cancels in the sum, except for that of its ends.
 
     Parameters
     ----------
-    start_ns : end of the standstill, ns
-    distance_m : required length of the sum, m
-    search_s : time within which this length must be reached, s
+    start_ns : instant at which the standstill ends
+    distance_m : required length of the sum
+    search_s : time within which it must be reached
+
     """
 
     def __init__(self, start_ns, distance_m, search_s):
@@ -45,20 +46,20 @@ class CourseSearch:
         self._along = self._across = 0.0
 
     def add(self, middle_ns, way):
-        """Add the next displacement: its mid-time, ns, and (east, north), m."""
+        """Add the next displacement: the instant of its middle, and (east, north), m."""
         if middle_ns >= self._start_ns:
             self._ways.append((middle_ns, way))
 
     def is_over(self, t_ns):
-        """Return whether the search has timed out at a stamp."""
+        """Return whether the search time has passed at a stamp."""
         return t_ns > self._start_ns + round(self._search_s * 1e9)
 
     def turn(self, t_ns, turned):
         """
-        Process the heading at a stamp, rad, of a navigation that started with heading zero.
+        Process the heading, rad, at a stamp of a navigation that started with heading zero.
 
-        All displacements with a mid-time up to this stamp must have been added. Return the
-        heading at the start, rad, and a text on how it was found; or None if the sum is too short.
+        All displacements whose middle is before that stamp must have been added. Returns the
+        heading at the start, rad, and a text on how it was found; or None.
         """
         while self._ways and self._ways[0][0] <= t_ns:
             _, (east, north) = self._ways.popleft()
@@ -81,7 +82,7 @@ class CourseSearch:
         return math.sqrt(self._along * self._along + self._across * self._across)
 
     def describe(self):
-        """Return the reason for which no heading was found."""
+        """Return the reason why no heading was found."""
         return (f'moves {self.way:.3g} m on one course within {self._search_s:g} s '
                 f'(alignment.course_distance_m {self._distance_m:g})')
 
@@ -90,8 +91,8 @@ def find_course(turning, displacements, start_ns, distance_m, search_s):
     """
     Return the heading at the start, rad, and how it was found; or None and the reason.
 
-    turning: output of ``navigated_headings`` from heading zero; displacements: output of
-    ``Reference.displacements``; for the others see CourseSearch.
+    turning: ``navigated_headings`` from heading zero; displacements: Reference.displacements; the
+    other arguments: see CourseSearch.
     """
     if displacements is None:
         return None, 'has no way to show a course'

@@ -1,4 +1,4 @@
-"""A recorded IMU: samples in order, counted losses, gaps."""
+"""A recorded IMU of any rate and with faults: samples in order, losses counted, gaps."""
 
 from bisect import bisect_left
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ from ins_sim.core.timeseries.histories import History
 @dataclass(frozen=True, eq=False)
 class RecordedImu(History):
     """
-    Samples as they were recorded, in the frame s of the sensor or in b.
+    Samples as they were recorded, in the sensor frame s or in the body frame b.
 
-    t_ns: stamps (n,) int64, ns; omega: rate (n, 3), rad/s; f: specific force (n, 3), m/s^2;
-    q_ns: orientation in the messages (n, 4), NaN if missing.
+    t_ns (n,) int64: stamps; omega (n, 3): rad/s; f (n, 3): specific force, m/s^2; q_ns (n, 4):
+    orientation from the messages, NaN where there is none.
     """
 
     t_ns: np.ndarray
@@ -45,10 +45,10 @@ class RecordedImu(History):
 @dataclass(frozen=True)
 class Losses:
     """
-    Number of samples that were dropped.
+    Numbers of dropped samples.
 
-    repeated: with the stamp of the previous sample; first_back: a text about the first stamp that
-    goes back, or ''.
+    not_finite; repeated: same stamp as the sample before; out_of_order; first_back: text about
+    the first stamp that goes back, or ''.
     """
 
     not_finite: int
@@ -61,14 +61,9 @@ def ordered_samples(imu):
     """
     Return the finite samples with increasing stamps, and the Losses.
 
-    If stamps are out of order, as few samples as possible are dropped (longest increasing
-    subsequence; Fredman, Discrete Mathematics 11, 1975): one stamp far ahead costs one sample, not
-    all that follow.
-
-    Raises
-    ------
-    ValueError
-        If fewer than two samples are left.
+    If stamps are out of order, the smallest possible number of samples is dropped (longest
+    increasing subsequence; Fredman, Discrete Mathematics 11, 1975): a single stamp far ahead costs
+    one sample, not all that follow. Raises ValueError if fewer than two samples remain.
     """
     finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
     good = imu[finite]
@@ -118,5 +113,5 @@ def find_gaps(t_ns, factor):
 
 
 def gap_limit_ns(t_ns, factor):
-    """Return the longest step that is not a gap, ns: factor times the median step."""
+    """Return the longest step that is not a gap: factor times the median step."""
     return float(factor * np.median(np.diff(t_ns)))

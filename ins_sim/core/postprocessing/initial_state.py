@@ -1,4 +1,4 @@
-"""Choose the first sample, the initial state and the gyro bias of a recorded run."""
+"""Choose the first sample, initial state and gyro bias of a recorded run, and record why."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,10 +21,11 @@ from .gravity_check import check_gravity, LEAST_FORCE
 @dataclass(frozen=True, eq=False)
 class InitialState:
     """
-    The first sample, the state at it, and how both were found.
+    The first sample, the state at that sample, and how they were found.
 
-    index: of the sample; state: (lat, lon, height, v_n, q_nb); bias: to be subtracted from the
-    gyros (3,), rad/s, or None; still: Standstill or None; notes: messages; figures: {name: value}.
+    index: of the sample in the record; state: (lat, lon, height, v_n, q_nb); bias (3,): gyro bias
+    to subtract, rad/s, or None; still: Standstill or None; notes: sentences; figures: {name:
+    value}.
     """
 
     index: int
@@ -37,28 +38,21 @@ class InitialState:
 
 def choose_start(settings, sources, imu, broken, first, last, again=False):
     """
-    Choose the start within the samples first to last (exclusive).
+    Return an InitialState among the samples from first to last (excluded).
 
     Parameters
     ----------
     settings : NavigateSettings
     sources : Sources
-    imu : RecordedImu
-        In the body frame.
-    broken : ndarray of int
-        Indices of the samples before a gap.
-    first, last : int
-    again : bool
-        Restart after a gap: values given by the user no longer apply.
-
-    Returns
-    -------
-    InitialState
+    imu : RecordedImu in the body frame
+    broken : indices of the samples before a gap
+    first, last : range of samples
+    again : True after a gap, where given initial values no longer apply
 
     Raises
     ------
-    ValueError
-        If no sample can be the start.
+    ValueError : with one sentence, if no sample is suitable
+
     """
     return _Search(settings, sources, imu, broken).start(first, last, again)
 
@@ -87,7 +81,7 @@ class _Search:
         return None if self._odometry is None else self._odometry.as_enu()
 
     def _speed_at(self, t_ns):
-        """Return the speed of a reference that measures velocity, (n,) m/s, NaN where unknown."""
+        """Return the speed of a reference that measures velocity, (n,) m/s, NaN if unknown."""
         if self._reference is not None and self._reference.velocity is not None:
             return length(self._reference.velocity_at(t_ns))
         if self._odometry is not None:
@@ -95,7 +89,7 @@ class _Search:
         return np.full(len(t_ns), np.nan)
 
     def _moving(self, first, last, source, again):
-        """Start at the first sample at which the reference provides everything that is needed."""
+        """Start at the first sample at which all values needed from the reference are known."""
         reason = None
         for k in range(first, last):
             try:
@@ -122,7 +116,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _judge_gravity(self, first, last):
-        """Refuse a specific force that is not gravity, if the IMU is ever at rest."""
+        """Reject a specific force at rest that differs from gravity, if the IMU rests at all."""
         try:
             still = standstill.find_standstill(self._imu[first:last], self._s.alignment,
                                                self._speed_at)
@@ -200,8 +194,8 @@ class _Search:
         notes = [still.describe()]
         check_gravity(still.force, limits.gravity_m_s2)
         if length(still.force) < LEAST_FORCE:
-            raise ValueError('the mean specific force at rest is zero; expected about 9.8 m/s^2 '
-                             'upwards, or initial.attitude given, reference or imu')
+            raise ValueError('the mean specific force at rest is zero, so that the vertical is '
+                             'unknown; expected initial.attitude given, reference or imu')
         try:
             where = self._position(k, again, near=True)
             lat = where[0]
@@ -226,7 +220,7 @@ class _Search:
         return InitialState(k, (*where, v, q_nb), bias, still, notes, figures)
 
     def _headed(self, still, k, where, again, notes, figures):
-        """Return q_nb at a standstill, and whether its heading comes from gyrocompassing."""
+        """Return q_nb at a standstill and whether its heading is from gyrocompassing."""
         wanted = self._s.initial.heading
         if wanted == 'given' and not again:
             return alignment.level_attitude(
@@ -248,7 +242,7 @@ class _Search:
         return alignment.level_attitude(still.force, heading), False
 
     def _reference_heading(self, still, k, where, wanted, refused):
-        """Return a heading and a text on its source; raise ValueError if there is none."""
+        """Return a heading and the text of its source; ValueError if there is none."""
         t_ns = int(self._imu.t_ns[k])
         if wanted != 'course' and self._reference is not None:
             q = self._reference.attitude_at(t_ns)

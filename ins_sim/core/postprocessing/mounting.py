@@ -6,16 +6,15 @@ from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics import elementary
 from ins_sim.settings.suggest import nearest_name
 
-# Quaternions shorter than _LEAST are refused; a length that differs from 1 by more than _UNIT (the
-# rounding of seven digits) is normalised and noted.
+# Shorter quaternions define no rotation; a norm that differs from 1 by more than _UNIT is noted.
 _LEAST, _UNIT = 1e-3, 1e-6
 
 
 def levelled_mounting(force, yaw):
-    """Return q_bs: the shortest rotation of a force (3,) to up, then one by yaw about up, rad."""
+    """Return q_bs: the shortest rotation that takes a force (3,) up, then a yaw about up."""
     x, y, z = force.tolist()
     size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
-    # If the sensor is upside down, any level axis will do.
+    # If the force points down, any level axis gives the shortest rotation.
     axis, length = ((y, -x, 0.0), level) if level > 1e-12 * size else ((1.0, 0.0, 0.0), 1.0)
     scale = elementary.atan2(level, z) / length
     return quaternion.multiply(quaternion.exponential((0.0, 0.0, yaw)),
@@ -24,22 +23,19 @@ def levelled_mounting(force, yaw):
 
 def chained_mounting(transforms, base, frame, notes=None):
     """
-    Return q_bs from static transforms, or None if there are none.
+    Return q_bs from static transforms, or None if there are no transforms at all.
 
     Parameters
     ----------
-    transforms : dict
-        {(parent, child): q}, where q maps child to parent, as in TF; of any length.
-    base, frame : str
-        Names of the frames of the vehicle and of the sensor.
-    notes : list of str, optional
-        Receives a note for each quaternion that was normalised.
+    transforms : {(parent, child): q}, q of any norm maps child to parent as in TF
+    base, frame : names of the frames b and s
+    notes : list to which remarks on the transforms are appended
 
     Raises
     ------
-    ValueError
-        If a frame is unknown (the nearest known one is named), if the two are not connected, or
-        if a transform between them is not a rotation.
+    ValueError : naming the most similar known frame if one of the frames is unknown; also if the
+        frames are in different trees, or if a transform between them is not a rotation
+
     """
     if not transforms:
         return None
@@ -71,7 +67,7 @@ def chained_mounting(transforms, base, frame, notes=None):
 
 
 def _rotation(q, name, notes):
-    """Return the unit quaternion of a transform; note a normalisation, refuse a zero rotation."""
+    """Return the unit quaternion of a transform, with a note if needed; reject a non-rotation."""
     x, y, z, w = q
     size = math.sqrt(x * x + y * y + z * z + w * w)
     if not (math.isfinite(size) and size > _LEAST):

@@ -1,4 +1,4 @@
-"""Navigate with a recorded IMU: clean, mount, start, step, compare; note every repair."""
+"""Navigate with a recording: clean, mount, start, step, compare; note every irregularity."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -19,18 +19,18 @@ from .imu_record import find_gaps, gap_limit_ns, ordered_samples
 from .initial_state import choose_start
 from .sample_checks import checked_samples
 
-# A solution with fewer samples is not useful.
+# Smallest number of samples of a useful solution.
 FEWEST = 10
 
 
 @dataclass(frozen=True, eq=False)
 class NavigationResult:
     """
-    The result of a navigation with a recorded IMU.
+    The result of a navigation.
 
-    states: NavStates of each segment; references, comparisons: the references with which the
-    solution was compared, and one Comparison for each; notes: messages on what was found and
-    done; figures: the same as numbers, {name: value}.
+    states: NavStates of each segment; references: what the solution was compared with;
+    comparisons: one for each reference; notes: sentences on what was found and done; figures: the
+    same as numbers, {name: value}.
     """
 
     states: list
@@ -42,19 +42,10 @@ class NavigationResult:
 
 def navigate(settings, sources, progress=None):
     """
-    Navigate with a recorded IMU and return the NavigationResult.
+    Return the NavigationResult of NavigateSettings and Sources.
 
-    Parameters
-    ----------
-    settings : NavigateSettings
-    sources : Sources
-    progress : callable, optional
-        Called with the fraction done.
-
-    Raises
-    ------
-    ValueError
-        If no start can be found; the message also contains the notes so far.
+    progress: called with the fraction done.  Raises ValueError, with one sentence, if the
+    navigation cannot start.
     """
     notes = []
     try:
@@ -66,7 +57,7 @@ def navigate(settings, sources, progress=None):
 
 
 def _navigate(settings, sources, progress, notes):
-    """Do the work of ``navigate``; append to notes what is found."""
+    """Do the work of ``navigate``; append findings to notes as they occur."""
     imu, remarks = checked_samples(sources.imu, settings.stamps, settings.accept.zero_readings)
     notes += [*sources.notes, *remarks]
     imu, losses = ordered_samples(imu)
@@ -98,7 +89,7 @@ def _navigate(settings, sources, progress, notes):
         earlier = ('an earlier start' if settings.initial.attitude == 'given' else
                    f'a shorter alignment (alignment.longest_s is {settings.alignment.longest_s:g} '
                    's)')
-        raise ValueError(f'{sources.name} has fewer than {FEWEST} samples behind the start at '
+        raise ValueError(f'{sources.name} has fewer than {FEWEST} samples after the start at '
                          f'{seconds(imu.t_ns[begin.index])}; expected a longer recording or '
                          f'{earlier}')
     references = [] if sources.reference is None else [sources.reference]
@@ -115,17 +106,17 @@ def _navigate(settings, sources, progress, notes):
 
 
 def _span(settings, imu):
-    """Return the index of the first sample to use and the count of all."""
+    """Return the index of the first sample to use and the total number of samples."""
     first = int(np.searchsorted(imu.t_ns, imu.t_ns[0] + round(settings.start_s * 1e9)))
     if len(imu) - first < FEWEST:
         raise ValueError(f'start_s is {settings.start_s:g} s and the IMU has '
                          f'{len(imu)} samples in {(imu.t_ns[-1] - imu.t_ns[0]) * 1e-9:.6g} s; '
-                         f'expected at least {FEWEST} samples behind the start')
+                         f'expected at least {FEWEST} samples after the start')
     return first, len(imu)
 
 
 def _mounting(settings, sources, imu, first, notes):
-    """Return q_bs, and note its source."""
+    """Return q_bs, and note its origin."""
     wanted = settings.mounting
     roll, pitch, yaw = map(math.radians, wanted.rpy_deg)
     if wanted.source == 'level':
@@ -208,7 +199,7 @@ class _Replay:
                        ellipsoid.GRAVITY_TERMS[self._s.earth.gravity])
 
     def _segment(self, loop, begin, last):
-        """Return the NavStates from an InitialState to a gap or to last (exclusive)."""
+        """Return the NavStates from an InitialState to a gap, or to last (excluded)."""
         stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
         for j, solution, _ in loop.run(self._samples(begin, last)):
             if solutions and runs_away(solution):
@@ -221,7 +212,7 @@ class _Replay:
         return NavStates(stamps[:len(solutions)], *map(np.array, zip(*solutions)))
 
     def _samples(self, begin, last):
-        """Yield stamps, omega, f and the height of the reference from an InitialState to last."""
+        """Yield stamp, omega, f and reference height from an InitialState to last (excluded)."""
         part, held = slice(begin.index, last), begin.state[2]
         imu = self._imu[part]
         for t_ns, omega, f, height in zip(imu.t_ns.tolist(), imu.omega.tolist(), imu.f.tolist(),

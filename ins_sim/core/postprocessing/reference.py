@@ -1,4 +1,4 @@
-"""References for a solution: position, velocity and attitude, each at its own stamps."""
+"""References for a solution: position, velocity and attitude, each with its own stamps."""
 
 from dataclasses import dataclass
 import math
@@ -10,22 +10,22 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation.errors import position_error
 
-# Values are interpolated between two stamps that are at most this far apart, s.
+# Values are interpolated between two stamps that are no further apart than this.
 LONGEST_STEP_S = 5.0
 
 
 @dataclass(frozen=True, eq=False)
 class SampledTrack:
-    """Values (n, k) at increasing stamps t_ns (n,), int64, ns."""
+    """Values (n, k) at increasing stamps t_ns (n,) int64."""
 
     t_ns: np.ndarray
     values: np.ndarray
 
     def at(self, t_ns):
         """
-        Return the values at stamps (m,), interpolated linearly, (m, k).
+        Return the values at stamps (m,), linearly interpolated, (m, k).
 
-        NaN before the first and after the last stamp, and between neighbours that are more than
+        NaN before the first and after the last stamp, and if the neighbours are more than
         LONGEST_STEP_S apart.
         """
         t_ns = np.asarray(t_ns, dtype=np.int64)
@@ -36,12 +36,12 @@ class SampledTrack:
         part = ((t_ns - self.t_ns[after - 1]) / step)[:, None]
         value = (1.0 - part) * self.values[after - 1] + part * self.values[after]
         held = (part[:, 0] >= 0.0) & (part[:, 0] <= 1.0) & (step <= LONGEST_STEP_S * 1e9)
-        # At a stamp of the track its value is returned, however far the neighbours are.
+        # At a stamp of the track the value is exact, however far the neighbours are.
         held |= (part[:, 0] == 0.0) | (part[:, 0] == 1.0)
         return np.where(held[:, None], value, np.nan)
 
     def near(self, t_ns):
-        """Return the values (k,) at a stamp, or at the nearest within LONGEST_STEP_S, or NaN."""
+        """Return the value at a stamp, or the nearest within LONGEST_STEP_S, (k,), or NaN."""
         p = self.at([t_ns])[0]
         if np.isnan(p).any():
             j = int(np.argmin(np.abs(self.t_ns - t_ns)))
@@ -55,8 +55,8 @@ class Reference:
     """
     A reference in n; each track may be None.
 
-    position: lat, lon (rad, without jumps of 2 pi), height (m); velocity: v_n, m/s; attitude:
-    q_nb, without jumps of the sign.
+    name; position: SampledTrack of lat, lon (rad, unwrapped), height (m); velocity: SampledTrack
+    of v_n, m/s; attitude: SampledTrack of q_nb with continuous signs; each may be None.
     """
 
     name: str
@@ -81,9 +81,10 @@ class Reference:
 
     def displacements(self):
         """
-        Return the displacements between stamps: mid-times (m,), ns; East and North (m, 2), m.
+        Return the displacements between stamps: t_ns (m,) of the middles; east, north (m, 2), m.
 
-        They come from the velocity if it is known, otherwise from the position; None without both.
+        They are computed from the velocity if there is one, otherwise from the position; None if
+        there is neither.
         """
         if self.velocity is not None and len(self.velocity.t_ns) > 1:
             t_ns, v = self.velocity.t_ns, self.velocity.values[:, :2]
@@ -101,10 +102,10 @@ class Reference:
 @dataclass(frozen=True, eq=False)
 class OdometryReference:
     """
-    Poses in a frame with unknown origin and heading, whose z axis points up.
+    Poses in a frame of unknown place and heading, with z up.
 
-    t_ns: stamps (n,), ns; r: position (n, 3), m; q: from b to the frame (n, 4), without jumps of
-    the sign; v_b: velocity in b (n, 3), m/s.
+    name, frame; t_ns (n,); r (n, 3) m; q (n, 4) from b to the frame, with continuous signs; v_b
+    (n, 3) m/s in b.
     """
 
     name: str
@@ -115,21 +116,21 @@ class OdometryReference:
     v_b: np.ndarray
 
     def velocity_b(self):
-        """Return the track of v_b."""
+        """Return the SampledTrack of v_b."""
         return SampledTrack(self.t_ns, self.v_b)
 
     def as_enu(self):
-        """Return a Reference without position; the frame is taken for East, North, Up."""
+        """Return a Reference without position; the frame is assumed to be east, north, up."""
         v = quaternion.rotate(self.q.T, self.v_b.T)
         return Reference(self.name, velocity=SampledTrack(self.t_ns, np.stack(v, axis=-1)),
                          attitude=SampledTrack(self.t_ns, self.q))
 
     def aligned_to(self, t_ns, lat, lon, height, q_nb):
         """
-        Return a Reference with position and heading of the solution at t_ns; None if unknown.
+        Return the Reference with place and heading of the solution at t_ns; None if unknown then.
 
-        The frame is rotated about the vertical by the difference of the headings. Its plane is
-        tangent to the Earth there; at a distance d it is d^2 / 2R too high.
+        The frame is rotated about the vertical by the difference of the headings, and its plane is
+        tangent there: at the distance d the height is too large by d^2 / 2R.
         """
         own = self.as_enu().attitude_at(t_ns)
         if own is None:
@@ -146,7 +147,7 @@ class OdometryReference:
 
 
 def keep_rising(t_ns, *arrays):
-    """Return stamps and arrays sorted by stamp, without repeated stamps and NaN."""
+    """Return stamps and arrays ordered by stamp, without repeated stamps and NaN."""
     good = np.all([np.isfinite(a).all(axis=1) for a in arrays], axis=0)
     t_ns, first = np.unique(t_ns[good], return_index=True)
     return t_ns, *(a[good][first] for a in arrays)

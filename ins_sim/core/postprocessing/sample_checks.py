@@ -1,4 +1,4 @@
-"""Detect and repair implausible samples of a recorded IMU."""
+"""Detect irregular samples of a recorded IMU, and correct or drop them."""
 
 from dataclasses import replace
 
@@ -7,26 +7,17 @@ import numpy as np
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.bounds import FORCE_M_S2, RATE_RAD_S
 
-# If between _PART and 1 - _PART of the samples have a force of exactly zero on all three axes, the
-# driver sends forces and rates alternately; rounding does not produce so many zeros.
+# If between 5 % and 95 % of the samples have a force of exactly zero, forces and rates are sent in
+# turns; rounding does not produce so many zeros on all three axes.
 _PART = 0.05
 
 
 def checked_samples(imu, stamps, zero_readings):
     """
-    Return a RecordedImu without implausible readings and with the requested stamps, and notes.
+    Return a RecordedImu without invalid readings and with the desired stamps, and notes.
 
-    Parameters
-    ----------
-    imu : RecordedImu
-    stamps : StampSettings
-    zero_readings : {'refuse', 'fill', 'keep'}
-        Treatment of rates and forces that are zero alternately.
-
-    Raises
-    ------
-    ValueError
-        If they are zero alternately and ``zero_readings`` is 'refuse'.
+    imu: RecordedImu; stamps: StampSettings; zero_readings: 'refuse', 'fill' or 'keep'. Raises
+    ValueError if forces and rates are zero in turns and zero_readings is 'refuse'.
     """
     imu, notes = stamped_samples(imu, stamps)
     imu = _without_spikes(imu, notes)
@@ -34,7 +25,7 @@ def checked_samples(imu, stamps, zero_readings):
 
 
 def stamped_samples(imu, stamps):
-    """Return a RecordedImu with the stamps that StampSettings request, and notes."""
+    """Return a RecordedImu with the stamps required by StampSettings, and notes."""
     notes = []
     if stamps.source == 'even' and len(imu):
         t_ns = imu.t_ns[0] + np.round(np.arange(len(imu)) * (1e9 / stamps.rate_hz)).astype(
@@ -47,7 +38,7 @@ def stamped_samples(imu, stamps):
 
 
 def odd_samples(imu):
-    """Return notes on implausible samples, which a conversion keeps."""
+    """Return notes on irregular samples of a RecordedImu that a conversion keeps unchanged."""
     steps, (no_force, in_part) = np.diff(imu.t_ns), _zero_forces(imu)
     odd = {'that are not finite': ~_finite(imu),
            f'beyond {FORCE_M_S2:g} m/s^2 or {RATE_RAD_S:g} rad/s': _spikes(imu),
@@ -59,7 +50,7 @@ def odd_samples(imu):
 
 
 def _spread(imu, notes):
-    """Spread samples with the same stamp evenly up to the next stamp."""
+    """Return the samples; those with equal stamps are spread evenly up to the next stamp."""
     t_ns = imu.t_ns
     first = np.flatnonzero(np.append(True, np.diff(t_ns) != 0))
     count = np.diff(np.append(first, len(t_ns)))
@@ -78,13 +69,13 @@ def _finite(imu):
 
 
 def _spikes(imu):
-    """Return whether a finite sample has a component beyond its bound, (n,)."""
+    """Return whether a sample is finite but has a component beyond its bound, (n,)."""
     return _finite(imu) & ((np.abs(imu.f) > FORCE_M_S2).any(axis=1)
                            | (np.abs(imu.omega) > RATE_RAD_S).any(axis=1))
 
 
 def _zero_forces(imu):
-    """Return where the force is exactly zero, (n,), and whether this is too often for rounding."""
+    """Return where the force is exactly zero, (n,), and whether too often to be rounding."""
     zero = (imu.f == 0.0).all(axis=1)
     return zero, _PART <= np.count_nonzero(zero) / max(len(imu), 1) <= 1.0 - _PART
 
@@ -92,7 +83,7 @@ def _zero_forces(imu):
 def _without_spikes(imu, notes):
     for name, values, most, unit in (('specific force', imu.f, FORCE_M_S2, 'm/s^2'),
                                      ('angular rate', imu.omega, RATE_RAD_S, 'rad/s')):
-        # Samples that are not finite are counted elsewhere; comparisons with NaN are false.
+        # Comparisons with NaN are false; samples that are not finite are counted elsewhere.
         size = np.abs(values).max(axis=1, initial=0.0)
         bad = (size > most) & np.isfinite(size)
         if bad.any():
@@ -104,25 +95,25 @@ def _without_spikes(imu, notes):
 
 def without_zeros(imu, zero_readings, notes):
     """
-    Return the samples after the treatment of rates and forces that are zero alternately.
+    Return the samples without those in which only rates or only forces were sent.
 
-    zero_readings and errors: see ``checked_samples``; notes: list that receives what was done.
+    zero_readings and errors: see ``checked_samples``; notes: list to which a note is appended.
     """
     no_force, in_part = _zero_forces(imu)
     if zero_readings == 'keep' or not in_part:
         return imu
     count, no_rate = len(imu), (imu.omega == 0.0).all(axis=1)
-    # A gyro at rest may read zero now and then. If the rate is zero whenever the force is not,
-    # the driver sent no rate in these samples.
+    # A gyro at rest may read exactly zero now and then. The two are sent in turns only if the rate
+    # is zero in nearly all samples with a force.
     in_turns = np.count_nonzero(no_rate & ~no_force) > 0.9 * np.count_nonzero(~no_force)
     what = (f'the specific force is exactly zero in {np.count_nonzero(no_force)} of {count} '
             'samples' + (f' and the angular rate in {np.count_nonzero(no_rate)} others'
                          if in_turns else ''))
     if zero_readings == 'refuse':
         raise ValueError(f'{what}: the driver seems to send them in turns; expected both in each '
-                         'sample (accept.zero_readings:=fill draws them between their '
+                         'sample (accept.zero_readings:=fill interpolates them between their '
                          'neighbours, keep takes them as they are)')
-    notes.append(f'{what}: drawn straight between their neighbours')
+    notes.append(f'{what}: interpolated linearly between their neighbours')
     omega = _filled(imu.t_ns, imu.omega, no_rate & ~no_force) if in_turns else imu.omega
     return replace(imu, f=_filled(imu.t_ns, imu.f, no_force), omega=omega)
 

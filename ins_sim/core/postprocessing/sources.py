@@ -1,19 +1,20 @@
-"""The recorded data that ``navigate`` receives."""
+"""The recorded data that ``navigate`` processes."""
 
 from dataclasses import dataclass
 
-# Default reason for a missing position.
+# Default reason why there is no position.
 NO_FIXES = 'there is no NavSatFix and no reference.path'
 
 
 @dataclass(frozen=True)
 class Sources:
     """
-    A recording.
+    Recorded data.
 
-    imu: RecordedImu in the frame of the sensor; frame: name of this frame; reference: Reference or
-    None; odometry: OdometryReference or None; transforms: {(parent, child): q} of /tf_static, or
-    None; notes: messages of the readers; without_position: why the reference has no position.
+    name; imu: RecordedImu in the sensor frame; frame: name of that frame; reference: Reference or
+    None; odometry: OdometryReference or None; transforms: {(parent, child): q} from /tf_static;
+    notes: sentences on findings while reading; without_position: why the reference has no
+    position.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """
-Find a standstill in the samples of an IMU: windows with small scatter and equal means.
+Find a standstill in IMU samples: windows with little scatter and with agreeing means.
 
-Windows are counted from the first sample, so that samples that arrive one by one form the same
+Windows are counted from the first sample, so that samples that arrive one by one have the same
 windows as a complete recording (``StandstillSearch``).
 """
 
@@ -15,23 +15,28 @@ from ins_sim.core.numerics.elementary import sincos
 from ins_sim.core.numerics.fixed_order import length
 from ins_sim.core.numerics.instants import seconds
 
-# A window with fewer samples gives no useful estimate of the variance.
+# Fewer samples in a window are too few for a variance estimate.
 FEWEST = 5
-# The standard deviation of a standstill is that of means over at least 1 / BAND_HZ seconds.
+# Standard deviations are those of means over at least 1 / BAND_HZ, s.
 BAND_HZ = 400.0
-# The power is evaluated at least at this number of frequencies, even for a short standstill.
+# Smallest number of frequencies whose power is averaged, however short the standstill.
 FEWEST_FREQUENCIES = 3
 
 
 @dataclass(frozen=True)
 class Standstill:
     """
-    A stationary interval: samples first to last (exclusive) of a record.
+    A stationary interval: samples first to last (excluded) of a record.
 
-    start_ns, end_ns: stamps of the first and the last sample; force, rate: means (3,), m/s^2 and
-    rad/s; force_sd, rate_sd: standard deviation within a window of means over ``together``
-    samples, averaged over axes and windows; rate_error: standard error of the mean rate (3,), see
-    ``standard_error``; windows: their number.
+    Attributes
+    ----------
+    start_ns, end_ns : stamps of the first and the last sample
+    force, rate : (3,) means, m/s^2 and rad/s
+    force_sd, rate_sd : standard deviations within a window of means over ``together`` samples,
+        averaged over windows and axes
+    rate_error : (3,) standard error of the mean rate, see ``standard_error``
+    windows : number of windows
+
     """
 
     first: int
@@ -47,7 +52,7 @@ class Standstill:
     together: int = 1
 
     def describe(self):
-        """Return a text with its time, length and standard deviations."""
+        """Return a phrase with the interval and its standard deviations."""
         return (f'stationary from {seconds(self.start_ns)} for '
                 f'{(self.end_ns - self.start_ns) * 1e-9:.3f} s: standard deviation '
                 f'{self.force_sd:.3g} m/s^2 and {self.rate_sd:.3g} rad/s in {self.windows} '
@@ -57,11 +62,11 @@ class Standstill:
 
 class StillWindow(NamedTuple):
     """
-    A window of a record: samples first to last (exclusive).
+    A window: samples first to last (excluded) of a record, of a fixed duration.
 
-    middle_ns: its mid-time, ns; full: whether at least half of its samples exist; force, rate:
-    means (3,), m/s^2 and rad/s; force_sd, rate_sd: standard deviations, mean of the axes; moving:
-    whether a reference that measures velocity moves.
+    middle_ns: its middle; full: whether most of its samples are present; force, rate (3,): means;
+    force_sd, rate_sd: standard deviations, averaged over the axes; moving: whether a reference
+    that measures velocity moves.
     """
 
     first: int
@@ -79,7 +84,8 @@ class WindowMoments:
     """
     Counts, means and standard deviations of the windows of a record.
 
-    step_ns: typical step of the stamps; windows are counted from the first stamp.
+    imu: RecordedImu; step_ns: typical step of the stamps; length_ns: length of a window. Windows
+    are counted from the first stamp.
     """
 
     def __init__(self, imu, step_ns, length_ns):
@@ -104,9 +110,9 @@ class WindowMoments:
 
     def _grouped(self, off):
         """
-        Return means of ``together`` samples, the indices at which windows begin, and counts.
+        Return means over ``together`` samples each, the starts of the windows, and the counts.
 
-        The remaining samples at the end of a window form a mean of their own.
+        The remaining samples at the end of a window are averaged separately.
         """
         within = np.arange(len(off)) - np.repeat(self.first, self.count)
         start = np.flatnonzero(within % self.together == 0)
@@ -116,7 +122,7 @@ class WindowMoments:
         return np.add.reduceat(off, start) / size, first, counts[:, None]
 
     def each(self, moving):
-        """Yield the StillWindows; moving: whether the reference moves in each window, (n,)."""
+        """Yield the StillWindows; moving (n,): whether a reference moves at each sample."""
         for values in zip(self.first.tolist(), self.last.tolist(), self.middle_ns.tolist(),
                           self.full.tolist(), self.force, self.rate, self.force_sd.tolist(),
                           self.rate_sd.tolist(), moving.tolist()):
@@ -125,9 +131,10 @@ class WindowMoments:
 
 def together_at(step_ns):
     """
-    Return the number of samples to average before the scatter is compared with its limits.
+    Return the number of samples that are averaged before their scatter is compared to the limits.
 
-    The limits are meant for the motion of a vehicle, and white noise grows with the sampling rate.
+    The limits are meant for vehicle motion, but the scatter of white noise grows with the sampling
+    rate.
     """
     return max(1, math.floor(1e9 / step_ns / BAND_HZ))
 
@@ -139,10 +146,10 @@ def window_length_ns(limits, step_ns):
 
 class StandstillSearch:
     """
-    Find runs of quiet windows that are long enough, window by window.
+    Finds runs of quiet windows that are long enough, one window at a time.
 
-    limits: AlignmentSettings; length_ns: length of a window, ns. Attributes: run: windows of the
-    present run; moved: reason for which the last run has ended, '' if it was long enough.
+    limits: AlignmentSettings; length_ns: length of a window.  run: windows of the current run;
+    moved: why the last run has ended, '' if it was long enough.
     """
 
     def __init__(self, limits, length_ns):
@@ -154,7 +161,7 @@ class StandstillSearch:
         self._quietest = None
 
     def take(self, window):
-        """Add a window; return the run that ends with it or before it, if long enough, or None."""
+        """Process a window; return the run that ends with it or just before it, or None."""
         self._note(window)
         still, found = self._is_quiet(window) and not window.moving, None
         if self.run and not (still and self._joins(window)):
@@ -167,7 +174,7 @@ class StandstillSearch:
         return found
 
     def end(self):
-        """End the present run; return it if it is long enough, otherwise None."""
+        """End the current run; return it if it is long enough, or None."""
         run, self.run = self.run, []
         self._best = max(self._best, len(run))
         return run if len(run) >= self.needed else None
@@ -179,7 +186,7 @@ class StandstillSearch:
                 and length(window.rate) <= limits.rate_rad_s)
 
     def _joins(self, window):
-        """Return whether the means of a window agree with those of the run."""
+        """Return whether the mean force of a window agrees with those of the run."""
         turned, changed = self._off_run(window)
         return turned <= self._limits.force_sd_m_s2 and changed <= self._limits.rate_sd_rad_s
 
@@ -202,7 +209,7 @@ class StandstillSearch:
                 f'{length(window.rate):.3g} rad/s (limit {limits.rate_rad_s:g})')
 
     def describe(self):
-        """Return the reason for which nothing was found, after at least one window."""
+        """Return why no standstill was found; requires at least one window."""
         limits, quietest = self._limits, self._quietest
         what = (f'no stationary interval of {limits.shortest_s:g} s in '
                 f'{self._full * self.length_s:g} s: the longest has '
@@ -218,25 +225,19 @@ class StandstillSearch:
 
 def find_standstill(imu, limits, speed_at=None, longest=False):
     """
-    Return the first (or the longest) standstill of a record.
+    Return the first (or the longest) Standstill of a RecordedImu.
 
     Parameters
     ----------
     imu : RecordedImu
     limits : AlignmentSettings
-    speed_at : callable, optional
-        Maps stamps (n,) to the speed of a reference, m/s, NaN if unknown.
-    longest : bool
-        Return the longest standstill instead of the first.
-
-    Returns
-    -------
-    Standstill
+    speed_at : function of stamps (n,) that returns the speed of a reference, m/s, NaN if unknown
+    longest : whether to return the longest instead of the first
 
     Raises
     ------
-    ValueError
-        If no run of quiet windows is long enough; the message describes the best one.
+    ValueError : with what was found, if no run of quiet windows is long enough
+
     """
     if len(imu) < 2 * FEWEST:
         raise ValueError(f'{len(imu)} samples are too few to find a standstill in')
@@ -269,13 +270,13 @@ def standstill_of(imu, run, together):
 
 def standard_error(rate, windows):
     """
-    Return the standard error (3,) of the mean of rates (n, 3) over some windows.
+    Return the standard error (3,) of the mean of rates (n, 3) over a number of windows.
 
     It is the square root of the power at the lowest nonzero frequencies, up to a quarter of a
-    cycle a window (Heidelberger and Welch, "A Spectral Method for Confidence Interval
-    Generation", CACM 24, 1981). For white noise this is the scatter over root n. Slow noise is
-    included. On a rocking base, where the angle is bounded and the rate averages out, it is as
-    small as the error.
+    cycle per window (Heidelberger and Welch, "A Spectral Method for Confidence Interval
+    Generation", CACM 24, 1981). For white noise it is the standard deviation over root n; slow
+    noise is included; and for a rocking base, whose angle is bounded so that its rate averages
+    out, it is as small as the actual error.
     """
     count = max(FEWEST_FREQUENCIES, windows // 4)
     turn = 2.0 * math.pi / len(rate) * np.arange(len(rate))

@@ -1,6 +1,6 @@
 """
-Prediction of errors by the linear theory, without a simulation.
+Prediction of errors by linear theory, without a simulation.
 
-``predict`` computes the drift and position error that delays cause; ``budget`` computes the error
-budget, the covariance by source.
+``predict`` computes the drift and position error caused by delays; ``budget`` is the error
+budget: the covariance by source.
 """

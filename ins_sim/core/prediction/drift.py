@@ -1,4 +1,4 @@
-"""Attitude drift due to late channels, by the linear theory (docs/theory/prediction.md)."""
+"""The drift caused by delayed channels, by linear theory (docs/theory/prediction.md)."""
 
 from dataclasses import replace
 import math
@@ -14,7 +14,7 @@ from .fourier import fourier_coefficients
 SUBSAMPLES = 8
 STEP_S = 0.1
 PER_PERIOD = 4096
-# Number of instants that are evaluated at once.
+# Number of instants evaluated at once.
 BLOCK = 8192
 
 
@@ -32,21 +32,13 @@ def _to_n(truth, vectors_b):
 
 def drift_density(truth, omega_in_n, late):
     """
-    Return R (w x D) and R D, (n, 3) each: integrand and boundary term of the attitude error.
+    Return R (w x D) and R D (n, 3): integrand and boundary term of the attitude error.
 
-    The reading has the error -D', so that the attitude error grows by nu = -R D' = -d/dt(R D) + R
-    (w_nb x D), where R is rotated by the rate of b relative to n. Bogdanov and Fomichev (2018) use
-    the inertial rate here and so neglect the rotation of the Earth (docs/theory/prediction.md).
-
-    Parameters
-    ----------
-    truth : Truth
-        At n instants.
-    omega_in_n : ndarray
-        Rate of n relative to i, in n (n, 3), rad/s.
-    late : ndarray
-        Rotations D that the channels x, y, z have not reported yet (n, 3), rad. To first order in
-        the delays T they are T w, with the rate w of b relative to i.
+    late (n, 3): the rotations D that the channels x, y, z have not read yet, rad. To first order
+    in the delays T they are T w, with w the rate of b in i. The error of the reading is -D', so
+    that the attitude error grows by nu = -R D' = -d/dt(R D) + R (w_nb x D), because R turns at the
+    rate of b relative to n. Bogdanov and Fomichev (2018) use w for w_nb, neglecting the rotation
+    of the Earth (docs/theory/prediction.md).
     """
     omega_in_b = np.stack(quaternion.rotate_back(_columns(truth.q_nb), _columns(omega_in_n)), -1)
     density = np.stack(quaternion.cross(_columns(truth.omega_ib_b - omega_in_b), _columns(late)),
@@ -56,11 +48,13 @@ def drift_density(truth, omega_in_n, late):
 
 def mean_drift(motion, turns, earth_rotation, start_s, span_s):
     """
-    Return the mean drift (3,) in East, North, Up, rad/s.
+    Return the mean drift (3,), east, north, up, rad/s.
 
-    The mean is over one period if the motion has one (the trapezoidal rule is then spectrally
-    accurate), otherwise over the span. turns: function that maps a Truth to the rotations D of
-    ``drift_density``.
+    The mean is over one period if the motion is periodic (the trapezium rule is then spectrally
+    accurate), otherwise over the span.
+
+    turns: function of a Truth that returns D of ``drift_density``; start_s, span_s: motion time
+    and length of the span, s.
     """
     length = motion.period_s or span_s
     count = PER_PERIOD if motion.period_s else max(PER_PERIOD, round(span_s / 0.0125))
@@ -76,9 +70,9 @@ def mean_drift(motion, turns, earth_rotation, start_s, span_s):
 
 class LateAttitudeError:
     """
-    Attitude error beta due to late channels: boundary term and integral of ``drift_density``.
+    Attitude error beta due to delayed channels: boundary term and integral of ``drift_density``.
 
-    turns: see ``mean_drift``; step_s: interval between instants, s.
+    turns: see ``mean_drift``; step_s: interval between the instants, s.
     """
 
     def __init__(self, turns, step_s):
@@ -101,11 +95,11 @@ class LateAttitudeError:
 
 
 class NoPrediction(ValueError):
-    """Raised if the linear theory does not apply to the settings."""
+    """The linear theory does not apply to the settings."""
 
 
 def exact_pair(gyro, step_s):
-    """Return the GyroPair of settings.Gyro, propagated exactly; NoPrediction if it is unstable."""
+    """Return the GyroPair of settings.Gyro, exact method; NoPrediction if it is unstable."""
     try:
         return make_pair(replace(gyro, dtg=replace(gyro.dtg, method='exact',
                                                    on_unstable='refuse')), step_s)
@@ -115,12 +109,20 @@ def exact_pair(gyro, step_s):
 
 class PairAttitudeError:
     """
-    Attitude error beta of two tuned gyros: the integral of R (reading - rate).
+    Attitude error beta due to two tuned gyros: the integral of R (reading - rate).
 
-    The rotors are propagated over the rates of the motion; the mean rate of a step is computed by
-    Simpson's rule. motion: the motion of the run; gyro: settings.Gyro; tau: delays (3,), s;
-    start_s: first instant, s of motion time; step_s: interval between instants, s; held_ns: motion
-    time before which the channels see the rate of that time, or None.
+    The rotors are simulated with the rates of the motion; the mean rate of a step is found by
+    Simpson's rule.
+
+    Parameters
+    ----------
+    motion : Motion of the run
+    gyro : settings.Gyro
+    tau : (3,) delays, s
+    start_s : motion time of the first instant, s
+    step_s : interval between the instants, s
+    held_ns : motion time before which the channels see the rate of that instant, or None
+
     """
 
     def __init__(self, motion, gyro, tau, start_s, step_s, held_ns=None):
@@ -129,7 +131,7 @@ class PairAttitudeError:
         self._pair, self._integral = exact_pair(gyro, step_s), None
 
     def advance(self, first, count):
-        """Return beta (count + 1, 3), rad, from instant ``first`` on; call in order, from 0."""
+        """Return beta (count + 1, 3), rad, from index ``first`` on; call in order from 0."""
         halves = self._start_s + 0.5 * self._step_s * np.arange(2 * first,
                                                                 2 * (first + count) + 1)
         late = np.stack([self._motion.at(self._seen(_nanoseconds(halves - d))).omega_ib_b[:, i]
@@ -151,23 +153,14 @@ class PairAttitudeError:
 
 def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     """
-    Return the mean drift (3,), rad/s, of a periodic motion with linear channels.
+    Return the mean drift (3,), rad/s, of a periodic motion measured through linear channels.
 
-    <nu> = sum_i sum_k Re(r_ik conj[sum_j (H_ij(k w0) - 1_ij) w_jk]) with the column r_i of R
+    <nu> = sum_i sum_k Re(r_ik conj[sum_j (H_ij(k w0) - 1_ij) w_jk]), with r_i column i of R
     (docs/theory/prediction.md).
 
-    Parameters
-    ----------
-    motion : Motion
-    responses : sequence of three callables, or callable
-        Complex frequency responses H_i of an array of angular frequencies, rad/s; or one function
-        that returns the response (n, 3, 3) of channels that see each other's axes
-        (``sensors.tuned_gyro.pair``).
-
-    Raises
-    ------
-    ValueError
-        If the motion has no period.
+    responses: three functions that return the complex frequency response H_i at an array of
+    angular frequencies, rad/s; or one function that returns the response (n, 3, 3) of coupled
+    channels (``sensors.tuned_gyro.pair``).  Raises ValueError for a motion without a period.
     """
     if motion.period_s is None:
         raise ValueError('the drift through channels is the sum over a Fourier series; expected '
@@ -178,7 +171,7 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     omega = 2.0 * np.pi / motion.period_s * harmonics
     h = (responses(omega) if callable(responses)
          else np.stack([channel(omega) for channel in responses], axis=-1)[:, None, :] * np.eye(3))
-    # Only real products are used: those of complex arrays round differently on some processors.
+    # Use real products only: processors differ in how they round complex products.
     h_re, h_im = h.real - np.eye(3), h.imag
     error_re = _row_sums(h_re * w_re[:, None, :] - h_im * w_im[:, None, :])
     error_im = _row_sums(h_re * w_im[:, None, :] + h_im * w_re[:, None, :])
@@ -192,7 +185,7 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
 
 
 def _row_sums(rows):
-    """Return the sum of the three numbers of each row (..., 3)."""
+    """Return the sums of the three numbers in each row (..., 3)."""
     return rows[..., 0] + rows[..., 1] + rows[..., 2]
 
 
@@ -202,7 +195,7 @@ def delay_response(tau):
 
 
 def delayed(response, phase):
-    """Return a complex response multiplied by exp(-j phase)."""
+    """Return the product of a complex response and exp(-j phase)."""
     s, c = elementary.sincos(phase)
     late = np.empty(response.shape, dtype=complex)
     late.real = response.real * c + response.imag * s
@@ -215,8 +208,8 @@ def two_axis_resonances(motion, tau):
     Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
 
     The resonance psi' = 2 gamma' is equation (19) of Bogdanov and Fomichev (2018), who do not
-    mention the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x, y,
-    z, s; tau1 of the paper is that of y, tau3 that of z.
+    mention the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x,
+    y, z, s; their tau1 is the delay of y, their tau3 that of z.
     """
     if motion.kind != 'two_axis':
         return []

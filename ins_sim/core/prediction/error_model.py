@@ -1,5 +1,5 @@
 """
-Linear error model of a navigator with an aided vertical channel.
+Linear error model of a navigator whose vertical channel is aided.
 
 Inertial form, resolved in the true n, with the inertial attitude error delta, the Cartesian
 position error p and its inertial velocity s:
@@ -7,7 +7,7 @@ position error p and its inertial velocity s:
     delta = beta + gamma,   gamma' = -omega_in x delta
     p' = s - omega_in x p,  s' = delta x f + df - (g/R) p + Omega x (Omega x p) - omega_in x s
 
-and p_U = 0. It is the psi-angle model of Benson 1975 (Groves section 5.7) with inertial velocity.
+with p_U = 0. This is the psi-angle model of Benson 1975 (Groves section 5.7) in inertial velocity.
 """
 
 import numpy as np
@@ -19,14 +19,15 @@ from ins_sim.core.numerics import compilation, elementary
 
 class ErrorModel:
     """
-    Attitude and position errors, carried from block to block of a time grid.
+    Attitude and position errors, propagated in blocks on a grid in time.
 
-    Coefficients are averaged over a step; RK4 integrates the slow states.
+    The coefficients of a step are means over its fine intervals; the slow state is propagated by
+    RK4.
 
     Parameters
     ----------
     fine_s : interval of the grid, s
-    per_step : number of intervals in a step
+    per_step : intervals of a step
     rotation : whether the Earth rotates
     position, velocity : initial errors in n, m and m/s
     gravity : one of ``ellipsoid.GRAVITY_TERMS``
@@ -40,11 +41,15 @@ class ErrorModel:
 
     def advance(self, truth, omega_in, f_n, beta, df_n):
         """
-        Return attitude (n + 1, 3), rad, and position (n + 1, 3), m, errors at the ends of n steps.
+        Return the errors of attitude (n + 1, 3), rad, and position (n + 1, 3), m, after n steps.
 
-        The inputs have the shape (n per_step + 1, ...); their first instant is the last one of the
-        previous block. beta: attitude error without the effect of the rotation of n; df_n: error
-        of the specific force in n, m/s^2.
+        Parameters
+        ----------
+        truth, omega_in, f_n : (n per_step + 1, ...); the first instant is the last one of the
+            previous block, in all arguments
+        beta : attitude error, without the effect of the rotation of n
+        df_n : error of the specific force
+
         """
         sin, cos = elementary.sincos(truth.lat)
         r_n, r_e = ellipsoid.radii(sin)
@@ -86,7 +91,7 @@ class ErrorModel:
 
 
 def advance_through(state, h, count, omega_in, f_n, force, turn, pull, out):
-    """Advance by the steps whose coefficients are in flat columns; return the final state."""
+    """Advance over steps whose coefficients are in flat columns; return the final state."""
     for k in range(count):
         i, j = 3 * k, 2 * k
         state = advance_errors(
@@ -102,8 +107,8 @@ def advance_errors(y, omega_in, f_n, force, turn, pull, h):
     """
     Advance the slow state by one step of h seconds with RK4.
 
-    y: gamma (3), p_E, p_N, s_E, s_N. The others are means over the step: omega_in (3), f_n (3),
-    the horizontal force, the rotation of beta (3), and the gravity gradient on E and on N.
+    y: gamma (3), p_E, p_N, s_E, s_N.  The others are means over the step: omega_in (3), f_n (3);
+    force: horizontal force error; turn: rotation of beta (3); pull: factors of p_E and p_N.
     """
     row = (*omega_in, *f_n, *force, *turn, *pull)
     k1 = _rate(y, row)
@@ -131,7 +136,7 @@ def _ahead(y, k, step):
 def _rate(y, row):
     g_e, g_n, g_u, p_e, p_n, s_e, s_n = y
     w_e, w_n, w_u, f_e, f_n, f_u, a_e, a_n, t_e, t_n, t_u, k_e, k_n = row
-    # p_U is always 0, hence s_U = (omega_in x p)_U.
+    # p_U = 0 at all times, hence s_U = (omega_in x p)_U.
     s_u = w_e * p_n - w_n * p_e
     return (t_e - (w_n * g_u - w_u * g_n), t_n - (w_u * g_e - w_e * g_u),
             t_u - (w_e * g_n - w_n * g_e),

@@ -7,22 +7,14 @@ from ins_sim.core.numerics import elementary
 
 def fourier_coefficients(samples):
     """
-    Return the Fourier coefficients of one period, and their harmonics.
+    Return the Fourier coefficients of a period and their harmonics.
 
-    The transform is the self-sorting one of Stockham with radix two, in additions and products of
-    real arrays, so that its bits depend neither on the processor nor on a library.
+    The signal is the sum of c_k exp(j 2 pi k t/T). The transform is the self-sorting one of
+    Stockham with radix two, in additions and products of real arrays, so that its bits depend
+    neither on the processor nor on a library.
 
-    Parameters
-    ----------
-    samples : ndarray
-        Samples (n, m) of m signals over one period; n is a power of two.
-
-    Returns
-    -------
-    real, imaginary : ndarray
-        Parts (n, m) of the coefficients c_k; a signal is the sum of c_k exp(j 2 pi k t/T).
-    harmonics : ndarray
-        (n,): k = 0, 1, ..., n/2 - 1, -n/2, ..., -1.
+    samples (n, m): n a power of two.  Return the real and imaginary parts (n, m) and the harmonics
+    (n,): k = 0, 1, ..., n/2 - 1, -n/2, ..., -1.
     """
     count = len(samples)
     re, im = samples.reshape(count, 1, -1), np.zeros((count, 1, samples[0].size))

@@ -1,17 +1,15 @@
-"""
-The rotation that a late gyro channel has not reported yet: its rate integrated over the delay.
-"""
+"""The rotation that a delayed gyro channel has not read yet: rate integrated over the delay."""
 
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.earth.rates import rate_of_n
 
-# Longer delays are integrated. For shorter ones the rotation is delay times rate, which neglects
-# half the delay times the change of the rate: 3e-4 of the rotation at 10 Hz.
+# For longer delays the rotation is integrated. Up to this delay it is the delay times the rate;
+# this neglects half the delay times the change of the rate, 3e-4 of the rotation at 10 Hz.
 LONG_NS = 10_000
-# Gauss-Legendre, five points on [0, 1]: exact to rounding as long as the delay is a fraction of
-# the period of the fastest motion.
+# Gauss-Legendre quadrature with five points on [0, 1]; exact to rounding if the delay is a
+# fraction of the period of the fastest motion.
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
 
@@ -25,8 +23,9 @@ class LateTurns:
     motion : Motion
     tau_ns : delays of the channels x, y, z, ns
     first_ns : motion time of the first reading
-    past : rate, rad/s, that the channels see before the first reading, or None for that of the
-    motion
+    past : rate, rad/s, that the channels see before the first reading; None for that of the
+        motion
+
     """
 
     def __init__(self, motion, tau_ns, first_ns, past=None):
@@ -41,7 +40,7 @@ class LateTurns:
             return np.stack([self._integral(truth.t_ns, axis) for axis in range(3)], axis=-1)
         turns = truth.omega_ib_b * self._tau
         if self._past is not None:
-            # Later instants are farther from the first reading than a short delay.
+            # All later instants are farther from the first reading than a short delay.
             first = np.flatnonzero(truth.t_ns == self._first_ns)
             late = np.flatnonzero(self._tau > 0.0)
             turns[np.ix_(first, late)] = (self._tau * self._past)[late]
@@ -67,8 +66,8 @@ def late_turns(settings, motion):
     """Return the LateTurns of the gyros of SimulationSettings."""
     sensor, past = settings.imu_sensor, None
     first_ns = round(1e9 * settings.motion_generator.start_s)
-    # A frozen attitude rotates with the Earth. With the integrated output it is the rate that is
-    # held.
+    # A body at rest rotates with the Earth. With integrated output, the rate itself was constant
+    # before the first reading.
     if sensor.history == 'frozen':
         past = (motion.at(np.array([first_ns], dtype=np.int64)).omega_ib_b[0]
                 if sensor.output == 'integrated' else
@@ -83,11 +82,10 @@ def is_long(tau_ns):
 
 def late_force(motion, t_ns, tau_ns, held_ns):
     """
-    Return the reading of late accelerometers minus the present specific force, (n, 3), m/s^2, in
-    b.
+    Return the readings of delayed accelerometers minus the specific force, (n, 3) m/s^2, in b.
 
-    tau_ns: delays of x, y, z; held_ns: motion time before which the force of that time is seen, or
-    None.
+    tau_ns: delays of x, y, z; held_ns: motion time before which the force of that instant is
+    seen, or None.
     """
     force = motion.at(t_ns).f_ib_b
     late = []
@@ -98,9 +96,7 @@ def late_force(motion, t_ns, tau_ns, held_ns):
 
 
 def frozen_rate(motion, first_ns, earth_rotation):
-    """
-    Return the rate (3,), rad/s, of a body at rest on the Earth with the attitude at first_ns.
-    """
+    """Return the rate (3,), rad/s, of a body at rest on the Earth, attitude as at first_ns."""
     truth = motion.at(np.array([first_ns], dtype=np.int64))
     still = rate_of_n(truth.lat, truth.height, np.zeros((1, 3)), earth_rotation)
     return np.stack(quaternion.rotate_back(tuple(truth.q_nb.T), tuple(still.T)), axis=-1)[0]

@@ -1,4 +1,4 @@
-"""Prediction of drift and position error of a run by the linear theory."""
+"""Predicted drift and position error of a run, by linear theory."""
 
 from dataclasses import dataclass
 
@@ -38,16 +38,18 @@ class PredictedErrors(History):
 @dataclass(frozen=True)
 class Prediction:
     """
-    The errors that the linear theory predicts for a run (docs/theory/prediction.md).
+    Prediction of a run by linear theory.
 
     Attributes
     ----------
-    drift : mean drift in East, North, Up (3,), rad/s
-    t_s, position, attitude : time since the start (n,), s; errors (n, 3), m and rad
-    largest : largest absolute position error of each axis (3,), m
-    resonances : list of (name, rate of psi, rad/s, drift there (3,), rad/s)
+    drift : (3,) mean drift, east, north, up, rad/s
+    t_s : (n,) time since the start
+    position, attitude : (n, 3) error histories, m and rad
+    largest : (3,) largest magnitude of the position error, m
+    resonances : list of (name, rate of psi in rad/s, drift there (3,) in rad/s)
     turned : largest attitude error, rad
-    drift_bound, position_bound : bounds of the terms that the linear theory neglects, rad/s and m
+    drift_bound, position_bound : bounds of the effects that linear theory leaves out, rad/s and m
+
     """
 
     drift: np.ndarray
@@ -63,27 +65,11 @@ class Prediction:
 
 def predict(settings, motion, collect=Collected) -> Prediction:
     """
-    Predict the errors of a run by the linear theory.
+    Return the Prediction of SimulationSettings.
 
-    Parameters
-    ----------
-    settings : SimulationSettings
-    motion : Motion
-        The motion of settings.motion_generator.
-    collect : callable or None
-        See ``core.simulation.inertial``. With None the histories are not computed, and t_s,
-        attitude and position of the result are None.
-
-    Returns
-    -------
-    Prediction
-
-    Raises
-    ------
-    ValueError
-        If the settings do not define a run of finite length.
-    NoPrediction
-        For rotors that only RK4 damps.
+    motion: that of settings.motion_generator; collect: see ``core.simulation.inertial.simulate``;
+    with None t_s, attitude and position are not computed and are None.  Raises ValueError if the
+    run has no finite length, NoPrediction for rotors that are stable only with RK4.
     """
     check_length(settings.motion_generator, motion)
     run = _FineRun(settings, motion)
@@ -104,11 +90,10 @@ def predict(settings, motion, collect=Collected) -> Prediction:
 
 def _along_parallels(position, lat):
     """
-    Convert position errors (n, 3) in the tangent plane at latitudes (n,) to those that are
-    reported.
+    Return position errors (n, 3) in the tangent plane at latitudes (n,), in measured coordinates.
 
-    Reported errors are East along the parallel and North along the meridian
-    (``navigation.errors.position_error``). To second order, a great circle that starts eastwards
+    These are east along the parallel and north along the meridian
+    (``navigation.errors.position_error``), to second order: a great circle that starts eastwards
     leaves the parallel by d^2 tan(lat) / 2R.
     """
     s, c = elementary.sincos(lat)
@@ -119,12 +104,12 @@ def _along_parallels(position, lat):
 
 
 def _longest(vectors):
-    """Return the largest length of vectors (n, 3)."""
+    """Return the largest length among vectors (n, 3)."""
     return float(length(vectors).max())
 
 
 class _FineRun:
-    """The errors on a fine grid over the run, block by block."""
+    """The errors on a fine time grid over the run, block by block."""
 
     def __init__(self, settings, motion):
         generator, nav = settings.motion_generator, settings.strapdown
@@ -149,7 +134,7 @@ class _FineRun:
             late = LateAttitudeError(self._turns.at, self._fine_s)
             self._beta = lambda truth, omega_in, first: late.advance(truth, omega_in)
         else:
-            # The interval is the difference of the instants, which are rounded to ns.
+            # Compute the interval as the difference of the instants, with the same rounding.
             count = self._steps * SUBSAMPLES
             step_s = (self._instant_s(count) - self._instant_s(0)) / count
             pair = PairAttitudeError(motion, self._gyro, self.tau, self._start_s, step_s,
@@ -178,7 +163,7 @@ class _FineRun:
             s, c = elementary.sincos(truth.lat)
             self._steepest = max(self._steepest, float(abs(s / c).max()))
             omega_in = rate_of_n(truth.lat, truth.height, truth.v_n, self._rotation)
-            # Attitude error in n without the effect of the rotation of n.
+            # Attitude error in n, without the effect of the rotation of n.
             beta = self._beta(truth, omega_in, first)
             self._last_beta = beta[-1]
             self._swept += np.add.reduce(
@@ -189,7 +174,8 @@ class _FineRun:
                                                self._held_ns))
             attitude, position = model.advance(truth, omega_in, _to_n(truth, truth.f_ib_b),
                                                beta + turned, df_n)
-            # Results for short delays keep their bits; the bound contains the difference.
+            # Only for long delays: the published figures of short delays keep their bits, and
+            # their bound includes this effect.
             if self._turns.long:
                 position = _along_parallels(position, truth.lat[::SUBSAMPLES])
             # The first step of a block is the last one of the previous block.
@@ -199,27 +185,27 @@ class _FineRun:
 
     def second_order(self, turned, far):
         """
-        Return a bound of the second-order position error, m.
+        Return a bound, m, of the terms of second order in the largest errors, rad and m.
 
-        turned, far: largest attitude error, rad, and position error, m. The second-order part of a
-        rotation is half of it times the position error that it causes; in addition, position
-        errors are measured along parallels and meridians (``_along_parallels``).
+        For a rotation it is half the rotation times the position error that it causes. In
+        addition, a position error is measured along parallels and meridians
+        (``_along_parallels``).
         """
         angle = far / ellipsoid.MEAN_RADIUS
         return 0.5 * far * (turned + angle * (1.0 + 2.0 * self._steepest))
 
     def drift_bound(self, turned):
         """
-        Return a bound of the second-order drift, rad/s.
+        Return a bound, rad/s, of the terms of second order in the drift.
 
-        The rotation vector of an attitude error that grows by e grows by e + error x e / 2; the
-        second term is the area that the error sweeps. turned: largest attitude error, rad, for the
-        next order.
+        If the attitude error grows by e, its rotation vector grows by e + error x e / 2; the
+        second term is twice the area that it sweeps. turned: largest error, rad, for the next
+        order.
         """
         return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)
 
     def drift(self):
-        """Return the mean drift (3,), rad/s; call it after all blocks have been made."""
+        """Return the mean drift (3,), rad/s, after all blocks have been computed."""
         motion, tau = self._motion, self.tau
         if self._gyro.model == 'ideal':
             if self._turns.long and motion.period_s:

@@ -1,4 +1,4 @@
-"""The complete aided chain offline: six stages, with the numbers of the six nodes in lock-step."""
+"""The aided chain offline: six stages with the same results as the six nodes in lock-step."""
 
 from dataclasses import replace
 
@@ -12,45 +12,33 @@ from .inertial import truth_blocks
 
 def make_instruments(settings):
     """
-    Return velocity meter and GNSS of AidedSimulationSettings, before their first fix.
+    Return the velocity meter and GNSS of AidedSimulationSettings, before their first fix.
 
-    Make them before the run that they serve.
-
-    Raises
-    ------
-    ValueError
-        If the settings of an instrument are invalid.
+    They measure the truth. Raises ValueError if the settings are invalid: call this before the run
+    that needs them.
     """
     return MeterOnTruth(VelocityMeter(settings.velocity_meter)), Gnss(settings.gnss)
 
 
 def simulate_aided(settings, instruments, motion, run, progress=None):
     """
-    Run velocity meter, GNSS and aided navigator on the result of the first three stages.
+    Return the AidedResult for a SimulationResult of the first three stages.
 
-    The instruments see the truth of the generator even where the IMU loses samples.
+    The instruments measure the truth of the generator, even where the IMU loses samples.
 
     Parameters
     ----------
     settings : AidedSimulationSettings
-    instruments
-        Result of ``make_instruments``; they can be used for one run only.
-    motion : Motion
-        The motion of the run.
-    run : SimulationResult
-        Its solution, at its output rate, gives the velocity meter the angle of attack, as
-        ins/odometry does for the nodes.
-    progress : callable, optional
-        Called with the fraction done.
-
-    Returns
-    -------
-    AidedResult
+    instruments : result of ``make_instruments``; can be used only once
+    motion : Motion of the run
+    run : SimulationResult; its solution, at its output instants, supplies the angle of attack to
+        the velocity meter, as ins/odometry does
+    progress : called with the fraction done
 
     Raises
     ------
-    ValueError
-        As the stages do.
+    ValueError : as the stages do
+
     """
     meter, gnss = instruments
     meter.follow_ins(run.states.t_ns, body_velocity(run.states))

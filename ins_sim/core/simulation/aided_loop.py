@@ -1,4 +1,4 @@
-"""The loop of the aided navigator over blocks: many samples at once where no fix arrives."""
+"""Loop of the aided navigator over blocks; samples without a fix are processed together."""
 
 from bisect import bisect_left
 
@@ -16,15 +16,13 @@ UNKNOWN = (NONE,) * 3
 
 
 class AidedLoop(NavigationLoop):
-    """
-    A NavigationLoop that passes the navigator the fixes that have arrived before each sample.
-    """
+    """A NavigationLoop that passes fixes to the navigator before the sample of their arrival."""
 
-    # Fixes on their way: (arrival_ns, source, fix), in the order of arrival.
+    # Fixes that have not arrived yet: (arrival_ns, source, fix), in the order of arrival.
     waiting = ()
     # Function of the AidedNavigator whose result is stored at each output instant, or None.
     note = None
-    # Whether a solution has diverged and was started anew.
+    # Whether a solution has diverged and was restarted.
     diverged = False
 
     def recover(self, fault):
@@ -54,9 +52,7 @@ class AidedLoop(NavigationLoop):
         return found
 
     def _run_quiet(self, block, first):
-        """
-        Process successive samples during which no fix arrives; return the index after the last.
-        """
+        """Process consecutive samples at which no fix arrives; return their end."""
         if not self.navigator.takes_segments:
             return first
         stop = block.even_until(first, self._last_ns)
@@ -67,9 +63,9 @@ class AidedLoop(NavigationLoop):
 
 class AidedBlock:
     """
-    ImuSamples, the Truth at their stamps, and the output of a loop for them.
+    ImuSamples, the Truth at their stamps, and the outputs of a loop at these samples.
 
-    loop: the AidedLoop that processes the block.
+    loop: the AidedLoop that will step through the block.
     """
 
     def __init__(self, imu, truth, loop):
@@ -89,9 +85,7 @@ class AidedBlock:
                                 tuple(truth.v_n[k].tolist()), tuple(truth.q_nb[k].tolist()))
 
     def even_until(self, first, last_ns):
-        """
-        Return the end of the evenly spaced samples that start at index first and follow last_ns.
-        """
+        """Return the end of the samples, from first on, that follow last_ns without a gap."""
         t_ns = self.samples.t_ns
         if not is_regular(t_ns[first] - last_ns, self._loop.dt_ns):
             return first
@@ -99,12 +93,12 @@ class AidedBlock:
         return self._uneven[k] if k < len(self._uneven) else len(t_ns)
 
     def write(self, k):
-        """Store the solution of the navigator as that of a sample."""
+        """Store the solution of the navigator as that of sample k."""
         lat, lon, height, v, q_nb = self._loop.navigator.solution
         self.out[segment.ROW * k:segment.ROW * (k + 1)] = (lat, lon, height, *v, *q_nb)
 
     def put_out(self, first, stop):
-        """Write the output instants among some samples, with the present state of the filter."""
+        """Output the due ones among some samples, with the present state of the filter."""
         decimation = self._loop.decimation
         if self._due_since != decimation.first_ns:
             self._due = np.flatnonzero(decimation.due(self._imu.t_ns)).tolist()
@@ -121,7 +115,7 @@ class AidedBlock:
                 self._notes += [note(navigator)] * len(due)
 
     def records(self):
-        """Return Truth, NavStates, AidedErrors and notes of the output instants, or None."""
+        """Return Truth, NavStates, AidedErrors and notes of the output samples, or None."""
         if not self._kept:
             return None
         truth = self._truth[self._kept]

@@ -1,4 +1,4 @@
-"""The aided navigator offline: readings of the IMU and fixes of the instruments in blocks."""
+"""The aided navigator offline: IMU readings and fixes of the instruments in blocks."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    judged: a JudgedFix for every fix, in the order of arrival; faults: a message for each fault;
-    velocity_fixes, gnss_fixes: output of the instruments, if ``simulate_aided`` ran them; notes:
-    the result of ``note`` at each output instant, or None; diverged: whether a solution has
+    judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
+    velocity_fixes, gnss_fixes: the reports of the instruments, if ``simulate_aided`` made them;
+    notes: results of ``note`` at each output instant, or None; diverged: whether a solution has
     diverged.
     """
 
@@ -34,13 +34,13 @@ class AidedResult:
 
 
 class Reported:
-    """Known fixes in the order of their instants, used as an instrument of ``navigate_aided``."""
+    """Known fixes in the order of their instants; an instrument for ``navigate_aided``."""
 
     def __init__(self, fixes):
         self._fixes, self._next = fixes, 0
 
     def advance(self, truth):
-        """Return the fixes up to the last instant of a Truth record that were not returned yet."""
+        """Return the fixes, not yet returned, up to the last instant of a Truth record."""
         first, self._next = self._next, bisect_right(
             self._fixes, int(truth.t_ns[-1]), lo=self._next, key=lambda fix: fix.t_ns)
         return self._fixes[first:self._next]
@@ -54,7 +54,7 @@ def with_truth(motion, blocks):
 
 def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     """
-    Run the aided navigator over the blocks of ``with_truth``.
+    Return the AidedResult of AidedNavigatorSettings over the blocks of ``with_truth``.
 
     Faults are handled according to on_fault: the solution starts anew from the truth, or
     ValueError is raised.
@@ -62,20 +62,15 @@ def navigate_aided(settings, blocks, meter=None, gnss=None, note=None):
     Parameters
     ----------
     settings : AidedNavigatorSettings
-    blocks : iterable of (ImuSamples, Truth)
-    meter, gnss : optional
-        The instruments: objects with advance(Truth) -> list of fixes in the order of arrival.
-    note : callable, optional
-        Function of the AidedNavigator whose result is stored at each output instant.
-
-    Returns
-    -------
-    AidedResult
+    blocks : pairs of ImuSamples and Truth
+    meter, gnss : instruments: any objects with advance(Truth) -> list of fixes in the order of
+        arrival; or None
+    note : function of the AidedNavigator whose result is stored at each output instant
 
     Raises
     ------
-    ValueError
-        If there is no output instant.
+    ValueError : also if there is no output
+
     """
     flown = AidedChain(settings, note)
     sources = [(source, instrument) for source, instrument in ((METER, meter), (GNSS, gnss))
@@ -103,8 +98,8 @@ class AidedChain:
         self._parts, self._judged = [], []
 
     def block(self, imu, truth, fixes):
-        """Process a block; fixes: (arrival_ns, source, fix)."""
-        # A fix on its way from an earlier block may arrive after a fix of this block.
+        """Step through a block; fixes: (arrival_ns, source, fix)."""
+        # A fix from an earlier block may arrive after one of this block.
         self._loop.waiting = sorted([*self._loop.waiting, *fixes], key=lambda entry: entry[:2])
         block = AidedBlock(imu, truth, self._loop)
         self._judged += self._loop.run_block(block)

@@ -1,4 +1,4 @@
-"""The covariance of a strapdown from its settings, and its published form."""
+"""The covariance of a strapdown according to its settings, and the published part of it."""
 
 import math
 from typing import NamedTuple
@@ -15,8 +15,7 @@ from ins_sim.core.numerics.fixed_order import product
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.error_sigmas import fixed_errors, triad_sigmas
 
-# Variances up to these, (rad/s)^2 and (m/s^2)^2, are those that an instrument without noise
-# states.
+# IMU messages state variances up to these, (rad/s)^2 and (m/s^2)^2, for sensors without noise.
 ALMOST_EXACT = 1e-11, 1e-9
 
 
@@ -32,7 +31,7 @@ class StartSigmas(NamedTuple):
     Standard deviations at the start.
 
     position, velocity: of each axis, m and m/s; tilt, azimuth: rad; gyro_bias: of each axis,
-    rad/s, or None for that of the settings.
+    rad/s, or None to use the settings.
     """
 
     position: float
@@ -43,7 +42,7 @@ class StartSigmas(NamedTuple):
 
 
 def initial_sigmas(initial):
-    """Return the StartSigmas of the settings of the initial state."""
+    """Return the StartSigmas from the settings of the initial state."""
     return StartSigmas(initial.position_sigma_m, initial.velocity_sigma_m_s,
                        1e-3 * initial.tilt_sigma_mrad, 1e-3 * initial.azimuth_sigma_mrad)
 
@@ -52,20 +51,8 @@ def free_covariance(settings, show=None, start=None, dt_s=None):
     """
     Return the FreeCovariance of StrapdownSettings, from initial errors and instrument errors.
 
-    Parameters
-    ----------
-    settings : StrapdownSettings
-    show
-        See FreeCovariance.
-    start : StartSigmas, optional
-        By default those of the settings.
-    dt_s : float, optional
-        Sampling period, s; by default that of rate_hz.
-
-    Raises
-    ------
-    ValueError
-        If the values of the instrument errors are invalid.
+    show: see FreeCovariance; start: StartSigmas, by default from the settings; dt_s: sampling
+    period, by default from rate_hz.  Raises ValueError if the instrument parameters are invalid.
     """
     initial, channel = settings.initial, settings.vertical.channel
     gyro, accelerometer = sigmas_of(settings)
@@ -90,11 +77,10 @@ def free_covariance(settings, show=None, start=None, dt_s=None):
 
 def disagreement(settings, stated):
     """
-    Return a text on how an IMU differs from the one that StrapdownSettings describe, or ''.
+    Return how the noise of an IMU differs from that in StrapdownSettings, or ''.
 
-    stated: variances of a sample by axis in its messages, (rad/s)^2 and (m/s^2)^2. They differ if
-    the standard deviations differ by a factor of two or more; variances of a perfect IMU are
-    ignored.
+    stated: variances of a sample by axis that the messages of the IMU state, (rad/s)^2 and
+    (m/s^2)^2. They disagree if the standard deviations differ by a factor of two or more.
     """
     for unit, name, said, known, least in zip(('rad/s', 'm/s^2'), ('gyro', 'accelerometer'),
                                               stated, sigmas_of(settings), ALMOST_EXACT):
@@ -109,13 +95,13 @@ def disagreement(settings, stated):
 
 class PublishedCovariance(NamedTuple):
     """
-    The published form of a FreeCovariance, tuples of floats, valid from t_ns to the next one.
+    The published part of a FreeCovariance, tuples of floats; valid from t_ns until the next one.
 
-    All contain the square of the error that is the same in every run.
+    All include the square of the error that is the same in every run.
 
     pose: (36) of position (m) and attitude (rad) about the axes of map, row by row; velocity: (9)
-    of the velocity in b, in the axes of n; rate: (9) of the angular velocity in b; place: (9) of
-    the position in East, North, Up.
+    of the velocity that is published in b, resolved in n; rate: (9) of the angular velocity in b;
+    place: (9) of the position in east, north, up.
     """
 
     t_ns: int
@@ -127,9 +113,9 @@ class PublishedCovariance(NamedTuple):
 
 def published_covariance(settings, frame=None, start=None, dt_s=None):
     """
-    Return the FreeCovariance of StrapdownSettings that yields PublishedCovariances.
+    Return a FreeCovariance of StrapdownSettings whose ``shown`` is a PublishedCovariance.
 
-    frame: MapFrame, by default that of the datum; for the others see ``free_covariance``.
+    frame: MapFrame, by default that of the datum; other arguments: see ``free_covariance``.
     """
     frame = frame or MapFrame(settings.datum, settings.earth.rotation)
     gyro, _ = sigmas_of(settings)

@@ -1,4 +1,4 @@
-"""The sensors and navigators of a closed loop, fed with the truth of one instant at a time."""
+"""Sensors and navigators of a closed loop, fed with the truth of one instant at a time."""
 
 from functools import partial
 
@@ -20,13 +20,13 @@ from .aided_loop import AidedLoop
 
 
 class _ImuOfMotion:
-    """An IMU that evaluates the motion itself, as far as the truth is known."""
+    """The IMU that evaluates the motion itself, as far as the truth is known."""
 
     def __init__(self, settings, motion, first_ns, lead_ns):
         self._imu, self._lead_ns = MotionImu(settings, motion, first_ns), lead_ns
 
     def push(self, t_ns, *_):
-        """Return the readings that need no truth later than t_ns, as StreamImu.push does."""
+        """Return the readings that depend on nothing after t_ns, as StreamImu.push does."""
         readings = []
         while self._imu.next_ns + self._lead_ns <= t_ns:
             block = self._imu.advance(1)
@@ -38,17 +38,16 @@ class _ImuOfMotion:
 
 class SteeringChain:
     """
-    IMU and strapdown, and, with aiding, velocity meter, GNSS and aided navigator.
+    IMU and strapdown; in aided runs also velocity meter, GNSS and aided navigator.
 
-    These are the stages of ``simulate`` and ``simulate_aided``, and the solutions have the same
-    bits. Stages that do not influence the steering solution are left out.
-
+    The stages are those of ``simulate`` and ``simulate_aided``, and the solutions have the same
+    bits. Stages that do not affect the solution used for steering are left out.
     Parameters
     ----------
     settings : SimulationSettings
     motion : GuidedMotion
     aided : AidedSimulationSettings, optional
-        If given, the aided solution steers, otherwise that of the strapdown.
+        If given, the aided solution steers; otherwise that of the strapdown.
     """
 
     def __init__(self, settings, motion, aided=None):
@@ -82,7 +81,7 @@ class SteeringChain:
 
     def push(self, t_ns, truth):
         """
-        Process the truth of an instant.
+        Process the truth of one instant.
 
         Parameters
         ----------
@@ -94,7 +93,7 @@ class SteeringChain:
         Returns
         -------
         list of (int, tuple)
-            The solutions that become available: instant, and (lat, lon, height, v_n, q_nb).
+            The solutions completed by it: instant, and lat, lon, height, v_n, q_nb.
         """
         lat, lon, height, v_n, q_nb, omega, f = truth
         if self._meter is not None:
@@ -110,14 +109,14 @@ class SteeringChain:
         return found
 
     def _arrived(self, source, fixes):
-        """Queue fixes until the samples reach their time of arrival."""
+        """Keep fixes until the samples reach their arrival."""
         if fixes:
             waiting = self._aided.waiting
             waiting += [(fix.arrival_ns, source, fix) for fix in fixes]
             waiting.sort(key=lambda entry: entry[:2])
 
     def _navigate(self, reading, now_ns, truth):
-        """Process a reading unless it is lost; return a list of at most one steering solution."""
+        """Process a reading unless it is lost; return a list of solutions to steer by."""
         t_ns, omega, f, _ = reading
         if self._errors is not None:
             omega, f = self._errors.step(t_ns, omega, f)
@@ -137,10 +136,7 @@ class SteeringChain:
 
     @staticmethod
     def _published(loop, sample):
-        """
-        Return a list with the instant and solution that a NavigationLoop publishes, or an empty
-        one.
-        """
+        """Return [(instant, solution)] that a NavigationLoop (or None) publishes, or []."""
         if loop is None:
             return []
         return [(sample[0], loop.navigator.solution) for *_, due in loop.run([sample]) if due]

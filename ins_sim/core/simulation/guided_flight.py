@@ -20,11 +20,11 @@ PIECE = 1024
 @dataclass(frozen=True)
 class GuidedResult:
     """
-    How a guided motion was steered, at the control instants.
+    History of the steering at the control instants.
 
-    estimates: what the autopilot received; states: of the vehicle; notes: a message for each kind
-    of event; counts: pairs of the reason for which the autopilot did not steer, or 'limited', and
-    the number of such control instants.
+    estimates: what the autopilot received; states: true state of the vehicle; notes: a sentence
+    for each kind of event; counts: pairs of the reason why the autopilot did not steer, or
+    'limited', and the number of such control instants.
     """
 
     estimates: SteeringEstimates
@@ -37,26 +37,25 @@ def fly(settings, motion, aided=None, progress=None):
     """
     Steer a guided motion through a whole run and return the GuidedResult.
 
-    Afterwards the motion is known as it was flown. The usual simulations of it follow without
-    steering and give the bits of the loop.
+    Afterwards the motion is known as flown. The usual simulations can then be run on it without
+    steering; they give the same bits as the loop.
 
     Parameters
     ----------
     settings : SimulationSettings
     motion : Motion
-        The motion of the settings. If it is not guided, it needs no steering and the result is
-        None.
+        The motion of the settings. If it is not guided, nothing is done and None is returned.
     aided : AidedSimulationSettings, optional
         If given, the aided solution steers, unless guidance.topic is that of the strapdown;
-        without it the strapdown solution steers.
+        otherwise the solution of the strapdown steers.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
 
     Raises
     ------
     ValueError
-        If the run ends after the last turning point, or if the control instants of the motion are
-        not samples; and as the stages do.
+        If the run ends after the last turning point, if the control instants of the motion are
+        not sampling instants, or as the stages do.
     """
     if not isinstance(motion, GuidedMotion):
         return None
@@ -85,7 +84,7 @@ def fly(settings, motion, aided=None, progress=None):
 
 
 def _who_steers(settings, aided, notes):
-    """Return the AidedSimulationSettings whose solution steers, or None for the strapdown."""
+    """Return the AidedSimulationSettings whose solution steers, or None for the strapdown's."""
     topic = settings.motion_generator.guidance.topic
     if topic == INS_SOLUTION:
         aided = None
@@ -102,7 +101,7 @@ def _periods(settings, motion, chain, steering, commands):
     generator = settings.motion_generator
     dt_ns, period = period_ns(generator.rate_hz), motion.period_ns
     first_ns = round(generator.start_s * 1e9)
-    # A channel with negative delay reads the motion so far beyond the last instant.
+    # A channel with negative delay needs the motion this far beyond the last instant.
     span_ns = round(generator.duration_s * 1e9) // dt_ns * dt_ns + settings.lead_ns
     count = -(-span_ns // period)
     motion.begin(first_ns)

@@ -1,9 +1,4 @@
-"""
-Offline simulation: fly a motion, sense it, navigate on the readings, compare with the truth.
-
-With ``twin`` the run is repeated with all channel delays set to zero; the difference shows what
-the delays alone cause.
-"""
+"""The unaided chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -32,8 +27,8 @@ class SimulationResult:
     """
     One offline run: truth, solution and errors at the output instants.
 
-    imu: all readings; twin: errors of the same run with all delays zero, or None; faults: a
-    message for each gap at which the strapdown started anew.
+    imu: all readings; twin: the errors of the same run with all delays zero, or None; faults: a
+    sentence for each gap at which the strapdown started anew.
     """
 
     truth: Truth
@@ -45,15 +40,13 @@ class SimulationResult:
 
 
 def imu_blocks(settings, motion):
-    """
-    Yield blocks of ImuSamples of a whole run, from the motion or through the stream of truth.
-    """
+    """Yield ImuSamples of a whole run in blocks, from the motion or from streamed truth."""
     return sensed_blocks(settings.imu_sensor, ideal_blocks(settings, motion))
 
 
 @paused_in_blocks
 def sensed_blocks(sensor, ideal):
-    """Pass blocks of the ideal IMU through the instrument of ImuSensorSettings."""
+    """Yield blocks of the ideal IMU with the errors of ImuSensorSettings added."""
     sensed = SensedRun(sensor)
     for block in ideal:
         block = sensed.take(block)
@@ -63,10 +56,10 @@ def sensed_blocks(sensor, ideal):
 
 class SensedRun:
     """
-    The errors and the sampling of the instrument of ImuSensorSettings in one run.
+    Adds the instrument errors of ImuSensorSettings to ideal readings, for one run.
 
-    errors: its InstrumentErrors, or None for a perfect one. Raises ValueError as ``with_errors``
-    does.
+    errors: its InstrumentErrors, or None for a perfect instrument.  Raises ValueError as
+    ``with_errors`` does.
     """
 
     def __init__(self, sensor):
@@ -75,12 +68,12 @@ class SensedRun:
                                 period_ns(sensor.rate_hz))
 
     def take(self, ideal):
-        """Return the ImuSamples that the instrument makes of ideal ones; some may be dropped."""
+        """Return ImuSamples with errors, given those of the ideal IMU; some may be held back."""
         return self._sampler.take(ideal if self.errors is None else self.errors.advance(ideal))
 
 
 def reading_count(generator, dt_ns):
-    """Return the number of readings of an IMU with the sampling period dt_ns on the motion."""
+    """Return the number of readings of an IMU with sampling period dt_ns during the motion."""
     return _steps(generator) * period_ns(generator.rate_hz) // dt_ns + 1
 
 
@@ -93,7 +86,7 @@ def truth_blocks(generator, motion):
 
 
 def ideal_blocks(settings, motion):
-    """Yield blocks of ImuSamples of the IMU without the errors that ``sensed_blocks`` adds."""
+    """Yield blocks of ImuSamples without the errors that ``sensed_blocks`` adds."""
     generator, sensor = settings.motion_generator, settings.imu_sensor
     first_ns = round(generator.start_s * 1e9)
     if sensor.source == 'motion':
@@ -114,12 +107,11 @@ def ideal_blocks(settings, motion):
 @paused_in_blocks
 def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     """
-    Run the strapdown over blocks of ImuSamples, with the truth of the motion.
+    Run the strapdown over blocks of ImuSamples, with the truth from the motion.
 
-    Yield (truth, states, errors) records of the output instants of each block. A gap is handled
-    according to on_fault: the strapdown starts anew from the truth and a message is appended to
-    the list faults, or ValueError is raised. covariance: a FreeCovariance that is propagated
-    beside it.
+    Yield (truth, states, errors) records at the output instants of each block. A gap is handled
+    according to on_fault: the strapdown starts anew from the truth and a sentence is appended to
+    the list faults, or ValueError is raised.  covariance: a FreeCovariance to propagate, or None.
     """
     strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:
@@ -136,7 +128,7 @@ class StrapdownRun:
                                     settings.output_every, settings.on_fault, faults)
 
     def take(self, imu):
-        """Process ImuSamples and yield (truth, states, errors) of their output instants."""
+        """Yield (truth, states, errors) at the output instants among ImuSamples."""
         t_ns = self._clock.instant(imu.t_ns)
         truth = self._motion.at(t_ns)
         for first, (states, errors), due in self._loop.run_block(t_ns, imu.omega, imu.f, truth):
@@ -144,7 +136,7 @@ class StrapdownRun:
 
 
 class RecentTruth:
-    """The truth of a motion, with a cache for the last request."""
+    """The truth of a motion; repeated requests for the last instants are not recomputed."""
 
     def __init__(self, motion):
         self._motion, self._last = motion, None
@@ -163,29 +155,21 @@ class RecentTruth:
 
 def simulate(settings, motion, twin=True, progress=None, collect=Collected):
     """
-    Simulate a run offline.
+    Return the SimulationResult of SimulationSettings.
 
     Parameters
     ----------
     settings : SimulationSettings
-    motion : Motion
-        The motion of settings.motion_generator.
-    twin : bool
-        Also run with all delays zero.
-    progress : callable, optional
-        Called with the fraction done.
-    collect : callable
-        Called once for each history; returns an object that takes the blocks and gives the whole,
-        such as Collected, which keeps it in memory.
-
-    Returns
-    -------
-    SimulationResult
+    motion : Motion of settings.motion_generator
+    twin : whether to repeat the run with all delays set to zero
+    progress : called with the fraction done
+    collect : called once for each history; returns an object that receives the blocks and gives
+        the whole, such as Collected, which keeps it in memory
 
     Raises
     ------
-    ValueError
-        If the settings do not define a run of finite length.
+    ValueError : if the run has no finite length
+
     """
     generator = settings.motion_generator
     check_length(generator, motion)
@@ -203,7 +187,7 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
                 progress((done + imu.t_ns[-1] - first_ns) / total)
 
     if settings.imu_sensor.source == 'stream':
-        # The IMU and the navigation request the truth at the same instants.
+        # IMU and navigation request the truth at the same instants.
         motion = RecentTruth(motion)
     sensed, flown = collect(), [collect() for _ in (Truth, NavStates, NavErrors)]
     blocks = watch(_kept(imu_blocks(settings, motion), sensed), 0)
@@ -227,24 +211,22 @@ def simulate(settings, motion, twin=True, progress=None, collect=Collected):
 
 def withheld_readings(settings):
     """
-    Return the number of readings at the end of a run that wait for truth that never arrives.
+    Return the number of readings at the end of a run that are missing, for lack of later truth.
 
-    A channel with negative delay reads the future; on a stream of truth its last readings would
-    need truth from after the end.
+    A channel with negative delay reads the future; on streamed truth its last readings would need
+    truth from beyond the end.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     if sensor.source != 'stream':
         return 0
     lead_ns = -min(0, *sensor.gyro.delay_us.in_ns(), *sensor.accelerometer.delay_us.in_ns())
     dt_ns, span_ns = period_ns(sensor.rate_hz), _steps(generator) * period_ns(generator.rate_hz)
-    # The first block contains only the first instant.
+    # The first one contains only the first instant.
     return span_ns // dt_ns - max(0, (span_ns - lead_ns) // dt_ns)
 
 
 def _until(last_ns, blocks):
-    """
-    Yield the readings up to an instant, so that a twin has the same readings as the run itself.
-    """
+    """Yield the readings up to an instant, so that a twin has the same readings as the run."""
     for block in blocks:
         if block.t_ns[-1] > last_ns:
             block = block[:int(np.searchsorted(block.t_ns, last_ns, side='right'))]
@@ -259,7 +241,7 @@ def _kept(blocks, store):
 
 
 def check_start(settings):
-    """Raise ValueError if nominal instants, multiples of the period, would miss the start."""
+    """Raise ValueError if nominal instants, multiples of the period, would not hit the start."""
     start_s, dt_ns = settings.motion_generator.start_s, period_ns(settings.imu_sensor.rate_hz)
     if settings.strapdown.imu_time == 'nominal' and round(1e9 * start_s) % dt_ns:
         raise ValueError(f'motion_generator: start_s is {start_s:.9g} s with imu_time nominal; '

@@ -1,6 +1,4 @@
-"""
-NEES of an aided run, from its errors and those of the other quantities that the filter estimates.
-"""
+"""NEES of an aided run: errors of the solution and of the other estimates of the filter."""
 
 import numpy as np
 
@@ -12,7 +10,7 @@ UNBIASED = (0.0, 0.0, 0.0)
 
 class ErrorNormaliser:
     """
-    Normalise the errors of the runs of AidedSimulationSettings by the covariance of the filter.
+    Normalises the errors of runs of AidedSimulationSettings by the covariance of the filter.
 
     errors: InstrumentErrors of the run, None for a perfect instrument.
     """
@@ -36,8 +34,8 @@ class ErrorNormaliser:
         """
         Return NEES and degrees of freedom, (n, BLOCKS), at the output instants of an AidedResult.
 
-        Its notes are FilterNotes. At the first instant the errors are the drawn ones; NEES is NaN
-        and the degrees of freedom are 0 there.
+        Its notes must be FilterNotes. At the first instant the errors are the drawn initial
+        errors, which are not evaluated (NaN, 0).
         """
         errors = result.errors
         columns = (errors.attitude.tolist(), errors.velocity.tolist(), errors.position.tolist())

@@ -46,7 +46,7 @@ def test_a_standstill_that_is_cut_short_begins_anew():
 
 @pytest.mark.parametrize('scale, part', [
     (1.0 / 9.80665, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g?'),
-    (1000.0 / 9.80665, 'is it in mg?'), (0.0, 'was gravity taken off it?')])
+    (1000.0 / 9.80665, 'is it in mg?'), (0.0, 'was gravity removed?')])
 @pytest.mark.parametrize('source', ['alignment', 'given'])
 def test_another_unit_of_the_accelerometers(scale, part, source):
     """Accelerometers in another unit are reported, and navigation does not start."""
@@ -62,10 +62,10 @@ def test_upside_down():
     turn = quaternion.exponential((math.pi, 0.0, 0.0))
     said = play(stage_of(GIVEN), imu.turned(turn), fixes)
     assert said.solved and said.has('alignment: roll ')
-    assert said.has('is the IMU mounted turned? (mounting.rpy_deg, or mounting.source level)')
+    assert said.has('Is the IMU mounted rotated? Then set mounting.rpy_deg, or mounting')
     mounted = {**GIVEN, 'mounting.rpy_deg': (180.0, 0.0, 0.0)}
     said = play(stage_of(mounted), imu.turned(turn), fixes)
-    assert said.solved and not said.has('is the IMU mounted turned?')
+    assert said.solved and not said.has('Is the IMU mounted rotated?')
 
 
 def test_zeros_in_turns():

@@ -6,7 +6,7 @@ import copy
 from ..velocity_window import (BodyMean, DoubleIntegral, Force, Integrals, sums_after,
                                WindowSums)
 
-# What the sums that a filter can ask for start from.
+# Initial values of the sums that a filter can ask for.
 EMPTY = {'mean': tuple(BodyMean()), 'integrals': tuple(Integrals()),
          'accelerations': (tuple(DoubleIntegral()),) * 2, 'turned': 0.0, 'force': tuple(Force())}
 
@@ -22,7 +22,7 @@ class FixOutcome(namedtuple('FixOutcome', 'innovation nis freedom taken reason',
     Parameters
     ----------
     innovation : tuple of float
-        Prediction less measurement, in the units of the filter; () if it was not computed.
+        Prediction minus measurement, in the units of the filter; () if it was not computed.
     nis : float or None
         Normalised innovation squared, z' S^-1 z; None for a filter without a covariance.
     freedom : int
@@ -45,12 +45,12 @@ class AidingFilter:
     """
     Base class of the aiding filters, a public point of extension.
 
-    `AidedNavigator` makes one object when the solution starts and then calls, for every IMU
-    sample, ``step``; before the first sample of a window of the velocity meter,
-    ``begin_window``; for every fix to be used, at its own instant, ``update_velocity`` or
-    ``update_gnss``. A filter corrects the solution by ``ins.correct`` and ``ins.add_biases``.
+    `AidedNavigator` creates one object when the solution starts. It then calls ``step`` for every
+    IMU sample, ``begin_window`` before the first sample of a window of the velocity meter, and
+    ``update_velocity`` or ``update_gnss`` for every fix to be used, at the instant of the fix. A
+    filter corrects the solution with ``ins.correct`` and ``ins.add_biases``.
 
-    Axes: b is forward, left, up; n is East, North, Up. Errors are computed less true.
+    Axes: b is forward, left, up; n is east, north, up. Errors are computed minus true.
 
     A fix that arrives late is processed at its own instant: the navigator restores a copy of the
     filter and of the strapdown, and repeats the samples since then. All state of a filter must
@@ -70,9 +70,9 @@ class AidingFilter:
     Attributes
     ----------
     sums : tuple
-        What is summed over the samples of the window so far, the fields of ``WindowSums``.
+        Sums over the samples of the window so far, the fields of ``WindowSums``.
     needs : tuple of str
-        The fields of ``WindowSums`` that the filter uses beside the mean, a class attribute.
+        Fields of ``WindowSums`` that the filter uses besides the mean; a class attribute.
     estimates : tuple of float
         Estimated mounting error of the velocity meter (rad, antennas turned left is positive)
         and its forward and lateral scale errors; constant zero if not estimated.
@@ -85,13 +85,13 @@ class AidingFilter:
         corrected specific force). The test sees other states, the filter's own, by their effect
         on the innovation.
     covariance : ndarray, (n, n), or None
-        Of the errors ``states``; None for a filter without one. A filter replaces it and never
-        changes it in place.
+        Covariance of the errors ``states``, or None. A filter replaces it and never changes it in
+        place.
     given : tuple of str
-        The states whose values are given to the filter, so that it does not estimate them.
+        States that the filter does not estimate, because their values are given in the settings.
     observed_at : str
-        'end' or 'start' of the window: the instant of the errors which the matrix of
-        ``velocity_model`` multiplies.
+        'end' or 'start' of the window: the instant to which the errors multiplied by the matrix
+        of ``velocity_model`` belong.
     neglected : float
         Largest coefficient that the transition matrix leaves out, in SI units (1/s or 1/s^2).
     """
@@ -117,11 +117,11 @@ class AidingFilter:
 
     @property
     def window(self):
-        """Return the sums by name, WindowSums."""
+        """Return the sums by name, as WindowSums."""
         return WindowSums(*self.sums)
 
     def clear(self, name):
-        """Set one of the sums to where it starts from."""
+        """Reset one of the sums to its initial value."""
         self.replace(name, EMPTY[name])
 
     def replace(self, name, value):
@@ -129,7 +129,7 @@ class AidingFilter:
         self.sums = tuple(self.window._replace(**{name: value}))
 
     def copy(self):
-        """Return a snapshot, which later calls of the methods do not change."""
+        """Return a snapshot, which is not affected by later calls of the methods."""
         return copy.copy(self)
 
     def step(self, ins, before, delta_v, dt):
@@ -144,9 +144,9 @@ class AidingFilter:
         ins : CorrectedStrapdown
             The solution at the end of the sampling interval.
         before : tuple
-            At its start: q_nb (4,), velocity in b (3,), velocity in n (3,), m/s.
+            At the start of the interval: q_nb (4,), velocity in b (3,), velocity in n (3,), m/s.
         delta_v : tuple of float, (3,)
-            Velocity increment in b of the start, biases subtracted, m/s.
+            Velocity increment without biases, resolved in b at the start, m/s.
         dt : float
             Length of the interval, s.
         """
@@ -157,12 +157,12 @@ class AidingFilter:
             self.pause(ins)
 
     def samples_left(self):
-        """Return after how many samples from now ``pause`` is to be called, or None."""
+        """Return the number of samples until ``pause`` must be called, or None for never."""
         return None
 
     def pause(self, ins):
         """
-        Do what is not done at every sample, such as to propagate a covariance.
+        Do the work that is not needed at every sample, such as propagating a covariance.
 
         Parameters
         ----------
@@ -172,10 +172,10 @@ class AidingFilter:
 
     def begin_window(self, ins):
         """
-        Forget the window that has ended.
+        Reset what the filter has accumulated over the window that has ended.
 
-        Called before the first sample of a new window, hence after the fix of the last one, if
-        that came in time. Without a fix it is called all the same.
+        Called before the first sample of a new window, that is, after the fix of the last window
+        if it came in time. It is also called if there was no fix.
 
         Parameters
         ----------
@@ -203,9 +203,9 @@ class AidingFilter:
 
     def update_gnss(self, ins, fix, rate, lever):
         """
-        Process a valid GNSS fix of now or at most one sampling interval ago.
+        Process a valid GNSS fix that is at most one sampling interval old.
 
-        Called only for filters that the table lists with ``takes_gnss``.
+        Called only for filters with ``takes_gnss`` in the table of filters.
 
         Parameters
         ----------
@@ -215,7 +215,7 @@ class AidingFilter:
         rate : tuple of float, (3,)
             Angular rate of b relative to the Earth, in b, rad/s.
         lever : tuple of float, (3,)
-            Place of the antenna relative to the IMU, in b, m.
+            Position of the antenna relative to the IMU, in b, m.
 
         Returns
         -------
@@ -230,7 +230,7 @@ class AidingFilter:
         Returns
         -------
         position, velocity, attitude : tuple of float, (3,)
-            East, North, Up; m, m/s, rad.
+            East, north, up; m, m/s, rad.
         """
         return None
 
@@ -239,7 +239,7 @@ class AidingFilter:
         return None
 
     def residual(self, fix):
-        """Return mean velocity of the solution less that of a fix, forward and left, m/s."""
+        """Return the mean velocity of the solution minus that of a fix, forward and left, m/s."""
         x, y = self.mean.value
         return x - fix.velocity[0], y - fix.velocity[1]
 
@@ -257,38 +257,39 @@ class AidingFilter:
 
     def transition(self, ins):
         """
-        Return the transition matrix from where the covariance stands to the present, (n, n).
+        Return the transition matrix from the instant of the covariance to the present, (n, n).
 
-        For ``observed_at`` 'start', from the start of the window to the present.
+        With ``observed_at`` 'start' it begins at the start of the window.
+
         """
         raise NotImplementedError
 
     def velocity_model(self, ins, fix):
         """
-        Return the innovation of a velocity fix, and its matrix; parameters as in update_velocity.
+        Return the innovation of a velocity fix and its matrix; parameters as in update_velocity.
 
         Returns
         -------
         z : ndarray, (2,)
-            Prediction less measurement, forward and left, m/s.
+            Prediction minus measurement, forward and left, m/s.
         h : ndarray, (2, n)
-            Derivative of z by the errors at ``observed_at``.
+            Derivative of z with respect to the errors at ``observed_at``.
         """
         raise NotImplementedError
 
     def gnss_model(self, ins, fix, rate, lever):
         """
-        Return the innovation of a GNSS fix, and its matrix; parameters as in ``update_gnss``.
+        Return the innovation of a GNSS fix and its matrix; parameters as in ``update_gnss``.
 
         Returns
         -------
         z : ndarray, (m,)
-            Prediction less measurement: position, m, and velocity, m/s, East, North, Up.
+            Prediction minus measurement: position (m) and velocity (m/s), east, north, up.
         h : ndarray, (m, n)
-            Derivative of z by the present errors.
+            Derivative of z with respect to the present errors.
         """
         raise NotImplementedError
 
 
 class NoCorrection(AidingFilter):
-    """The free solution: no fix is used (the table lists no instrument for it)."""
+    """The free solution: it uses no fixes (the table of filters lists no instrument for it)."""

@@ -16,10 +16,10 @@ from .base import AidingFilter, FixOutcome
 # covariance stays positive definite (m, m/s, rad, m/s^2, rad/s, m; mounting rad, scale errors).
 FLOOR = np.array([1e-3] * 3 + [1e-5] * 3 + [1e-8] * 3 + [1e-9] * 3 + [1e-12] * 3 + [1e-9] * 2
                  + [1e-9, 1e-9, 1e-9])
-# Places of the diagonal in a matrix row by row.
+# The diagonal in a matrix stored row by row.
 DIAGONAL = slice(None, None, model.SIZE + 1)
 GATE = 'its innovation is beyond the gate'
-# Duration of a typical turn, and time constant over which the rate is smoothed, s.
+# Duration of a typical turn, and time constant of the smoothing of the rate, s.
 TURN_S, SMOOTHING_S = 50.0, 10.0
 
 
@@ -29,8 +29,8 @@ class ErrorStateFilter(AidingFilter):
 
     The strapdown is corrected after every fix, so that the estimated error state is zero between
     fixes. The measurement of the velocity meter is compared with the mean over its window of the
-    velocity in b, which is exact for any motion within the window; the state eta holds the
-    effect of the errors on that mean.
+    fixes. The measurement of the velocity meter is compared with the mean, over its window, of
+    the velocity in b, which is exact for any motion within the window; the state eta holds the
     """
 
     needs = ('force',)
@@ -56,7 +56,7 @@ class ErrorStateFilter(AidingFilter):
                  + [imu.accelerometer_bias_walk_ug_sqrt_h * UG / SQRT_H] * 3
                  + [imu.gyro_bias_walk_deg_h_sqrt_h * DEG_H / SQRT_H] * 3 + [0.0] * 5)
         self._density = np.square(walks)
-        # What is known exactly at the start and does not move; position and attitude do.
+        # States that are known exactly at the start and stay so. Position and attitude do not.
         exact = [not s and not w for s, w in zip(sigmas[model.BA.start:], walks[model.BA.start:])]
         self.given = (*(model.STATES[k] for k in model.DOWN if self._altimeter),
                       *(name for name, known in zip(model.STATES[model.BA.start:], exact)
@@ -78,7 +78,7 @@ class ErrorStateFilter(AidingFilter):
         return self._every - self.sums[-1][0]
 
     def pause(self, ins):
-        """Propagate the covariance over the samples since the last time."""
+        """Propagate the covariance over the samples since the last propagation."""
         steps, dt, _ = self.window.force
         if not steps:
             return
@@ -111,12 +111,13 @@ class ErrorStateFilter(AidingFilter):
 
     def _of_turns(self, ins, dt):
         """
-        Return the noise density of the tilt by gyro scale factors and misalignment in turns.
+        Return the tilt noise density that stands for gyro scale factor and misalignment errors.
 
-        These errors are constant, but are not states. They are replaced by white noise of the
-        tilt that has the same effect after TURN_S at the present rate. The rate is smoothed,
-        because the errors of a weave cancel. The azimuth gets no such noise: its standard
-        deviation is large in comparison, and the error of a turn cancels in the turn back.
+        These errors are constant, but they are not states of the filter. They are replaced by
+        white noise of the tilt that has the same effect after a turn of TURN_S at the present
+        rate. The rate is smoothed, because the errors of a weave cancel. The azimuth gets no such
+        noise: its standard deviation is large in comparison, and the error of a turn cancels in
+        the turn back.
         """
         if not self._gyro_scale:
             return 0.0
@@ -148,7 +149,7 @@ class ErrorStateFilter(AidingFilter):
         return self._update(ins, z, h, variances)
 
     def gnss_model(self, ins, fix, rate, lever):
-        """Return the innovation of position and velocity of the antenna, and its matrix."""
+        """Return the innovation of the antenna's position and velocity, and its matrix."""
         c = matrix.attitude_matrix(ins.q_nb)
         ago = (ins.t_ns - fix.t_ns) * 1e-9
         east, north, up = position_error(ins.lat, ins.lon, ins.height, fix.lat, fix.lon,
@@ -170,7 +171,7 @@ class ErrorStateFilter(AidingFilter):
         return FixOutcome(innovation, nis, len(z))
 
     def correct(self, ins, x):
-        """Subtract the estimated errors; that of eta by shifting the mean velocity."""
+        """Apply the estimated errors as corrections; that of eta shifts the mean velocity."""
         ins.correct(x[0:3], x[3:6], x[6:9])
         ins.add_biases(gyro=tuple(-b for b in x[12:15]), accelerometer=tuple(-b for b in x[9:12]))
         self.estimates = tuple(a - b for a, b in zip(self.estimates, x[17:20]))
@@ -179,7 +180,7 @@ class ErrorStateFilter(AidingFilter):
         self._begin(ins)
 
     def begin_window(self, ins):
-        """Clear the window: eta becomes zero, without correlation to other states."""
+        """Clear the window: eta becomes zero and uncorrelated with the other states."""
         super().begin_window(ins)
         p = self.covariance.copy()
         p[model.ETA, :] = p[:, model.ETA] = 0.0
@@ -192,10 +193,10 @@ class ErrorStateFilter(AidingFilter):
         return kalman.is_covariance(self.covariance)
 
     def sigmas(self):
-        """Return the standard deviations of position, velocity and attitude, East, North, Up."""
+        """Return the standard deviations of position, velocity and attitude, east, north, up."""
         s = np.sqrt(np.diagonal(self.covariance)).tolist()
         return tuple(s[0:3]), tuple(s[3:6]), tuple(s[6:9])
 
     def estimate_sigmas(self):
-        """Return the standard deviations of mounting and scale errors of the velocity meter."""
+        """Return the standard deviations of the velocity meter's mounting and scale errors."""
         return tuple(np.sqrt(np.diagonal(self.covariance)[17:20]).tolist())

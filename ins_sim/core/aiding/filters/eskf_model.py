@@ -1,4 +1,4 @@
-"""The linear model of the errors that the aided navigator estimates: twenty states."""
+"""Linear error model of the error-state Kalman filter: twenty states."""
 
 import numpy as np
 
@@ -17,16 +17,16 @@ STATES = (*(f'{name}_{axis}' for name in ('position', 'velocity', 'attitude') fo
           'eta_x', 'eta_y', 'mounting', 'scale_x', 'scale_z')
 
 
-# Rows of F that are not zero, and how many columns are not: those from ETA on are.
+# Rows of F that are not zero, and number of nonzero columns: the columns from ETA on are zero.
 MOVING, CAUSES = np.array((*range(9), 15, 16)), 15
 
 
 def dynamics(lat, height, v, c, f_n, spin):
     """
-    Return the rows MOVING and the first CAUSES columns of F of x' = F x, (11, 15).
+    Return the rows MOVING and the first CAUSES columns of F in x' = F x, (11, 15).
 
-    The arguments are those of ``error_dynamics.inertial_rows``, whose rows are followed by those
-    of eta' = (C' dV + C' [V x] phi) forward and left.
+    The arguments are those of ``error_dynamics.inertial_rows``. The nine rows of that function
+    are followed by two for eta' = (C' dV + C' [V x] phi), forward and left.
     """
     v_e, v_n, v_u = v
     c_ex, c_ey, _, c_nx, c_ny, _, c_ux, c_uy, _ = c
@@ -41,14 +41,14 @@ def dynamics(lat, height, v, c, f_n, spin):
 
 
 def transition(n):
-    """Return the transition matrix (20, 20) of a ``change``."""
+    """Return the transition matrix (20, 20), given ``error_dynamics.change`` of the rows."""
     phi = np.eye(SIZE)
     phi[MOVING, :CAUSES] += n
     return phi
 
 
 def propagated(p, n):
-    """Return (1 + N) P (1 + N)' of a covariance (20, 20) and a ``change``."""
+    """Return (1 + N) P (1 + N)', given a covariance P (20, 20) and the ``change`` N."""
     left = p.copy()
     left[MOVING] += product(n, p[:CAUSES])
     both = left.copy()
@@ -58,10 +58,20 @@ def propagated(p, n):
 
 def meter(mean, mu, kx, kz):
     """
-    Return the velocity that the meter reads of a mean velocity in b, and its matrices.
+    Return the predicted reading of the velocity meter and its derivatives.
 
-    mean: forward and left, m/s; mu rad (antennas turned left), kx, kz: estimates.  Return the
-    prediction (2,), its matrix of the mean (2, 2) and its columns of mu, kx, kz (2, 3).
+    Parameters
+    ----------
+    mean : mean velocity in b, forward and left, m/s
+    mu : mounting error, rad; positive if the antennas are turned left
+    kx, kz : forward and lateral scale errors
+
+    Returns
+    -------
+    read : (2,) predicted reading, m/s
+    of_mean : (2, 2) derivative with respect to the mean velocity
+    columns : (2, 3) derivative with respect to mu, kx, kz
+
     """
     s, c = elementary.sincos(mu)
     turned = c * mean[0] + s * mean[1], c * mean[1] - s * mean[0]
@@ -73,7 +83,7 @@ def meter(mean, mu, kx, kz):
 
 
 def meter_matrix(mean, mu, kx, kz, time_s):
-    """Return the prediction (2,) and H (2, 20) of a fix whose window is time_s long."""
+    """Return the predicted reading (2,) and H (2, 20) of a fix whose window is time_s long."""
     read, of_mean, columns = meter(mean, mu, kx, kz)
     h = np.zeros((2, SIZE))
     h[:, ETA] = of_mean / time_s
@@ -83,9 +93,14 @@ def meter_matrix(mean, mu, kx, kz, time_s):
 
 def gnss_matrix(c, lever, omega):
     """
-    Return H (6, 20) of the antenna's position (m) and velocity (m/s), East, North, Up.
+    Return H (6, 20) for the position (m) and velocity (m/s) of the antenna, east, north, up.
 
-    c (3, 3) C_nb; lever (3,) m, omega (3,) rad/s relative to the Earth, in b.
+    Parameters
+    ----------
+    c : (3, 3) C_nb
+    lever : (3,) position of the antenna relative to the IMU, in b, m
+    omega : (3,) angular rate of b relative to the Earth, in b, rad/s
+
     """
     h = np.zeros((6, SIZE))
     h[0:3, P] = h[3:6, V] = np.eye(3)

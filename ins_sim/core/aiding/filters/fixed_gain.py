@@ -17,10 +17,10 @@ class ConventionalFilter(AidingFilter):
     """
     Velocity correction with a fixed gain, as if the fix were the velocity at the window's end.
 
-    It is in fact the mean over the window, so that this filter errs whenever the velocity in body
-    axes changes (docs/theory/aided_navigation.md).  With windows that slide by T_s it is the
-    scheme of Ivanov (2015), section 1: a fix takes away the part ``gain_per_s`` T_s of the error,
-    in place of ``gain``.
+    The fix is in fact the mean over the window, so that this filter makes an error whenever the
+    velocity in body axes changes (docs/theory/aided_navigation.md). With windows that slide by
+    T_s it is the scheme of Ivanov (2015), section 1: a fix then removes the fraction
+    ``gain_per_s`` T_s of the error instead of ``gain``.
     """
 
     def __init__(self, settings, ins):
@@ -31,7 +31,7 @@ class ConventionalFilter(AidingFilter):
             self._gain = settings.gain_per_s * (window.step_cycles / settings.rate_hz)
 
     def update_velocity(self, ins, fix):
-        """Remove a part of the velocity error that the fix shows."""
+        """Remove the fraction ``gain`` of the velocity error that the fix shows."""
         z = ins.v_b[0] - fix.velocity[0], ins.v_b[1] - fix.velocity[1]
         e, n, _ = quaternion.rotate(ins.q_nb, (self._gain * z[0], self._gain * z[1], 0.0))
         ins.correct(velocity=(e, n, 0.0))

@@ -35,7 +35,8 @@ class WindowFilter(MatrixFilter):
     states = ('position_e', 'position_n', 'velocity_e', 'velocity_n',
               'acceleration_x', 'acceleration_y', 'offset_x', 'offset_y')
     observed_at = 'start'
-    # Coriolis acceleration and rotation of the level axes, 2 x 7.3e-5 + V tan(lat) / R.
+    # Coriolis acceleration and rotation of the level axes are neglected:
+    # 2 x 7.3e-5 + V tan(lat) / R.
     neglected = 3e-4
 
     def __init__(self, settings, ins):
@@ -123,11 +124,11 @@ class WindowFilter(MatrixFilter):
         return kalman.is_covariance(self.covariance)
 
     def sigmas(self):
-        """Return standard deviations; 0 for what is not estimated (vertical, attitude)."""
+        """Return standard deviations; 0 for quantities not estimated (vertical, attitude)."""
         e, n, ve, vn = np.sqrt(np.diagonal(self.covariance)[:4]).tolist()
         return (e, n, 0.0), (ve, vn, 0.0), (0.0, 0.0, 0.0)
 
 
 def _root_sum(a, b):
-    """Return the root of the sum of two squares, floats."""
+    """Return the square root of the sum of the squares of two floats."""
     return math.sqrt(a * a + b * b)

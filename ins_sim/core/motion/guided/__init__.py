@@ -1,1 +1,1 @@
-"""Flight along a route beside its legs, steered sideways by commands from outside."""
+"""Flight along a route, steered sideways by commands from outside."""

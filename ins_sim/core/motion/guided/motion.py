@@ -1,10 +1,10 @@
 """
-Flight beside the legs of a route, steered by commands of the sideslip.
+Flight along a route with a lateral offset that is steered by sideslip commands.
 
 The track of ``route`` gives the legs, the turns and the wind; the vehicle is z metres to the right
-of it.  Its nose is off its velocity relative to the air by the sideslip: with the course chi of
-the track the heading is chi + atan(v_z/V) - beta where there is no wind.  The bank is that of the
-track; on a leg the vehicle steers without bank.
+of it. The nose differs from the direction of the air velocity by the sideslip: without wind, and
+with the course chi of the track, the heading is chi + atan(v_z/V) - beta. The bank is that of the
+track; on a leg the vehicle is steered without bank.
 """
 
 import math
@@ -20,22 +20,22 @@ from ..route.motion import RouteMotion
 from ..truth import in_body, translation, truth_from_pose
 from .steered import SteeredHistory
 
-# Instants at which the track is evaluated at once for ``one``, in so many parts of a period.
+# ``one`` evaluates the track at AHEAD instants at once, for at most PHASES instants per period.
 AHEAD, PHASES = 256, 64
-# So many instants, and no more, are faster one by one.
+# Up to this number of instants, evaluating them one by one is faster.
 FEW = 2
 
 
 class GuidedMotion(RouteMotion):
     """
-    The flight of settings.FlownRouteSettings and settings.GuidedSettings.
+    The flight described by settings.FlownRouteSettings and settings.GuidedSettings.
 
-    It is known up to the end of the control period that was commanded last, ``known_ns`` of motion
-    time (``end_s`` in s), and knows nothing of what commands it.  ``begin`` starts it anew,
-    ``command`` flies one more period.  Before the first command it flies straight, at any time.
+    The motion is known up to the end of the last commanded control period: ``known_ns`` of motion
+    time, or ``end_s`` in s. It does not depend on what computes the commands. ``begin`` restarts
+    it; ``command`` adds one control period. Before the first command the flight is straight.
 
-    arrival_s: when the track reaches the last turning point; route and turns: as of RouteMotion.
-    Raises ValueError in one sentence on a flight that cannot be flown.
+    arrival_s: when the track reaches the last turning point; route and turns: see RouteMotion.
+    Raises ValueError, with one sentence, for a flight that cannot be flown.
     """
 
     end_name = 'up to which the guided motion has been steered'
@@ -53,7 +53,7 @@ class GuidedMotion(RouteMotion):
         self.period_ns = self._steered.period_ns
         half = elementary.sincos(-0.5 * self._attack)
         self._nose_up = (0.0, half[0], 0.0, half[1])
-        # By the part of a control period, ns: its number, and the flows from there on.
+        # For each phase of the control period: number of a period, and the flows from there on.
         self._ahead = {}
         self.begin(0)
 
@@ -63,7 +63,7 @@ class GuidedMotion(RouteMotion):
         return self._steered.known_ns
 
     def check_end(self, end_s):
-        """Raise ValueError where a run up to end_s, s, has not been flown."""
+        """Raise ValueError if a run up to end_s, s, has not been flown."""
         if end_s > self.end_s and not self._steered.is_steered:
             raise ValueError('motion.kind is guided; expected another kind without a flight: the '
                              'motion depends on the navigation, and only simulate and the live '
@@ -72,9 +72,9 @@ class GuidedMotion(RouteMotion):
 
     def length_s(self, start_s, duration_s):
         """
-        Return the length of a run from start_s on, s; duration_s: 0 = up to the arrival.
+        Return the length in s of a run that begins at start_s; duration_s 0: up to the arrival.
 
-        Raises ValueError where the run would last beyond the arrival.
+        Raises ValueError if the run would last beyond the arrival.
         """
         if start_s + duration_s > self.arrival_s or start_s >= self.arrival_s:
             raise ValueError(f'start_s + duration_s is {start_s + duration_s:g} s; expected at '
@@ -88,25 +88,25 @@ class GuidedMotion(RouteMotion):
 
     def command(self, t_ns, beta_c):
         """
-        Fly the control period that begins at t_ns.
+        Add the control period that begins at t_ns.
 
         Parameters
         ----------
         t_ns : int
-            Motion time, the end of the period before: ``known_ns``.
+            Motion time; must be the end of the period before, ``known_ns``.
         beta_c : float
-            Commanded sideslip at the end of the period, rad; it runs there linearly.
+            Commanded sideslip at the end of the period, rad; the command changes linearly to it.
 
         Raises
         ------
         ValueError
-            At another time, and on a command that is no number.
+            For any other time, or if the command is not finite.
         """
         self._steered.command(t_ns, beta_c)
         self.end_s = self.known_ns / 1e9
 
     def forget(self, t_ns):
-        """Forget the motion before t_ns; a node needs no more than its sensors look back."""
+        """Forget the motion before t_ns; a node needs only as much as its sensors look back."""
         self._steered.forget(t_ns)
 
     def states(self, t_ns):
@@ -115,7 +115,7 @@ class GuidedMotion(RouteMotion):
         return SteeredStates(np.asarray(t_ns), z, v_z, beta, command)
 
     def at(self, t_ns):
-        """Return the Truth at motion times t_ns (n,) int64; ValueError where it is not known."""
+        """Return the Truth at motion times t_ns (n,) int64; ValueError if it is not known."""
         t_ns = np.asarray(t_ns)
         if 0 < len(t_ns) <= FEW:
             return Truth(t_ns, *map(np.array, zip(*map(self.one, t_ns.tolist()))))
@@ -124,7 +124,7 @@ class GuidedMotion(RouteMotion):
 
     def one(self, t_ns):
         """
-        Return the truth at one instant, to the bit that of ``at``, in less time.
+        Return the truth at one instant, with the bits of ``at`` but faster.
 
         Returns
         -------
@@ -138,8 +138,8 @@ class GuidedMotion(RouteMotion):
         return (lat.value, lon.value, height.value, v_n, *in_body(omega_in_n, f_n, q_nb))
 
     def _flow(self, t_ns):
-        """Return what ``_flow_at`` returns of one instant; it is evaluated some periods ahead."""
-        # Truth and sensors ask for the same parts of every period.
+        """Return ``_flow_at`` of one instant; it is evaluated for several periods in advance."""
+        # Truth and sensors ask for the same phases in every control period.
         period, phase = divmod(t_ns, self.period_ns)
         first, flows = self._ahead.get(phase, (0, ()))
         if not 0 <= period - first < len(flows):
@@ -154,12 +154,13 @@ class GuidedMotion(RouteMotion):
 
     def _flow_at(self, t_ns):
         """
-        Return what does not depend on the commands, Series of the instants.
+        Return the quantities that do not depend on the commands, as Series at the instants.
 
-        lat, lon, height of the track; lat and lon of one metre to its right; heading, and by how
-        much that of a parallel track one metre to the right differs (convergence of meridians);
+        These are: lat, lon, height of the track; lat and lon per metre to its right; the heading,
+        and its change on a parallel track one metre to the right (convergence of meridians); the
         components of the unit vector to the right of the track, along and to the right of the
-        heading; attitude relative to level axes along the nose, by bank and angle of attack.
+        heading; and the attitude, by bank and angle of attack, relative to level axes along the
+        nose.
         """
         t = t_ns * 1e-9
         lat, lon, psi = self._track.at(t)
@@ -168,7 +169,7 @@ class GuidedMotion(RouteMotion):
         east, north = (sin_psi * self._airspeed + self.wind[0],
                        cos_psi * self._airspeed + self.wind[1])
         size = taylor.sqrt(east * east + north * north)
-        # to the right of the velocity over ground
+        # Unit vector to the right of the velocity over ground.
         right_e, right_n = north / size, -east / size
         d_lat, d_lon = ellipsoid.level_angles(right_e, right_n, sin_lat, cos_lat, self._height)
         along = right_e * sin_psi + right_n * cos_psi
@@ -186,7 +187,7 @@ class GuidedMotion(RouteMotion):
                 *quaternion.multiply(angles.about_axis(0, bank), self._nose_up))
 
     def _pose(self, flow, steered, series):
-        """Return lat, lon, height and q_nb; series: makes a Series of its coefficients."""
+        """Return lat, lon, height, q_nb; series: function from Taylor coefficients to a Series."""
         lat, lon, height, d_lat, d_lon, psi, converged, along, aside, *level = flow
         z, v_z, beta, command, _ = steered
         force = beta * -self._force
@@ -206,5 +207,5 @@ def _series(coefficients):
 
 
 def guided_motion(motion, datum, earth):
-    """Return the GuidedMotion of MotionSettings, which needs no Datum; earth: Earth."""
+    """Return the GuidedMotion of MotionSettings; a Datum is not needed; earth: Earth."""
     return GuidedMotion(motion.route, motion.guided, earth)

@@ -3,9 +3,9 @@ The lateral motion of a guided vehicle: offset, its rate and the sideslip under 
 
     beta' = (beta_c - beta)/tau,  v_z' = -Z beta,  z' = v_z
 
-z, m, is the offset to the right of the track, v_z, m/s, its rate; the sideslip beta, rad, is
-positive where the track is to the right of the nose, so that the side force pushes to the nose's
-side.  Over a control period the command beta_c runs linearly from its last value to the new one
+z (m) is the offset to the right of the track, v_z (m/s) its rate. The sideslip beta (rad) is
+positive if the track is to the right of the nose, so that the side force acts to the side of the
+nose. Over a control period the command beta_c changes linearly from its last value to the new one
 (docs/theory/guided_motion.md).
 """
 
@@ -14,9 +14,9 @@ import numpy as np
 from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.instants import seconds
 
-# Periods for which there is room at the start.
+# Number of control periods for which memory is allocated at the start.
 ROOM = 1024
-# z, v_z, beta, the command at the start of a period, its slope over the period (1/s).
+# Columns: z, v_z, beta, the command at the start of a period, its slope over the period (1/s).
 COLUMNS = 5
 
 
@@ -24,11 +24,17 @@ def moved_on(force, lag_s, period, t):
     """
     Return z, v_z, beta and the command at t seconds after the start of a control period.
 
-    force: Z, m/s^2 per rad; lag_s: tau; period: z, v_z, beta and command at its start, and the
-    slope of the command, 1/s; floats or arrays.
+    Parameters
+    ----------
+    force : Z, m/s^2 per rad
+    lag_s : tau, s
+    period : z, v_z, beta and command at the start of the period, and the slope of the command
+        (1/s); floats or arrays
+    t : time since the start of the period, s
+
     """
     z, v_z, beta, command, slope = period
-    # beta = command + slope (t - tau) + c exp(-t/tau), integrated once and twice.
+    # Solution: beta = command + slope (t - tau) + c exp(-t/tau); v_z and z are its integrals.
     c = beta - command + slope * lag_s
     decay = elementary.expm1(t * (-1.0 / lag_s))
     once = command * t + slope * (t * (0.5 * t - lag_s)) - c * (lag_s * decay)
@@ -40,10 +46,10 @@ def moved_on(force, lag_s, period, t):
 
 class SteeredHistory:
     """
-    The control periods of a flight, one after the other.
+    The control periods of a flight in sequence.
 
-    force, lag_s: as of ``moved_on``; period_ns: length of a control period; start: z, m, and v_z,
-    m/s, at motion time zero, from where the vehicle flies straight until ``begin``.
+    force, lag_s: see ``moved_on``; period_ns: length of a control period; start: z (m) and v_z
+    (m/s) at motion time zero; until ``begin`` the vehicle flies straight from there.
 
     known_ns: motion time up to which the motion is known.
     """
@@ -56,7 +62,7 @@ class SteeredHistory:
     def begin(self, t_ns):
         """Forget all commands; the first one will be given at t_ns."""
         z, v_z = self._start
-        # What was before the first command: the motion continued without one.
+        # Before the first command the motion continues with the last state, without steering.
         self._first_ns = self.known_ns = self._begin_ns = t_ns
         self._state = z + v_z * (t_ns * 1e-9), v_z, 0.0, 0.0
         self._before = (*self._state, 0.0)
@@ -64,14 +70,14 @@ class SteeredHistory:
 
     @property
     def is_steered(self):
-        """Return whether there was a command."""
+        """Return whether a command has been given."""
         return self._count > 0
 
     def command(self, t_ns, beta_c):
         """
-        Fly the control period that begins at t_ns, with the command running to beta_c, rad.
+        Add the control period that begins at t_ns; the command changes linearly to beta_c, rad.
 
-        Raises ValueError unless the motion is known up to t_ns and the command is finite.
+        Raises ValueError unless t_ns is ``known_ns`` and the command is finite.
         """
         if t_ns != self.known_ns:
             raise ValueError(f'a command at {seconds(t_ns)}; expected it at '
@@ -89,7 +95,7 @@ class SteeredHistory:
         self._state = z, v_z, beta, beta_c
 
     def forget(self, t_ns):
-        """Forget the periods that end before t_ns, where nobody will ask for them."""
+        """Forget the periods that end before t_ns, which are not needed any more."""
         count = int(min((t_ns - self._first_ns) // self.period_ns, self._count - 1))
         if count > 0:
             self._rows, self._count = self._rows[count:].copy(), self._count - count
@@ -99,8 +105,8 @@ class SteeredHistory:
         """
         Return z, v_z, beta, the command and its slope at motion times t_ns (n,), arrays.
 
-        An instant belongs to the period that it ends.  Raises ValueError for instants that are
-        not known yet, or not any more.
+        An instant at the boundary belongs to the period that ends there. Raises ValueError for
+        instants that are not yet known or already forgotten.
         """
         t_ns = np.asarray(t_ns, dtype=np.int64)
         if not len(t_ns):
@@ -114,7 +120,7 @@ class SteeredHistory:
         return *moved_on(self._force, self._lag_s, period, (t_ns - since_ns) * 1e-9), period[4]
 
     def one(self, t_ns):
-        """Return what ``at`` returns of one instant as floats."""
+        """Return the values of ``at`` at one instant as floats."""
         start_ns = self.known_ns - self.period_ns
         if start_ns < t_ns <= self.known_ns and self._count:
             row = self._last
@@ -131,4 +137,4 @@ class SteeredHistory:
                              f' {seconds(self.known_ns)}, up to which it has been steered')
         if first_ns <= self._first_ns != self._begin_ns:
             raise ValueError(f'the guided motion is asked for {seconds(first_ns)}; expected later '
-                             f'than {seconds(self._first_ns)}: what was before is forgotten')
+                             f'than {seconds(self._first_ns)}: earlier motion is not stored')

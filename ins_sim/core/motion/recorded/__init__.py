@@ -1,1 +1,1 @@
-"""Motion through recorded poses: spline, faults and quality of the recording."""
+"""Motion along recorded poses: spline, faults and quality of the recording."""

@@ -1,4 +1,4 @@
-"""Faults of a recording: gaps, stamps that do not advance and impossible jumps."""
+"""Faults of a recording: gaps, stamps that do not advance, and impossible jumps."""
 
 from dataclasses import dataclass
 
@@ -7,18 +7,19 @@ import numpy as np
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.instants import seconds
 
-# A missing row makes an interval of 2 medians; half an interval is left for jitter.
+# A missing row makes an interval of 2 medians; the remaining half median allows for jitter.
 GAP_MEDIANS = 2.5
-# A position jump is what the interval adds beyond the median velocity of the five intervals about
-# it.  It is impossible beyond 50 g held for the interval (no aircraft) or 1000 m/s (a change of
-# velocity no aircraft has in one interval), whichever is less.  Below 20 m it is taken for the
-# correction step of an on-board filter: ``recording_quality`` reports it.
+# The size of a position jump is the displacement beyond the median velocity of the five
+# intervals about it. It is impossible if it exceeds 50 g held for the interval (no aircraft does)
+# or 1000 m/s (no aircraft changes its velocity so much in one interval), whichever is less. Below
+# 20 m it is treated as the correction step of an on-board filter, which ``recording_quality``
+# reports.
 JUMP_M = 20.0
 JUMP_M_S2 = 500.0
 JUMP_M_S = 1000.0
-# An attitude jump is impossible beyond 400 deg/s (the fastest aerobatic roll is about 420) more
-# than its neighbours; below 45 deg it is taken for a correction step.  Beyond 120 deg from row to
-# row the way round is a guess whatever the rate.
+# An attitude jump is impossible if its rate exceeds that of its neighbours by 400 deg/s (the
+# fastest aerobatic roll is about 420); below 45 deg it is treated as a correction step. Beyond 120
+# deg from row to row the direction of rotation is ambiguous at any rate.
 TURN_DEG_S = 400.0
 TURN_DEG = 45.0
 AMBIGUOUS_DEG = 120.0
@@ -27,7 +28,7 @@ NAMED_AT_MOST = 8
 
 @dataclass(frozen=True)
 class Fault:
-    """Something wrong between row index and row index + 1."""
+    """A fault between the rows index and index + 1."""
 
     index: int
     kind: str
@@ -35,7 +36,7 @@ class Fault:
 
 
 def step_displacements(lat, lon, height):
-    """Return (n - 1, 3) east, north, up from row to row, m; lat, lon in rad."""
+    """Return the displacements east, north, up from row to row, (n - 1, 3) m; lat, lon in rad."""
     mean = 0.5 * (lat[1:] + lat[:-1])
     east, north = ellipsoid.level_metres(np.diff(lat), np.diff(lon), np.sin(mean), np.cos(mean),
                                          0.5 * (height[1:] + height[:-1]))
@@ -44,17 +45,17 @@ def step_displacements(lat, lon, height):
 
 def step_excess(steps, dt):
     """
-    Return (n,) how far each step goes beyond the median rate of the five steps about it.
+    Return by how much each step exceeds the median rate of the five steps about it, (n,).
 
-    steps (n, 3) and dt (n,) s.  A step or a spike of up to two intervals stands out; a smooth
-    motion leaves only its third derivative.
+    steps (n, 3); dt (n,) s.  A step or a spike of up to two intervals stands out; a smooth motion
+    leaves only its third derivative.
     """
     from scipy.ndimage import median_filter
     rate = steps / dt[:, None]
     if len(dt) < 5:
         usual = np.median(rate, axis=0) if len(dt) > 2 else rate
     else:
-        # At the ends the median of three, and a straight line on to the last.
+        # Near the ends use the median of three, extrapolated linearly to the last interval.
         usual = median_filter(rate, size=(5, 1))
         usual[1], usual[-2] = np.median(rate[:3], axis=0), np.median(rate[-3:], axis=0)
         usual[0], usual[-1] = 2.0 * usual[1] - usual[2], 2.0 * usual[-2] - usual[-3]
@@ -62,7 +63,7 @@ def step_excess(steps, dt):
 
 
 def median_interval(dt):
-    """Return the median of the intervals that advance, s; 0 if none does."""
+    """Return the median of the intervals that advance in time, s; 0 if there are none."""
     return float(np.median(dt[dt > 0.0])) if np.any(dt > 0.0) else 0.0
 
 
@@ -89,13 +90,13 @@ def find_faults(rows, turns):
 
 
 def _between(indices, n):
-    """Return the (first, last) ranges of the n intervals that hold none of the indices."""
+    """Return the (first, last) ranges of the n intervals that contain none of the indices."""
     bounds = [-1, *sorted(set(indices)), n]
     return [(a + 1, b) for a, b in zip(bounds, bounds[1:]) if b > a + 1]
 
 
 def _jumps(t_ns, first, dt, far, turned, angle):
-    """Return the jumps among contiguous intervals from first on."""
+    """Return the jumps among contiguous intervals, the first of which has the index first."""
     far_limit = np.maximum(JUMP_M, np.minimum(JUMP_M_S2 * dt * dt, JUMP_M_S * dt))
     jumped = far > far_limit
     spun = (turned > np.maximum(TURN_DEG, TURN_DEG_S * dt)) | (angle > AMBIGUOUS_DEG)
@@ -109,7 +110,7 @@ def _jumps(t_ns, first, dt, far, turned, angle):
 
 
 def describe_faults(faults, median_s):
-    """Return one clause that names all kinds of fault with their times, up to a handful each."""
+    """Return one clause that lists the faults by kind with their times, a handful of each."""
     titles = {'stamps': 'stamps that do not advance (',
               'gaps': f'gaps over {GAP_MEDIANS:g} times the median interval of {median_s:.4g} s '
                       '(after t_s = ',
@@ -126,11 +127,16 @@ def describe_faults(faults, median_s):
 
 def unbroken_part(rows, turns, start_s, on_gap):
     """
-    Return (slice of the rows to use, list of warnings).
+    Return the slice of the rows to use and a list of warnings.
 
-    start_s: recorder time of motion time zero since the first row, s; on_gap: 'refuse' raises
-    ValueError with the times of all faults, 'cut' keeps the part between faults that holds
-    start_s.
+    Parameters
+    ----------
+    rows : RecordedRows
+    turns : (n - 1, 3) rotation vectors from row to row, rad
+    start_s : recorder time of motion time zero since the first row, s
+    on_gap : 'refuse' raises ValueError with the times of all faults; 'cut' keeps the part between
+        faults that contains start_s
+
     """
     faults = find_faults(rows, turns)
     if not faults:

@@ -1,8 +1,8 @@
 """
-What a recording does to the specific force: rounding noise and correction steps, in sentences.
+Report, in sentences, rounding noise and correction steps of a recording.
 
-Differentiating rounded positions at a high rate twice makes metres per second squared of noise;
-the numbers here say how many.
+Differentiating rounded positions twice at a high rate can add specific-force noise of several
+m/s^2; the functions here compute how much.
 """
 
 import math
@@ -13,30 +13,30 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.numerics.instants import seconds
 from .faults import step_displacements, step_excess
 
-# Below 10 mg nobody sees the noise beside the motion of a vehicle.
+# Noise below 10 mg is not reported: the motion of a vehicle hides it.
 WORTH_SAYING_M_S2 = 0.1
 
-# A correction step: the acceleration or rate it implies within its interval, more than most
-# vehicles have, and how far it stands out of the ordinary (1.4826 median |x| is the sigma of a
-# normal x; 8 sigma never happens by chance).
+# A correction step is reported if it implies an acceleration or rate that most vehicles cannot
+# reach, and if it is an outlier (1.4826 median |x| is the sigma of a normal x; 8 sigma practically
+# never occurs by chance).
 STEP_M_S2 = 20.0
 STEP_DEG_S = 100.0
 STEP_SIGMAS = 8.0
 
-# rms gains of the second difference (sqrt 6) and of half the fourth difference (sqrt 70 / 2) for
-# white noise: binomial coefficients 1 2 1 and 1 4 6 4 1.
+# Rms gains for white noise of the second difference (sqrt 6) and of half the fourth difference
+# (sqrt 70 / 2), from the binomial coefficients 1 2 1 and 1 4 6 4 1.
 SECOND_GAIN = math.sqrt(6.0)
 FOURTH_GAIN = 0.5 * math.sqrt(70.0)
 
 
 def spline_gain(window=0.0):
     """
-    Return the rms gain from white noise of positions to the acceleration of their spline.
+    Return the rms gain from white position noise to the acceleration of the spline, in 1/dt^2.
 
-    In units of 1/dt^2, for the interpolating spline of degree 5 at uniform knots:
+    For the interpolating spline of degree 5 with uniform knots,
     D(w) = (-1 + 2/3 cos w + 1/3 cos 2w) / ((66 + 52 cos w + 2 cos 2w) / 120), from the values of
     the quintic B-spline and of its second derivative at the knots (de Boor).  window: length of
-    the boxcar that smoothed the positions, in dt.  Without one the gain is 4.798.
+    the boxcar that smoothed the positions, in dt; without one the gain is 4.798.
     """
     w = (np.arange(4096) + 0.5) * (math.pi / 4096)
     d = ((-1.0 + 2.0 / 3.0 * np.cos(w) + np.cos(2.0 * w) / 3.0)
@@ -46,10 +46,15 @@ def spline_gain(window=0.0):
 
 def rounding_noise(resolution, lat, height, interval_s, smoothing_s):
     """
-    Return the acceleration noise that rounded positions imply: east, north, up, m/s^2 rms.
+    Return the acceleration noise caused by rounded positions: east, north, up, m/s^2 rms.
 
-    resolution: rounding steps (deg, deg, m) of lat, lon, height; a step q has the standard
-    deviation q / sqrt(12); lat (rad) and height (m) scale degrees to metres.
+    Parameters
+    ----------
+    resolution : rounding steps (deg, deg, m) of lat, lon, height; a step q has the standard
+        deviation q / sqrt(12)
+    lat, height : latitude (rad) and height (m), to convert degrees to metres
+    interval_s, smoothing_s : sampling interval, and length of the boxcar, s
+
     """
     level = ellipsoid.level_metres(math.radians(resolution[0]), math.radians(resolution[1]),
                                    math.sin(lat), math.cos(lat), height)
@@ -61,8 +66,9 @@ def sample_noise(t, lat, lon, height):
     """
     Return the rms and the robust (median-based) noise of the second differences, (2, 3) m/s^2.
 
-    East, north, up.  What a second difference has beyond the mean of its two neighbours is noise
-    (a smooth motion leaves its fourth derivative), scaled by the gains for white noise.
+    Columns: east, north, up.  The noise is the difference between a second difference and the
+    mean of its two neighbours, scaled by the gains for white noise; a smooth motion leaves only
+    its fourth derivative in it.
     """
     dt = np.diff(t)
     velocity = step_displacements(lat, lon, height) / dt[:, None]
@@ -82,10 +88,10 @@ def _count(items, name):
 
 
 def _cadence(t, steps):
-    """Return ', about one every x s', where there is such a beat."""
+    """Return ', about one every x s' if the steps are periodic, else ''."""
     if len(steps) < 4:
         return ''
-    # A step over two intervals is one step.
+        # Two consecutive intervals with a step are counted as one step.
     apart = np.diff(t[steps])
     apart = apart[apart > 2.5 * np.median(np.diff(t))]
     return f', one about every {np.median(apart):.3g} s' if len(apart) > 2 else ''
@@ -93,10 +99,17 @@ def _cadence(t, steps):
 
 def describe_quality(path, start_ns, t, lat, lon, height, turns, resolution, smoothing_s):
     """
-    Return sentences on the noise and the steps of a recording as it will be splined.
+    Return sentences on the noise and the steps of a recording, as they affect its spline.
 
-    start_ns: stamp of the first row; t (n,) s since it; lat, lon (n,) rad; height (n,) m; turns
-    (n - 1, 3): rotation vectors from row to row, rad; smoothing_s: the boxcar already applied.
+    Parameters
+    ----------
+    path, start_ns : name of the recording, and stamp of its first row
+    t : (n,) time since the first row, s
+    lat, lon, height : (n,) rad, rad, m
+    turns : (n - 1, 3) rotation vectors from row to row, rad
+    resolution : see ``rounding_noise``
+    smoothing_s : length of the boxcar already applied, s
+
     """
     dt = np.diff(t)
     interval_s = float(np.median(dt))
@@ -120,7 +133,7 @@ def describe_quality(path, start_ns, t, lat, lon, height, turns, resolution, smo
     rounding = rounding_noise(resolution, float(lat.mean()), float(height.mean()), interval_s,
                               smoothing_s)
     rms, robust = sample_noise(t, lat, lon, height)
-    # Few decimals are no noise where the values need no more: the scatter has to be there too
+    # Values with few decimals may be exact: report rounding only if the values scatter accordingly
     # (white noise scatters by half the force noise).
     rounding[rms < 0.1 * rounding] = 0.0
     if rounding.max() >= WORTH_SAYING_M_S2:

@@ -1,14 +1,14 @@
 """
 Recorded flight as a motion: splines through the samples (docs/theory/recorded_flights.md).
 
-Attitude relative to local ENU is a C2 rotation spline on the recorder's own times (SciPy's
-RotationSpline: the rotation vector within an interval is a cubic), positions are interpolating
-splines of degree 5.  Never slerp or linear: they bias the drift by up to 51 %.  Where the rate was
-recorded too, the attitude is the cubic through attitude and rate at both ends of an interval.
+The attitude relative to local ENU is a C2 rotation spline on the recorder's own times (SciPy's
+RotationSpline: the rotation vector within an interval is a cubic); positions are interpolating
+splines of degree 5. Do not use slerp or linear interpolation: they bias the drift by up to 51 %.
+If the rate was recorded too, the attitude is the cubic through attitude and rate at both ends.
 
 SciPy solves for the coefficients; the polynomials are evaluated here, elementwise, in the time
-since the interval's first sample.  So the result of an instant does not depend on which others
-are asked for with it, and int64 nanoseconds lose nothing far from zero.
+since the first sample of the interval. Thus the result at an instant does not depend on the other
+instants in the call, and int64 nanoseconds lose no precision far from zero.
 """
 
 import math
@@ -24,27 +24,27 @@ from ..motion import Motion
 from ..truth import truth_from_pose
 from .faults import median_interval, unbroken_part
 
-# Splines have end effects and delayed channels look back: nobody flies the ends.
+# The ends are not flown: spline end effects, and delayed channels need earlier samples.
 PAD_S = 3.0
 DEGREE = 5
 FEWEST_ROWS = 8
-# Between rows further apart nothing is known of a flight; the longest run that can be set.
+# Longest interval between rows that is interpolated; longest run that the settings allow.
 LONGEST_INTERVAL_S, LONGEST_S = 600.0, 1e7
 
 # -3 dB of a boxcar of T seconds: sin(x)/x = 1/sqrt(2) at x = pi f T, so f T = 0.4429.
 BOXCAR_3DB = 0.4429
 
-# A recorded rate is no rate of the recorded attitude if it differs from its differences by more
-# than the trapezium rule does (a twelfth of the square of the angle between samples), and by more
-# than what comes of rounding.
+# A recorded rate is rejected as inconsistent if it differs from the differences of the attitude
+# by more than the error of the trapezium rule (a twelfth of the square of the angle between
+# samples) plus the effect of rounding.
 RATE_PART = 0.1
 RATE_RAD_S = 1e-3
 
-# Blocks keep the temporaries in the cache; instants are independent, so the size is free.
+# Blocks keep the temporaries in the cache; any size gives the same result.
 BLOCK = 16384
 
-# cos sqrt(x) and sin sqrt(x) / sqrt(x) as power series of x, highest first.  x = (angle / 2)^2
-# is small between two samples, so a few terms reach rounding: no sine, no branch at zero.
+# Power series of cos sqrt(x) and sin sqrt(x) / sqrt(x), highest power first. x = (angle / 2)^2 is
+# small between two samples: a few terms are exact to rounding, without sine or branch at zero.
 _COS = [(-1.0) ** n / math.factorial(2 * n) for n in range(19, -1, -1)]
 _SINC = [(-1.0) ** n / math.factorial(2 * n + 1) for n in range(19, -1, -1)]
 
@@ -53,10 +53,10 @@ class RecordedMotion(Motion):
     """
     A recorded flight, valid from -3 s to end_s + 3 s of motion time.
 
-    Motion time 0 is recorder time start_s after the first row; the recording must reach 3 s
-    further on both sides (end effects of the splines; history of delayed channels).  end_s: last
-    motion time to be used, s; zero_ns: the recorder's stamp of motion time 0.  warnings: what was
-    assumed, cut, smoothed or found noisy, in sentences.
+    Motion time 0 is recorder time start_s after the first row; the recording must extend 3 s
+    further on both sides (end effects of the splines; history of delayed channels).
+    end_s: last motion time that may be used, s; zero_ns: recorder stamp of motion time 0.
+    warnings: sentences on what was assumed, cut, smoothed or found noisy.
     """
 
     end_name = 'the end of the recording'
@@ -66,7 +66,7 @@ class RecordedMotion(Motion):
         Check and spline a recording.
 
         poses: RecordedPoses; recording: settings.motion.Recording; earth: settings.place.Earth.
-        Raises ValueError, one sentence, on a record that cannot be used (``faults``) or a start
+        Raises ValueError, with one sentence, for an unusable record (``faults``) or a start
         outside it.
         """
         self.path = recording.path
@@ -82,7 +82,7 @@ class RecordedMotion(Motion):
         self._span = (-pad_ns, int(self._knots[-1]))
         self.end_s = (self._span[1] - pad_ns) * 1e-9
 
-        # Only differences are splined: 0.8 rad of latitude would leave 1e-9 m of rounding, which
+        # Only differences are splined: a latitude of 0.8 rad has a rounding error of 1e-9 m, which
         # a second derivative at 50 Hz turns into 1e-5 m/s^2.
         t = (self._knots - self._knots[0]) * 1e-9
         position = np.stack([np.radians(rows.lat_deg[part]), np.radians(rows.lon_deg[part]),
@@ -91,7 +91,7 @@ class RecordedMotion(Motion):
         position -= self._origin[:, None]
         q = q[part]
         if recording.smoothing_s:
-            # the rates are those of the motion that was not smoothed
+            # The recorded rates do not belong to the smoothed motion, so they are not used.
             position, q, rate = *_smoothed(t, position, q, recording.smoothing_s), None
             self.warnings += self._smoothing_report(recording.smoothing_s, t)
         self._base = q
@@ -108,7 +108,7 @@ class RecordedMotion(Motion):
             rows.resolution, recording.smoothing_s)
 
     def _check_extent(self, recording, zero_ns):
-        """Refuse a recording too short for two pads, and a start outside it."""
+        """Reject a recording shorter than two pads, and a start outside it."""
         knots = self._knots
         length_s = (knots[-1] - knots[0]) * 1e-9
         if len(knots) < FEWEST_ROWS or length_s <= 2.0 * PAD_S:
@@ -170,7 +170,7 @@ class RecordedMotion(Motion):
 
 
 def _horner(c, x):
-    """Return the value and the first derivative at x of the polynomial c, highest first."""
+    """Return value and first derivative at x of a polynomial; c: coefficients, highest first."""
     p, d = c[0] + 0.0 * x, 0.0
     for coefficient in c[1:]:
         d = d * x + p
@@ -179,7 +179,7 @@ def _horner(c, x):
 
 
 def _horner2(c, x):
-    """Return the value, the first and half the second derivative: Taylor coefficients."""
+    """Return the Taylor coefficients at x: value, first and half the second derivative."""
     p, d, e = c[0], 0.0, 0.0
     for coefficient in c[1:]:
         e = e * x + d
@@ -189,7 +189,7 @@ def _horner2(c, x):
 
 
 def _terms(c, dt):
-    """Return how many terms of _COS and _SINC reach rounding for rotation vectors c, (4, 3, m)."""
+    """Return the number of terms of _COS and _SINC needed for rotation vectors c, (4, 3, m)."""
     power = dt ** np.arange(len(c) - 1, -1, -1)[:, None]
     bound = (np.abs(c) * power[:, None, :]).sum(axis=0)
     x = 0.25 * float((bound * bound).sum(axis=0).max())
@@ -202,7 +202,7 @@ def _exponential(r, r_rate, terms):
     Return the quaternion Series of order 1 of a rotation vector (3, n), rad, and its rate.
 
     (S(x) u, C(x)) with u = r / 2, x = u . u, S = sinc and C = cos of sqrt x; C' = -S u . u'.
-    terms: how many of both power series are taken.
+    terms: number of terms used of both power series.
     """
     u, w = 0.5 * r, 0.5 * r_rate
     x = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
@@ -223,12 +223,12 @@ def _turns(q):
 
 def _smoothed(t, position, q, window_s):
     """
-    Return positions (3, n) and quaternions (n, 4) averaged over the window centred on each row.
+    Return positions (3, n) and quaternions (n, 4) averaged over a window centred on each row.
 
-    The average is the integral of the interpolating spline, so uneven stamps do no harm; towards
-    the ends the window narrows to stay centred.  Attitude: the normalised mean of quaternions of
-    continuous sign, which is the mean rotation to third order in the spread and, unlike the mean
-    of angles, knows no pitch of 90 deg (Markley et al., "Averaging Quaternions", 2007).
+    The average is the integral of the interpolating spline, so that uneven stamps are handled;
+    near the ends the window narrows to stay centred. The attitude is the normalised mean of
+    quaternions with continuous signs: the mean rotation to third order in the spread, without
+    a singularity at 90 deg of pitch (Markley et al., "Averaging Quaternions", 2007).
     """
     from scipy.interpolate import make_interp_spline
     half = np.minimum(0.5 * window_s, np.minimum(t - t[0], t[-1] - t))
@@ -244,7 +244,7 @@ def _smoothed(t, position, q, window_s):
     q = mean(q, 3)
     norm = np.sqrt((q * q).sum(axis=1))
     if norm.min() < 0.5:
-        # Uniform rotation by an angle A gives 4 sin(A/4) / A: 0.5 is a turn of 434 deg.
+        # Uniform rotation by an angle A gives 4 sin(A/4) / A; 0.5 is a turn of 434 deg.
         raise ValueError(f'motion.recording.smoothing_s is {window_s:g} s, in which the vehicle '
                          'turns more than once; expected a window shorter than its turns')
     return mean(position.T, DEGREE).T, q / norm[:, None]
@@ -254,15 +254,15 @@ def _position_spline(t, position):
     """
     Return coefficients (6, 3, intervals), highest first, about the start of each interval.
 
-    The polynomials are those through value, first and second derivative of the spline at both
-    ends of an interval, so that neighbours meet to rounding: higher derivatives of the spline,
-    taken at one end, leave steps of 1e-9 m/s, which made 1 mm in ten minutes of cruise at 100 Hz.
+    Each polynomial passes through value, first and second derivative of the spline at both ends
+    of its interval, so that neighbours match to rounding. Higher derivatives of the spline, taken
+    at one end, would leave steps of 1e-9 m/s: 1 mm in ten minutes of cruise at 100 Hz.
     """
     from scipy.interpolate import make_interp_spline
     spline = make_interp_spline(t, position.T, k=DEGREE)
     p, v, a = position, *(spline(t, nu=k).T for k in (1, 2))
     h = np.diff(t)
-    # what the parabola from the start leaves at the end, in units of position
+    # Remainder at the end of the interval beyond the parabola from its start, in position units.
     far = np.diff(p) - (v[:, :-1] + 0.5 * a[:, :-1] * h) * h
     faster = (np.diff(v) - a[:, :-1] * h) * h
     bent = 0.5 * np.diff(a) * h * h
@@ -280,14 +280,14 @@ def _rotation_spline(t, q):
 
 
 def _rotation_cubics(t, q, rate):
-    """Return the same from the rates (n, 3), rad/s, at both ends of each interval."""
+    """Return the same coefficients from the rates (n, 3), rad/s, at the ends of each interval."""
     h = np.diff(t)
     c1, c2, c3 = map(np.array, hermite_coefficients(h, _turns(q).T, rate[:-1].T, rate[1:].T))
     return np.array([c3 / h ** 3, c2 / h ** 2, c1 / h, np.zeros_like(c1)])
 
 
 def _check_rates(path, t, q, rate):
-    """Refuse rates (n, 3), rad/s, that are not those of the attitude: another frame, or zeros."""
+    """Reject rates (n, 3), rad/s, inconsistent with the attitude: another frame, or zeros."""
     turning = _turns(q) / np.diff(t)[:, None]
     off = _rms(turning - 0.5 * (rate[1:] + rate[:-1]))
     if off > max(RATE_RAD_S, RATE_PART * _rms(turning)):

@@ -1,10 +1,11 @@
 """
-Gusts of first-order (Dryden, longitudinal) spectrum as sums of sinusoids.
+Gusts with a first-order (Dryden, longitudinal) spectrum as sums of sinusoids.
 
-Density of each component sigma^2 (2 tau/pi)/(1 + (w tau)^2) over w > 0, tau = length/airspeed
-(MIL-F-8785C).  It is cut at w tau = 0.05 and 20, 3 % of the variance at either end, so that what
-the gusts carry away stays bounded and the acceleration finite.  Every sinusoid has the same part
-of the variance, and the frequency of each is drawn within the part of the spectrum it stands for.
+The density of each component is sigma^2 (2 tau/pi)/(1 + (w tau)^2) over w > 0, with tau =
+length/airspeed (MIL-F-8785C). It is cut at w tau = 0.05 and 20, which removes 3 % of the variance
+at either end, so that the displacement by the gusts stays bounded and the acceleration finite. All
+sinusoids have the same share of the variance; the frequency of each is drawn at random within the
+part of the spectrum that it represents.
 """
 
 import math
@@ -16,16 +17,16 @@ from ins_sim.core.numerics.elementary import atan2, sincos
 
 LINES = 20
 LOWEST, HIGHEST = 0.05, 20.0
-# Instants at a time: 60 sinusoids of so many stay in the cache.
+# Number of instants evaluated at a time: 60 sinusoids at so many instants fit into the cache.
 CHUNK = 256
 
 
 class Gusts:
     """
-    Gust velocity East, North, Up of standard deviation sigma each, m/s.
+    Gust velocity east, north, up, each with the standard deviation sigma (m/s).
 
-    length: of the turbulence, m; airspeed: m/s; seed: names the gusts.  rates (3, LINES), rad/s;
-    amplitude, m/s: of each sinusoid.
+    length: scale of the turbulence, m; airspeed: m/s; seed: selects the gusts.  rates (3, LINES),
+    rad/s; amplitude: of each sinusoid, m/s.
     """
 
     def __init__(self, sigma, length, airspeed, seed):
@@ -38,12 +39,12 @@ class Gusts:
         self._phases = 2.0 * math.pi * draws[3:]
 
     def displacement(self, t):
-        """Return three Series of order 2: where the gusts have carried to at t (n,), s; in m."""
+        """Return the displacement by the gusts at t (n,), s: three Series of order 2, m."""
         parts = [self._displaced(t[k:k + CHUNK]) for k in range(0, max(1, len(t)), CHUNK)]
         return tuple(taylor.Series(np.concatenate(rows, axis=1)) for rows in zip(*parts))
 
     def _displaced(self, t):
-        """Return the Taylor coefficients of each axis, (3, n)."""
+        """Return the Taylor coefficients of the displacement for each axis, (3, n)."""
         w = self.rates[:, :, np.newaxis]
         sin, cos = sincos(t * w + self._phases[:, :, np.newaxis])
         sums = (_summed(sin * (self.amplitude / w)), _summed(cos * self.amplitude),
@@ -52,7 +53,7 @@ class Gusts:
 
 
 def _summed(lines):
-    """Return the sum of lines (3, LINES, n) in their order, whatever n is, (3, n)."""
+    """Return the sum over lines (3, LINES, n), in a fixed order for any n, (3, n)."""
     if lines.shape[-1] == 1:
         return np.cumsum(lines, axis=1)[:, -1]
     return np.add.reduce(lines, axis=1)

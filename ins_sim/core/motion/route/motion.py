@@ -1,11 +1,12 @@
 """
 Flight along a route of great circles, with wind, gusts and a weaving heading.
 
-Between turns the track made good is the great circle of ``orthodrome``; turns are coordinated and
-flown inside the corners (``route_turn``).  The vehicle points along its velocity relative to the
-air without gusts, or weaves to the sides of it, slipping; gusts carry it.  Its axes are those of
-the velocity relative to the air, banked about it as a coordinated turn asks and turned up by the
-attack angle about the left axis.  With the turn of the local axes and Coriolis' force the bank is
+Between turns the track over ground is the great circle of ``earth.great_circle``; turns are
+coordinated and flown inside the corners (``turn``). Without weave the vehicle points along its
+velocity relative to the air, gusts excluded; with weave the heading oscillates about it, with
+sideslip. Gusts displace the vehicle. The body axes are those of the velocity relative to the air,
+banked about it as in a coordinated turn, and pitched up about the left axis by the angle of
+attack. With the rotation of the local axes and the Coriolis force the bank is
 
     atan(V [psi' - (2 Omega + lon') sin lat]/g)                                 (Groves 5.44, 5.53)
 """
@@ -28,7 +29,7 @@ from .weave import Weave
 
 STEEPEST_DEG = 60.0
 GUST_MARGIN = 3.0
-# longitude and north turn too fast beyond
+# Closer to the poles, longitude and the direction of north change too fast.
 POLEMOST_DEG = 89.0
 
 
@@ -36,9 +37,11 @@ class RouteMotion(Motion):
     """
     The flight of settings.FlownRouteSettings, from the first turning point at motion time zero.
 
-    end_s: the arrival at the last one.  route: the Route; gusts, or None; turns: (start, end) of
-    each turn, s.  Weave and gusts come on top of the track: they displace it by metres.
-    Raises ValueError in one sentence on a route that cannot be flown.
+    Weave and gusts are added to the track; they displace it by metres.
+
+    end_s: arrival at the last turning point.  route: the Route; gusts: Gusts or None; turns:
+    (start, end) of each turn, s.  Raises ValueError, with one sentence, for a route that cannot
+    be flown.
     """
 
     end_name = 'the arrival at the last turning point'
@@ -69,7 +72,7 @@ class RouteMotion(Motion):
         self.end_s = self._track.end_s
 
     def at(self, t_ns):
-        """Return the Truth at motion times t_ns (n,) int64; the ends go on along their legs."""
+        """Return the Truth at motion times t_ns (n,) int64; legs are extended beyond both ends."""
         t = np.asarray(t_ns) * 1e-9
         lat, lon, psi = self._track.at(t)
         east, north, up = self.gusts.displacement(t) if self.gusts else (psi * 0.0,) * 3
@@ -85,10 +88,11 @@ class RouteMotion(Motion):
         sin_lat, cos_lat = taylor.sincos(lat)
         d_lat, d_lon = ellipsoid.level_angles(east, north, sin_lat, cos_lat, self._height)
         lat, lon = lat + d_lat, lon + d_lon
-        # no bank holds a great circle but against Coriolis' force
+        # The bank must also balance the Coriolis force, or the aircraft would drift off the great
+        # circle.
         turn = course.derivative() - (lon.derivative() + 2.0 * self._spin) * sin_lat
         bank = taylor.atan2(turn * self._airspeed, psi.constant(STANDARD_GRAVITY))
-        # the axis points left: nose up is negative
+        # The second axis points left: nose up is a negative rotation.
         q_nb = quaternion.multiply(angles.from_angles(-psi, psi.constant(0.0), bank),
                                    angles.about_axis(1, psi.constant(-self._attack)))
         return truth_from_pose(t_ns, lat, lon, up + self._height, q_nb, self._rotation,
@@ -96,19 +100,19 @@ class RouteMotion(Motion):
 
 
 def route_motion(motion, datum, earth):
-    """Return the flight along the route of MotionSettings, which needs no Datum; earth: Earth."""
+    """Return the flight along the route of MotionSettings; a Datum is not needed; earth: Earth."""
     return RouteMotion(motion.route, earth)
 
 
 def _wind(settings):
-    """Return the wind, East and North, m/s: it blows from its direction."""
+    """Return the wind velocity, east and north, m/s; the setting is where it blows from."""
     direction = math.radians(settings.wind_from_deg)
     sin, cos = elementary.sincos(direction)
     return -settings.wind_m_s * sin, -settings.wind_m_s * cos
 
 
 def _check(settings, made_good):
-    """Raise ValueError on what no vehicle flies; made_good: airspeed less the weave, m/s."""
+    """Raise ValueError for impossible flights; made_good: mean airspeed with the weave, m/s."""
     strongest = settings.wind_m_s + GUST_MARGIN * settings.gust_m_s
     if strongest >= made_good:
         raise ValueError(

@@ -1,11 +1,11 @@
 """
 The track of a vehicle in a steady wind, along great circles and in turns.
 
-State: geodetic latitude and longitude, and the heading of the air velocity, whose size and height
-are constant.  On the sphere of the great circles the velocity V = (V_E, V_N) has the components
-p = m_E V_E and q = m_N V_N (``core.earth.sphere_metric``), and a great circle is flown where the
-course atan2(p, q) turns by sin(lat_c) lon'.  The heading that does it, and any turn beyond it,
-follow by differentiating p and q.
+The state is geodetic latitude, longitude, and the heading of the air velocity; airspeed and height
+are constant. On the sphere of the great circles the velocity V = (V_E, V_N) has the components
+p = m_E V_E and q = m_N V_N (``core.earth.sphere_metric``). The path is a great circle if the
+course atan2(p, q) changes at the rate sin(lat_c) lon'. The corresponding heading, and that of a
+turn relative to the great circle, follow by differentiating p and q.
 """
 
 import math
@@ -18,10 +18,11 @@ from ins_sim.core.earth.sphere_metric import (direction_on_earth, FLATTENING2, s
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 
-# of the expansions about the knots: what is left out is below rounding (docs/design/route.md)
+# Order of the Taylor expansions about the knots; the remainder is below rounding
+# (docs/design/route.md).
 ORDER = 10
 STEP_M = 2000.0
-# Nodes and weights of Gauss and Legendre with eight points.
+# Nodes and weights of Gauss-Legendre quadrature with eight points.
 _NODES = (-0.9602898564975363, -0.7966664774136267, -0.525532409916329, -0.1834346424956498,
           0.1834346424956498, 0.525532409916329, 0.7966664774136267, 0.9602898564975363)
 _WEIGHTS = (0.10122853629037626, 0.22238103445337448, 0.31370664587788727, 0.362683783378362,
@@ -29,16 +30,16 @@ _WEIGHTS = (0.10122853629037626, 0.22238103445337448, 0.31370664587788727, 0.362
 
 
 class Flow:
-    """Flight at a height (m) and an airspeed (m/s) in a wind (East, North, m/s)."""
+    """Flight at a constant height (m) and airspeed (m/s) in a wind (east, north, m/s)."""
 
     def __init__(self, height, airspeed, wind):
         self.height, self.airspeed, self.wind = height, airspeed, wind
 
     def rates(self, sin_lat, cos_lat, sin_psi, cos_psi, turn):
         """
-        Return lat', lon', psi' (rad/s) where the heading turns by turn beyond a great circle.
+        Return lat', lon', psi' (rad/s) if the heading turns at the rate turn off a great circle.
 
-        Floats, or Series of the same instants.
+        Arguments are floats, or Series of the same instants.
         """
         a_e, a_n = sin_psi * self.airspeed, cos_psi * self.airspeed
         v_e, v_n = a_e + self.wind[0], a_n + self.wind[1]
@@ -58,13 +59,13 @@ class Flow:
                      (self.airspeed * cos_psi + self.wind[1]) * m_n)
 
     def on_leg(self, leg, x):
-        """Return lat, lon, heading (rad) and X' (m/s) on an orthodrome.Leg at x (n,), m."""
+        """Return lat, lon, heading (rad), X' (m/s) at distance x (n,), m, on a Leg."""
         lat, lon = leg.from_xz(x, np.zeros_like(x))
         chi = leg.course(lat, lon)
         m_e, m_n, _, _ = sphere_metric(*sincos(lat), self.height)
         east, north, size = direction_on_earth(m_e, m_n, chi)
         w_e, w_n = self.wind
-        # wind triangle: the air velocity takes off what the wind has across the track
+        # Wind triangle: the air velocity cancels the cross-track component of the wind.
         across, along = w_e * north - w_n * east, w_e * east + w_n * north
         speed = sqrt(self.airspeed * self.airspeed - across * across) + along
         psi = atan2(speed * east - w_e, speed * north - w_n)
@@ -73,10 +74,10 @@ class Flow:
 
 class LegPiece:
     """
-    Knots of a part of the track.
+    Knots of one piece of the track.
 
-    t (m,): s from its start; lat, lon, psi (m,): rad; turn (m, j): Taylor coefficients of the
-    turn's rate at each; length_s.
+    t (m,): time since its start, s; lat, lon, psi (m,): rad; turn (m, j): Taylor coefficients of
+    the turn rate at each knot; length_s: duration.
     """
 
     def __init__(self, t, lat, lon, psi, turn, length_s):
@@ -86,10 +87,10 @@ class LegPiece:
 
 def leg_piece(flow, leg, first, last):
     """
-    Return the Piece along a leg from X = first to last, m.
+    Return the LegPiece along a leg from distance X = first to last, m.
 
-    The time is the integral of dX/X', by Gauss and Legendre with eight points every two
-    kilometres: exact to rounding, as X' changes over thousands.
+    The time is the integral of dX/X' by Gauss-Legendre quadrature with eight points every two
+    kilometres; this is exact to rounding, because X' varies over thousands of kilometres.
     """
     count = max(1, math.ceil((last - first) / STEP_M))
     half = 0.5 * (last - first) / count
@@ -103,7 +104,7 @@ def leg_piece(flow, leg, first, last):
 
 
 class RouteTrack:
-    """The pieces one after the other, from time zero; flow: a Flow."""
+    """The pieces in sequence, from time zero; flow: a Flow."""
 
     def __init__(self, flow, pieces):
         starts = np.concatenate([[0.0], np.cumsum([p.length_s for p in pieces])])
@@ -116,14 +117,14 @@ class RouteTrack:
         for p in pieces:
             turn[:p.turn.shape[1], first:first + len(p.t)] = p.turn.T
             first += len(p.t)
-        # longitude and heading go on from knot to knot, so that quaternions keep their sign
+        # Unwrap longitude and heading across knots, so that quaternions keep their sign.
         self._coefficients = _expand(flow, lat, np.unwrap(lon), np.unwrap(psi), turn)
 
     def at(self, t):
         """
         Return the Series, of order 2, of lat, lon and heading (rad) at times t (n,), s.
 
-        Before zero and after the end it goes on along the first and the last leg.
+        Before zero and after the end the first and the last leg are extended.
         """
         index = np.clip(np.searchsorted(self._t, t, side='right') - 1, 0, None)
         x = t - self._t[index]

@@ -1,10 +1,10 @@
 """
 Turns from one great circle to the next, flown inside the corner.
 
-Beyond what the great circle asks, the heading turns at a rate that rises to its full value by the
-fifth-order smooth step 10 s^3 - 15 s^4 + 6 s^5 while the vehicle rolls in, holds, and falls in the
-same way: rate and roll have two continuous derivatives.  Where it begins and by how much it turns
-is solved for, so that it ends on the next great circle and along it.
+The heading turns, relative to the great circle, at a rate that rises to its full value by the
+fifth-order smooth step 10 s^3 - 15 s^4 + 6 s^5 while the vehicle rolls in, then is constant, and
+falls in the same way: rate and roll have two continuous derivatives. The start of the turn and its
+angle are found iteratively, so that the turn ends on the next great circle and along it.
 """
 
 import math
@@ -16,25 +16,26 @@ from ins_sim.core.numerics.elementary import sincos
 from ins_sim.core.numerics.extrapolation import extrapolated_step
 from .track import LegPiece, STEP_M
 
-# Steps of the integration, and distances of knots: at most this angle and STEP_M, and a part of
-# the roll that leaves 2e-10 m/s between the knots (docs/design/route.md).
+# Step of the integration and distance of the knots: at most this angle, STEP_M, and a fraction of
+# the roll time; the error between the knots is 2e-10 m/s (docs/design/route.md).
 STEP_ANGLE = 0.05
 ROLL_STEPS = 12
-# Below this legs are joined without a turn: the course jumps by no more, rad.
+# Legs whose courses differ by less than this are joined without a turn, rad.
 STRAIGHT = 1e-10
 SHARPEST = math.radians(170.0)
-# how far beside and how far turned from the next leg a turn may end, rad: 6e-6 m
+# Tolerance of the end of a turn, in position and course relative to the next leg, rad: 6e-6 m.
 _CLOSE = 1e-12
-# of the slopes by differences: part of the leg, and rad
+# Steps of the difference quotients: fraction of the leg, and angle in rad.
 _STEP_START, _STEP_ANGLE = 1e-5, 1e-4
 
 
 class TurnProfile:
     """
-    The rate over a turn by angle (rad, signed), at most rate (rad/s), rolling in roll_s.
+    The turn rate over a turn by angle (rad, signed), at most rate (rad/s), rolling in roll_s.
 
-    longest_s: what a step may be; parts: length (s), step (s) at most, and the coefficients of
-    the rate as a polynomial of the time since the start of the part, constant first.
+    longest_s: largest allowed step.  parts: for each part its length (s), its largest step (s),
+    and the coefficients of the rate as a polynomial in the time since the start of the part,
+    constant first.
     """
 
     def __init__(self, angle, rate, roll_s, longest_s):
@@ -56,9 +57,9 @@ class TurnProfile:
 
 def fly_turn(flow, state, profile):
     """
-    Return the Piece of a turn from state (lat, lon, heading, rad), and the state at its end.
+    Return the LegPiece of a turn and the state at its end; state: lat, lon, heading, rad.
 
-    Eighth order, with steps so short that it is exact to rounding.
+    The integration is of eighth order, with steps so short that it is exact to rounding.
     """
     t, states, turn, start, state = [], [], [], 0.0, tuple(state)
     for length, longest, polynomial in profile.parts:
@@ -92,10 +93,23 @@ def _taylor(polynomial, t):
 
 def turn_between(flow, before, after, rate, roll_s):
     """
-    Return the turn from Leg before to Leg after, or None where both are one great circle.
+    Return the turn from Leg before to Leg after, or None if both are on one great circle.
 
-    It is X of its start on before, m, the Piece, and X of its end on after, m.  rate: rad/s;
-    roll_s: s.  Raises ValueError on a turn of about 180 deg, and where none fits.
+    Parameters
+    ----------
+    flow : Flow
+    before, after : Legs
+    rate : largest turn rate, rad/s
+    roll_s : duration of the roll-in and of the roll-out, s
+
+    Returns
+    -------
+    start, piece, end : distance X of the start on before (m), LegPiece, X of the end on after (m)
+
+    Raises
+    ------
+    ValueError : for a turn of about 180 deg, or if no turn fits
+
     """
     heading = [float(flow.on_leg(leg, np.array([x]))[2][0])
                for leg, x in ((before, before.length), (after, 0.0))]
@@ -122,7 +136,7 @@ def turn_between(flow, before, after, rate, roll_s):
         if best is not None and not _largest(found[0]) < _largest(best[0][0]):
             break
         best, (x, y) = (found, start), found[0]
-        # Newton, with slopes by differences.
+        # Newton's method, with derivatives by difference quotients.
         (a, c), (b, d) = (
             [(p - q) / h for p, q in zip(attempt(start + h_1, by + h_2)[0], found[0])]
             for h, h_1, h_2 in ((_STEP_START, _STEP_START, 0.0), (_STEP_ANGLE, 0.0, _STEP_ANGLE)))
@@ -143,5 +157,5 @@ def _largest(off):
 
 
 def _wrap(angle):
-    """Return an angle within half a turn, rad."""
+    """Return an angle reduced to half a turn either way, rad."""
     return math.remainder(angle, 2.0 * math.pi)

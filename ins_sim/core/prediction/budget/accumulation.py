@@ -1,4 +1,4 @@
-"""Compose the responses of successive intervals to covariances and means of a whole run."""
+"""Combine the responses of successive intervals into covariances and means of a whole run."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ from ins_sim.core.navigation.error_dynamics import GROWING, turn_by_position
 from ins_sim.core.numerics.fixed_order import product
 from .sources import sources_of
 
-# The axes on which an initial standard deviation or error acts: those of position, velocity and
-# attitude.
+# For each initial standard deviation or error: its states among the errors of position, velocity
+# and attitude.
 START_AXES = {'position': (0, 1, 2), 'velocity': (3, 4, 5), 'attitude': (6, 7, 8),
               'tilt': (6, 7), 'azimuth': (8,)}
 
 
 def level_turn(lat, height):
     """
-    Return the matrix (9, 9) from the attitude error of the level frame to the inertial one.
+    Return the matrix (9, 9) that converts the inertial attitude error to that of the level frame.
 
     The computed level frame rotates with the position error (``turn_by_position``).
     """
@@ -24,7 +24,7 @@ def level_turn(lat, height):
 
 
 def start_columns(lat, height, held):
-    """Return the initial errors (9, 9) due to units of the inertial errors at the start."""
+    """Return the initial nine errors (9, 9) for unit values of the inertial errors, by column."""
     back = 2.0 * np.eye(GROWING) - level_turn(lat, height)
     if held:
         back[:, [2, 5]] = 0.0
@@ -33,18 +33,19 @@ def start_columns(lat, height, held):
 
 class NoiseErrors:
     """
-    Covariances of the noises of one triad, by source and axis.
+    Covariances caused by the noises of one triad, by source and axis.
 
     Parameters
     ----------
     markov : MarkovProcesses
-    walk_s : time for which the random walks have run at the start, s
+    walk_s : time for which the random walks have run before the start, s
 
     Attributes
     ----------
-    sources : the ErrorSources of the processes
-    white, walk : (9, 9, 3) for a density of one
-    markov : (sources, 9, 9, 3) for units of the sources
+    sources : ErrorSources of the processes
+    white, walk : (9, 9, 3) for unit density
+    markov : (sources, 9, 9, 3) for unit values of the sources
+
     """
 
     def __init__(self, markov, walk_s):
@@ -59,10 +60,16 @@ class NoiseErrors:
 
     def advance(self, transition, noise, bias, length_s, lane):
         """
-        Advance by one interval.
+        Propagate over one interval.
 
-        transition: (9, 9); noise: TriadNoise; bias: response to constant errors (9, 3); length_s:
-        length of the interval, s; lane: its number in the noise.
+        Parameters
+        ----------
+        transition : (9, 9)
+        noise : TriadNoise
+        bias : (9, 3) response to constant errors
+        length_s : length of the interval
+        lane : index of the interval in noise
+
         """
         ahead = moved(transition, self._with)
         cross = ahead[:, :, np.newaxis] * noise.start[:, np.newaxis, :, :, lane]
@@ -81,7 +88,7 @@ class NoiseErrors:
 
 
 def moved(transition, columns):
-    """Return the transition matrix times columns (m, 9, ...)."""
+    """Return the product of the transition matrix and columns (m, 9, ...)."""
     rows = np.moveaxis(columns, 1, 0)
     return np.moveaxis(product(transition, rows.reshape(GROWING, -1)).reshape(rows.shape), 0, 1)
 

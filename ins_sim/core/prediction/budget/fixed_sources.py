@@ -16,14 +16,14 @@ LAG = 'bandwidth_hz'
 
 
 class FixedSource:
-    """A source, and a function of TimeLanes that returns its means (steps, 3, n) in n."""
+    """A source and a function of TimeLanes that returns its means (steps, 3, n) in n."""
 
     def __init__(self, source, means):
         self.source, self.means = source, means
 
 
 def fixed_sources(settings, motion):
-    """Return the FixedSources of the instruments of SimulationSettings along a motion."""
+    """Return the FixedSources of the instruments in SimulationSettings along a motion."""
     sensor, found = settings.imu_sensor, []
     for triad, errors, delays in (
             (ACCELEROMETER, sensor.accelerometer.errors, sensor.accelerometer.delay_us),
@@ -46,7 +46,7 @@ def fixed_sources(settings, motion):
 
 
 class _Immediate:
-    """Errors that follow the input without a lag, due to one parameter."""
+    """Errors that follow the input without lag, caused by one parameter."""
 
     def __init__(self, errors, key, triad, temperature):
         alone = replace(type(errors)(), **{key: getattr(errors, key)})
@@ -62,13 +62,13 @@ class _Immediate:
 
 class _Lag:
     """
-    Errors of lags, to second order in their time constants.
+    Errors caused by lags, to second order in their time constants.
 
-    The output lacks x/w of the integral of the input u for a first-order lag, and sqrt(2) x/w +
-    x'/w^2 for a Butterworth lag (``discrete_lag``), w = 2 pi f. The lag is driven by the mean of
-    the input over each sampling period. After a steady rise of u its state x is therefore u - L
-    u', where L exceeds 1/w by about half a period, and x' = v u'. At the first sample the lag is
-    settled: x is the first reading, and x' = 0.
+    With w = 2 pi f, the output falls short of the integral of the input u by x/w for a first-order
+    lag, and by sqrt(2) x/w + x'/w^2 for a Butterworth lag (``discrete_lag``). The lag is driven by
+    the mean of the input over each sampling period, so that after a steady rise of u its state x
+    is u - L u', where L exceeds 1/w by about half a period, and x' = v u'. At the first sample the
+    lag is settled: x is the first reading and x' = 0.
     """
 
     def __init__(self, errors, triad, settings, motion):
@@ -96,9 +96,7 @@ class _Lag:
 
 
 def _first_reading(sensor, motion, first_ns):
-    """
-    Return the first mean specific force and rate, (3,) each; on a stream, those at the instant.
-    """
+    """Return the first mean specific force and rate, (3,); instant values on streamed truth."""
     if sensor.source == 'motion':
         imu = MotionImu(sensor, motion, first_ns).advance(1)
         return imu.f[0], imu.omega[0]
@@ -107,7 +105,7 @@ def _first_reading(sensor, motion, first_ns):
 
 
 class _Delay:
-    """Errors of late channels, computed as in ``core.prediction``."""
+    """Errors caused by delayed channels, computed as in ``core.prediction``."""
 
     def __init__(self, settings, motion, triad):
         sensor = settings.imu_sensor

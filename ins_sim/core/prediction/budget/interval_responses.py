@@ -1,15 +1,16 @@
 """
-Contribution of unit instrument errors to the nine errors within one interval.
+Responses of the nine errors to unit errors of the instruments over one interval.
 
-All intervals of a run are computed side by side, along the last axis. In each, the steps are taken
-backwards with the transition matrix A from the end of a step to that of the interval, so that the
-effect of a step is carried to the end at once. With the response W to an error by body axis that
-is constant over a step, a process whose means over steps j and l have the covariance R contributes
+All intervals of a run are processed side by side, in the last axis. Within each, the steps are
+processed backwards with the transition matrix A from the end of a step to that of the interval,
+so that what acts in a step is propagated to the end at once. W is the response to an error by body
+axis that is constant over a step. A process with the covariance R between its means over the
+steps j and l contributes
 
     sum over j, l of  W_j R_jl W_l'
 
 For a stationary Gauss-Markov process this needs one more sum, s = sum over l > j of
-W_l k a^(l-j-1), with a = exp(-h/T), k = (1 - a) T/h (docs/theory/error_budget.md).
+W_l k a^(l-j-1), with a = exp(-h/T) and k = (1 - a) T/h.
 """
 
 from typing import NamedTuple
@@ -21,10 +22,10 @@ from ins_sim.core.numerics import elementary
 from ins_sim.core.numerics.fixed_order import lane_product
 from .sources import sources_of
 
-# Indices of height and vertical velocity.
+# States that belong to the vertical channel: height and vertical velocity.
 UP = 2, 5
-# Up to the first ratio of step to time constant the variance of a mean is computed by a series;
-# beyond the second one nothing is left of a process after a step.
+# Up to the ratio SHORT of step to time constant the variance of a mean is computed by a series;
+# beyond GONE a process has decayed completely.
 SHORT, GONE = 0.1, 700.0
 
 
@@ -32,9 +33,9 @@ class Responses(NamedTuple):
     """
     Responses at the ends of n intervals.
 
-    transition (9, 9, n): to the errors at the start; constants: of each triad (9, 9, n), columns
-    as in ``TimeLanes.by_error``; fixed (9, f, n): to errors that are the same in every run; noise:
-    one TriadNoise for each triad.
+    transition (9, 9, n): response to the errors at the start; constants: for each triad
+    (9, 9, n), see ``TimeLanes.by_error``; fixed (9, f, n): response to errors that are the same in
+    every run; noise: a TriadNoise for each triad.
     """
 
     transition: np.ndarray
@@ -45,23 +46,24 @@ class Responses(NamedTuple):
 
 class TriadNoise:
     """
-    Contributions of the noises of one triad at the ends of the intervals, for units of each.
+    Effect of the noises of one triad at the ends of the intervals, for unit values.
 
     Parameters
     ----------
     markov : MarkovProcesses of the triad
     h : (n,) length of a step, s
     with_walk : whether there is a random walk
-    count : number of error states in use
+    count : number of errors that are propagated
 
     Attributes
     ----------
-    white, walk : (9, 9, 3, n) covariances for a density of one, by axis
-    markov : (sources, 9, 9, 3, n) covariances of the processes of each source
+    white, walk : (9, 9, 3, n) covariances for unit density, by axis
+    markov : (sources, 9, 9, 3, n) covariances due to the processes of each source
     start : (m, 9, 3, n) response to the values of the processes at the start of the interval
-    end : (m, 9, 3, n) covariance with their values at its end, for processes of variance one
-    walk_end : (9, 3, n) covariance with the value of the random walk there
-    kept : (m, 3, n) correlation of the processes over the interval
+    end : (m, 9, 3, n) covariance with their values at its end, for processes of unit variance
+    walk_end : (9, 3, n) covariance with the value of the walk at the end
+    kept : (m, 3, n) factor by which the processes decay over the interval
+
     """
 
     def __init__(self, markov, h, with_walk, count):
@@ -86,9 +88,7 @@ class TriadNoise:
         total += self._term
 
     def add(self, w):
-        """
-        Add the step before those already added; w (9, 3, n): response to the mean error in it.
-        """
+        """Add the step before those added so far; w (9, 3, n): response to its mean."""
         self._add_outer(self.white, w, w)
         before = [0.0] * len(self.markov)
         for k, (source, variance) in enumerate(zip(self._of, self._variances)):
@@ -109,9 +109,7 @@ class TriadNoise:
             self._sum += half
 
     def finish(self, alive):
-        """
-        Complete the covariances when all steps are added; alive: indices of the errors in use.
-        """
+        """Complete the covariances after all steps; alive: indices of the propagated errors."""
         self.markov += np.swapaxes(self.markov, 1, 2)
         for k, (source, variance) in enumerate(zip(self._of, self._variances)):
             self.markov[source] += (variance * mean_variance(self._x[k])) * self.white
@@ -124,7 +122,7 @@ class TriadNoise:
 
 
 def mean_variance(x):
-    """Return the variance of the mean over x time constants of a process of variance one."""
+    """Return the variance of the mean of a unit-variance process over x time constants."""
     low, high = np.minimum(x, SHORT), np.maximum(x, SHORT)
     series = 1.0 - low / 3.0 * (1.0 - 0.25 * low * (1.0 - 0.2 * low * (1.0 - low / 6.0)))
     return np.where(x < SHORT, series, 2.0 / high * (
@@ -138,15 +136,12 @@ def interval_responses(lanes, spin, held, damping, processes, fixed):
     Parameters
     ----------
     lanes : TimeLanes
-    spin, damping
-        See ``free_covariance.coefficients``.
-    held : bool
-        Whether height and vertical velocity come from the truth and therefore have no errors.
-    processes
-        For accelerometers and gyros: (MarkovProcesses, random walks).
-    fixed : ndarray
-        Means in n (steps, 6, f, n) of the f errors of accelerometers and gyros that are the same
-        in every run.
+    spin, damping : see ``free_covariance.coefficients``
+    held : whether height and vertical velocity come from the truth, without errors
+    processes : for accelerometers and gyros, the MarkovProcesses and walks
+    fixed : (steps, 6, f, n) means in n of the f errors of accelerometers and gyros that are the
+        same in every run
+
     """
     alive = [k for k in range(GROWING) if not (held and k in UP)]
     places = alive.index(3)
@@ -181,7 +176,7 @@ def interval_responses(lanes, spin, held, damping, processes, fixed):
 
 
 def spread(values, alive, axis):
-    """Return an array with all nine errors along an axis; errors not in use are zero."""
+    """Expand an axis to all nine errors, with zeros for those that are not propagated."""
     shape = list(values.shape)
     shape[axis] = GROWING
     found = np.zeros(shape)

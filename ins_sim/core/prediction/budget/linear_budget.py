@@ -8,16 +8,16 @@ from ins_sim.core.motion.motion import check_length
 from ins_sim.core.numerics.garbage_collection import paused_in_blocks
 from .propagation import navigation_span_s, Propagation
 
-# A run is divided by this number to give the instants of a budget; others can be added.
+# Number of equal intervals between the instants of a budget; further instants may be added.
 INTERVALS = 360
-# Times that differ by less are equal, s.
+# Times that differ by less than this are considered the same, s.
 SAME_S = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class LinearBudget:
     """
-    Covariances and means of the errors by source: position, velocity, attitude, East, North, Up.
+    Covariances and means of the errors by source: position, velocity, attitude, east, north, up.
 
     The attitude error is the inertial one, as in NavErrors.
 
@@ -27,13 +27,13 @@ class LinearBudget:
     lat : (n,) true latitude, rad
     random : ErrorSources that differ from run to run
     covariance : (random, n, 9, 9) m, m/s, rad
-    by_axis : (random, n, 3, 9) variances due to the axes of the source; for a source without axes,
-    all
-        in the first
+    by_axis : (random, n, 3, 9) variances caused by each axis of the source; for a source without
+        axes everything is in the first
     fixed : ErrorSources that are the same in every run
     mean : (fixed, n, 9) errors, m, m/s, rad
-    beyond : (2,) for accelerometers and gyros, the fraction of time in which the input exceeds the
-        range of the instrument, which the budget neglects
+    beyond : (2,) for accelerometers and gyros, fraction of the time in which an input exceeds the
+        range of the instrument; the budget ignores the saturation
+
     """
 
     t_s: np.ndarray
@@ -55,9 +55,7 @@ class LinearBudget:
         return np.add.reduce(np.concatenate([np.zeros((1, len(self.t_s), 9)), self.mean]))
 
     def at(self, t_s):
-        """
-        Return the index of the instant t_s, s; raise ValueError if the budget does not contain it.
-        """
+        """Return the index of the instant t_s, s; ValueError if the budget does not have it."""
         k = int(np.argmin(np.abs(self.t_s - t_s)))
         if abs(self.t_s[k] - t_s) > SAME_S:
             raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget, '
@@ -67,7 +65,7 @@ class LinearBudget:
 
 @paused_in_blocks
 def _propagated(run):
-    """Propagate with the garbage collector off; yields nothing."""
+    """Propagate with the garbage collector disabled; yield as the propagation does."""
     yield from run.blocks()
 
 
@@ -78,20 +76,14 @@ def error_budget(settings, motion, instants_s=()):
     Parameters
     ----------
     settings : SimulationSettings
-    motion : Motion
-        The motion of settings.motion_generator.
-    instants_s : sequence of float
-        Times since the start of the navigation, s, in addition to the even ones.
-
-    Returns
-    -------
-    LinearBudget
+    motion : Motion of settings.motion_generator
+    instants_s : times since the start of the navigation, s, in addition to the evenly spaced ones
 
     Raises
     ------
-    ValueError
-        If the settings do not define a run of finite length, an instant is outside of it, or the
-        errors have no linear budget.
+    ValueError : if the run has no finite length, an instant is outside it, or the linear budget
+        does not cover the errors
+
     """
     check_length(settings.motion_generator, motion)
     model = settings.imu_sensor.gyro.model
@@ -115,6 +107,6 @@ def instants_of(settings, wanted_s):
             raise ValueError(f'the time is {t_s:g} s; expected a time of the navigation, 0 to '
                              f'{span_s:g} s')
     even = span_s * np.arange(INTERVALS + 1) / INTERVALS
-    # An instant that equals an even one except for rounding is not added.
+    # Do not add an instant that equals an evenly spaced one except for rounding.
     others = [t_s for t_s in wanted.tolist() if np.abs(even - t_s).min() > SAME_S]
     return np.unique(np.concatenate([even, others]))

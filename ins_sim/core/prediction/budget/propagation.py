@@ -1,4 +1,4 @@
-"""Propagation of a budget through a run: blocks of intervals, composed one after the other."""
+"""Propagate a budget through a run in blocks of intervals."""
 
 import math
 
@@ -17,14 +17,14 @@ from .sources import (ACCELEROMETER, CONSTANTS, GYRO, processes, random_sources,
                       start_sources)
 from .time_lanes import TimeLanes
 
-# Limits of a step: length, s; rotation, rad; and steps per period of the motion and per time
-# constant of a damped vertical channel.
+# Largest step, s; largest rotation in a step, rad; smallest number of steps in a period of the
+# motion and in a time constant of a damped vertical channel.
 STEP_S, STEP_RAD, PER_PERIOD = 0.05, 0.1, 20
-# Intervals have at most this length, s, and together at most this number of steps.
+# Largest interval, s, and largest total number of steps processed together.
 INTERVAL_S, STEPS_AT_ONCE = 10.0, 100_000
-# Number of samples of the motion in which its fastest rotation is searched.
+# Number of instants at which the motion is searched for its fastest rotation.
 LOOKS = 1000
-# Number of columns that a run has once: units of the initial errors, and the constants of
+# Columns of what has a single value per run: unit initial errors, and the constant errors of
 # accelerometers and gyros.
 START, OF_TRIAD, FIXED = slice(0, 9), (slice(9, 18), slice(18, 27)), slice(27, None)
 
@@ -35,7 +35,7 @@ def navigation_start_s(settings):
 
 
 def navigation_span_s(settings):
-    """Return the time for which the strapdown navigates, s; raise ValueError if there is none."""
+    """Return how long the strapdown navigates, s; ValueError if the run ends before its start."""
     after_s, duration_s = (settings.strapdown.initial.after_s,
                            settings.motion_generator.duration_s)
     if not duration_s - after_s > 0.0:
@@ -53,8 +53,9 @@ class Propagation:
     Attributes
     ----------
     random, fixed : ErrorSources
-    covariances, by_axis, means, lat : lists by instant, with entries as in LinearBudget
-    beyond : see LinearBudget
+    covariances, by_axis, means, lat : lists by instant, entries as in LinearBudget
+    beyond : (2,) see LinearBudget
+
     """
 
     def __init__(self, settings, motion, t_s):
@@ -67,7 +68,7 @@ class Propagation:
                          else (0.0, 0.0))
         errors = sensor.accelerometer.errors, sensor.gyro.errors
         dt_s = period_ns(sensor.rate_hz) * 1e-9
-        # This raises an error for settings that no instrument can have.
+        # Raises ValueError for values that no instrument can have.
         models = [triad_model(e, dt_s, e.NAME) for e in errors]
         self._most = [[s or math.inf for s in model.saturation] for model in models]
         self.random = [*random_sources(errors[GYRO], errors[ACCELEROMETER]),
@@ -82,7 +83,7 @@ class Propagation:
         self.beyond, self._columns = np.zeros(2), None
 
     def blocks(self):
-        """Propagate block by block of intervals; yield the end time of each."""
+        """Propagate in blocks of intervals; yield the time at the end of each block."""
         edges, kept = self._edges()
         truth = self._motion.at(_nanoseconds(self._start_s + edges))
         self._keep_first(truth)
@@ -112,7 +113,7 @@ class Propagation:
         return np.concatenate(edges), kept
 
     def _step_s(self):
-        """Return the largest allowed step, s."""
+        """Return the largest step, s."""
         t_ns = _nanoseconds(self._start_s + self.t_s[-1] * np.arange(LOOKS + 1) / LOOKS)
         fastest = float(length(self._motion.at(t_ns).omega_ib_b).max())
         step_s = min(STEP_S, STEP_RAD / max(fastest, 1e-9))
@@ -155,7 +156,7 @@ class Propagation:
         self._columns = product(transition, self._columns) + added
 
     def _keep(self, lat, height):
-        """Store the contributions of the sources at an instant."""
+        """Store the covariances and means of all sources at an instant."""
         turn = level_turn(lat, height)
         columns = product(turn, self._columns)
         covariances = np.zeros((len(self.random), GROWING, GROWING))
@@ -172,9 +173,7 @@ class Propagation:
         self.lat.append(lat)
 
     def _by_axis(self, source, columns, turn):
-        """
-        Yield the covariances due to the axes of a random source, or of a source of the start.
-        """
+        """Yield the covariance for each axis of a random source, or for a source of the start."""
         if source.triad is None:
             x = columns[:, list(START_AXES[source.kind])] * source.si[0]
             yield product(x, x.T)
@@ -199,7 +198,7 @@ class Propagation:
 
 
 def _combined(columns, axes, values):
-    """Return the sum of initial columns times values, (9,)."""
+    """Return the sum of the initial-error columns times values, (9,)."""
     found = np.zeros(GROWING)
     for axis, value in zip(axes, values):
         found += columns[:, axis] * value

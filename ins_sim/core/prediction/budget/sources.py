@@ -1,4 +1,4 @@
-"""The error sources of the settings: one for each parameter that is not zero."""
+"""The error sources in the settings: one for each parameter that is not zero."""
 
 from dataclasses import dataclass
 import math
@@ -10,9 +10,9 @@ from ins_sim.core.sensors.imu.triad_errors import FLICKER_SIGMA, FLICKER_TIMES
 from ins_sim.core.sensors.imu.triad_model import KEYS
 
 ACCELEROMETER, GYRO = 0, 1
-# Coefficients of TriadModel that are drawn once a run, in the order of ``TimeLanes.by_error``.
+# Coefficients of TriadModel that are drawn once per run, in the order of ``TimeLanes.by_error``.
 CONSTANTS = ('turn_on_sigma', 'scale_sigma', 'misalignment_sigma')
-# Names of the random coefficients, of accelerometers and of gyros.
+# Labels of the random coefficients, for accelerometers and gyros.
 RANDOM_WORDS = {
     'turn_on_sigma': ('turn-on bias',) * 2, 'scale_sigma': ('scale factor',) * 2,
     'misalignment_sigma': ('misalignment',) * 2,
@@ -33,12 +33,19 @@ class ErrorSource:
     """
     One source of errors.
 
-    key: name of the parameter; label: description; unit: unit of the parameter; values: values of
-    the three axes in this unit, or (value,) for all; si: the same in SI; fixed: whether the error
-    is the same in every run; triad: ACCELEROMETER, GYRO, or None for the start; kind: name of the
-    coefficient in TriadModel, or of the initial error; inverse: whether the error decreases when
-    the parameter grows, as that of a lag with its bandwidth (otherwise it is proportional to the
-    parameter).
+    Attributes
+    ----------
+    key : name of the parameter
+    label : description
+    unit : unit of the parameter
+    values : values of the three axes in this unit, or (value,) for all
+    si : the same in SI units
+    fixed : whether the error is the same in every run
+    triad : ACCELEROMETER, GYRO, or None for initial errors
+    kind : the coefficient of TriadModel, or of the initial errors
+    inverse : True if the error is inversely proportional to the parameter, as the error of a lag
+        to its bandwidth; False if it is proportional
+
     """
 
     key: str
@@ -54,7 +61,7 @@ class ErrorSource:
 
 @dataclass(frozen=True)
 class MarkovProcess:
-    """A stationary process: its source, time constants, s, and variances for a unit, by axis."""
+    """A stationary process: its source; by axis, time constants (s) and variances for a unit."""
 
     source: ErrorSource
     time_s: tuple
@@ -88,7 +95,7 @@ def triad_source(settings, triad, key, words, fixed, inverse=False):
 
 
 def start_sources(initial):
-    """Return the ErrorSources of the standard deviations of settings.strapdown.Initial."""
+    """Return the ErrorSources for the standard deviations in settings.strapdown.Initial."""
     return [ErrorSource(f'initial.{key}', words, unit, (value,), (value * si,), False, None, kind)
             for key, words, unit, si, kind in (
                 ('position_sigma_m', 'initial position', 'm', 1.0, 'position'),
@@ -99,7 +106,7 @@ def start_sources(initial):
 
 
 def start_errors(initial):
-    """Return the ErrorSources of the given errors of settings.strapdown.Initial."""
+    """Return the ErrorSources for the given errors in settings.strapdown.Initial."""
     return [ErrorSource(f'initial.{key}', words, unit, values, tuple(si * v for v in values), True,
                         None, kind)
             for key, words, unit, si, kind in (
@@ -113,9 +120,11 @@ def processes(sources, triad, settings):
     """
     Return the MarkovProcesses and the random walks of a triad.
 
-    A random walk is (source, density of the walk for a unit of the source, 1/s); a Gauss-Markov
-    process of infinite time constant is a random walk that reaches its standard deviation after an
-    hour. sources: ErrorSources; settings: GyroErrors or AccelerometerErrors.
+    A walk is a pair: its source, and the density of the walk for a unit of the source, 1/s. A
+    Gauss-Markov process with infinite time constant is a walk that reaches its standard deviation
+    after an hour.
+
+    sources: ErrorSources; settings: GyroErrors or AccelerometerErrors.
     """
     markov, walks = [], []
     for source in sources:

@@ -1,4 +1,4 @@
-"""The motion over many intervals side by side, and the errors that act in each step."""
+"""The motion over many intervals side by side, and the inputs of the error model in each step."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from ins_sim.core.earth.rates import rate_of_n
 from ins_sim.core.timeseries.histories import Truth
 from ..drift import drift_density
 
-# Number of instants at which a motion is evaluated at once.
+# Number of instants at which the motion is evaluated at once.
 AT_ONCE = 16384
 
 
 class TimeLanes:
     """
-    The truth of n intervals, each divided into equal steps, at the ends and middles of the steps.
+    The truth over n intervals of equal steps, at the ends and middles of the steps.
 
     motion : Motion
     edges_s : (n + 1,) motion times that bound the intervals, s
@@ -23,7 +23,7 @@ class TimeLanes:
     Attributes
     ----------
     h : (n,) length of the steps of each interval, s
-    truth : Truth at the instants, (2 steps + 1) n of them, grouped by instant number
+    truth : Truth at the (2 steps + 1) n instants; the k-th instants of all intervals are adjacent
     t_s : (2 steps + 1, n) motion times, s
     c : C_nb, nine arrays of the shape of t_s
     """
@@ -39,10 +39,7 @@ class TimeLanes:
         self.c = [x.reshape(self.t_s.shape) for x in dcm_of(tuple(self.truth.q_nb.T))]
 
     def columns(self, vectors):
-        """
-        Return the three components of vectors, one for each instant, as arrays of the shape of
-        t_s.
-        """
+        """Return the three components of vectors, one per instant, as arrays like t_s."""
         return [x.reshape(self.t_s.shape) for x in vectors.T]
 
     def means(self, values):
@@ -53,7 +50,7 @@ class TimeLanes:
         return (values[:-1:2] + 4.0 * values[1::2] + values[2::2]) / 6.0
 
     def means_in_n(self, components):
-        """Return the means over the steps (steps, 3, n), in n, of vectors given in b."""
+        """Return the means (steps, 3, n), in n, of vectors given in b."""
         x, y, z = components
         c = self.c
         return np.stack([self.means(c[k] * x + c[k + 1] * y + c[k + 2] * z) for k in (0, 3, 6)],
@@ -61,11 +58,10 @@ class TimeLanes:
 
     def late_means_in_n(self, late):
         """
-        Return the means (steps, 3, n), in n, of the errors of a triad that lags behind.
+        Return the means (steps, 3, n), in n, of the errors of a triad with lag.
 
-        late: the part of the integral of the input that has not been reported yet, in b, one
-        vector for each instant. The error of the reading is minus its derivative
-        (``drift_density``).
+        late: the part of the integral of the input that has not been read yet, in b, one vector
+        per instant. The error of the reading is minus its derivative (``drift_density``).
         """
         if self._omega_in is None:
             truth = self.truth
@@ -75,17 +71,18 @@ class TimeLanes:
                          for d, b in zip(density, behind)], axis=1)
 
     def slopes(self, vectors):
-        """Return the time derivatives of vectors, one for each instant."""
+        """Return the time derivatives of vectors, one per instant."""
         values = np.reshape(vectors, (*self.t_s.shape, 3))
         per_step = np.gradient(values, axis=0, edge_order=2)
         return np.reshape(per_step / (0.5 * self.h)[:, np.newaxis], (-1, 3))
 
     def by_error(self, reading):
         """
-        Return the means (steps, 3, 9, n), in n, of the errors due to unit constants.
+        Return the means (steps, 3, 9, n), in n, of the errors caused by unit constant errors.
 
-        reading: components of the input of a triad in b. Columns: biases, scale factors and
-        misalignments (rotations from the body axes to those of the triad) of the axes x, y, z.
+        reading: components of the input of a triad in b.  The nine columns are biases, scale
+        factors and misalignments (rotations from the body axes to those of the triad) of the axes
+        x, y, z.
         """
         x, y, z = reading
         c = self.c
@@ -99,9 +96,10 @@ class TimeLanes:
 
     def middle(self, step):
         """
-        Return the quantities that the coefficients of a step need, all arrays (n,).
+        Return the arguments for the coefficients of a step, all arrays (n,).
 
-        lat, height, (3) velocity in n, (9) C_nb and (3) specific force in n; the latter is a mean.
+        They are lat, height, velocity in n (3), C_nb (9) and specific force in n (3); the last is
+        a mean over the step.
         """
         truth, width = self.truth, len(self.h)
         part = slice((2 * step + 1) * width, (2 * step + 2) * width)
