@@ -31,7 +31,7 @@ class Initial(StandaloneStart):
     Initial state and its errors.
 
     The errors are added to the truth, resolved in East, North, Up. The standard deviations set
-    the initial covariances of ins/*, to which the squared errors are added.
+    the initial covariances on the ins/ topics, to which the squared errors are added.
     """
 
     after_s: float = setting(0.0, 'Time from the first IMU sample to the start of the navigation',
@@ -64,14 +64,14 @@ class Initial(StandaloneStart):
 
 @settings_class
 class GyroFigures(SettingsGroup):
-    """Gyros: only their errors are used, for the covariances of ins/*."""
+    """Gyros: only their errors are used, for the covariances on the ins/ topics."""
 
     errors: GyroErrors = group(GyroErrors)
 
 
 @settings_class
 class AccelerometerFigures(SettingsGroup):
-    """Accelerometers: only their errors are used, for the covariances of ins/*."""
+    """Accelerometers: only their errors are used, for the covariances on the ins/ topics."""
 
     errors: AccelerometerErrors = group(AccelerometerErrors)
 
@@ -98,9 +98,9 @@ class StrapdownSettings(SettingsGroup):
     input: str = setting('rotation_vector', 'Meaning of the IMU samples; must equal output of '
                          'imu_sensor. Without truth also instant: the value at its stamp, as from '
                          'most drivers', choices=INPUTS)
-    orientation: str = setting('quaternion', "Attitude algorithm. quaternion: exact; poisson: RK4 "
-                               "integration of the direction cosine matrix (Poisson's equation); "
-                               "euler_vector: RK4 integration of the Euler vector",
+    orientation: str = setting('quaternion', 'Attitude algorithm. quaternion: exact; poisson: RK4 '
+                               'integration of the direction cosine matrix (equation of Poisson); '
+                               'euler_vector: RK4 integration of the Euler vector',
                                choices=('quaternion', 'poisson', 'euler_vector'))
     imu_time: str = setting('stamp', 'Instant of a reading. stamp: its stamp; nominal: the '
                             'nearest multiple of the sampling period in motion time, for stamps '
