@@ -21,10 +21,10 @@ TRANSFORMS = 'tf2_msgs/msg/TFMessage'
 
 # Variance of unmeasured or unknown quantities, m^2, rad^2, (m/s)^2 or (rad/s)^2.
 UNMEASURED = 1e9
-# Variances that the truth states, since filters take zero for unknown or divide by it: of 1 mm,
-# 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2.  A perfect IMU states the last two.
+# Variances of the truth, for 1 mm, 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2. They are not zero,
+# which filters divide by or read as unknown.  An error-free IMU has the last two.
 TRUE_PLACE, TRUE_VELOCITY, TRUE_ATTITUDE, TRUE_RATE, TRUE_FORCE = 1e-6, 1e-6, 1e-8, 1e-12, 1e-10
-# Those of a perfect magnetometer and barometer, of 1 nT and 0.01 Pa.
+# Variances of an error-free magnetometer and barometer, for 1 nT and 0.01 Pa.
 TRUE_FIELD, TRUE_PRESSURE = 1e-18, 1e-4
 
 

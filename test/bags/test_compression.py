@@ -1,4 +1,4 @@
-"""Compression of bags: each library reads what the others wrote, and none is needed without it."""
+"""Compression of bags: libraries are interchangeable, and optional without compression."""
 
 import importlib
 import tracemalloc
@@ -39,7 +39,7 @@ def installed(module):
 
 @pytest.mark.parametrize('name, module', LIBRARIES)
 def test_each_library_reads_what_any_wrote(name, module, only):
-    """Data go through every pair of libraries and come back."""
+    """Data compressed by one library are decompressed by every other one."""
     only(name, module)
     packed = compression.compress(memoryview(DATA), name)
     assert compression.compression_library(name).__name__ == module
@@ -51,7 +51,7 @@ def test_each_library_reads_what_any_wrote(name, module, only):
 
 @pytest.mark.parametrize('name, module', LIBRARIES)
 def test_bad_data_are_refused(name, module, only):
-    """Cut data, other data, and data of another size than is said, each in one sentence."""
+    """Truncated, foreign and wrongly sized data are refused, each in one sentence."""
     only(name, module)
     packed = bytes(compression.compress(DATA, name))
     for stop in (0, 3, 20, len(packed) // 2):
@@ -89,7 +89,7 @@ def write(path, name):
 
 @pytest.mark.parametrize('name, package', [('lz4', 'python3-lz4'), ('zstd', 'python3-zstandard')])
 def test_a_missing_library_is_one_sentence(name, package, only, tmp_path, capsys):
-    """Reading and writing name what to install; bags without compression need no library."""
+    """The message names the package to install; uncompressed bags need no library."""
     write(tmp_path / 'packed', name)
     only('lz4')
     only('zstd')
@@ -110,7 +110,7 @@ def test_a_missing_library_is_one_sentence(name, package, only, tmp_path, capsys
 
 
 def test_a_cut_bag_loses_no_chunk_to_a_missing_library(only, tmp_path):
-    """The absence of the library is not mistaken for damage of the last chunk."""
+    """A missing library is not mistaken for damage of the last chunk."""
     path = write(tmp_path / 'bag', 'zstd') / 'bag_0.mcap'
     path.write_bytes(path.read_bytes()[:-50])
     with open_bag(path) as bag:
@@ -122,7 +122,7 @@ def test_a_cut_bag_loses_no_chunk_to_a_missing_library(only, tmp_path):
 
 @pytest.mark.parametrize('name', ['lz4', 'zstd'])
 def test_a_chunk_that_gains_more_than_messages_do_is_refused_before_it_is_unpacked(name):
-    """Sixty-four megabytes are unpacked whatever the gain; a gigabyte of zeros is not."""
+    """64 MB are decompressed at any ratio; a gigabyte of zeros is refused before."""
     data = compression.compress(bytes(1 << 20), name)
     assert compression.decompress(data, name, 1 << 20) == bytes(1 << 20)
     with pytest.raises(ValueError, match='it says it has 1073741824 bytes; expected at most '

@@ -1,4 +1,4 @@
-"""A writer that is killed, or whose disk is full, leaves what it wrote, and one can see it."""
+"""A killed writer, or one on a full disk, leaves a readable bag that is marked as cut."""
 
 import os
 import signal
@@ -39,7 +39,7 @@ UNFLUSHED = 101
 @pytest.mark.parametrize('flush', ['flush', 'none'])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, flush, tmp_path, capsys):
-    """SIGKILL: all that was flushed opens in place, info says that it was cut, exit code 0."""
+    """After SIGKILL all flushed messages can be read, and info reports a cut bag, exit code 0."""
     path = tmp_path / 'bag'
     process = subprocess.Popen([sys.executable, '-c', RECORDER, path, storage, compression, flush],
                                stdout=subprocess.PIPE, text=True)
@@ -91,7 +91,7 @@ except OSError as error:
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_no_room_is_left(storage, compression, tmp_path):
-    """The error says how many messages are kept; exactly these are read, in a bag that is cut."""
+    """On a full disk the error gives the number of kept messages; exactly these are read."""
     path = tmp_path / 'bag'
     result = subprocess.run([sys.executable, '-c', FULL, path, storage, compression],
                             capture_output=True, text=True)
@@ -106,7 +106,7 @@ def test_no_room_is_left(storage, compression, tmp_path):
 
 
 def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
-    """Exit code 2, a sentence, and a bag that is not closed but can be read."""
+    """On a full disk simulate ends with code 2, one sentence and a readable unclosed bag."""
     writev, left = os.writev, [5_000_000]
 
     def full(descriptor, parts):
@@ -130,7 +130,7 @@ def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
 
 
 def test_closing_on_a_full_disk_keeps_the_messages(tmp_path, monkeypatch):
-    """Not even the summary fits: what is there is a cut file, and not a broken one."""
+    """If even the summary does not fit, the bag is cut but not corrupt."""
     bag = BagWriter(tmp_path / 'bag')
     bag.add_topic('imu', topics.IMU)
     bag.write('imu', 5, topics.IMU_RAW.writer().pack(5, (0.0,) * 3, (0.0,) * 3))
@@ -148,7 +148,7 @@ def test_closing_on_a_full_disk_keeps_the_messages(tmp_path, monkeypatch):
 
 
 def test_a_bag_in_writing_can_be_read(tmp_path):
-    """What was flushed, in both storages, while the writer goes on."""
+    """Flushed messages can be read in both storages while the writer continues."""
     for storage in ('mcap', 'sqlite3'):
         with BagWriter(tmp_path / storage, storage) as bag:
             bag.add_topic('imu', topics.IMU)
@@ -162,7 +162,7 @@ def test_a_bag_in_writing_can_be_read(tmp_path):
 
 
 def test_an_error_in_the_middle_leaves_a_cut_bag(tmp_path):
-    """What a recorder cannot finish is kept; what is discarded is gone."""
+    """An unfinished recording is kept; a discarded bag is deleted."""
     with pytest.raises(RuntimeError), BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu', topics.IMU)
         bag.write('imu', 1, topics.IMU_RAW.writer().pack(1, (0.0,) * 3, (0.0,) * 3))

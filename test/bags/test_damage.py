@@ -1,4 +1,4 @@
-"""Bags that are cut or corrupt: what is whole is read, the rest is one sentence."""
+"""Truncated and corrupt bags: complete chunks are read, the rest is reported."""
 
 import sqlite3
 
@@ -15,7 +15,7 @@ STAMPS = np.arange(N) * 10**7
 
 @pytest.mark.parametrize('compression', ['none', 'lz4', 'zstd'])
 def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
-    """Wherever it is cut: whole chunks, in order, and a note that says so."""
+    """A file truncated anywhere gives its complete chunks in order, and a note."""
     file = write(tmp_path / 'bag', 'mcap', compression) / 'bag_0.mcap'
     data, last = file.read_bytes(), -1
     for size in [*range(0, len(data), max(1, len(data) // 97)), len(data) - 1]:
@@ -40,7 +40,7 @@ def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
 
 
 def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
-    """As a crash of the machine may leave it: the length is there, the data are not."""
+    """A last chunk without data, as after a crash of the machine, is skipped."""
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data, position, chunks = path.read_bytes(), len(form.MAGIC), []
     while data[position] != form.DATA_END:
@@ -56,7 +56,7 @@ def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
 
 
 def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
-    """Its files are found in the order of their numbers, and info says that it was not closed."""
+    """Files without metadata.yaml are read in the order of their numbers, reported as cut."""
     write(tmp_path / 'bag', split_bytes=500_000)
     (tmp_path / 'bag' / 'metadata.yaml').unlink()
     with open_bag(tmp_path / 'bag') as bag:
@@ -67,7 +67,7 @@ def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
 
 
 def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
-    """Nobody can tell which is meant."""
+    """A folder with files of both storages is refused as ambiguous."""
     for storage in ('mcap', 'sqlite3'):
         write(tmp_path / storage, storage)
     (tmp_path / 'sqlite3' / 'sqlite3_0.db3').rename(tmp_path / 'mcap' / 'x.db3')
@@ -76,7 +76,7 @@ def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
 
 
 def test_corrupt_chunks_are_found(tmp_path, capsys):
-    """A flipped bit in a chunk, in an index, in the summary, in a length."""
+    """A flipped bit in a chunk, an index, the summary or a length is detected."""
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data = path.read_bytes()
 
@@ -110,7 +110,7 @@ def _first(data, opcode):
 
 
 def test_a_corrupt_database_is_found(tmp_path, capsys):
-    """A page of noise in the middle, and a cut file."""
+    """A database with a page of noise, or truncated, is refused."""
     path = write(tmp_path / 'bag', 'sqlite3') / 'bag_0.db3'
     data = path.read_bytes()
     path.write_bytes(data[:len(data) // 2] + b'\xaa' * 65536 + data[len(data) // 2 + 65536:])
@@ -120,7 +120,7 @@ def test_a_corrupt_database_is_found(tmp_path, capsys):
 
 
 def test_values_of_the_wrong_kind_in_a_database(tmp_path, capsys):
-    """Texts for bytes, nothing for times, names that are numbers, messages of no topic."""
+    """A database with texts for bytes, NULL times or unknown topics is refused."""
     for k, (statement, sentence) in enumerate((
             ("UPDATE messages SET data = 'some text' WHERE id = 5", 'is no time with bytes'),
             ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'is no time with bytes'),
@@ -144,7 +144,7 @@ def _change(path, statement):
 
 
 def test_a_database_that_never_ends(tmp_path, capsys):
-    """A view that counts for ever in the place of the messages is given up."""
+    """A view that counts for ever in place of the table messages is aborted."""
     path = next(write(tmp_path / 'bag', 'sqlite3').glob('*.db3'))
     database = sqlite3.connect(path)
     database.execute('DROP TABLE messages')

@@ -1,4 +1,4 @@
-"""Bags on disk: order, splits, metadata, hashes of types, tables, empty ones."""
+"""Format of bags: order, splits, metadata, type hashes, tables, empty bags."""
 
 import hashlib
 import json
@@ -23,7 +23,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
-    """Twice the same gives equal files; another storage or chunking the same payload."""
+    """Equal messages give equal files; with other storage or chunks, the same payload."""
     for folder in ('one', 'two'):
         write_everything(tmp_path / folder / 'bag', storage, compression)
         (tmp_path / folder / 'bag').touch()
@@ -38,7 +38,7 @@ def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_splits_by_size_and_by_time(storage, tmp_path):
-    """Each file holds what its line in metadata.yaml says; together they hold everything."""
+    """Each file holds what metadata.yaml says, and all files together hold all messages."""
     expected = write_everything(tmp_path / 'size', storage, 'none', split_bytes=3 * CHUNK_BYTES)
     write_everything(tmp_path / 'time', storage, 'none', split_ns=20 * 10**9)
     for name in ('size', 'time'):
@@ -91,7 +91,7 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
 
 @pytest.mark.parametrize('type_name', [*TYPES, *(t for t, _ in strings().values())])
 def test_the_hash_of_a_type_is_that_of_ros(type_name):
-    """As the type descriptions that ROS installs say."""
+    """Type hashes equal those in the type descriptions that ROS installs."""
     package, kind, name = type_name.split('/')
     prefixes = [*filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(':')), sys.prefix]
     paths = [Path(p) / 'share' / package / kind / f'{name}.json' for p in prefixes]
@@ -104,7 +104,7 @@ def test_the_hash_of_a_type_is_that_of_ros(type_name):
 
 
 def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
-    """Schema version 4, one file, no log left beside it."""
+    """An SQLite bag is one file of schema version 4 without a write-ahead log."""
     with BagWriter(tmp_path / 'bag', 'sqlite3') as bag:
         bag.add_topic('/t', topics.STRING)
         bag.write('/t', 1, bytes(STORE.serialize_cdr(STORE.types[topics.STRING]('x'),
@@ -180,7 +180,7 @@ def test_frames_of_any_length_nan_and_equal_stamps(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_empty_bags_and_topics(storage, tmp_path):
-    """No message, or no topic, is a bag all the same, for rosbags too."""
+    """Bags without messages or topics are valid, also for rosbags."""
     with BagWriter(tmp_path / 'none', storage):
         pass
     with BagWriter(tmp_path / 'bag', storage) as bag:
@@ -197,7 +197,7 @@ def test_empty_bags_and_topics(storage, tmp_path):
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 @pytest.mark.parametrize('names', [('a', 'b'), ('a', 'a')])
 def test_stamps_of_two_clocks(storage, names, tmp_path):
-    """In turns, on one topic or two: no chunk a message, and files as long as each clock says."""
+    """Stamps of two clocks cause neither a chunk per message nor shorter files."""
     with BagWriter(tmp_path / 'bag', storage, split_ns=2 * 10**9) as bag:
         for name in dict.fromkeys(names):
             bag.add_topic(name, topics.IMU)

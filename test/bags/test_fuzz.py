@@ -1,4 +1,4 @@
-"""Whatever the bytes of a bag: valid messages or one sentence, soon and in little memory."""
+"""Any bytes of a bag give valid messages or one sentence, in bounded time and memory."""
 
 import time
 import tracemalloc
@@ -29,7 +29,7 @@ cuts = strategies.one_of(strategies.none(), strategies.floats(0, 1))
 
 @pytest.fixture(scope='module')
 def files(tmp_path_factory):
-    """Return {kind: the bytes of a small bag of it}, and where to put others."""
+    """Return {kind: bytes of a small bag}, and a folder for variants."""
     folder = tmp_path_factory.mktemp('fuzz')
     found = {}
     for kind in KINDS:
@@ -53,7 +53,7 @@ def files(tmp_path_factory):
 
 
 def unchecked(path, kind):
-    """Return the bytes of a file by the mcap library."""
+    """Return the bytes of a file written by the mcap library without checksums."""
     mcap_writer = pytest.importorskip('mcap.writer')
     options = {'indexed': {}, 'scanned': {'index_types': mcap_writer.IndexType.NONE},
                'loose': {'use_chunking': False}}[kind]
@@ -72,7 +72,7 @@ def unchecked(path, kind):
 
 
 def read_all(path):
-    """Read everything in every way; return how many messages there were."""
+    """Read a bag in every way; return the number of messages."""
     with open_bag(path) as bag:
         count = sum(span.count for span in bag.spans().values())
         messages = list(bag.messages())
@@ -88,7 +88,7 @@ def read_all(path):
 
 
 def sound_or_refused(path, data):
-    """Read a file of these bytes, and hold time, memory and the kind of the error."""
+    """Read a file with these bytes, and bound time, memory and the kind of error."""
     path.write_bytes(data)
     path.with_name(path.name + '-wal').unlink(missing_ok=True)
     tracemalloc.start()
@@ -120,7 +120,7 @@ def changed(data, flips, cut):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_bytes_flipped_and_cut(kind, files):
-    """At random places."""
+    """Files with random flipped bytes or cuts are read or refused."""
     folder, found = files
     path = folder / f'flipped{SUFFIX[kind[0]]}'
 
@@ -134,7 +134,7 @@ def test_bytes_flipped_and_cut(kind, files):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_every_byte_outside_of_the_data(kind, files):
-    """Where the format is: records of MCAP, headers and first cells of SQLite pages."""
+    """Each byte of MCAP records, SQLite headers and first cells may change."""
     folder, found = files
     data, path = found[kind], folder / f'each{SUFFIX[kind[0]]}'
     if kind[0] == 'mcap':
@@ -157,7 +157,7 @@ def test_every_byte_outside_of_the_data(kind, files):
 @given(strategies.binary(max_size=400), strategies.sampled_from(['.mcap', '.db3']),
        strategies.booleans())
 def test_noise(tmp_path_factory, data, suffix, behind_magic):
-    """Random bytes, with the right beginning or without."""
+    """Random bytes, with and without the magic of the format, are refused."""
     magic = {'.mcap': b'\x89MCAP0\r\n\x01\x08' + bytes(7) + bytes(8),
              '.db3': b'SQLite format 3\x00\x10\x00\x01\x01\x00\x40\x20\x20'}[suffix]
     path = tmp_path_factory.getbasetemp() / f'noise{suffix}'
@@ -168,7 +168,7 @@ def test_noise(tmp_path_factory, data, suffix, behind_magic):
 @given(strategies.sampled_from(sorted(LAYOUTS)), strategies.lists(strategies.tuples(
     strategies.text(max_size=9), flips, cuts), min_size=1, max_size=8))
 def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages):
-    """Each message, sound or not, is read as messages.cdr.Reader reads it, or refused as there."""
+    """Arrays equal the messages of messages.cdr.Reader, with the same refusals."""
     layout, data = LAYOUTS[type_name], []
     for text, changes, cut in messages:
         text = text.replace('\x00', '')
@@ -204,7 +204,7 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
 
 
 def test_a_chunk_that_says_it_is_huge_takes_no_memory(files):
-    """Each size field of the first chunk at its largest."""
+    """A size field of the first chunk at its maximum takes no memory."""
     folder, found = files
     for kind in KINDS[:3]:
         data = found[kind]

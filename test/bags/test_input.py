@@ -1,4 +1,4 @@
-"""Bags that are cut, corrupt, foreign or in the way: one sentence each, and exit code 2."""
+"""Truncated, corrupt, foreign or existing bags: one sentence each, and exit code 2."""
 
 import os
 from pathlib import Path
@@ -19,7 +19,7 @@ STAMPS = np.arange(N) * 10**7
 
 
 def test_what_is_no_bag(tmp_path, capsys):
-    """Nothing, a folder of something else, a text, an empty file, another database."""
+    """A missing path, foreign folder, text, empty file or other database is not a bag."""
     refused(tmp_path / 'absent', 'does not exist', capsys)
     refused(tmp_path, 'is no bag; expected metadata.yaml', capsys)
     (tmp_path / 'text.csv').write_text('a,b\n')
@@ -64,13 +64,13 @@ BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n' + ''.join(
     ('rosbag2_bagfile_information: {version: 5, storage_identifier: sqlite3, compression_format: '
      'zstd, compression_mode: FILE}', 'is compressed by file (zstd)')])
 def test_metadata_that_does_not_do(text, sentence, tmp_path, capsys):
-    """metadata.yaml that is broken, too new, or of a bag that is compressed as a whole."""
+    """Broken or too new metadata.yaml, and bags compressed as a whole, are refused."""
     (tmp_path / 'metadata.yaml').write_text(text)
     refused(tmp_path, sentence, capsys)
 
 
 def test_metadata_that_is_no_text(tmp_path, capsys):
-    """Neither UTF-8 nor a file that stands for another outside of the bag."""
+    """metadata.yaml that is not UTF-8, or names a file outside of the bag, is refused."""
     (tmp_path / 'metadata.yaml').write_bytes(b'\xff\xfe\x00')
     refused(tmp_path, 'is not UTF-8 text', capsys)
     write(tmp_path / 'bag')
@@ -82,7 +82,7 @@ def test_metadata_that_is_no_text(tmp_path, capsys):
 
 
 def test_bags_compressed_by_rosbags_as_a_whole(tmp_path, capsys):
-    """Both modes of rosbag2's own compression are refused by name."""
+    """Both compression modes of rosbag2 itself are refused by name."""
     rosbag2 = pytest.importorskip('rosbags.rosbag2')
     from rosbags.typesys import get_typestore, Stores
     for mode in ('FILE', 'MESSAGE'):
@@ -97,7 +97,7 @@ def test_bags_compressed_by_rosbags_as_a_whole(tmp_path, capsys):
 
 
 def test_topics_that_are_not_as_expected(tmp_path):
-    """Missing, of another type, of a type without a layout, not CDR, a field that is not there."""
+    """A topic that is missing, of another type, without layout or not CDR is refused."""
     with BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu/data_raw', topics.IMU)
         bag.add_topic('sim/status', topics.STRING)
@@ -123,7 +123,7 @@ def test_topics_that_are_not_as_expected(tmp_path):
 
 
 def test_what_cannot_be_written(tmp_path):
-    """Unknown storage, compression, type, topic; a bag that is there; times before zero."""
+    """Unknown storage, compression, type, topic, existing bag and negative times are refused."""
     for options, sentence in (
             ({'storage': 'rocks'}, 'expected one of mcap, sqlite3'),
             ({'compression': 'gzip'}, 'expected one of none, lz4, zstd'),
@@ -156,7 +156,7 @@ def test_what_cannot_be_written(tmp_path):
 
 
 def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
-    """What was there stays until then, and only a bag is replaced at all."""
+    """An existing bag stays until the new one is complete; only bags are replaced."""
     path = write(tmp_path / 'bag')
     before = (path / 'bag_0.mcap').read_bytes()
     bag = BagWriter(path, 'sqlite3', replace=True)
@@ -177,7 +177,7 @@ def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
 
 @pytest.fixture
 def nobody():
-    """Run the test as a user that owns nothing, if as root; give a folder that it may enter."""
+    """Run the test as an unprivileged user if it is root; yield a folder accessible to it."""
     folder = Path(tempfile.mkdtemp())
     folder.chmod(0o755)
     yield folder, lambda: os.getuid() or os.seteuid(65534)
@@ -187,7 +187,7 @@ def nobody():
 
 
 def test_no_permission(nobody, capsys):
-    """To read a file, and to write into a folder; by both verbs."""
+    """Without permission to read or write, both verbs refuse in one sentence."""
     folder, become = nobody
     write(folder / 'bag')
     (folder / 'bag' / 'bag_0.mcap').chmod(0)

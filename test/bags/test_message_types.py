@@ -1,4 +1,4 @@
-"""What replaces rosbags at run time, against rosbags: definitions, hashes and transforms."""
+"""Definitions, hashes and transforms are compared with the package rosbags."""
 
 import subprocess
 import sys
@@ -35,13 +35,13 @@ def test_every_type_has_the_definition_and_hash_of_rosbags():
 
 
 def test_an_unknown_type_is_one_sentence():
-    """The recorder then asks ROS for the definition."""
+    """An unknown type is refused in one sentence; the recorder then asks ROS."""
     with pytest.raises(ValueError, match="the type 'my_msgs/msg/Thing' is not known"):
         message_definition('my_msgs/msg/Thing')
 
 
 def test_definitions_need_no_library():
-    """Nothing but the standard library is imported for them."""
+    """The definitions import only the standard library."""
     code = ('import sys; before = set(sys.modules); from ins_sim.bags import definitions; '
             'definitions.message_definition("sensor_msgs/msg/Imu"); '
             'print(*{n.partition(".")[0] for n in set(sys.modules) - before})')
@@ -68,13 +68,13 @@ def packed(transforms):
 
 @given(TRANSFORMS)
 def test_transforms_are_those_that_rosbags_packed(transforms):
-    """Frames of any length and alphabet, any number of transforms."""
+    """Transforms with frames of any length and alphabet equal those of rosbags."""
     assert read_rotations(packed(transforms)) == transforms
 
 
 @given(TRANSFORMS, st.data())
 def test_a_cut_message_is_refused(transforms, draw):
-    """Wherever it is cut, the error is a ValueError."""
+    """A message truncated anywhere raises ValueError."""
     whole = packed(transforms)
     stop = draw.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(ValueError):
@@ -83,7 +83,7 @@ def test_a_cut_message_is_refused(transforms, draw):
 
 @given(st.binary(max_size=100))
 def test_other_bytes_are_read_or_refused(data):
-    """No bytes raise anything but ValueError."""
+    """Random bytes raise only ValueError."""
     try:
         read_rotations(b'\0\1\0\0' + data)
     except ValueError:

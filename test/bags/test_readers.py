@@ -1,4 +1,4 @@
-"""Bags: what is written is read back by us, rosbags, mcap and rclpy, and the reverse."""
+"""Bags are read back by ins_sim, rosbags, mcap and rclpy, and theirs by ins_sim."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
@@ -16,7 +16,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_everything_comes_back_by_every_reader(storage, compression, tmp_path):
-    """Every byte of every message of every type, in the order of the log times, and decoded."""
+    """Every message of every type is read back to the byte, in log order and decoded."""
     expected = write_everything(tmp_path / 'bag', storage, compression)
     with open_bag(tmp_path / 'bag') as bag:
         messages = list(bag.messages())
@@ -47,7 +47,7 @@ def test_everything_comes_back_by_every_reader(storage, compression, tmp_path):
 
 
 def test_any_reader_of_rosbags_needs_nothing_but_the_bag(tmp_path):
-    """Its AnyReader learns the types from the definitions in the file."""
+    """AnyReader of rosbags learns the types from the definitions in the file."""
     from rosbags.highlevel import AnyReader
     write_everything(tmp_path / 'bag', 'mcap', 'zstd')
     with AnyReader([tmp_path / 'bag']) as reader:
@@ -58,7 +58,7 @@ def test_any_reader_of_rosbags_needs_nothing_but_the_bag(tmp_path):
 
 @pytest.mark.parametrize('compression', ['none', 'lz4', 'zstd'])
 def test_the_mcap_library_agrees(compression, tmp_path):
-    """With its checks of the checksums on: messages, schemas, statistics, metadata, indices."""
+    """mcap, with checksums on, reads messages, schemas, statistics, metadata, indices."""
     mcap_reader = pytest.importorskip('mcap.reader')
     expected = write_everything(tmp_path / 'bag', 'mcap', compression)
     with open(tmp_path / 'bag' / 'bag_0.mcap', 'rb') as stream:
@@ -92,7 +92,7 @@ def test_the_mcap_library_agrees(compression, tmp_path):
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_rclpy_reads_what_is_written(storage, compression, tmp_path):
-    """Every message of a bag is one for ROS."""
+    """rclpy deserializes every message of a bag."""
     serialization = pytest.importorskip('rclpy.serialization')
     from importlib import import_module
     write_everything(tmp_path / 'bag', storage, compression)
@@ -108,7 +108,7 @@ def test_rclpy_reads_what_is_written(storage, compression, tmp_path):
 @pytest.mark.parametrize('storage, compression', [
     ('MCAP', 'NONE'), ('MCAP', 'STORAGE'), ('SQLITE3', 'NONE')])
 def test_what_rosbags_writes_is_read(storage, compression, tmp_path):
-    """Whole bags, and their files alone."""
+    """Bags of rosbags, and single files of them, are read."""
     bag = rosbag2.Writer(tmp_path / 'bag', version=9,
                          storage_plugin=rosbag2.StoragePlugin[storage])
     bag.set_compression(rosbag2.CompressionMode[compression], rosbag2.CompressionFormat.ZSTD)
@@ -133,7 +133,7 @@ def test_what_rosbags_writes_is_read(storage, compression, tmp_path):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_bytes_are_those_of_rosbags(type_name):
-    """rosbags fills with zeros as we do, so equal messages are equal bytes."""
+    """Messages equal those of rosbags to the byte, padding included."""
     for frames in (('', ''), ('m', 'ab'), ('map', 'base_link')):
         data = writer_of(type_name, frames).pack(int(STAMPS[7]), values_of(type_name)[0])
         message = STORE.deserialize_cdr(data, type_name)
@@ -141,7 +141,7 @@ def test_bytes_are_those_of_rosbags(type_name):
 
 
 def test_a_status_of_a_fix_is_read(tmp_path):
-    """The small numbers of NavSatFix come back too."""
+    """Status, service and covariance type of NavSatFix are read back."""
     fix, status = STORE.types[topics.FIX], STORE.types['sensor_msgs/msg/NavSatStatus']
     time, header = STORE.types['builtin_interfaces/msg/Time'], STORE.types[topics.HEADER]
     with BagWriter(tmp_path / 'bag') as bag:
@@ -159,7 +159,7 @@ def test_a_status_of_a_fix_is_read(tmp_path):
 
 
 def test_files_without_chunks_or_index_are_read(tmp_path):
-    """As the preset fastwrite of rosbag2 leaves them, and writers that index nothing."""
+    """Files without chunks (preset fastwrite) or without index are read."""
     mcap_writer = pytest.importorskip('mcap.writer')
     for k, options in enumerate([{'use_chunking': False},
                                  {'index_types': mcap_writer.IndexType.NONE},
@@ -183,7 +183,7 @@ def test_files_without_chunks_or_index_are_read(tmp_path):
 
 
 def test_a_copy_carries_types_that_are_not_known(tmp_path):
-    """Definition, hash and profile go from bag to bag."""
+    """A copied bag keeps definition, hash and QoS profile of unknown types."""
     with BagWriter(tmp_path / 'one') as bag:
         bag.add_topic('/x', 'my_msgs/msg/Thing', definition='int32 a\n', type_hash='RIHS01_0')
         bag.write('/x', 1, b'\x00\x01\x00\x00\x05\x00\x00\x00')

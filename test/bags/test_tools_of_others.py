@@ -1,4 +1,4 @@
-"""Bags of offline runs in the hands of mcap, evo, foxglove-sdk and three linters of PyPI."""
+"""Bags of offline runs are read by mcap, evo, foxglove-sdk and three linters of PyPI."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.io import simulated
@@ -25,14 +25,14 @@ def bag(tmp_path_factory):
 
 
 def test_mcap_reads_all(bag):
-    """As many messages of each topic as our reader finds."""
+    """mcap finds the same number of messages on each topic as our reader."""
     with open_bag(bag) as ours:
         expected = {name: span.count for name, span in ours.spans().items()}
     assert bag_tools.mcap_counts(bag) == expected and len(expected) > 20
 
 
 def test_evo_reads_the_trajectories(bag):
-    """The rms of the position error that it finds is that of our own numbers."""
+    """evo finds the same rms of the position error."""
     names = [f'/{name}/odometry' for name in ('truth', 'ins', 'aided')]
     truth, *others = bag_tools.evo_trajectories(bag, names).values()
     with open_bag(bag) as ours:
@@ -47,7 +47,7 @@ def test_evo_reads_the_trajectories(bag):
 
 
 def test_foxglove_serves_every_topic(bag):
-    """A client gets a message of each, bytes and log time unchanged."""
+    """foxglove-sdk delivers a message of each topic with unchanged bytes and log time."""
     with open_bag(bag) as ours:
         expected = {name for name, span in ours.spans().items() if span.count}
     assert bag_tools.served_by_foxglove(bag) == expected

@@ -1,4 +1,4 @@
-"""The command allan: from the settings, from a run and from a bag; nothing silently wrong."""
+"""The command allan, from settings, from a run and from a bag."""
 
 import json
 
@@ -18,7 +18,7 @@ SIGMA = np.array([0.01, 0.02, 0.03])
 
 
 def rows(folder):
-    """Return {(triad, symbol): row} of a finished folder, with its pictures and its report."""
+    """Return {(triad, symbol): row} of a finished folder, and check its pictures and report."""
     assert 'Allan deviation of the gyro' in (folder / 'report.html').read_text(encoding='utf-8')
     for triad in ('gyro', 'accelerometer'):
         assert (folder / f'{triad}.png').read_bytes().startswith(b'\x89PNG')
@@ -56,7 +56,7 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
 
 
 def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
-    """The record of the folder, the settings beside it, and a word about motion."""
+    """allan uses record and settings of the run, and warns about motion."""
     run, out = tmp_path / 'run', tmp_path / 'out'
     arguments = ['simulate', *FOG, '-p', 'duration_s:=300.0', '--no-twin', '-o', str(run)]
     assert main([*arguments, '-p', 'motion.kind:=static']) == 0
@@ -91,7 +91,7 @@ def write_bag(path, t_ns, *names):
 
 
 def test_a_bag_of_imu_messages(tmp_path, capsys):
-    """White noise of known size by axis comes back; its topic is asked for where there are two."""
+    """White noise of a bag is recovered by axis; with two Imu topics --topic is needed."""
     t_ns = 1_700_000_000_000_000_000 + 10_000_000 * np.arange(4000)
     write_bag(tmp_path / 'one', t_ns, '/imu/data')
     assert main(['allan', str(tmp_path / 'one'), '-o', str(tmp_path / 'out')]) == 0
@@ -129,7 +129,7 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
 
 
 def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old ones intact; --force replaces what this command wrote, and only that."""
+    """Without --force exit code 2; with it only figures of this command are replaced."""
     out = tmp_path / 'out'
     arguments = ['allan', *FOG, '--duration', '60', '-o', str(out)]
     assert main(arguments) == 0
@@ -157,7 +157,7 @@ def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and nothing is a traceback."""
+    """Bad input gives one sentence and exit code 2; nothing is written."""
     monkeypatch.chdir(tmp_path)
     assert main(['allan', *arguments]) == 2
     error = capsys.readouterr().err
@@ -166,7 +166,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path
 
 
 def test_a_folder_that_is_no_run_is_named(tmp_path):
-    """Arrays of another make, and a file that is no archive."""
+    """Foreign arrays, and a file that is not an archive, are refused by name."""
     np.savez(tmp_path / storage.ARRAYS, truth_t_ns=np.arange(3))
     with pytest.raises(ValueError, match='run.npz holds no IMU record'):
         storage.read_imu(tmp_path)
@@ -176,7 +176,7 @@ def test_a_folder_that_is_no_run_is_named(tmp_path):
 
 
 def test_a_perfect_axis_is_left_out():
-    """Noise on one axis of three: its coefficients stand alone; of a perfect triad nothing."""
+    """With noise on one axis only, its coefficients alone are shown."""
     settings = parameter_files.read([], [
         'rate_hz:=10.0', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.0, 0.1, 0.0]'])
     imu = ImuSamples.concatenate(resting_record(settings, 200.0))
@@ -193,7 +193,7 @@ def test_a_perfect_axis_is_left_out():
 
 
 def test_expected_coefficients_of_the_settings():
-    """Pulses over sqrt(12); an endless in-run bias of 0.3 deg/h adds to a walk of 0.4."""
+    """Pulses give q/sqrt(12); infinite in-run bias 0.3 deg/h adds to a walk of 0.4."""
     errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, gauss_markov_sigma_deg_h=(0.3,) * 3,
                         gauss_markov_time_s=(float('inf'), float('inf'), 100.0),
                         rate_random_walk_deg_h_sqrt_h=(0.4,) * 3)

@@ -1,4 +1,4 @@
-"""The verbs that touch bags: simulate --bag and info."""
+"""The commands simulate --bag and info."""
 
 import re
 
@@ -30,7 +30,7 @@ def bag_of(tmp_path, *arguments, name='bag', motion=MOTION):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
-    """Every topic of the nodes, at its own stamp, with the numbers of the offline run."""
+    """The bag has every topic at its stamps, with the numbers of the offline run."""
     path = bag_of(tmp_path, '--storage', storage)
     shown = capsys.readouterr().out
     assert 'written: ' in shown and f'{1 + 11 * 501} messages on 12 topics' in shown.replace(
@@ -69,7 +69,7 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
 
 @pytest.mark.parametrize('options', [(), ('--compression', 'zstd'), ('--storage', 'sqlite3')])
 def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
-    """The sums that are printed are those of the files, and equal for equal seeds alone."""
+    """The printed digests are those of the files, and equal only for equal seeds."""
     motion = [*MOTION, '--params-file', 'imu_tactical_fog']
     sums = []
     for name, seed in (('a', 1), ('b', 1), ('c', 2)):
@@ -91,7 +91,7 @@ def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
 
 
 def test_topics_rates_and_epochs(tmp_path, capsys):
-    """A selection of topics, /clock, outputs less often than readings, stamps from an epoch."""
+    """Selected topics, /clock, thinned outputs and an epoch are written as set."""
     motion = [*MOTION, '-p', 'output_every:=10', '-p', 'time.epoch_s:=1000', '-p',
               'publish_clock:=true', '-p', 'initial.after_s:=1.0']
     path = bag_of(tmp_path, '--topics', 'truth/imu', '/ins/odometry', 'clock', motion=motion)
@@ -119,7 +119,7 @@ def test_topics_rates_and_epochs(tmp_path, capsys):
     (['--storage', 'sqlite3', '--compression', 'lz4'], 'sqlite3 cannot be compressed by lz4'),
     (['-p', 'time.epoch_s:=2147483647'], 'which a ROS stamp can hold')])
 def test_what_is_refused_before_the_run(arguments, sentence, tmp_path, capsys):
-    """One sentence, exit code 2, no bag."""
+    """Bad options give one sentence, exit code 2 and no bag."""
     assert main(['simulate', *MOTION, '-o', str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag'),
                  *arguments]) == 2
     said = capsys.readouterr().err
@@ -128,7 +128,7 @@ def test_what_is_refused_before_the_run(arguments, sentence, tmp_path, capsys):
 
 
 def test_options_of_a_bag_need_a_bag(tmp_path, capsys):
-    """They would be without effect."""
+    """Options of a bag without --bag are refused."""
     for option in (['--storage', 'sqlite3'], ['--compression', 'lz4'], ['--topics', 'ins/fix']):
         assert main(['simulate', *MOTION, '-o', str(tmp_path / 'run'), *option]) == 2
         assert 'is given without --bag' in capsys.readouterr().err
@@ -136,7 +136,7 @@ def test_options_of_a_bag_need_a_bag(tmp_path, capsys):
 
 
 def test_a_bag_is_replaced_with_force_alone(tmp_path, capsys):
-    """As a run is."""
+    """An existing bag is replaced only with --force."""
     path = bag_of(tmp_path)
     before = (path / 'bag_0.mcap').read_bytes()
     arguments = ['simulate', *MOTION, '-p', 'gyro.delay_us.x:=3.0', '-o',
@@ -151,7 +151,7 @@ def test_a_bag_is_replaced_with_force_alone(tmp_path, capsys):
 
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch, capsys):
-    """Ctrl-C while it is written: no bag, exit code 130."""
+    """Ctrl-C during writing leaves no bag; exit code 130."""
     from ins_sim.bags import windows
 
     def interrupt(*arguments):

@@ -1,4 +1,4 @@
-"""The command compare-filters: tables, figures, report, and its bad input."""
+"""The command compare-filters: tables, figures, report, and bad input."""
 
 import json
 import re
@@ -22,7 +22,7 @@ def digest(text):
 
 
 def test_the_command_shows_table_and_figure(tmp_path, capsys):
-    """Six filters and two more windows of the eskf; one process or two give the same numbers."""
+    """Six filters and two more windows of eskf; one process or two give equal numbers."""
     words = ['--cycles', '100', '1000', '10']
     rows = compare(tmp_path / 'a', *words)
     text = capsys.readouterr().out
@@ -48,7 +48,7 @@ def test_the_command_shows_table_and_figure(tmp_path, capsys):
 
 
 def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
-    """Finished flights are not flown again, others' are refused, and in the end none are left."""
+    """Finished flights are reused, foreign ones refused, and all removed at the end."""
     from ins_sim.studies import filters
     fly, flown = filters.fly_filters, []
 
@@ -87,7 +87,7 @@ def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
     (['-p', 'filtre:=eskf'], "unknown parameter 'filtre'; the nearest known one is 'filter'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, the sentence, and no folder."""
+    """Bad input gives exit code 2, one sentence and no folder."""
     assert main(['compare-filters', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1

@@ -1,4 +1,4 @@
-"""What reaches a terminal, a pipe or a file: whole numbers, time left, and no escape sequence."""
+"""Output to a terminal, pipe or file: whole numbers, progress, no escape sequences."""
 
 import io
 import os
@@ -26,7 +26,7 @@ ROWS = [SummaryRow(f'a figure with quite a long name, number {k}', 'm/s^2', floa
 
 @pytest.mark.parametrize('terminal, width', [(False, 80), (True, 80), (True, 40), (True, 200)])
 def test_numbers_are_never_cut(terminal, width):
-    """In a pipe, and in a terminal that is too narrow for the table, where names are folded."""
+    """Numbers are complete in a pipe and in a narrow terminal, which folds names instead."""
     out = io.StringIO()
     console = PlainConsole(file=out, force_terminal=terminal, width=width, color_system=None)
     table.show_table('a title [rad/s]', ROWS, console)
@@ -37,7 +37,7 @@ def test_numbers_are_never_cut(terminal, width):
 
 
 def test_words_are_as_they_are():
-    """No markup, no wrapping of a path, no control characters."""
+    """Texts are printed without markup, wrapped paths or control characters."""
     out = io.StringIO()
     name = '/tmp/' + 'a' * 200 + ' [red] :smile: \x1b[31m\x07'
     PlainConsole(file=out).print(f'written: {name}')
@@ -49,7 +49,7 @@ def test_words_are_as_they_are():
 
 
 def test_progress_in_a_pipe(monkeypatch, capsys):
-    """A line after a moment and then now and then, with the time left."""
+    """In a pipe progress is printed as lines with the time left, from time to time."""
     clock = [0.0]
     monkeypatch.setattr(progress.time, 'monotonic', lambda: clock[0])
     with progress.progress_bars(PlainConsole(file=io.StringIO())) as add_bar:
@@ -69,7 +69,7 @@ def test_progress_in_a_pipe(monkeypatch, capsys):
 
 
 def test_names_of_a_bag_cannot_command_the_terminal(tmp_path, capsys):
-    """Info and the refusals show escape sequences and line breaks as such."""
+    """Escape sequences and line breaks in names of a bag are shown escaped."""
     path = tmp_path / 'bag'
     with BagWriter(path) as bag:
         bag.add_topic('/a\x1b[2J\nstate     whole', topics.STRING)
@@ -83,7 +83,7 @@ def test_names_of_a_bag_cannot_command_the_terminal(tmp_path, capsys):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_name_of_a_bag_does_not_part_a_sentence(storage, tmp_path):
-    """The exceptions of the API are one sentence as well, whatever the topic is called."""
+    """Exceptions stay one line with any topic name."""
     with BagWriter(tmp_path / 'bag', storage) as bag:
         bag.add_topic('/i\nu', topics.IMU)
     with open_bag(tmp_path / 'bag') as bag:
@@ -95,7 +95,7 @@ def test_a_name_of_a_bag_does_not_part_a_sentence(storage, tmp_path):
 @pytest.mark.parametrize('environment', [
     {'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'}, {'LC_ALL': 'C.UTF-8'}])
 def test_names_that_are_no_text(environment, tmp_path):
-    """A folder whose name is no UTF-8, or beyond an ASCII locale: written as any other."""
+    """A folder with a name that is not UTF-8, or not ASCII, is written."""
     for name in (b'run_\xe9', 'caf\u00e9'.encode(), b'$\\a$_[b]'):
         ended = subprocess.run(
             [sys.executable, '-m', 'ins_sim', 'simulate', '-p', 'duration_s:=1.0', '-o', name],

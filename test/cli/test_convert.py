@@ -118,7 +118,7 @@ def imu_of(n=5000):
 
 @pytest.mark.parametrize('name', ['imu.csv', 'imu.csv.gz'])
 def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
-    """Stamps to the nanosecond, and every reading; more than one window."""
+    """Stamps to the nanosecond and all samples, in several windows, are equal to the bit."""
     imu, path = imu_of(), tmp_path / name
     imu.omega[7, 1] = np.nan
     csv_writer.write_imu(path, imu)
@@ -134,7 +134,7 @@ def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
 
 
 def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
-    """The same samples give the same solution, to the bit."""
+    """A CSV file and a bag with the same samples give the same solution to the bit."""
     given = ['motion.kind:=static', 'duration_s:=60.0', 'output:=integrated',
              'input:=integrated']
     words = [word for a in given for word in ('-p', a)]
@@ -157,7 +157,7 @@ def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
 
 
 def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
-    """Motion time zero is where it was: start_s counts from the first row of either."""
+    """Motion time zero is kept: start_s counts from the first row in CSV and bag."""
     record(tmp_path / 'bag', FLIGHT, 20.0)
     assert convert(tmp_path / 'bag', tmp_path / 'flight.csv') == 0
     capsys.readouterr()
@@ -174,7 +174,7 @@ def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
 
 
 def test_nothing_is_overwritten_without_force(tmp_path, capsys):
-    """Exit 2 and the old one intact; --force replaces a file by a file and a bag by a bag."""
+    """--force replaces a file by a file and a bag by a bag; otherwise exit code 2."""
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
     assert convert(tmp_path / 'imu.csv', tmp_path / 'bag') == 0
     before = (tmp_path / 'bag' / 'metadata.yaml').read_bytes()
@@ -251,7 +251,7 @@ def early(path):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(make, words, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and nothing is a traceback."""
+    """Bad input gives one sentence and exit code 2; nothing is written."""
     monkeypatch.chdir(tmp_path)
     if make is not None:
         make(tmp_path)
@@ -262,7 +262,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(make, words, sentence, tmp_pa
 
 
 def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
-    """The file is there whole or not at all."""
+    """After a failed write the old file is complete."""
     path = tmp_path / 'imu.csv.gz'
     csv_writer.write_imu(path, imu_of(10))
     before = path.read_bytes()
@@ -273,7 +273,7 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
 
 
 def test_a_part_of_another_process_is_left_alone(tmp_path):
-    """Two that write one file at once: each has a part of its own, and the last one stands."""
+    """Two simultaneous writers use separate temporary files; the last one wins."""
     other = tmp_path / '.imu.csv.part'
     other.write_text('of another process')
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
@@ -282,7 +282,7 @@ def test_a_part_of_another_process_is_left_alone(tmp_path):
 
 @pytest.mark.parametrize('content', ['flight', 'imu'])
 def test_stamps_of_an_unset_clock_are_told(content, tmp_path, capsys):
-    """With the remedy, after which nothing is said; stamps of a clock are left as they are."""
+    """Stamps of an unset clock give a warning with the remedy; others do not."""
     rows = [f'{0.1 * k:.1f},55.0,37.0,100.0,0,0,90,0,10.0,0' for k in range(200)]
     head = ','.join(COLUMNS)
     if content == 'imu':

@@ -30,7 +30,7 @@ def members(group):
 
 
 def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
-    """A whole run; then SIGTERM and SIGINT in the middle: exit 130, old results, no process."""
+    """A full run; after SIGTERM or SIGINT: exit 130, old results kept, no process left."""
     folder, log = tmp_path / 'demo', tmp_path / 'log'
     with open(log, 'w') as stream:
         assert start(folder, 10.0, stream).wait(GUARD_S) == 0, log.read_text()
@@ -55,7 +55,7 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
 
 
 def test_a_killed_demo_leaves_no_node(ros_domain, tmp_path):
-    """SIGKILL, which nobody can catch: the nodes end with the demo that started them."""
+    """After SIGKILL of the demo its nodes end."""
     with open(tmp_path / 'log', 'w') as stream:
         demo = start(tmp_path / 'demo', 3000.0, stream)
     end = time.monotonic() + GUARD_S

@@ -1,4 +1,4 @@
-"""The verb export: the imu.yaml of Kalibr, its numbers by hand."""
+"""The command export: imu.yaml of Kalibr, compared with numbers computed by hand."""
 
 import math
 
@@ -62,7 +62,7 @@ def test_a_walk_alone_and_a_gauss_markov_process(tmp_path):
 
 
 def test_axes_that_differ(tmp_path, capsys):
-    """The worst counts, and that is said once."""
+    """The largest value of the axes is written, with one message."""
     path = tmp_path / 'imu.yaml'
     assert export(path, '--params-file', 'imu_tactical_mems', '--topic', '/left/imu/data_raw',
                   '-p', 'imu_sensor:gyro.errors.angle_random_walk_deg_sqrt_h:=[0.1, 0.3, 0.2]'
@@ -82,7 +82,7 @@ def test_axes_that_differ(tmp_path, capsys):
     (['--params-file', 'imu_tactical_dtg'], 'gyro.model is dtg; expected ideal'),
     (['--params-file', 'absent'], "no config named 'absent'")])
 def test_refusals(words, said, tmp_path, capsys):
-    """One sentence, and no file."""
+    """Refused input gives one sentence and no file."""
     path = tmp_path / 'imu.yaml'
     assert export(path, *words) == 2
     error = capsys.readouterr().err
@@ -91,7 +91,7 @@ def test_refusals(words, said, tmp_path, capsys):
 
 
 def test_what_is_there_is_kept(tmp_path, capsys):
-    """As by the other verbs: --force replaces a file, and never a folder."""
+    """--force replaces a file, but never a folder."""
     path = tmp_path / 'imu.yaml'
     path.write_text('mine')
     instrument = ['--params-file', 'imu_tactical_fog']

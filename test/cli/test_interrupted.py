@@ -75,7 +75,7 @@ def handlers():
 
 
 def test_an_interrupt_that_was_swallowed_comes_again(handlers):
-    """As one that falls into a destructor, of which Python only says that it was ignored."""
+    """An interrupt that falls into a destructor is raised again."""
     for number in entry.SIGNALS:
         signal.signal(number, entry._interrupt)
     with pytest.raises(KeyboardInterrupt):
@@ -88,7 +88,7 @@ def test_an_interrupt_that_was_swallowed_comes_again(handlers):
 
 
 def test_a_reader_that_goes_away(tmp_path):
-    """``ins_sim ... | head`` says nothing more, and what was to be written is."""
+    """With `ins_sim ... | head` nothing more is printed and all output files are written."""
     with subprocess.Popen([sys.executable, '-m', 'ins_sim', 'simulate', '-p', 'duration_s:=1.0',
                            '-o', 'run'], cwd=tmp_path, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True,

@@ -28,7 +28,7 @@ def study(folder, *words):
 
 
 def test_flights_and_conditions(short, tmp_path, capsys):
-    """Rows with figures of the chain, of the lateral channel alone, and what is published."""
+    """Rows hold figures of the chain, of the lateral channel alone, and published ones."""
     found = study(tmp_path / 'a', '--parts', 'table', 'conditions')
     text = ' '.join(capsys.readouterr().out.split())
     assert 'Closed loop' in text and 'signals of the meter' in text
@@ -48,7 +48,7 @@ def test_flights_and_conditions(short, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_map(short, tmp_path):
-    """One panel, two gains: the linear limits, and those from 1 m and 100 m."""
+    """One panel with two gains has the linear limits and those from 1 m and 100 m."""
     panel, = study(tmp_path / 'b', '--parts', 'map', '--gains', '2', '--jobs', '1')['map']
     assert panel['filter'] == 'sliding conventional, N 10'
     assert panel['flown']['1 m'] == pytest.approx(panel['linear'], rel=0.01)
@@ -64,7 +64,7 @@ def test_the_map(short, tmp_path):
      "'gain_per_s'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, the sentence, and no folder."""
+    """Bad input gives exit code 2, one sentence and no folder."""
     assert main(['loop-study', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1

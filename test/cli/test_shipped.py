@@ -66,7 +66,7 @@ def test_lines_fit_into_a_terminal():
 
 
 def test_every_parameter_is_described():
-    """Each with its default and words, for every node and verb that has it."""
+    """Each parameter is described with its default, for every node and command that has it."""
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
             text = '\n'.join(describe.described(name))
@@ -76,7 +76,7 @@ def test_every_parameter_is_described():
 
 
 def test_every_section_of_the_shipped_files_has_a_reader():
-    """A new study is to be known by describe too."""
+    """Each section of the shipped files belongs to a known node or command."""
     for name in NAMES:
         for node, key, _ in shipped_files.shipped_file(name).values:
             assert node == '**' or key in flatten(READERS[node]), (name, node, key)
@@ -84,7 +84,7 @@ def test_every_section_of_the_shipped_files_has_a_reader():
 
 @pytest.mark.parametrize('name', NAMES)
 def test_every_shipped_file_is_described(name):
-    """Its comment, and each parameter that it sets, with its words."""
+    """The description has the comment of the file and each parameter that it sets."""
     text = '\n'.join(describe.described(name))
     file = shipped_files.shipped_file(name)
     assert str(resources.config(name)) in text and all(line in text for line in file.head)
@@ -92,7 +92,7 @@ def test_every_shipped_file_is_described(name):
 
 
 def test_a_group(capsys):
-    """Unit, bounds, default, choices, who has it, and what can be set while a node runs."""
+    """A group shows unit, range, default, choices, nodes, and what is settable at run time."""
     assert main(['describe', 'gyro.errors']) == 0
     said = capsys.readouterr().out
     assert said.startswith('gyro.errors  (imu_sensor, strapdown)\n    Errors of the gyro triad.')
@@ -109,7 +109,7 @@ def test_a_group(capsys):
     ('dtg_study', 'dtg_study', 'sweep: '), ('navigate', '', 'initial.heading: '),
     ('imu_tactical_fog', '', 'gyro.errors.turn_on_bias_sigma_deg_h: [')])
 def test_other_names(name, first, inside, capsys):
-    """A parameter, a node, a verb, a file."""
+    """Parameters, nodes, commands and files are described."""
     assert main(['describe', name]) == 0
     said = capsys.readouterr().out
     assert said.startswith(first) and inside in ' '.join(said.split())
@@ -117,7 +117,7 @@ def test_other_names(name, first, inside, capsys):
 
 
 def test_without_a_name_the_groups_are_described(capsys):
-    """With the nodes that have them."""
+    """Without a name, the groups are listed with their nodes."""
     assert main(['describe']) == 0
     said = capsys.readouterr().out
     assert 'gyro  (imu_sensor)' in said and '\nmotion  (motion_generator, imu_sensor' in said
@@ -132,14 +132,14 @@ def test_without_a_name_the_groups_are_described(capsys):
     ('x' * 5000, '(5000 characters) is not a parameter'), ('', "'' is not a parameter"),
     ('gyro.', "the nearest known one is 'gyro'"), ('\x1b[2J', 'is not a parameter')])
 def test_unknown_names(name, sentence, capsys):
-    """One sentence, exit code 2."""
+    """An unknown name gives one sentence and exit code 2."""
     assert main(['describe', name]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and '\x1b' not in error
 
 
 def test_an_unknown_kind(capsys):
-    """The usage of the verb."""
+    """An unknown kind gives the usage of the command."""
     with pytest.raises(SystemExit) as end:
         main(['list', 'motion'])
     assert end.value.code == 2 and 'motions' in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The verb simulate --aided: what it writes and shows, and what it refuses."""
+"""The command simulate --aided: output, display and refusals."""
 
 import json
 
@@ -30,7 +30,7 @@ def rows(run):
 
 
 def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
-    """Arrays, rows, figures, track, page and parameters that give the same run once more."""
+    """The folder has arrays, rows, figures, track, page and parameters that repeat the run."""
     chosen, _, free, solution = run
     assert command(tmp_path) == 0
     shown = ' '.join(capsys.readouterr().out.split())
@@ -72,7 +72,7 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
 
 
 def test_without_aided_the_run_is_as_before(run, tmp_path, capsys):
-    """The same free solution, three nodes in the parameters, and no word of fixes."""
+    """Without --aided: same free solution, three nodes in the parameters, no fixes."""
     arguments = [w for text in FLIGHT for w in ('-p', text)]
     assert main(['simulate', '--params-file', 'gnss_outage_flight', '--params-file', 'grade_mid',
                  *arguments, '-o', str(tmp_path / 'run')]) == 0
@@ -147,7 +147,7 @@ def test_the_figure_shows_where_fixes_are_missing():
 
 
 def test_what_is_not_known_is_not_shown(tmp_path, capsys):
-    """A filter without covariance has no sigma, no NIS, no estimates; without GNSS no outages."""
+    """Without covariance no sigma, NIS, estimates; without GNSS no outages are shown."""
     assert command(tmp_path, flight=('duration_s:=30.0', 'filter:=conventional')) == 0
     shown = ' '.join(capsys.readouterr().out.split())
     assert 'aided by conventional: velocity meter (surrogate), N 1000' in shown
@@ -160,7 +160,7 @@ def test_what_is_not_known_is_not_shown(tmp_path, capsys):
 
 
 def test_reasons_of_refusals_are_counted():
-    """A meter that cannot measure the speed of the flight: each fix is none, for that reason."""
+    """A meter below its speed range gives only invalid fixes, counted by reason."""
     chosen = settings('limits.speed_min_m_s:=390.0', 'duration_s:=10.0')
     _, free, solution = flown(chosen)
     rows = {r.name: r for r in aided.aided_rows(chosen, solution, free.states, free.errors)}
@@ -218,7 +218,7 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
     (['initial.after_s:=20.0', 'duration_s:=10.0'], 'the run navigates for'),
     (['gnss_model.lever:=1.0'], "unknown parameter 'gnss_model.lever'")])
 def test_bad_input_is_one_sentence(assignments, sentence, tmp_path, capsys):
-    """Before the run, and nothing is written."""
+    """Bad settings are refused before the run, and nothing is written."""
     wanted = ('outages.end_s:=[300.0, 400.0]',) if 'outages.start_s:=[1.0]' in assignments else ()
     assert command(tmp_path, flight=wanted, assignments=assignments) == 2
     error = capsys.readouterr().err
@@ -236,7 +236,7 @@ def test_bad_input_is_one_sentence(assignments, sentence, tmp_path, capsys):
     ('aided_navigator', 'motion: {route: {points: {latitude_deg: [1.0, 2.0], longitude_deg: [1.0, '
      '2.0]}}}', 'aided_navigator: motion.route.points are not those of motion_generator')])
 def test_nodes_that_do_not_agree(node, parameters, sentence, tmp_path, capsys):
-    """A file that tells one node alone what others must know is refused before the run."""
+    """Settings given to one node only, which others need too, are refused before the run."""
     file = tmp_path / 'one.yaml'
     file.write_text(f'/**/{node}:\n  ros__parameters:\n    {parameters}\n')
     assert command(tmp_path, flight=(), files=('gnss_outage_flight', str(file))) == 2
@@ -246,7 +246,7 @@ def test_nodes_that_do_not_agree(node, parameters, sentence, tmp_path, capsys):
 
 
 def test_an_aided_run_is_replaced_with_force_alone(tmp_path, capsys):
-    """As any run is."""
+    """An aided run is replaced only with --force."""
     flight = ('duration_s:=5.0',)
     assert command(tmp_path, flight=flight) == 0
     before = (tmp_path / 'run' / 'run.npz').read_bytes()
@@ -259,7 +259,7 @@ def test_an_aided_run_is_replaced_with_force_alone(tmp_path, capsys):
 
 @pytest.mark.parametrize('where', ['aiding', 'writing'])
 def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys):
-    """Ctrl-C while the navigator steps, and while the figure is drawn; the old run stays."""
+    """After Ctrl-C in the navigator or while drawing, the old run stays."""
     flight = ('duration_s:=5.0',)
     assert command(tmp_path, flight=flight) == 0
     before = sorted((p.name, p.read_bytes()) for p in (tmp_path / 'run').iterdir())

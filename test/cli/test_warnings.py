@@ -1,4 +1,4 @@
-"""What is said on the way: of a recorded motion by every verb and node, and no word of NumPy."""
+"""Warnings: every command reports problems of a recording, and hides those of NumPy."""
 
 import warnings
 
@@ -27,7 +27,7 @@ def rounded(tmp_path):
 
 @pytest.mark.parametrize('verb', ['simulate', 'predict', 'convert'])
 def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path, capsys):
-    """Once, whichever verb flies it."""
+    """Every command that uses a recording reports its problem once."""
     words = [word for a in rounded for word in ('-p', a)]
     more = {'simulate': ['-o', str(tmp_path / 'run')], 'predict': [],
             'convert': [str(tmp_path / 'rounded.csv'), str(tmp_path / 'bag')]}[verb]
@@ -38,7 +38,7 @@ def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path,
 
 
 def test_a_node_that_flies_a_recording_says_it(rounded):
-    """The generator by its source of truth, an IMU with source motion by reading its own."""
+    """Generator and IMU (source motion) report problems of a recording."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = parameter_files.read([], rounded)
     for fly in (lambda: TruthSource(chosen.motion_generator),
@@ -48,7 +48,7 @@ def test_a_node_that_flies_a_recording_says_it(rounded):
 
 
 def test_what_numpy_says_never_reaches_a_user(capsys, monkeypatch):
-    """Sentences of ours are told; "invalid value encountered" and the like are not."""
+    """Our warnings are printed; warnings such as "invalid value encountered" are not."""
     told = []
     with warnings.catch_warnings():
         warnings.simplefilter('always')

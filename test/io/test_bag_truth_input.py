@@ -1,4 +1,4 @@
-"""Bags that are no motion: each is refused in one sentence."""
+"""Bags that do not hold a motion are refused in one sentence."""
 
 import numpy as np
 import pytest
@@ -106,7 +106,7 @@ def wrong_fix(path):
     (lambda path: path.mkdir(), [], 'is no bag'),
 ])
 def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path, capsys):
-    """Exit code 2, and nothing is written."""
+    """A bag without a valid motion gives exit code 2; nothing is written."""
     write(tmp_path / 'bag')
     words = [word for a in ['motion.kind:=recording', f'motion.recording.path:={tmp_path}/bag',
                             'duration_s:=1.0', *more] for word in ('-p', a)]
@@ -117,7 +117,7 @@ def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path
 
 
 def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
-    """What is not in all topics is left out: one sample is no gap, a second is; cut keeps on."""
+    """A sample lost on one topic is no gap, a second is; on_gap cut keeps one part."""
     def lose(window):
         window[topics.TRUTH_FIX] = [np.delete(x, slice(900, 960), axis=0)
                                     for x in window[topics.TRUTH_FIX]]
@@ -132,7 +132,7 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
 
 
 def test_a_topic_without_a_bag_is_refused(tmp_path):
-    """A CSV file has no topics."""
+    """motion.recording.topic with a CSV file is refused."""
     chosen = recorded(tmp_path / 'x.csv', MOTION_2, **{'motion.recording.topic': 'odom'})
     with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is no bag"):
         read_motion(chosen.motion_generator)

@@ -1,4 +1,4 @@
-"""Whatever is in a file: a result without anything that is not finite, or one sentence."""
+"""Any file gives a finite result or one sentence."""
 
 from contextlib import redirect_stderr, redirect_stdout
 import io
@@ -15,7 +15,7 @@ GUARD_S = 60.0
 
 
 def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
-    """Five thousand of every format that is read; the seed names the file."""
+    """5000 mutated files of every format give a result or a sentence."""
     hostile, failures = Hostile(tmp_path), []
     with warnings.catch_warnings():
         # A warning of NumPy would be printed to a user.

@@ -52,7 +52,7 @@ def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_pa
 
 
 def test_no_datum_is_assumed(tmp_path, capsys):
-    """Without a fix the origin has to be given; then it is used, which is said."""
+    """Without a NavSatFix the origin must be given; its use is then reported."""
     flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry')
     words = ['convert', str(tmp_path / 'bag'), str(tmp_path / 'x.csv'), '--topic', 'ins/odometry']
     capsys.readouterr()
@@ -67,7 +67,7 @@ def test_no_datum_is_assumed(tmp_path, capsys):
 
 
 def test_the_default_datum_can_be_meant(tmp_path, capsys):
-    """Whoever flew from the default place says so, against a fix of another place as well."""
+    """origin datum uses the default datum, even if a NavSatFix contradicts it."""
     flown(tmp_path / 'bag', 55.75, 37.62, 'ins/odometry')
     flown(tmp_path / 'other', 55.0, 37.0)
     origin = ['-p', 'motion.recording.origin:=datum']
@@ -81,7 +81,7 @@ def test_the_default_datum_can_be_meant(tmp_path, capsys):
 
 
 def test_a_flight_in_degrees_has_no_origin(tmp_path):
-    """What would not be used is refused."""
+    """motion.recording.origin with a CSV file is refused."""
     (tmp_path / 'x.csv').write_text('t_s\n')
     values = {'motion.recording.origin': 'datum'}
     with pytest.raises(ValueError, match='origin is datum, but .*x.csv is no bag; expected fix'):
@@ -89,7 +89,7 @@ def test_a_flight_in_degrees_has_no_origin(tmp_path):
 
 
 def test_an_origin_that_wanders_is_refused(tmp_path):
-    """A fix that is none of the odometry beside it tells no origin."""
+    """A NavSatFix that does not belong to the odometry is refused."""
     def shifted(window):
         window[topics.TRUTH_FIX][1][-1, 0] += 1e-3
 

@@ -50,7 +50,7 @@ def messages(bag, topic):
 
 
 def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
-    """To the bit: what the node packs of the same solution, one message at a time."""
+    """The messages equal, to the bit, those that the node packs of the same solution."""
     chosen, free, solution = run
     navigator = chosen.aided_navigator
     frame, route = MapFrame(navigator.datum, navigator.earth.rotation), GreatCircleRoute.of_points(
@@ -83,7 +83,7 @@ def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
 
 
 def test_the_fixes_come_back(run, bag_path):
-    """Record and pair of messages give the fix again; the velocity stands mid-window."""
+    """Record and message pairs give the fixes; velocities are stamped mid-window."""
     chosen, _, solution = run
     with open_bag(bag_path) as bag:
         stamps, records = messages(bag, topics.METER_RECORD)
@@ -156,7 +156,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
 
 
 def test_topics_order_and_every_reader(run, bag_path, capsys):
-    """All topics, messages in the order of the stamps, and rosbags decodes each."""
+    """All topics are in the order of stamps, and rosbags decodes each."""
     pytest.importorskip('rosbags')
     from rosbags.highlevel import AnyReader
     with open_bag(bag_path) as bag:
@@ -210,7 +210,7 @@ def test_the_command_writes_the_bag(tmp_path, capsys):
 
 
 def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
-    """As the node: aided/sigma/* stay silent, covariances are unknown."""
+    """Without covariance aided/sigma/* has no messages and covariances are unknown."""
     path = tmp_path / 'bag'
     assert command(tmp_path, '--bag', str(path),
                    flight=('duration_s:=5.0', 'filter:=conventional')) == 0
@@ -224,7 +224,7 @@ def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
 
 
 def test_what_is_refused(tmp_path, capsys):
-    """Topics of the three nodes need --aided; an interrupted bag is not there."""
+    """Topics of the aided nodes need --aided; an interrupted bag does not exist."""
     assert main(['simulate', '-p', 'duration_s:=5.0', '-o', str(tmp_path / 'run'), '--bag',
                  str(tmp_path / 'bag'), '--topics', 'aided/fix']) == 2
     said = capsys.readouterr().err
@@ -233,7 +233,7 @@ def test_what_is_refused(tmp_path, capsys):
 
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch):
-    """Ctrl-C while the fixes are packed: no bag, exit code 130."""
+    """Ctrl-C while fixes are packed leaves no bag; exit code 130."""
     def interrupt(*arguments):
         raise KeyboardInterrupt
 

@@ -76,7 +76,7 @@ def test_frames_of_all_topics(bags):
 
 
 def test_the_run_is_announced(bags):
-    """Once, latched, at the stamp of the first sample."""
+    """sim/run is written once, latched, at the stamp of the first sample."""
     with open_bag(bags('truth')) as bag:
         (name, log_ns, data), = bag.messages([topics.RUN.name])
         durabilities = {n: read_profiles(channel.qos)[0]['durability']
@@ -129,7 +129,7 @@ def test_the_chain_of_the_aided_solution(bags):
 
 
 def test_without_a_source_there_is_no_tf(tmp_path, capsys):
-    """As today; a source that nobody is, and 'now', of the command line."""
+    """With tf.source none there are no transforms; bad sources and epoch now are refused."""
     words = ['simulate', '--no-twin', '-p', 'duration_s:=1.0', '-p', 'motion.kind:=static', '-o']
     assert main([*words, str(tmp_path / 'a'), '--bag', str(tmp_path / 'bag'), '-p',
                  'time.epoch:=now']) == 0

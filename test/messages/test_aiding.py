@@ -1,4 +1,4 @@
-"""The messages of the aiding instruments: what ROS writes and reads, and fixes bit for bit."""
+"""Messages of the aiding sensors: equal to those of ROS, and exact to the last bit."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -54,7 +54,7 @@ STATUSES = [Status(0, 'a', '', 'x' * 5, (('k', 'v'), ('', 'ä'))), Status(1, 'bc
 @pytest.mark.parametrize('statuses', [[], STATUSES[:1], STATUSES])
 @pytest.mark.parametrize('frame', ['', 'abc', 'velocity_meter_link'])
 def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
-    """What we pack ROS and rosbags read, and what they pack we read."""
+    """ROS and rosbags read what we pack, and we read what they pack."""
     data = diagnostic_array.pack_diagnostics(EPOCH + 5, frame, statuses)
     message = store().deserialize_cdr(data, topics.DIAGNOSTICS)
     assert bytes(store().serialize_cdr(message, topics.DIAGNOSTICS)) == data
@@ -79,7 +79,7 @@ def test_any_diagnostic_array_comes_back(frame, statuses):
 
 
 def test_a_diagnostic_array_cut_anywhere_is_refused():
-    """So is one that announces more than it can hold, and big-endian."""
+    """A truncated, overstated or big-endian DiagnosticArray is refused."""
     data = velocity_record.pack_fix(WINDOW, EPOCH)
     for size in range(len(data)):
         with pytest.raises(ValueError, match='expected'):
@@ -92,7 +92,7 @@ def test_a_diagnostic_array_cut_anywhere_is_refused():
 
 @pytest.mark.parametrize('fix', [WINDOW, NO_WINDOW])
 def test_a_velocity_fix_comes_back_from_its_record(fix):
-    """Bit for bit; the stamp is the end of the window, the level says whether it is valid."""
+    """A record returns its fix bit for bit; stamp: end of the window, level: validity."""
     data = velocity_record.pack_fix(fix, EPOCH)
     assert repr(velocity_record.read_fix(data, EPOCH)) == repr(fix)
     stamp_ns, frame, (status,) = diagnostic_array.read_diagnostics(data)
@@ -114,7 +114,7 @@ def test_any_velocity_fix_comes_back(velocity, sigma, tan, tau, g, start, cycles
 
 
 def test_records_that_are_none_are_refused():
-    """Of another status, without a key, with a text for a number."""
+    """Records of another status, without a key or with a text for a number are refused."""
     def packed(name, values):
         return diagnostic_array.pack_diagnostics(0, '', [Status(0, name, '', '', tuple(values))])
     values = diagnostic_array.read_diagnostics(velocity_record.pack_fix(WINDOW, 0))[2][0].values
@@ -129,7 +129,7 @@ def test_records_that_are_none_are_refused():
 
 
 def test_the_velocity_for_display():
-    """Stamp of the middle, variances; up and the rates have a huge one."""
+    """The velocity is stamped mid-window; up and the rates have a huge variance."""
     t_ns, *runs = velocity_record.velocity_one(WINDOW)
     data = topics.METER_VELOCITY.writer().pack(t_ns + EPOCH, *runs)
     message = ros(topics.TWIST)[1](data)
@@ -144,7 +144,7 @@ def test_the_velocity_for_display():
 
 
 def pairs(fixes, latency_ns=120_000_000, swapped=False):
-    """Return what a reader makes of GnssFixes."""
+    """Return what GnssPairs makes of GnssFixes."""
     writer, reader = GnssWriter(EPOCH), GnssPairs(EPOCH, latency_ns)
     found = []
     for fix in fixes:
@@ -158,7 +158,7 @@ def pairs(fixes, latency_ns=120_000_000, swapped=False):
 
 @pytest.mark.parametrize('swapped', [False, True])
 def test_a_gnss_fix_comes_back(swapped):
-    """All to the bit but the angles, which pass through degrees: below 1e-9 m here."""
+    """A GNSS fix is exact to the bit except angles, which pass through degrees: below 1e-9 m."""
     none = no_gnss_fix(8 * SECOND, OUTAGE, 8_120_000_000)
     later = replace(FIX, t_ns=9 * SECOND, arrival_ns=9_120_000_000)
     found = pairs([FIX, none, later], swapped=swapped)
@@ -189,7 +189,7 @@ def test_anywhere_on_earth(lat, lon, sigma):
 
 
 def test_repeated_lost_and_restarted_messages():
-    """A repeated half is passed over, a fix without its velocity too, a jump back begins anew."""
+    """Repeated messages and fixes without velocity are skipped; a backward stamp resets."""
     writer, reader = GnssWriter(0), GnssPairs(0, 0)
     fixes = [replace(FIX, t_ns=k * SECOND, arrival_ns=k * SECOND) for k in range(5)]
     both = [(writer.fix(f), writer.velocity(f)) for f in fixes]
@@ -207,7 +207,7 @@ def test_repeated_lost_and_restarted_messages():
 
 
 def test_the_status_of_a_fix_as_ros_reads_it():
-    """Fix, GPS, diagonal known; without one -1, NaN and unknown; the truth 1 mm, the INS known."""
+    """A valid fix has status 0, GPS, known diagonal; an invalid one -1, NaN, unknown."""
     _, load, _ = ros(topics.FIX)
     writer = GnssWriter(EPOCH)
     message = load(writer.fix(FIX))
@@ -235,7 +235,7 @@ def test_the_status_of_a_fix_as_ros_reads_it():
 
 @pytest.mark.parametrize('frame', ['', 'm', 'ab', 'map', 'gnss_link'])
 def test_the_numbers_of_a_fix(frame):
-    """They come back whatever the frame, from our bytes, from rosbags and in a block."""
+    """Status, service and covariance type are read back for any frame, also in a block."""
     writer = Writer(topics.FIX, frame, numbers=(-1, 5, 2))
     data = writer.pack(1, (1.0, 2.0, 3.0))
     again = bytes(store().serialize_cdr(store().deserialize_cdr(data, topics.FIX), topics.FIX))
@@ -252,7 +252,7 @@ def test_the_numbers_of_a_fix(frame):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_bags_keep_them(storage, tmp_path):
-    """Records, fixes with their status and covariances, and the velocities as columns."""
+    """A bag returns records, fixes with status and covariance, and velocities as columns."""
     writer = GnssWriter(EPOCH)
     none = no_gnss_fix(8 * SECOND, OUTAGE, 8 * SECOND)
     data = {topics.METER_RECORD: [velocity_record.pack_fix(f, EPOCH) for f in (WINDOW, NO_WINDOW)],
@@ -278,7 +278,7 @@ def test_bags_keep_them(storage, tmp_path):
 
 @pytest.mark.parametrize('variance', [0.0, -1.0, math.nan])
 def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
-    """Other receivers send zeros, or worse: the fix is there, and dropped in one sentence."""
+    """A fix with an invalid variance is delivered and refused by the navigator in one sentence."""
     reader = GnssPairs(EPOCH, 0)
     stamp, place = 7 * SECOND + EPOCH, (55.0, 37.0, 100.0)
     # as others pack it: our own writer refuses what is no number
@@ -292,7 +292,7 @@ def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
 
 
 def test_the_bound_of_a_velocity_is_that_of_its_norm():
-    """Each component below 1e5 m/s, and together beyond it."""
+    """A velocity is refused if its norm exceeds 1e5 m/s, though each component is below."""
     check_gnss(replace(FIX, v_n=(5e4, 5e4, 5e4)))
     with pytest.raises(StreamFault, match='has a velocity of .* expected less than 100000;'):
         check_gnss(replace(FIX, v_n=(7e4, 7e4, 7e4)))

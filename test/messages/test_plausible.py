@@ -1,4 +1,4 @@
-"""What a node reads holds what can be: every field, every stamp, every cut."""
+"""Messages with impossible values, stamps or lengths are refused."""
 
 import math
 import struct
@@ -27,7 +27,7 @@ def message(topic, place=None, value=0.0, stamp_ns=5 * SECOND):
 @pytest.mark.parametrize('topic, run, place', FIELDS,
                          ids=[f'{topic.name}-{k}' for topic, _, k in FIELDS])
 def test_every_field_has_a_bound(topic, run, place):
-    """What is at the bound is refused, by name and instant; what is below is read to the bit."""
+    """A value at the bound is refused by name and instant; one below is read to the bit."""
     name, bound, unit = BOUNDS[topic.type_name, run]
     reader = PlausibleReader(topic, RUNS[topic])
     for wrong in (bound, -bound, 1e150, -1e200, 1.7e308, math.inf, -math.inf, math.nan):
@@ -43,13 +43,13 @@ def test_every_field_has_a_bound(topic, run, place):
 
 
 def test_what_is_not_read_may_hold_anything():
-    """Covariances of others are their own business."""
+    """Doubles that are not read, such as covariances, may have any value."""
     data = message(topics.TRUTH_IMU, 5, math.nan)
     assert PlausibleReader(topics.TRUTH_IMU, RUNS[topics.TRUTH_IMU]).read(data)[0] == 5 * SECOND
 
 
 def test_a_run_without_a_bound_is_never_read():
-    """Whoever reads another field must enter it into the table."""
+    """Reading a field without a bound in the table is an error."""
     with pytest.raises(KeyError):
         PlausibleReader(topics.TRUTH_IMU, ((16, 25),))
 
@@ -60,7 +60,7 @@ def test_a_run_without_a_bound_is_never_read():
     (5, SECOND, '1000000000 nanoseconds in its stamp; expected less than 1e9'),
     (2**31 - 1, 2**32 - 1, '4294967295 nanoseconds in its stamp')])
 def test_stamps_that_no_run_has(sec, nanosec, sentence):
-    """Negative, of a broken clock, beyond what an answer can hold."""
+    """Negative stamps, and those too large for an answer, are refused."""
     data = message(topics.TRUTH_IMU)
     with pytest.raises(ValueError, match=sentence):
         PlausibleReader(topics.TRUTH_IMU).read(
@@ -68,7 +68,7 @@ def test_stamps_that_no_run_has(sec, nanosec, sentence):
 
 
 def test_the_first_and_the_last_stamp():
-    """Jitter puts the first readings before 0; the last second of 32 bits is read."""
+    """Stamps slightly before 0 (jitter) and the last second of 32 bits are accepted."""
     for stamp_ns in (-SECOND, -1, 0, 2**31 * SECOND - 1):
         data = message(topics.TRUTH_IMU, stamp_ns=stamp_ns)
         assert PlausibleReader(topics.TRUTH_IMU).read(data)[0] == stamp_ns
@@ -80,6 +80,6 @@ def test_the_first_and_the_last_stamp():
     message(topics.TRUTH_IMU)[:12] + b'\xff' * 4 + message(topics.TRUTH_IMU)[16:]],
     ids=['nothing', '3 bytes', '2 bytes', 'cut', 'big-endian', 'XCDR2', 'endless text'])
 def test_malformed_messages_are_one_sentence(data):
-    """Nothing but a ValueError comes out of a reader."""
+    """A malformed message raises only ValueError."""
     with pytest.raises(ValueError, match='expected'):
         PlausibleReader(topics.TRUTH_IMU).read(data)

@@ -1,4 +1,4 @@
-"""Transforms: bytes by the definition of tf2_msgs, and what the frames of a vehicle mean."""
+"""TFMessages equal those of the definition of tf2_msgs, and the frames are consistent."""
 
 from ins_sim.messages import placements, topics
 from ins_sim.messages.transforms import (AT_PARENT, first_stamp, pose_between, read_rotations,
@@ -33,7 +33,7 @@ def test_bytes_are_those_of_the_definition(parent, child):
 
 
 def test_several_transforms_of_one_instant():
-    """Names of any length between them: rosbags packs the same bytes."""
+    """Several transforms with names of any length are packed as rosbags does."""
     pairs = ('map', 'odom'), ('uav1/odom', 'uav1/base_link'), ('a', 'b')
     poses = [(float(k), *POSE[1:]) for k in range(3)]
     data = TransformWriter(*pairs).pack(10**9 + 5, *poses)
@@ -63,7 +63,7 @@ def test_map_to_odom_brings_the_free_pose_onto_the_aided_one():
 
 
 def test_what_stands_fixed():
-    """Lever arm of GNSS; the antennas of the velocity meter are turned left by their error."""
+    """The GNSS antenna sits at its lever arm; the meter is turned left by its mounting error."""
     gnss = build(GnssSettings, {'lever_arm_m': [1.0, -2.0, 0.5]})
     assert placements.gnss_mounting(gnss) == ('base_link', 'gnss_link', (
         1.0, -2.0, 0.5, 0.0, 0.0, 0.0, 1.0))
