@@ -197,7 +197,7 @@ def test_empty_bags_and_topics(storage, tmp_path):
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 @pytest.mark.parametrize('names', [('a', 'b'), ('a', 'a')])
 def test_stamps_of_two_clocks(storage, names, tmp_path):
-    """Stamps of two clocks cause neither a chunk per message nor shorter files."""
+    """With stamps of two clocks, files span 2 s by each clock and chunks hold many messages."""
     with BagWriter(tmp_path / 'bag', storage, split_ns=2 * 10**9) as bag:
         for name in dict.fromkeys(names):
             bag.add_topic(name, topics.IMU)

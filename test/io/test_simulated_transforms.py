@@ -129,7 +129,7 @@ def test_the_chain_of_the_aided_solution(bags):
 
 
 def test_without_a_source_there_is_no_tf(tmp_path, capsys):
-    """With tf.source none there are no transforms; bad sources and epoch now are refused."""
+    """tf.source none writes no transforms, epoch now is accepted, aided is refused."""
     words = ['simulate', '--no-twin', '-p', 'duration_s:=1.0', '-p', 'motion.kind:=static', '-o']
     assert main([*words, str(tmp_path / 'a'), '--bag', str(tmp_path / 'bag'), '-p',
                  'time.epoch:=now']) == 0
