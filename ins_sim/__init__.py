@@ -1,7 +1,7 @@
 """
-Inertial measurement unit and strapdown navigation simulator for ROS 2.
+Simulator of an inertial measurement unit and strapdown inertial navigation, for ROS 2 and Python.
 
-The conventions of the whole package stand here and nowhere else.
+These conventions hold in the whole package.
 
 Frames
 ------
@@ -23,27 +23,28 @@ Names
 
 Units and shapes
 ----------------
-SI and radians inside.  A public name that holds another unit carries it (``delay_us``).
+SI units and radians inside.  A public name with another unit ends in it (``delay_us``).
 Quaternions are unit, scalar last (x, y, z, w), as in ROS and SciPy.  Leading axes are time (and
-run), the trailing axis is physics, so that ``(3,)`` is a sample and ``(n, 3)`` its history.
+run), the last axis holds components: ``(3,)`` is one sample, ``(n, 3)`` its history.
 
 Time
 ----
 Instants are int64 nanoseconds; t_j = t_0 + j dt is computed, never accumulated.  Only differences
-become float seconds.  *Motion time* is the stamp less the epoch, which the
-generator announces (``time.epoch``, ``time.epoch_s``).
+become float seconds.  *Motion time* is the stamp minus the epoch, which motion_generator announces
+(``time.epoch``, ``time.epoch_s``).
 
-Angles of attitude
-------------------
-psi: counter-clockwise from north in the bench motions (the paper's +psi), clockwise (true
-heading) in the flights.  theta: nose up.  gamma: right wing down.  ``C_nb`` of the paper's
-(right, forward, up) axes is Rz(psi) Rx(theta) Ry(gamma); see ``ins_sim.core.attitude.angles``.
+Attitude angles
+---------------
+psi: counter-clockwise from north in the bench motions (as in Bogdanov and Fomichev 2018),
+clockwise (true heading) in the flights.  theta: nose up.  gamma: right wing down.  With the body
+axes of that paper (right, forward, up), ``C_nb`` is Rz(psi) Rx(theta) Ry(gamma); see
+``ins_sim.core.attitude.angles``.
 
 Public names
 ------------
-The functions are in ``__all__``; each is imported when it is used first, so that ``import
-ins_sim`` itself loads neither NumPy nor YAML.  All else is importable by its module and may change
-until version 1.0.
+The public names are in ``__all__``; each is imported when it is first used, so that ``import
+ins_sim`` itself loads neither NumPy nor YAML.  Everything else is imported from its module and may
+change before version 1.0.
 """
 
 from importlib import import_module
@@ -90,7 +91,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name when it is used first (PEP 562)."""
+    """Import a public name when it is first used (PEP 562)."""
     for module, names in _MODULES.items():
         if name in names:
             value = getattr(import_module(f'{__name__}.{module}'), name)
@@ -100,5 +101,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """Return the names that are there and those that can be imported."""
+    """Return the names of the module, including those not imported yet."""
     return sorted({*globals(), *__all__})

@@ -1,4 +1,4 @@
-"""``python -m ins_sim`` is the command ``ins_sim``."""
+"""Run the command ``ins_sim`` with ``python -m ins_sim``."""
 
 from ins_sim.entry import command
 

@@ -1,14 +1,15 @@
 """
-The command ``ins_sim`` as a process: Ctrl-C ends it with one sentence, whenever it comes.
+Run the command ``ins_sim`` as a process that Ctrl-C ends with one sentence at any time.
 
-This module is small, and stands before all others, because they take seconds to import.
+The module is small, because the signal handlers must be set before the other modules, which take
+seconds, are imported.
 """
 
 import os
 import signal
 import sys
 
-# by the alarm comes what could not be raised at once
+# SIGALRM raises an interruption again that could not be raised at once.
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 IMPORTING = '<frozen importlib._bootstrap>'
 AGAIN_S = 0.002
@@ -55,22 +56,23 @@ def command():
     try:
         sys.stdout.flush()
     except OSError:
-        # who read it has gone, and Python would say so again
+        # The reader of the pipe has closed it, which Python would report again at its exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)
 
 
 def end_at_once():
-    """Let signals end this process with code 0, until a node that imports has its own handlers."""
+    """Let signals end this process with code 0 until the imported node sets its own handlers."""
     for number in SIGNALS:
         signal.signal(number, lambda *_: os._exit(OK))
 
 
 def _interrupt(number, frame):
     """
-    Raise KeyboardInterrupt, of which verbs clean up, once.
+    Raise KeyboardInterrupt once, on which verbs clean up.
 
-    In the middle of an import it could be swallowed, or leave half a module: there it waits.
+    During an import the exception might be swallowed or leave a module half imported; it is then
+    raised later.
     """
     for each in SIGNALS[:2]:
         signal.signal(each, signal.SIG_IGN)
@@ -83,7 +85,7 @@ def _interrupt(number, frame):
 
 
 def _on_unraisable(unraisable):
-    """Raise KeyboardInterrupt again that was raised where nobody could catch it."""
+    """Raise a KeyboardInterrupt again that was raised where it could not be caught."""
     if isinstance(unraisable.exc_value, KeyboardInterrupt):
         signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
     elif 'ignored due to race condition' not in str(unraisable.exc_value):

@@ -1,4 +1,4 @@
-"""The table of the processes of a simulation, for the launch files and the demo alike."""
+"""Table of the processes of a simulation, for the launch files and the demo."""
 
 from dataclasses import dataclass
 import sys
@@ -14,38 +14,38 @@ class Process:
     executable: str
 
 
-# Consumers first, so that the generator finds them waiting; any order works.
+# Consumers first, so that they are ready when the generator starts; any order works.
 PROCESSES = (
     Process('strapdown', 'strapdown'),
     Process('imu_sensor', 'imu_sensor'),
     Process('motion_generator', 'motion_generator'),
 )
 
-# What aids the strapdown solution, and the navigator that is aided.
+# The aiding sensors and the aided navigator.
 AIDING = (
     Process('aided_navigator', 'aided_navigator'),
     Process('velocity_meter', 'velocity_meter'),
     Process('gnss', 'gnss'),
 )
 
-# The end of this one ends the simulation.
+# The process whose end ends the simulation.
 MASTER = 'motion_generator'
 
 RECORDER = Process('recorder', 'recorder')
 
-# All nodes but the recorder in one process.
+# All nodes except the recorder in one process.
 ONE_PROCESS = Process('simulation', 'simulation')
 
 
 @dataclass(frozen=True)
 class Replay:
-    """Topics of a bag, and the processes that run over them instead of live ones."""
+    """Topics of a bag, and the processes that run with them instead of live topics."""
 
     topics: tuple[str, ...]
     processes: tuple[Process, ...]
 
 
-# by what is taken from the bag beside the true motion, with which the strapdown is compared
+# Replays by the data taken from the bag. The true motion is always included, for comparison.
 REPLAYS = {
     'truth': Replay((topics.TRUTH_ODOMETRY.name, topics.TRUTH_IMU.name), PROCESSES[:2]),
     'imu': Replay((topics.TRUTH_ODOMETRY.name, topics.IMU_RAW.name), PROCESSES[:1]),
@@ -56,10 +56,15 @@ def process_command(process, params_files=(), parameters=(), namespace='', paren
     """
     Return the argument list that starts a process without ``ros2 run``.
 
-    ``params_files`` are paths, ``parameters`` pairs of name and value as ROS writes them.
-    parent: id of the process with which it is to end, or None.
+    Parameters
+    ----------
+    process : Process
+    params_files : paths of parameter files
+    parameters : pairs of name and value, as ROS writes them
+    namespace : namespace of the node, '' for none
+    parent : id of the process whose end also ends this one, or None
     """
-    # The module, and not the script, for where the script is depends on the kind of installation.
+    # The module is started, because the path of the script depends on the kind of installation.
     tied = ['ins_sim.ros.main'] if parent is None else ['ins_sim.ros.process.tied', str(parent)]
     words = [sys.executable, '-m', *tied, process.executable, '--ros-args',
              '-r', f'__node:={process.name}']
@@ -73,9 +78,9 @@ def process_command(process, params_files=(), parameters=(), namespace='', paren
 
 def play_command(bag, replay, options=(), namespace=''):
     """
-    Return the argument list that plays what a Replay needs of a bag.
+    Return the argument list that plays the topics of a Replay from a bag.
 
-    options: further ones of ``ins_sim play``.
+    options are further options of ``ins_sim play``.
     """
     words = [sys.executable, '-m', 'ins_sim', 'play', str(bag), *options, '--topics',
              *replay.topics]

@@ -1,8 +1,8 @@
 """
-Folders that a command writes: whole or not at all, by one command at a time, and nobody else's.
+Write output folders atomically, by one process at a time, without deleting foreign files.
 
-A folder of ours has a marker, which names what else is in it.  Only a folder that holds nothing
-but that is ever replaced, by rename, once the new one is whole.
+A folder written by ins_sim has a marker file, which lists the other entries.  Only a folder that
+holds nothing else is ever replaced, by renaming, once the new one is complete.
 """
 
 from contextlib import contextmanager, suppress
@@ -18,7 +18,7 @@ import threading
 
 MARKER = '.ins_sim'
 HEAD = '# written by ins_sim; a folder that holds more than these names is never replaced\n'
-# instead of names, of a folder that has none yet but that of its process
+# Entry of the marker in an unfinished folder, which may hold any names.
 ANYTHING = '*'
 HELD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 FOLDER_FLAGS = os.O_RDONLY | os.O_DIRECTORY
@@ -26,14 +26,13 @@ FOLDER_FLAGS = os.O_RDONLY | os.O_DIRECTORY
 
 class OwnFolder:
     """
-    A folder in writing, for this process alone.
+    An output folder that this process alone is writing.
 
-    path: where it shall be; replace: take the place of a folder of ours that is there; in_place:
-    grow under that name where nothing is there, so that what a killed process wrote can be read;
-    else in ``work`` beside it.  mark: a name that a folder to be replaced must hold; option: how
-    the caller spells replace.  The owner writes into ``work`` and ends with ``commit``,
-    ``discard`` or ``close``.  Raises ValueError where check_free does, and where another
-    process is writing there.
+    path: final path; replace: replace an existing folder of ins_sim; in_place: write under the
+    final path if it is free, so that the output of a killed process can be read, instead of in
+    a folder ``work`` next to it; mark: a name that a folder to be replaced must hold; option:
+    how the user spells replace.  Write into ``work``, then call ``commit``, ``discard`` or
+    ``close``.  Raises ValueError as check_free, and if another process is writing there.
     """
 
     def __init__(self, path, replace=False, in_place=False, mark='', option='--force'):
@@ -47,7 +46,7 @@ class OwnFolder:
             with _signals_held():
                 self._claim()
                 if self.work != self.path:
-                    # another process may have come to its end between the first look and the claim
+                    # Another process may have finished between the first check and the claim.
                     check_free(path, replace, mark, option)
                     self._check_idle()
                 self.note(*([] if self.work == self.path else [ANYTHING]))
@@ -58,11 +57,11 @@ class OwnFolder:
             raise
 
     def _claim(self):
-        """Make the folder and lock it; the lock falls with the process, however it ends."""
+        """Create and lock the folder; the lock is released when the process ends in any way."""
         if self.work != self.path and self.work.exists():
             lock = self._locked(self.work)
             try:
-                # left by a process that was killed
+                # The folder was left behind by a killed process.
                 if any(self.work.iterdir()) and ANYTHING not in (_own_names(self.work) or ()):
                     raise ValueError(f'{self.work} is in the way and not of ins_sim; expected it '
                                      'to be moved')
@@ -92,11 +91,11 @@ class OwnFolder:
             if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
                 os.close(lock)
                 raise self._busy() from None
-            # a file system without locks: the rename still lets only one of two end well
+            # This file system has no locks; of two processes only one will succeed to rename.
         return lock
 
     def _check_idle(self):
-        """Raise ValueError where a process writes into the folder that is to be replaced."""
+        """Raise ValueError if a process is writing into the folder that will be replaced."""
         if self.path.exists():
             os.close(self._locked(self.path))
 
@@ -105,12 +104,12 @@ class OwnFolder:
                           'folder')
 
     def note(self, *names):
-        """Put down names of entries as ours, before they are made."""
+        """Add names of entries to the marker, before the entries are created."""
         fresh = not (self.work / MARKER).exists()
         _write_marker(self.work, 'a', HEAD * fresh, names)
 
     def commit(self):
-        """Put the folder where it shall be, with all that is in it now as ours."""
+        """Move the folder to its final path and list all its entries in the marker."""
         if self.work == self.path:
             self.close()
             return
@@ -124,7 +123,7 @@ class OwnFolder:
         if self.path.exists() and any(self.path.iterdir()):
             check_free(self._asked, self._replace, self._mark, self._option)
             self._check_idle()
-            # a folder gives way to another one only while it is empty
+            # Only an empty folder can be replaced by a rename.
             old = Path(tempfile.mkdtemp(prefix=f'.{self.path.name}.old.', dir=self.path.parent))
             self.path.rename(old)
         try:
@@ -141,7 +140,7 @@ class OwnFolder:
     def discard(self):
         """Delete what was written."""
         if self.work != self.path:
-            # made by this process, under a name that nobody else uses
+            # This process created the folder, under a name that nothing else uses.
             shutil.rmtree(self.work, ignore_errors=True)
         else:
             _remove(self.work)
@@ -149,7 +148,7 @@ class OwnFolder:
         self.close()
 
     def close(self):
-        """Leave what was written as it is."""
+        """Release the folder and keep what was written."""
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
@@ -163,9 +162,9 @@ class OwnFolder:
 @contextmanager
 def whole_folder(path, replace=False, mark='', option='--force'):
     """
-    Give a folder to write into that takes the place of ``path`` once the block is through.
+    Yield a folder to write into, which replaces ``path`` at the end of the block.
 
-    Whatever breaks in the block leaves what was there before.  Raises as OwnFolder does.
+    After an exception in the block ``path`` is unchanged.  Raises the same as OwnFolder.
     """
     folder = None
     try:
@@ -181,9 +180,9 @@ def whole_folder(path, replace=False, mark='', option='--force'):
 
 def check_free(path, replace=False, mark='', option='--force'):
     """
-    Raise ValueError unless a folder may be written: none is there, or one of ours and replace.
+    Raise ValueError unless path is free, or holds a folder of ins_sim and replace is true.
 
-    mark: a name that it must hold; option: how the caller spells replace.
+    mark: a name that such a folder must hold; option: how the user spells replace.
     """
     folder, here = _real(path), Path.cwd()
     if folder == Path(folder.root):
@@ -205,13 +204,13 @@ def check_free(path, replace=False, mark='', option='--force'):
 
 
 def existing_parent(folder):
-    """Return the nearest folder above one that need not exist yet."""
+    """Return the nearest existing folder above a folder, which need not exist."""
     folder = _real(folder)
     return next(p for p in (*folder.parents, folder) if p.exists())
 
 
 def _foreign(folder, mark=''):
-    """Return why a folder is not ours, or '' where it holds nothing but what it names."""
+    """Return why a folder must not be replaced, or '' if it holds only entries of its marker."""
     if not folder.is_dir():
         return 'it is no folder'
     names = sorted(p.name for p in folder.iterdir())
@@ -236,7 +235,7 @@ def _foreign(folder, mark=''):
 
 
 def _own_names(folder):
-    """Return the names in the marker of a folder, or None where there is none of ours."""
+    """Return the names in the marker of a folder, or None without a valid marker."""
     try:
         head, *lines = (folder / MARKER).read_text(encoding='ascii').splitlines(keepends=True)
         names = {json.loads(line) for line in lines} if head == HEAD else None
@@ -246,7 +245,7 @@ def _own_names(folder):
 
 
 def _remove(folder):
-    """Delete a folder and what it names as ours; anything else stays, and the folder with it."""
+    """Delete the entries of the marker, and the folder itself if nothing else is in it."""
     for name in _own_names(folder) or ():
         entry = folder / name
         if entry.is_dir() and not entry.is_symlink():
@@ -261,27 +260,27 @@ def _remove(folder):
 
 
 def _make_parents(folder):
-    """Make the folders above one; return those that were not there, the deepest first."""
+    """Create the missing folders above one; return them, the deepest first."""
     missing = [p for p in folder.parents if not p.exists()]
     folder.parent.mkdir(parents=True, exist_ok=True)
     return missing
 
 
 def _real(path):
-    """Return an absolute path without links: what is renamed is the folder, not a link to it."""
+    """Return an absolute path without links, so that a folder and not a link is renamed."""
     return Path(os.path.realpath(path))
 
 
 @contextmanager
 def _signals_held():
     """
-    Put off what would break a step in two until the block is through.
+    Delay signals that would interrupt a step until the end of the block.
 
-    Not by a mask: threads of NumPy's libraries take signals too, and Python handles them here.
+    A signal mask would not do: threads of NumPy's libraries receive signals as well.
     """
-    # in another thread than the main one Python handles none, and lets none be set
+    # Python handles signals, and allows handlers to be set, only in the main thread.
     main = threading.current_thread() is threading.main_thread()
-    # a handler that is not of Python is given as None, and raises nothing
+    # A handler that was not set by Python is None here; it raises no exception.
     held, before = [], {number: handler for number in HELD
                         if main and (handler := signal.getsignal(number)) is not None}
     try:

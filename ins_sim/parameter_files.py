@@ -1,8 +1,8 @@
 """
-ROS parameter files (YAML) as the settings of the nodes, or of a study, without ROS.
+Read ROS parameter files (YAML) into settings of nodes or studies, without ROS.
 
-The offline command line reads the same files as ``ros2 run --ros-args --params-file``, with the
-rules of ``ros_parameters``. The assignments of ``-p`` stand behind the files.
+The offline commands read the same files as ``ros2 run --ros-args --params-file``, with the same
+rules (``ros_parameters``). Assignments of ``-p`` count as if they followed the files.
 """
 
 from collections.abc import Mapping
@@ -20,24 +20,31 @@ from ins_sim.settings.suggest import nearest_name, similar_name, unknown_key
 from ins_sim.yaml_text import Dumper, read_bytes
 
 ANY_NODE = '/**'
-# so many names are told of what is ignored
+# Number of names in a message about ignored parameters.
 MOST_TOLD = 3
 
 
 def read(paths, assignments=()) -> SimulationSettings:
     """
-    Return SimulationSettings of parameter files, in order, and of assignments.
+    Return SimulationSettings from parameter files and assignments.
 
-    assignments: texts NAME:=VALUE, or {name: value}, whose values are taken as they are.
-    A file may serve the recorder as well; its section is checked name by name.
+    A file may have sections for other nodes of ins_sim; the names in them are checked too.
 
-    Raises ValueError (or OSError) in one sentence that names the file, the section and the key.
+    Parameters
+    ----------
+    paths : parameter files, in order
+    assignments : list of texts NAME:=VALUE, or mapping {name: value} with Python values
+
+    Raises
+    ------
+    ValueError or OSError
+        With one sentence that names the file, the section and the key.
     """
     return SimulationSettings(**read_nodes(paths, assignments, NODES, ALL_NODES))
 
 
 def read_aided(paths, assignments=()) -> AidedSimulationSettings:
-    """Return AidedSimulationSettings as ``read`` does SimulationSettings."""
+    """Return AidedSimulationSettings; the arguments are those of ``read``."""
     built = read_nodes(paths, assignments, {**NODES, **AIDING}, ALL_NODES)
     simulation = SimulationSettings(**{node: built.pop(node) for node in NODES})
     return AidedSimulationSettings(simulation, **built)
@@ -45,10 +52,16 @@ def read_aided(paths, assignments=()) -> AidedSimulationSettings:
 
 def read_nodes(paths, assignments, nodes, known=None):
     """
-    Return {node: its settings} as ``read`` does, for any nodes {name: settings class}.
+    Return {node: settings} from parameter files and assignments, for any nodes.
 
-    A node is here whatever has a section of its own in the files.  known: nodes that may be
-    named, by default nodes; what is given for them is checked value by value.
+    A node is here anything with a section of its own in the files, including commands.
+
+    Parameters
+    ----------
+    paths, assignments : as in ``read``
+    nodes : {name: settings class} of the nodes to read
+    known : {name: settings class} of the nodes that may occur in files, by default nodes; values
+        for them are checked one by one
     """
     known = nodes if known is None else known
     given, named = Parameters(), []
@@ -86,7 +99,7 @@ def _built(node, cls, values):
 
 
 def _add_assignment(given, text, known):
-    """Add a text NAME:=VALUE or NODE:NAME:=VALUE; return how it was given."""
+    """Add a text NAME:=VALUE or NODE:NAME:=VALUE; return its description for messages."""
     name, separator, value = text.partition(':=')
     if not separator:
         raise ValueError(f'-p {shown(text)} has no ":="; expected NAME:=VALUE')
@@ -98,7 +111,7 @@ def _add_assignment(given, text, known):
 
 
 def _addressed(name, where, known):
-    """Return the node, or None for all, and the name of NAME or NODE:NAME."""
+    """Split NAME or NODE:NAME into the node (None for all) and the name."""
     node, separator, own = name.partition(':')
     if not separator:
         return None, name
@@ -109,7 +122,7 @@ def _addressed(name, where, known):
 
 
 def _takers(node, name, fields, where):
-    """Return the nodes that know a name, of one node or of all; refuse a name that none knows."""
+    """Return the nodes that have a parameter; raise ValueError if there is none."""
     asked = {node: fields[node]} if node else fields
     takers = [taker for taker, names in asked.items() if name in names]
     if not takers and not is_of_ros(name):
@@ -118,13 +131,13 @@ def _takers(node, name, fields, where):
 
 
 def _node_of(section, known):
-    """Return the node of a section: one of known, ANY_NODE behind a wildcard, None elsewhere."""
+    """Return the node of a section: a known one, ANY_NODE for a wildcard, or None."""
     node = section.rpartition('/')[2]
     return ANY_NODE if node in ('*', '**') else node if node in known else None
 
 
 def _tell_foreign(path, sections, known):
-    """Say which sections of a file are of no known node; refuse a file without others."""
+    """Warn about sections of unknown nodes; raise ValueError if a file has no others."""
     foreign = [section for section in sections if _node_of(section, known) is None]
     if not foreign:
         return
@@ -142,9 +155,9 @@ def _tell_foreign(path, sections, known):
 
 def _check_sections(given, nodes, known):
     """
-    Refuse a name that no node of its section knows.
+    Raise ValueError on a parameter that no node of its section has.
 
-    The values for a node that is not built are checked one by one.
+    Values for known nodes that are not read are checked one by one.
     """
     fields = {node: flatten(cls) for node, cls in known.items()}
     for section, name, one, _ in given.given():
@@ -162,9 +175,10 @@ def _check_sections(given, nodes, known):
 
 def _namespace(named, given, known):
     """
-    Return the namespace that the sections of files, named, have for known nodes, '' for none.
+    Return the namespace of the sections of known nodes, '' for none; named lists all sections.
 
-    Sections of other namespaces are said to be ignored; without a namespace, two are refused.
+    Warns about ignored sections of other namespaces; raises ValueError if there are several
+    namespaces and no section without one.
     """
     ours = [section for section in named if _node_of(section, known)]
     found = {section.partition('/*')[0] if '*' in section else section.rpartition('/')[0]
@@ -186,9 +200,13 @@ def _namespace(named, given, known):
 
 def _tell_overruled(given, values, known, namespace, order):
     """
-    Say which files and assignments have no effect on some nodes, as it is with ROS.
+    Warn about files and assignments that have no effect on a node by the rules of ROS.
 
-    values: {node: {name: Given}}; known: {node: names}; order: files and assignments, as given.
+    Parameters
+    ----------
+    values : {node: {name: Given}}
+    known : {node: names}
+    order : files and assignments in the order given
     """
     lost = {}
     for section, name, one, last in given.given():
@@ -221,7 +239,7 @@ def dump_aided(settings):
 
 
 def dump_nodes(built):
-    """Return the text of a parameter file with every key of {node: its settings}."""
+    """Return the text of a parameter file with every key of {node: settings}."""
     document = {}
     for node, settings in built.items():
         tree = {}

@@ -1,19 +1,19 @@
-"""Files that have an end: devices and pipes are refused before anything is read from them."""
+"""Refuse devices, pipes and sockets before anything is read from them."""
 
 import os
 import stat
 
-# What a path may name besides a file or a folder.
+# Kinds of paths that are neither a file nor a folder.
 _ENDLESS = ((stat.S_ISCHR, 'a device'), (stat.S_ISBLK, 'a device'), (stat.S_ISFIFO, 'a pipe'),
             (stat.S_ISSOCK, 'a socket'))
 
 
 def check_regular(path, expected):
     """
-    Raise ValueError where a path names a device, a pipe or a socket, and OSError where nothing.
+    Raise ValueError if a path is a device, a pipe or a socket, and OSError if it does not exist.
 
-    To read these takes forever, or all memory. expected: what the path should name, such as
-    'a CSV file'.
+    Reading from these may never end or use all memory. expected describes the file for the
+    message, such as 'a CSV file'.
     """
     mode = os.stat(path).st_mode
     for test, kind in _ENDLESS:

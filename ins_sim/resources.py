@@ -1,4 +1,4 @@
-"""Where the parameter files and launch files of the package are, however it was installed."""
+"""Find the parameter files and launch files of the package in any kind of installation."""
 
 from pathlib import Path
 import sys
@@ -10,17 +10,17 @@ PACKAGE = 'ins_sim'
 
 def share_directories():
     """
-    Return the directories that may hold ``config`` and ``launch``, the first the most trusted.
+    Return the directories that may hold ``config`` and ``launch``, in the order of preference.
 
     They are the share directory of the ament index (colcon), that of the interpreter (pip) and
-    the source tree (``pip install -e`` drops the data files).
+    the source tree (``pip install -e`` does not install data files).
     """
     directories = [Path(sys.prefix) / 'share' / PACKAGE, Path(__file__).resolve().parents[1]]
     try:
         from ament_index_python.packages import get_package_share_directory
         directories.insert(0, Path(get_package_share_directory(PACKAGE)))
     except (ImportError, OSError, LookupError):
-        # No ROS; AMENT_PREFIX_PATH unset; the package is not in the index.
+        # ROS is missing, AMENT_PREFIX_PATH is not set, or the package is not in the index.
         pass
     return directories
 
@@ -39,11 +39,11 @@ def parameter_file(name):
     """
     Return the path of a parameter file given by path or by the name of a shipped one.
 
-    Raises FileNotFoundError where there is none.
+    Raises FileNotFoundError if it does not exist.
     """
     path = Path(name)
     if path.exists() and not path.is_dir():
-        # what is no regular file is refused by name where it is read
+        # Anything but a regular file is refused when it is read.
         return path
     if path.suffix or path.parent != Path('.'):
         raise FileNotFoundError(f'the parameter file {name} does not exist')
@@ -56,7 +56,7 @@ def launch(name):
 
 
 def middleware_profile(name):
-    """Return the path of the profile of a middleware, such as 'fastdds'."""
+    """Return the path of the XML profile of a middleware, such as 'fastdds'."""
     return _find('config', name, '.xml')
 
 

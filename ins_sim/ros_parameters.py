@@ -1,17 +1,17 @@
 """
-Parameters of files and assignments as rcl of ROS 2 Jazzy reads them, without ROS.
+Read parameter files and assignments by the rules of rcl of ROS 2 Jazzy, without ROS.
 
-What a node gets is decided by rcl_yaml_param_parser (parse.c), by rcl (arguments.c) and by rclpy
-(node.cpp).  Their rules are followed here step by step, with the surprising ones:
+In ROS, rcl_yaml_param_parser (parse.c), rcl (arguments.c) and rclpy (node.cpp) determine the
+parameters of a node.  The same rules are followed here, including the surprising ones:
 
 * Sections count in the order in which their names first appear, and an assignment without a node
-  belongs to ``/**``: a section of a node that stands behind a ``/**`` overrules ``-p``.
-* A name has a place for each type of value, and the first type in KINDS wins: ``x: 1`` is not
-  overruled by ``x: 2.0``.
-* A nested name is added anew, a dotted one found again.
-* There are no aliases, no null, and all values of a list have one type.
+  belongs to ``/**``.  Therefore the section of a node that follows ``/**`` overrides ``-p``.
+* A name has a place for each type of value, and the first type in KINDS wins: ``x: 2.0`` does not
+  override ``x: 1``.
+* A nested name is always a new entry, a dotted one replaces an earlier entry of that name.
+* There are no aliases and no null, and all values of a list have the same type.
 
-The test compares names, types, values and refusals with those of rclpy.
+A test compares names, types, values and errors with those of rclpy.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from ins_sim.settings.shown import shown
 from ins_sim.yaml_text import events, line_of, scalar
 
 PARAMS_KEY = 'ros__parameters'
-# the types of values in the order in which they win
+# The types of values in the order of precedence.
 KINDS = (bool, int, float, str, (bool,), (int,), (float,), (str,))
 NAMES = {bool: 'truth values', int: 'whole numbers', float: 'numbers with a point', str: 'texts'}
 LONGEST_PART, LONGEST_NODE = 244, 255
@@ -31,7 +31,7 @@ _WORD = re.compile(r'[A-Za-z_][A-Za-z0-9_]*')
 
 
 class Parameters:
-    """Sections with their parameters, in the order of their coming."""
+    """Sections with their parameters, in the order in which they were given."""
 
     def __init__(self):
         self._sections = {}
@@ -40,7 +40,7 @@ class Parameters:
         """
         Add the sections of a parameter file and return their names.
 
-        content: bytes; where: the name of the file, for sentences.
+        content holds the bytes of the file, where its name for messages.
         """
         file = _File(self._sections, where)
         try:
@@ -50,7 +50,7 @@ class Parameters:
         return list(file.named)
 
     def add_value(self, section, name, text, where):
-        """Add the value of a parameter, as YAML; where: how it was given, for sentences."""
+        """Add the value of a parameter, as YAML; where describes its source in messages."""
         try:
             if not text:
                 raise ValueError('has no value')
@@ -72,22 +72,22 @@ class Parameters:
 
     def given(self):
         """
-        Yield full name of section, name, Given and who gave it last, in order.
+        Yield full name of the section, name, Given and last source of each entry, in order.
 
-        A name may come more than once in a section; then the last one counts.
+        If a name occurs more than once in a section, the last entry counts.
         """
         for section, entries in self._sections.items():
             for entry in entries:
                 yield absolute(section), entry.name, entry.winner(), entry.where
 
     def of(self, node):
-        """Return {name: Given} of a node by its full name, such as '/imu1/strapdown'."""
+        """Return {name: Given} of a node with the full name node, such as '/imu1/strapdown'."""
         return {name: one for section, name, one, _ in self.given() if applies(section, node)}
 
 
 @dataclass(frozen=True)
 class Given:
-    """A value, None for an empty list or mapping, and where it was given."""
+    """A value (None for an empty list or mapping) and its source."""
 
     value: object
     where: str
@@ -112,13 +112,13 @@ def absolute(section):
 
 
 def applies(section, node):
-    """Return whether a section is of a node, by full names: ``/*`` is one name, ``/**`` any."""
+    """Return whether a section applies to a node (full names; ``/*`` is one name, ``/**`` any)."""
     pattern = section.replace('/*', r'(/\w+)')
     return re.fullmatch(pattern, node, re.ASCII) is not None
 
 
 def _find(entries, name):
-    """Return the number of the first entry of a name, of a new one if there is none."""
+    """Return the index of the first entry with a name; add one if there is none."""
     for number, entry in enumerate(entries):
         if entry.name == name:
             return number
@@ -127,7 +127,7 @@ def _find(entries, name):
 
 
 class _Values:
-    """Values as they come, alone or in a list."""
+    """Reader of values, single or in a list."""
 
     def __init__(self, where):
         self._where = where
@@ -156,7 +156,7 @@ class _Values:
 
 
 class _File:
-    """The state of rcl's parser of a file: names of node and parameter, and what is next."""
+    """State of the file parser of rcl: names of node and parameter, and what comes next."""
 
     def __init__(self, sections, where):
         self._sections, self._where = sections, where
@@ -165,7 +165,7 @@ class _File:
         self._key_next, self._in_parameters, self._new_map = True, False, False
         self._depth = 0
         self._node, self._group = _Path('/'), _Path('.')
-        # rcl keeps the number of the parameter, even from one section to the next
+        # rcl keeps the index of the parameter, even from one section to the next.
         self._entries, self._number = [], 0
 
     def read(self, content):
@@ -182,7 +182,7 @@ class _File:
                 self._values.listed, self._key_next = False, True
             elif isinstance(event, yaml.MappingStartEvent):
                 self._depth += 1
-                # the mapping of ros__parameters itself is no group
+                # The mapping of ros__parameters itself is not a group.
                 self._new_map = not (self._in_parameters
                                      and self._depth - self._node.count == 3)
                 self._key_next = True
@@ -229,7 +229,7 @@ class _File:
         entry = self._entries[self._number]
         entry.where = self._where
         if group is not None:
-            # a group is an entry until its first name makes it one of it
+            # A group is an entry of its own until its first name is added to it.
             entry.name = f'{group}.{name}'
 
     def _end_mapping(self):
@@ -244,7 +244,7 @@ class _File:
 
 
 class _Path:
-    """Names joined by a separator, as rcl adds and removes them: by text, not one by one."""
+    """Names joined by a separator; like rcl it adds and removes text, not list elements."""
 
     def __init__(self, separator):
         self._separator = separator
@@ -276,7 +276,7 @@ def _before(event):
 
 
 def _check_section(section, event):
-    """Refuse what is no name of a node in a namespace, wildcards apart."""
+    """Raise ValueError unless a section is a node name with namespace or wildcards."""
     *parts, node = section.split('/')
     if parts[:1] == ['']:
         parts = parts[1:]

@@ -1,9 +1,8 @@
 """
-A simulation for the tests of other filters: an IMU with truth, step by step
-(docs/how_to/test_your_filter.md).
+Simulate an IMU with truth step by step, to test a filter (docs/how_to/test_your_filter.md).
 
-It runs in the process of the test and in a ROS domain of its own.  A filter may be a function, a
-node of the same process, or a process of its own that hears the topics.
+The simulation runs in the process of the test and in a separate ROS domain. The filter can be a
+function, a node of the same process, or another process that subscribes to the topics.
 """
 
 from collections import deque
@@ -23,7 +22,7 @@ from ins_sim.settings.suggest import nearest_name
 try:
     from pytest import fixture
 except ImportError:
-    # The context manager serves without pytest.
+    # The context manager works without pytest.
     def fixture(function):
         """Return the function itself."""
         return function
@@ -31,24 +30,24 @@ except ImportError:
 PUBLISHED = {topic.name: topic for topic in (*topics.DATA, *topics.AIDING, *topics.GUIDANCE,
                                              topics.IMU_PARITY)}
 ALWAYS = (topics.TRUTH_ODOMETRY.name, topics.IMU_RAW.name)
-# Sample 0 is sent again until it is answered, so often.
+# Interval at which sample 0 is sent again until it is answered, s.
 REPEAT_S = 0.1
 DEPTH = 1000
 
 
 class Step:
     """
-    One sample of the truth, and the messages that it led to.
+    One sample of the truth, and the messages that followed from it.
 
     Attributes
     ----------
     stamp_ns : int
         Stamp of the truth, ns.
     truth : nav_msgs.msg.Odometry
-        In map and base_link, see the README.
+        Pose in map, twist in base_link.
     readings : list of sensor_msgs.msg.Imu
-        Those of this step, oldest first: one where truth and IMU have the same rate, none where a
-        reading was lost or is late.
+        IMU messages of this step, oldest first: one if truth and IMU have the same rate, none if
+        a sample was lost or is late.
     """
 
     def __init__(self, stamp_ns, messages):
@@ -73,48 +72,48 @@ class Step:
 
 class RunningSimulation:
     """
-    A simulation that goes on when ``step`` is called; use it as a context manager.
+    A simulation that advances when ``step`` is called; use it as a context manager.
 
     Parameters
     ----------
     names : str, path or list of these
-        Parameter files, as ``ins_sim.read_settings`` takes them.
+        Parameter files, as for ``ins_sim.read_settings``.
     values : mapping, optional
-        Values by the name of the parameter, which win over the files.
+        Values by the name of the parameter, which override the files.
     topics : sequence of str
-        What is handed over beside truth/odometry and imu/data_raw, by name.
+        Names of topics to collect in addition to truth/odometry and imu/data_raw.
     answers : mapping of str to message class, optional
-        Topics of the filter under test that answer readings: a step waits for the message with
-        the stamp of its last reading.
+        Output topics of the filter under test: each step waits for the message that has the stamp
+        of the last IMU message.
     aided : bool
         Whether velocity meter, GNSS and aided navigator run as well.
     namespace : str
         Namespace of the nodes.
     timeout_s : float
-        Wall time for which an answer is waited for.
+        Longest time to wait for an answer.
 
     Attributes
     ----------
     domain : int
         The ROS domain.
     environment : dict
-        The variables of a process that is to take part.
+        Environment variables for other processes that take part.
     context : rclpy.Context
-        The context of nodes of this process that are to take part.
+        Context for nodes of this process that take part.
 
     Raises
     ------
     ValueError
-        In one sentence, on a parameter or a topic that does not exist.
+        If a parameter or a topic does not exist.
     TimeoutError
-        Where an answer does not come; the sentence names the topic.
+        If an answer does not arrive; the message names the topic.
     RuntimeError
-        Where a node ends the simulation, as on_fault: stop has it.
+        If a node ends the simulation, as with on_fault: stop.
     """
 
     def __init__(self, names=(), values=None, topics=(), answers=None, aided=False, namespace='',
                  timeout_s=30.0):
-        # A test has the same stamps each time.
+        # With a fixed epoch each run of a test has the same stamps.
         self._settings = read_settings(names, {'time.epoch': 'fixed', **(values or {})}, aided)
         self._aided, self._namespace, self._timeout_s = aided, namespace.strip('/'), timeout_s
         self._answers = dict(answers or {})
@@ -190,14 +189,14 @@ class RunningSimulation:
         answered[stamp.sec * 1_000_000_000 + stamp.nanosec] = message
 
     def add_node(self, node):
-        """Let a node of this process, made with ``context``, take part; its owner destroys it."""
+        """Add a node of this process, created with ``context``; the caller destroys it."""
         self._executor.add_node(node)
 
     def step(self):
         """
-        Send the next sample of the truth; return its Step, None at the end of the run.
+        Send the next sample of the truth and return its Step, or None at the end of the run.
 
-        What reads in this process has it then; for ``answers`` it waits.
+        Subscribers in this process have then received the messages; ``answers`` are waited for.
         """
         for messages in (*self._came.values(), *self._answered.values()):
             messages.clear()
@@ -229,13 +228,13 @@ class RunningSimulation:
                                    f'{self._timeout_s:g} s; expected an answer of the filter '
                                    'under test to each reading, with its stamp')
             if not self._count and now > repeat_s:
-                # the filter may have joined since
+                # The filter may have subscribed in the meantime.
                 self._simulation.repeat_first()
                 repeat_s = now + REPEAT_S
             self._executor.spin_once(timeout_sec=0.01)
 
     def steps(self, count=None):
-        """Yield steps up to the end of the run, at most count of them."""
+        """Yield steps until the end of the run, at most count of them."""
         while count is None or count > 0:
             step = self.step()
             if step is None:
@@ -269,6 +268,6 @@ def _message(topic, data):
 
 @fixture
 def start_simulation():
-    """Start simulations, called as RunningSimulation is; all end with the test."""
+    """Yield a function like RunningSimulation; the simulations it starts end with the test."""
     with ExitStack() as stack:
         yield lambda *args, **options: stack.enter_context(RunningSimulation(*args, **options))

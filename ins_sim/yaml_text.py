@@ -1,9 +1,9 @@
 """
-YAML from files that nobody vouches for, read event by event within bounds.
+Read YAML from untrusted files, event by event and within limits.
 
-Nothing is built before it is known to be small: bytes are bounded before they are read, nesting
-and what aliases stand for while the events come.  Scalars have the meaning that ROS 2 gives them,
-so that a value is the same in a parameter file, in ``-p`` and in the metadata of a bag.
+The size in bytes is limited before reading, and nesting and the expansion of aliases while the
+events are read.  Scalars have the types that ROS 2 gives them, so that a value is the same in a
+parameter file, in ``-p`` and in the metadata of a bag.
 """
 
 import re
@@ -13,10 +13,10 @@ import yaml
 from ins_sim.regular_file import check_regular
 from ins_sim.settings.shown import cut
 
-# A file of parameters has some ten kilobytes, the metadata of a bag 150 bytes a file.
+# A parameter file has some ten kilobytes, the metadata of a bag 150 bytes per file.
 MOST_BYTES = 1 << 24
 DEEPEST = 64
-# All that a tree holds, with each alias counted as what it stands for.
+# Largest number of values in a tree, with aliases expanded.
 MOST_VALUES = 1_000_000
 STRING_TAG = 'tag:yaml.org,2002:str'
 
@@ -34,7 +34,7 @@ _LARGEST_INTEGER = 2 ** 63
 
 
 def read_bytes(path):
-    """Return the content of a YAML file; ValueError where it is no file, or too large."""
+    """Return the content of a YAML file; raise ValueError if it is not a file, or too large."""
     check_regular(path, 'a YAML file')
     with open(path, 'rb') as stream:
         content = stream.read(MOST_BYTES + 1)
@@ -47,8 +47,8 @@ def events(content):
     """
     Yield the events of YAML, bytes or text.
 
-    Raises ValueError where it is no YAML, or nested deeper than DEEPEST: a predicate, such as
-    'is not YAML: line 3: ...', that the reader puts behind the name of the file.
+    Raises ValueError if it is not YAML or nested deeper than DEEPEST.  The message, such as
+    'is not YAML: line 3: ...', has no subject; the caller puts the name of the file before it.
     """
     if len(content) > MOST_BYTES:
         raise ValueError(f'is larger than {MOST_BYTES >> 20} MiB')
@@ -77,17 +77,17 @@ def events(content):
 
 
 def line_of(event):
-    """Return 'line 3', where an event begins."""
+    """Return the line in which an event begins, as 'line 3'."""
     return f'line {event.start_mark.line + 1}'
 
 
 def scalar(event):
     """
-    Return the bool, int, float or str that rcl_yaml_param_parser of ROS 2 makes of a scalar.
+    Return a scalar as bool, int, float or str, like rcl_yaml_param_parser of ROS 2.
 
-    It knows no null and no dates, takes ``1e3`` and ``1.0e7`` for numbers, ``010`` and ``0x10``
-    for whole ones, ``1:30`` for a text, and no tag but ``!!str``.  A number that a double or a
-    64-bit integer cannot hold is a text.
+    There is no null, no date and no tag other than ``!!str``.  ``1e3`` and ``1.0e7`` are floats,
+    ``010`` (octal) and ``0x10`` are integers, ``1:30`` is a string.  A number that does not fit
+    into a double or a 64-bit integer is a string.
     """
     text = event.value.partition('\0')[0]
     if event.tag == STRING_TAG or event.style in ('"', "'"):
@@ -104,7 +104,7 @@ def scalar(event):
 
 
 def _integer(text):
-    """Return what strtoll reads with base 0, or None."""
+    """Return the integer that strtoll reads with base 0, or None."""
     digits = text.lstrip('+-')
     base = 16 if digits[:2] in ('0x', '0X') else 8 if digits.startswith('0') else 10
     digits = digits[2:] if base == 16 else digits
@@ -115,7 +115,7 @@ def _integer(text):
 
 
 def _real(text):
-    """Return what strtod reads without an error of range, or None."""
+    """Return the number that strtod reads without a range error, or None."""
     if _NO_NUMBER.fullmatch(text):
         return float(text.partition('(')[0])
     try:
@@ -135,10 +135,10 @@ def _real(text):
 
 def load(content):
     """
-    Return the tree of the first document of YAML: dicts, lists and scalars; None for none.
+    Return the first document of YAML as dicts, lists and scalars; None if there is none.
 
-    An empty scalar, ``~`` and ``null`` are None here.  An alias is what it stands for, which may
-    not be itself, and all of it together at most MOST_VALUES values.
+    An empty scalar, ``~`` and ``null`` are None here.  Aliases are expanded and must not contain
+    themselves; the tree has at most MOST_VALUES values.
 
     Raises ValueError as ``events`` does.
     """
@@ -150,14 +150,14 @@ def load(content):
     if first is None or isinstance(first, yaml.DocumentEndEvent):
         return None
     value, _, _ = tree.node(first, 0)
-    # what follows has to be YAML too
+    # The rest must be valid YAML too.
     for _ in stream:
         pass
     return value
 
 
 class _Tree:
-    """Values of the events of one document, each with its count of values and its height."""
+    """Builds the values of one document, each with its number of values and its height."""
 
     def __init__(self, stream):
         self._stream = stream
@@ -208,7 +208,7 @@ class _Tree:
 
 
 class Dumper(yaml.SafeDumper):
-    """Quotes each text that ROS would otherwise take for a number or a truth value."""
+    """YAML dumper that quotes each text that ROS would read as a number or a boolean."""
 
     def represent_text(self, text):
         plain = yaml.ScalarEvent(None, None, (True, False), text)

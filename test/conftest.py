@@ -11,14 +11,14 @@ from support.places import ROOT
 
 pytest_plugins = ('support.figures', 'pytester')
 
-# Before anything imports rclpy: no test talks to another machine, setters check types, and what
-# a test publishes is repaired as soon as what a node does.
+# Set before rclpy is imported: no test communicates with another machine, setters check types, and
+# lost messages of a test are resent as fast as those of a node.
 use_profile()
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 
-# the same examples in every run: what one run has passed the next one does not refuse by chance
-# (new ones: pytest --hypothesis-profile default)
+# The examples are the same in every run, so that no test fails by chance (for new examples:
+# pytest --hypothesis-profile default).
 settings.register_profile('repeatable', derandomize=True)
 settings.load_profile('repeatable')
 
@@ -33,7 +33,7 @@ def ros_domain(monkeypatch):
 
 @pytest.fixture(scope='session')
 def shared_data():
-    """Return the folder of recorded data beside the repository, or skip."""
+    """Return the folder of recorded data next to the repository, or skip the test."""
     folder = Path(os.environ.get('INS_SIM_SHARED_DATA', ROOT.parent / 'shared' / 'data'))
     if not folder.is_dir():
         pytest.skip(f'no recorded data: {folder} does not exist')

@@ -4,11 +4,12 @@ Compare the numbers of the shipped configurations between processors, libraries 
 Usage: python tools/bits.py [--write | --lines [--plain | --compiled]]
 
 Every configuration is run for a few seconds, and the digest of all its arrays is compared with
-that in test/packaging/bits.json: as this machine would do it, with the loops that NumPy and the C
-library choose for an older processor, under three kernels of OpenBLAS, compiled and plain, and
-with an old and a new NumPy, in virtual environments that pip makes for it (docs/design/bits.md).
+the one in test/packaging/bits.json. This is done with the defaults of this machine, with the loops
+that NumPy and the C library choose for an older processor, with three kernels of OpenBLAS, with
+and without compiled loops, and with an old and a new NumPy in virtual environments made by pip
+(docs/design/bits.md).
 
---write   write test/packaging/bits.json again, after a change that is meant to change numbers
+--write   write test/packaging/bits.json, after an intended change of numbers
 --lines   only print the digests of this process; --plain: without Numba, --compiled: with every
           loop compiled from its first sample on
 """
@@ -37,11 +38,11 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / 'test' / 'packaging' / 'bits.json'
 DURATION = 'duration_s:=2.0'
-# Two windows of the velocity meter, and an outage of GNSS within them.
+# Two windows of the velocity meter with a GNSS outage.
 AIDED = ('duration_s:=2.5', 'outages.start_s:=[1.5]', 'outages.end_s:=[300.0]')
-# Fixes of this mode are promised on one machine only.
+# In this mode fixes are reproducible on one machine only.
 NOT_PROMISED = ('aided-signal',)
-# As glibc from 2.33 on spells them, and as before.
+# Spelling of the features in glibc 2.33 and later, and before.
 TUNABLES = 'glibc.cpu.hwcaps=' + ','.join(
     f'-{name}{usable}' for name in ('AVX2', 'FMA', 'FMA4', 'AVX512F')
     for usable in ('', '_Usable'))
@@ -62,14 +63,14 @@ def lines():
 
 
 def _settings(read, arguments, *more):
-    """Return the settings that words of the command line name, and more assignments."""
+    """Return the settings of command-line arguments and further assignments."""
     pairs = list(zip(arguments[::2], arguments[1::2]))
     return read(files([value for option, value in pairs if option == '--params-file']),
                 [*(value for option, value in pairs if option == '-p'), *more])
 
 
 def _arrays(run):
-    """Return {name: array} of all that is computed in a run, and predicted of it."""
+    """Return {name: array} of all results and predictions of a run."""
     found = run_arrays(run.result)
     try:
         prediction = predict(run.settings, run.motion)
@@ -87,7 +88,7 @@ def _digest(arrays):
 
 
 def older_processor():
-    """Return the environment in which NumPy and the C library take an older processor's loops."""
+    """Return an environment in which NumPy and the C library use loops for older processors."""
     core = getattr(np, '_core', None) or np.core
     umath = core._multiarray_umath
     found = [name for name in umath.__cpu_dispatch__ if umath.__cpu_features__.get(name)]
@@ -95,7 +96,7 @@ def older_processor():
 
 
 def in_child(environment=(), options=(), python=sys.executable):
-    """Return {name: digest} of a process with other variables; RuntimeError where it fails."""
+    """Return {name: digest} computed by a child process; raise RuntimeError if it fails."""
     ended = subprocess.run(
         [str(python), __file__, '--lines', *options], capture_output=True, text=True, check=False,
         env={**os.environ, 'PYTHONPATH': str(ROOT), **dict(environment)})
@@ -105,17 +106,17 @@ def in_child(environment=(), options=(), python=sys.executable):
 
 
 def reference():
-    """Return {name: digest} as stored, which x86-64 machines are promised to have."""
+    """Return the stored {name: digest}, which all x86-64 machines reproduce."""
     return json.loads(REFERENCE.read_text(encoding='utf-8'))['digests']
 
 
 def different(found, expected):
-    """Return the names of the configurations of which the digests differ."""
+    """Return the names of the configurations whose digests differ."""
     return sorted(name for name in {*found, *expected} if found.get(name) != expected.get(name))
 
 
 def compare():
-    """Print equal or differs of each configuration in each environment; return the exit code."""
+    """Print whether each configuration is equal in each environment; return the exit code."""
     cases = [('as it is', {}, (), sys.executable),
              ('an older processor', older_processor(), (), sys.executable),
              ('plain Python', {}, ('--plain',), sys.executable),

@@ -1,11 +1,12 @@
 """
-Make .venv, install ins_sim and what it needs into it once, and run a command there.
+Create .venv with ins_sim and its dependencies, if it is missing, and run a command in it.
 
 Usage: python3 tools/bootstrap.py [command [argument ...]]
 
-Standard library only, and legal for any Python 3 so that an old one can say that it is too old.
-Where ROS 2 is sourced its own rclpy and libraries are used, which a fixed set of versions would
-overlay; elsewhere all comes from PyPI, in the versions and with the hashes of requirements.lock.
+The script uses only the standard library and runs on any Python 3, so that an old one can report
+that it is too old. If ROS 2 is sourced, its rclpy and libraries are used, which locked versions
+would overlay; otherwise everything is installed from PyPI, with the versions and hashes of
+requirements.lock.
 """
 
 import sys
@@ -27,7 +28,7 @@ VENV_BIN = os.path.join(VENV, 'bin')
 STAMP = os.path.join(VENV, 'ins_sim-stamp.json')
 LOCK = os.path.join(ROOT, 'requirements.lock')
 OLDEST = (3, 10)
-# What the wheels of rclpy exist for.
+# Platforms for which wheels of rclpy exist.
 WHEEL_PYTHONS = ((3, 10), (3, 14))
 WHEEL_GLIBC = (2, 28)
 PROBE = """
@@ -58,7 +59,7 @@ def say(sentence):
 
 
 def probe(python):
-    """Return the facts about an interpreter, or None where it does not run."""
+    """Return the facts about an interpreter, or None if it does not run."""
     try:
         output = subprocess.check_output([python, '-c', PROBE], stderr=subprocess.DEVNULL,
                                          stdin=subprocess.DEVNULL)
@@ -101,7 +102,7 @@ def wheels_fit(facts):
 
 
 def read_stamp():
-    """Return what the last complete installation noted, empty where there was none."""
+    """Return the stamp of the last complete installation, empty if there was none."""
     try:
         with open(STAMP) as stream:
             return json.load(stream)
@@ -110,7 +111,7 @@ def read_stamp():
 
 
 def digest_of_requirements():
-    """Return a digest of the files that decide what pip installs."""
+    """Return a digest of the files that determine what pip installs."""
     digest = hashlib.sha256()
     for path in (os.path.join(ROOT, 'setup.py'), LOCK):
         with open(path, 'rb') as stream:
@@ -137,7 +138,7 @@ def venv_environment(with_ros):
 
 
 def install(facts, with_ros, fresh):
-    """Make .venv anew where asked, and install the package into it."""
+    """Install the package into .venv, which is created anew if fresh is true."""
     python = os.path.join(VENV_BIN, 'python')
     if fresh:
         if not facts['venv']:
@@ -228,7 +229,7 @@ def main():
 
 
 def started():
-    """Run ``main``, and end with one sentence where it is interrupted."""
+    """Run ``main``; end with one sentence after an interruption."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         main()

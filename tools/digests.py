@@ -5,9 +5,9 @@ Usage: python tools/digests.py [-o FILE] [--shared-data FOLDER] [--only TEXT]
 
 Each line is ``configuration part digest``. Run it before and after a change of a kernel or of the
 structure of the code, and compare the two files: a line that differs is a number that changed.
-Only the command line is used, so that versions with another layout can be compared. Of
-recorded motions and of the signals of the velocity meter digests depend on the machine's NumPy:
-compare files made on one machine.
+Only the command line is used, so that versions with another layout can be compared. Digests of
+recorded motions and of the signals of the velocity meter depend on the NumPy of the machine;
+compare only files made on one machine.
 """
 
 import argparse
@@ -33,9 +33,9 @@ SHIPPED = ('default', 'aggressive', 'cruise', 'motion_1', 'motion_2', 'motion_2_
 DELAYS = {'motion_1': 'delay_x_1us', 'motion_2': 'delay_y_1us', 'motion_2_detuned': 'delay_y_1us',
           **dict.fromkeys(('aggressive', 'cruise', 'racetrack', 'recorded_flight'),
                           'delays_2_1_3us')}
-# What holds no motion is run over motion 2.
+# Files without a motion are run with motion 2.
 MOVED = ('route_flight', 'dtg_motion_2', *DELAYS)
-# What the filter believes of an IMU where no file says it.
+# Errors that the filter assumes for an IMU if no file gives them.
 BELIEVED = tuple(f'imu_model.{name}:={value}' for name, value in (
     ('gyro_bias_sigma_deg_h', 0.05), ('gyro_bias_walk_deg_h_sqrt_h', 0.0),
     ('angle_random_walk_deg_sqrt_h', 0.01), ('gyro_scale_sigma_ppm', 0.0),
@@ -55,7 +55,7 @@ def words(files, assignments):
 
 
 def with_delays(*names):
-    """Return files, behind the motions among them the delays of their studies."""
+    """Return the files, with the delays of its study added after each motion."""
     return [file for name in names for file in (name, DELAYS.get(name)) if file]
 
 

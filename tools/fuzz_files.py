@@ -1,13 +1,11 @@
 """
-Try mutations of every format that is read, in child processes with little memory.
+Read mutated files of every input format in child processes with limited memory.
 
 Usage: python tools/fuzz_files.py [COUNT, default 50000] [--first SEED] [--jobs N]
 
-Each file ends in a result without anything that is not finite, or in one sentence: never in a
-traceback, a warning, in more than 10 s of CPU time or in 1 GB beyond what a child needs to
-start. Failures
-are printed with their seed, ``--first SEED`` with COUNT 1 repeats one. The exit code is 1 if
-there are any.
+Each file must give a finite result or an error of one sentence, without a traceback or warning,
+within 10 s of CPU time and 1 GB beyond what a child needs to start. Failures are printed with
+their seed; ``--first SEED`` with COUNT 1 repeats one. The exit code is 1 if there are any.
 """
 
 import argparse

@@ -1,9 +1,9 @@
 """
-Fly all nodes amid hostile messages: python tools/fuzz_nodes.py [COUNT] [SEED].
+Run all nodes while invalid messages are sent: python tools/fuzz_nodes.py [COUNT] [SEED].
 
-Prints what was tried by kind and topic; exits with 1 on a finding, whose seed and message it
-prints.  The same as test/ros/test_hostile_nodes.py, for as long as one likes and with all settings
-of VARIANTS in turn.
+Prints the number of messages by kind and topic.  After a failure it prints seed and message, and
+exits with 1.  It is test/ros/test_hostile_nodes.py with any number of messages, and with all
+settings of VARIANTS in turn.
 """
 
 from collections import Counter
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / 'test')]
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
-# messages of one set of nodes, and those between two calm stretches
+# Number of messages for one set of nodes, and between two intervals without invalid messages.
 RUN, ATTACK = 20_000, 2500
 # of an attack and its calm stretch
 HANG_S = 600

@@ -1,5 +1,5 @@
 """
-Write ins_sim/bags/message_types.json: the message types of ROS 2 Jazzy, from rosbags.
+Generate ins_sim/bags/message_types.json, the message types of ROS 2 Jazzy, from rosbags.
 
 Usage: .venv/bin/python tools/make_message_types.py
 """

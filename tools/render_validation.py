@@ -6,7 +6,7 @@ Usage: python tools/render_validation.py [--take build/figures.json] [--check]
 
 The template is the page with figures as {{name:format}} or {{name[index]:format}}; the format is
 that of Python. ``--take`` first copies the figures that the page shows from the file of a run of
-the tests; ``--check`` writes nothing and fails where the page is not its rendering.
+the tests; ``--check`` writes nothing and fails if the page differs from its rendering.
 """
 
 import argparse

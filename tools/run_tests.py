@@ -3,8 +3,8 @@ Run the tests as CI does, and print how long they took.
 
 Usage: python tools/run_tests.py fast | slow | figures
 
-First what needs no processes of its own, side by side on all cores; then, alone, the tests that
-start nodes. ``figures`` runs the long studies on all cores, one after another.
+Tests that start no processes run first, in parallel on all cores, then the tests that start
+nodes, one by one. ``figures`` runs the long studies one after another, each on all cores.
 """
 
 import subprocess
@@ -18,7 +18,7 @@ CALLS = {
     'slow': [(SIDE_BY_SIDE, 'slow and not figures and not live'),
              ([], 'slow and not figures and live')],
     'figures': [([], 'figures')]}
-# What pytest returns where no test is chosen: without rclpy there are none that start nodes.
+# Exit code of pytest without selected tests; without rclpy no test starts nodes.
 NONE_CHOSEN = 5
 
 

@@ -1,12 +1,12 @@
 """
-Run the live chain and the recorder for long, and say what was lost, how late and how large.
+Run the live nodes and the recorder for a long time; report losses, latency and memory.
 
 Usage: python tools/soak.py [seconds, by default 3600 [rate in Hz, by default 1000 [folder]]]
 
-The bag lies in the folder, by default a temporary one, and takes 1.4 kB a sample.  The exit code
-is 1 where a message was lost, by the numbers of the publishers or by the stamps in the bag, and
-nothing else kept the machine busy: a loss counts as explained where within some second other
-processes (and the hypervisor) took more than BUSY of a core.
+The bag is written to the folder, by default a temporary one, and takes 1.4 kB per sample.  The
+exit code is 1 if a message was lost, by the counts of the publishers or by the stamps in the bag,
+without an explanation: a loss counts as explained if during some second other processes (and the
+hypervisor) used more than BUSY of a core.
 """
 
 import os
@@ -32,7 +32,7 @@ SETTLING = 0.2
 
 
 class Watched:
-    """A process and, once a second, its memory, handles and CPU time."""
+    """A process, with its memory, handles and CPU time once a second."""
 
     def __init__(self, process, log):
         self.process, self.log, self.rows = process, log, []
@@ -59,7 +59,7 @@ class Watched:
 def machine_cpu_s():
     """Return the CPU time that the whole machine has spent, the hypervisor's share included, s."""
     values = [int(v) for v in Path('/proc/stat').read_text().split('\n')[0].split()[1:9]]
-    # all but idle and waiting for disks
+    # All states except idle and waiting for disks.
     return (sum(values) - values[3] - values[4]) * TICK_S
 
 

@@ -1,6 +1,6 @@
 """
-The public functions of ``import ins_sim``, and the objects they return.
+Public functions of ``import ins_sim``, and the objects that they return.
 
-``ins_sim`` imports a module of this room when one of its names is used first. Start with
+``ins_sim`` imports a module of this package when one of its names is first used. Start with
 ``offline``.
 """

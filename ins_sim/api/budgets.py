@@ -1,4 +1,4 @@
-"""The error budget of a simulation from settings."""
+"""Error budget of a strapdown by linear covariance, and its result."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class ErrorBudget:
     beside: BesideRuns | None
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return (f'<ErrorBudget: {len(self.sources)} sources, {self.rms()[-1]:.4g} m horizontally '
                 f'after {self.t_s[-1]:g} s>')
 
@@ -131,23 +131,33 @@ class ErrorBudget:
 
     def rms(self, quantity: str = 'horizontal') -> np.ndarray:
         """
-        Return the root mean square of a quantity, (n,), m, m/s or rad.
+        Return the root mean square of a quantity over time.
 
         Parameters
         ----------
         quantity : {'horizontal', 'east', 'north', 'up', 'velocity', 'tilt', 'azimuth'}
+
+        Returns
+        -------
+        (n,) array
+            At the times ``t_s``, in m, m/s or rad.
         """
         found: np.ndarray = shares(self.linear, _quantity(quantity)).rms
         return found
 
     def error_circle(self, part: float = 0.5) -> np.ndarray:
         """
-        Return the radius that contains a part of the horizontal errors, (n,), m: CEP for 0.5.
+        Return the radius of the circle that contains a fraction of the horizontal errors.
 
         Parameters
         ----------
         part : float
-            Between 0 and 1: 0.5 for CEP50, 0.95 for CEP95.
+            Fraction between 0 and 1: 0.5 for CEP50, 0.95 for CEP95.
+
+        Returns
+        -------
+        (n,) array
+            Radius at the times ``t_s``, m.
         """
         if not 0.0 < part < 1.0:
             raise ValueError(f'part is {part!r}; expected a number between 0 and 1, such as 0.5')
@@ -157,30 +167,41 @@ class ErrorBudget:
 
     def contributions(self, quantity: str = 'horizontal') -> dict[str, np.ndarray]:
         """
-        Return the error caused by each source alone, {name of the parameter: (n,)}.
+        Return the error that each source causes alone.
 
-        In m, m/s or rad; for a source that differs from run to run a standard deviation, for a
-        fixed one the magnitude of its error.
+        Returns
+        -------
+        dict of {str: (n,) array}
+            By the name of the parameter, in m, m/s or rad: the standard deviation for a source
+            that differs from run to run, the magnitude of the error for a fixed one.
         """
         found = shares(self.linear, _quantity(quantity)).contributions()
         return {source.key: row for source, row in zip(self.sources, found)}
 
     def ranked(self, quantity: str = 'horizontal', t_s: float | None = None) -> list[Any]:
-        """Return the ErrorSources, the largest first, at a time, s, by default the end."""
+        """
+        Return the error sources in descending order of their contribution at a time.
+
+        Parameters: quantity, see ``rms``; one of the times ``t_s``, s, by default the last.
+        """
         k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
         made = shares(self.linear, _quantity(quantity)).contributions()[:, k]
         return [self.sources[i] for i in np.argsort(-made, kind='stable')]
 
     def sensitivities(self, quantity: str = 'horizontal',
                       t_s: float | None = None) -> list[Sensitivity]:
-        """Return how a quantity changes with each parameter at a time, s, by default the end."""
+        """
+        Return the derivatives of a quantity with respect to the parameters at a time.
+
+        Parameters: quantity, see ``rms``; one of the times ``t_s``, s, by default the last.
+        """
         k = len(self.t_s) - 1 if t_s is None else self.linear.at(t_s)
         found: list[Sensitivity] = sensitivities(self.linear, _quantity(quantity), k)
         return found
 
     def requirement(self, text: str) -> RequirementAnswer:
         """
-        Return what must improve to meet a requirement.
+        Return which parameters must improve, and to what values, to meet a requirement.
 
         Parameters
         ----------
@@ -201,7 +222,7 @@ class ErrorBudget:
         return found
 
     def linear_until(self) -> float | None:
-        """Return the time, s, after which errors of second order are not negligible, or None."""
+        """Return the time, s, after which second-order errors are not negligible, or None."""
         until: float | None = linear_until(self.linear)
         return until
 
@@ -214,10 +235,10 @@ class ErrorBudget:
 
     def to_dataframe(self, quantity: str = 'horizontal') -> pandas.DataFrame:
         """
-        Return the total of a quantity, and the error of each source alone, as a DataFrame.
+        Return the total of a quantity, and the error that each source causes, as a DataFrame.
 
-        The index ``t_ns`` is the time since the start of the navigation in ns; the columns, in m,
-        m/s or rad, are ``rms`` and the names of the parameters.
+        The index ``t_ns`` is the time since the start of the navigation, ns. The columns, in m,
+        m/s or rad, are ``rms`` and the names of the parameters. ``quantity``: see ``rms``.
         """
         table = {'rms': self.rms(quantity), **self.contributions(quantity)}
         return dataframe(np.round(1e9 * self.t_s).astype(np.int64), table)
@@ -226,8 +247,16 @@ class ErrorBudget:
         """
         Return covariances and mean errors as a Dataset.
 
-        Variables: ``covariance`` (source, time, error, error_2) of the random sources and ``mean``
-        (fixed_source, time, error) of the fixed ones, in SI and radians; time in s.
+        Returns
+        -------
+        xarray.Dataset
+            ``covariance`` (source, time, error, error_2) of the random sources and ``mean``
+            (fixed_source, time, error) of the fixed ones, in SI units and radians; time in s.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
         """
         names = [f'{what}_{axis}' for what in ('position', 'velocity', 'attitude') for axis in ENU]
         return dataset(
@@ -240,7 +269,7 @@ class ErrorBudget:
     def save(self, folder: Folder, overwrite: bool = False,
              requirements: Iterable[str] = ()) -> None:
         """
-        Write the folder of ``ins_sim budget -o``: figures, tables, arrays and report.html.
+        Write a folder with figures, tables, arrays and report.html, as ``ins_sim budget -o``.
 
         Parameters
         ----------
@@ -248,7 +277,7 @@ class ErrorBudget:
         overwrite : bool, optional
             Replace the folder if it holds a budget.
         requirements : iterable of str, optional
-            Requirements to be answered in the report.
+            Requirements that the report answers, see ``requirement``.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Delays and other errors of gyro channels, from readings under a known motion."""
+"""Estimation of delays and other errors of gyro channels from readings under a known motion."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ class DelayEstimate:
     triad : TriadEstimate
         All estimates; the properties below give the delays.
     notes : tuple of str
-        Sentences on assumptions and on what was left out or cannot be determined.
+        Sentences about assumptions, omitted data and values that cannot be determined.
     """
 
     triad: TriadEstimate
     notes: tuple[str, ...]
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return f'<DelayEstimate: {delay_estimate.answer(self.triad)}>'
 
     @property
@@ -76,8 +76,8 @@ class DelayEstimate:
         Returns
         -------
         pandas.DataFrame
-            Columns ``axis``, ``name``, ``unit``, ``value``, ``sigma`` and ``told``: whether the
-            record determines the value; if not, sigma is about the a-priori one.
+            Columns ``axis``, ``name``, ``unit``, ``value``, ``sigma`` and ``told``. ``told`` is
+            true if the record determines the value; otherwise sigma is close to the a-priori one.
 
         Raises
         ------

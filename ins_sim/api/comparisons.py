@@ -1,4 +1,4 @@
-"""The comparison of the aiding filters, and its result."""
+"""Comparison of the aiding filters on the same flights, and its result."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class FilterComparison:
     rows: tuple[FilterRow, ...]
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return (f'<FilterComparison: {len(self.rows)} filters, {self.rows[0].flights} flights, '
                 f'best {self.best}>')
 
@@ -119,7 +119,7 @@ class FilterComparison:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the folder of ``ins_sim compare-filters -o``.
+        Write the report and its data into a folder, as ``ins_sim compare-filters -o``.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""NEES and NIS of an ensemble as columns of a DataFrame and as variables of a Dataset."""
+"""Convert NEES and NIS of an ensemble to columns of a DataFrame and variables of a Dataset."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def nees_columns(consistency: Consistency) -> dict[str, np.ndarray]:
-    """Return {nees_position, nees_position_low, ...: (m,)}: means over runs, 95 % intervals."""
+    """Return {nees_position, nees_position_low, ...: (m,)}, means over runs and 95 % bounds."""
     found = {}
     for k, block in enumerate(BLOCKS):
         found.update(_columns(f'nees_{block}',
@@ -26,7 +26,7 @@ def nees_columns(consistency: Consistency) -> dict[str, np.ndarray]:
 
 
 def fixes_dataframe(consistency: Consistency, source: str) -> pandas.DataFrame:
-    """Return a row a fix of an instrument: mean NIS, its 95 % interval, and how many took it."""
+    """Return one row per fix of a sensor: mean NIS, 95 % interval, runs that used it or not."""
     if source not in consistency.fixes:
         raise ValueError(f'record is {source!r}; expected errors, final or '
                          f'{", ".join(consistency.fixes)}')
@@ -42,13 +42,13 @@ def _columns(name: str, sums: ChiSquareSums) -> dict[str, np.ndarray]:
 
 
 def consistency_coords(consistency: Consistency) -> dict[str, tuple[Any, str]]:
-    """Return the coordinates of ``consistency_variables``, as ``dataset`` takes them."""
+    """Return the coordinates of ``consistency_variables`` in the form of ``dataset``."""
     return {'block': (BLOCKS, ''), **{f'{source}_time': (fixes.t_ns, 'ns')
                                       for source, fixes in consistency.fixes.items()}}
 
 
 def consistency_variables(consistency: Consistency) -> dict[str, Any]:
-    """Return mean NEES and NIS and their 95 % intervals, as ``dataset`` takes them."""
+    """Return mean NEES and NIS with their 95 % intervals in the form of ``dataset``."""
     found: dict[str, Any] = {name: (('time', 'block'), values, '')
                              for name, values in _columns('nees', consistency.nees).items()}
     for source, fixes in consistency.fixes.items():

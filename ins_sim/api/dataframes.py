@@ -1,4 +1,4 @@
-"""Histories as pandas DataFrames of named columns with units."""
+"""Convert histories to pandas DataFrames whose column names contain the unit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def dataframe(t_ns: np.ndarray, table: dict[str, np.ndarray]) -> pandas.DataFram
     """
     Return a DataFrame whose index ``t_ns`` is the time in ns.
 
-    Raises ImportError, which says what to install, where there is no pandas.
+    Raises ImportError, which says what to install, if pandas is not installed.
     """
     try:
         import pandas
@@ -35,7 +35,7 @@ def history_dataframe(history: History) -> pandas.DataFrame:
 
 
 def chosen(records: dict[str, History | None], name: str) -> History:
-    """Return a record by name; ValueError, in one sentence, where there is none."""
+    """Return a record by name; raise ValueError if there is no such record."""
     if name not in records:
         raise ValueError(f'record is {name!r}; expected one of {", ".join(records)}')
     record = records[name]

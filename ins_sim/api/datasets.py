@@ -1,4 +1,4 @@
-"""Records as xarray Datasets, whose variables have named dimensions, labels and units."""
+"""Convert records to xarray Datasets with named dimensions, labels and units."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def dataset(coords: Mapping[str, tuple[Labels, str]],
     Parameters
     ----------
     coords : mapping
-        By the name of a dimension its labels and their unit, '' for none:
+        Labels and unit ('' for none) by the name of the dimension:
         ``{'run': (numbers, ''), 'time': (t_ns, 'ns'), 'axis': (ENU, '')}``.
     variables : mapping
-        By the name of a variable its dimensions, its array and its unit, '' for none:
+        Dimensions, array and unit ('' for none) by the name of the variable:
         ``{'position': (('run', 'time', 'axis'), array, 'm')}``.
     attrs : mapping, optional
-        What is said of the whole, such as the seed.
+        Attributes of the whole Dataset, such as the seed.
 
     Raises
     ------
     ImportError
-        Where xarray is not installed; it says what to install.
+        If xarray is not installed; the message says what to install.
     """
     try:
         import xarray
@@ -55,7 +55,7 @@ def dataset(coords: Mapping[str, tuple[Labels, str]],
 
 def track_dataset(t_ns: np.ndarray, fields: Mapping[str, np.ndarray],
                   attrs: Mapping[str, Any] | None = None) -> xarray.Dataset:
-    """Return the Dataset of fields of a history, (n,) or (n, components), at instants (n,)."""
+    """Return the Dataset of fields, (n,) or (n, components), at the instants t_ns (n,)."""
     coords: dict[str, tuple[Labels, str]] = {'time': (t_ns, 'ns')}
     variables = {}
     for name, values in fields.items():

@@ -1,4 +1,4 @@
-"""The study of gyro channel delays, and its result."""
+"""Study of gyro channel delays (Bogdanov and Fomichev 2018), and its result."""
 
 from __future__ import annotations
 
@@ -31,28 +31,28 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, eq=False, repr=False)
 class DelayStudy:
     """
-    The figures of the study of delays.
+    Results of the study of gyro channel delays, by figure.
 
     Attributes
     ----------
     results : tuple of FigureResult
-        For each figure its settings (``figure``), its runs (``runs``: errors, prediction, and the
-        twin without delays) and its map (``map``), in SI and radians.
+        For each figure its settings (``figure``), its runs (``runs``: errors, prediction and
+        zero-delay twin) and its map (``map``), in SI units and radians.
     """
 
     results: tuple[FigureResult, ...]
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return f'<DelayStudy: {", ".join(self.names)}>'
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the figures."""
+        """Names of the figures."""
         return tuple(result.figure.name for result in self.results)
 
     def result(self, name: str) -> FigureResult:
-        """Return the FigureResult with a name; ValueError if no figure has it."""
+        """Return the FigureResult with a name; raise ValueError if there is no such figure."""
         for result in self.results:
             if result.figure.name == name:
                 return result
@@ -98,8 +98,8 @@ class DelayStudy:
         Returns
         -------
         xarray.Dataset
-            For errors of runs the dimensions are run, time and axis, for a map its axes. SI and
-            radians; the axes of the map of rocking are in degrees.
+            The dimensions are run, time and axis for errors of runs, and the axes of the map for
+            a map. Units are SI and radians, except the axes of the rocking map, in degrees.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class DelayStudy:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the folder of ``ins_sim delay-study -o``.
+        Write the report and its data into a folder, as ``ins_sim delay-study -o``.
 
         Parameters
         ----------
@@ -153,8 +153,8 @@ def delay_study(names: Names = SHIPPED, values: Values | None = None,
     Parameters
     ----------
     names : str, path, or a list of these, optional
-        Parameter files, each describing a figure: names of shipped ones, or paths. By default the
-        nine figures of the verb ``delay-study``; ``()`` for recordings alone.
+        Parameter files, one for each figure: names of shipped ones, or paths. By default the nine
+        figures of the command ``delay-study``; ``()`` for recordings alone.
     values : mapping, optional
         Values of parameters by name, for all figures; they override the files.
     recordings : str, path, or a list of these, optional

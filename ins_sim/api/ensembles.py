@@ -1,4 +1,4 @@
-"""Ensembles of a simulation, and their result."""
+"""Monte Carlo simulation, and its result."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class MonteCarlo:
     result : EnsembleResult
         The accumulated statistics, and the solution and its errors at the end of every run.
     errors : EnsembleErrors
-        Mean, sigma, rms, percentiles and CEP at the instants ``errors.t_ns`` (m,).
+        Mean, standard deviation, rms, percentiles and CEP at the instants ``errors.t_ns`` (m,).
     aided : AidedEnsembleResult
         For the aided navigator: ``aided.consistency`` holds NEES at the instants and NIS of the
         fixes, ``aided.refused`` the reasons why runs are excluded. None without aiding.
@@ -59,7 +59,7 @@ class MonteCarlo:
     aided: AidedEnsembleResult | None = None
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return (f'<MonteCarlo: {len(self.runs)} runs, {len(self.diverged)} of them diverged, '
                 f'{len(self.errors.t_ns)} instants>')
 
@@ -101,7 +101,8 @@ class MonteCarlo:
             ``position_sigma_north_m`` and ``position_cep95_m``; with aiding also
             ``nees_position`` and its 95 % interval, ``nees_position_low`` and ``_high``.
             ``final``: a row for each run, index ``run``, columns such as ``position_north_m``.
-            The others, with aiding only: a row for each fix with the mean ``nis``.
+            ``velocity_meter`` and ``gnss``, with aiding only: a row for each fix with the mean
+            ``nis``.
 
         Raises
         ------
@@ -164,7 +165,7 @@ class MonteCarlo:
         return self.settings
 
     def _statistics(self) -> list[tuple[str, tuple[str, ...], np.ndarray, str]]:
-        """Return name, dimensions, values and unit, as it stands in names, of each statistic."""
+        """Return name, dimensions, values and unit (as in column names) of each statistic."""
         e = self.errors
         found: list[tuple[str, tuple[str, ...], np.ndarray, str]] = []
         for name in PARTS:
@@ -181,7 +182,7 @@ class MonteCarlo:
 
     def save(self, folder: Folder, overwrite: bool = False) -> None:
         """
-        Write the folder of ``ins_sim monte-carlo -o``.
+        Write the report and its data into a folder, as ``ins_sim monte-carlo -o``.
 
         Parameters
         ----------
@@ -217,7 +218,8 @@ def monte_carlo(settings: SimulationSettings | AidedSimulationSettings, runs: in
     runs : int, optional
         Number of runs.
     instants : int, optional
-        Number of instants of the statistics, evenly from the start of the strapdown to the end.
+        Number of instants of the statistics, evenly spaced from the start of the strapdown to the
+        end.
     jobs : int, optional
         Number of processes; 0: one for each core, 1: this process alone. The result does not
         depend on it.

@@ -1,4 +1,4 @@
-"""Settings for the public functions, and the check of what they are given."""
+"""Read settings for the public functions, and check the arguments of these functions."""
 
 from __future__ import annotations
 
@@ -42,26 +42,26 @@ def read_settings(names: Names, values: Values | None = None,
     Parameters
     ----------
     names : str, path, or a list of these
-        Parameter files, of which the same section of a later one wins: names of shipped files,
-        such as ``'motion_2'``, or paths. An empty list gives the defaults.
+        Parameter files: names of shipped ones, such as ``'motion_2'``, or paths. A section of a
+        later file overrides the same section of an earlier one. An empty list gives the defaults.
     values : mapping, optional
-        Values by the name of the parameter; they win over the files. ``'gyro.delay_us.y'`` goes
-        to every node that has such a parameter, ``'strapdown:output_every'`` to one node.
+        Values by the name of the parameter, which override the files. ``'gyro.delay_us.y'`` sets
+        it in every node that has this parameter, ``'strapdown:output_every'`` in one node.
     aided : bool, optional
-        Whether to read the settings of the aided navigator and its sensors too.
+        Whether to include the settings of the aided navigator and its sensors.
 
     Returns
     -------
     SimulationSettings or AidedSimulationSettings
-        Immutable. A field is reached by its name: ``settings.imu_sensor.gyro.delay_us.y``.
+        Immutable; fields are attributes, such as ``settings.imu_sensor.gyro.delay_us.y``.
 
     Raises
     ------
     ValueError
-        In one sentence, on an unknown name (with the nearest known one), and on a value of the
-        wrong type, out of range, or that does not fit the others.
+        If a name is unknown (the message gives the nearest known one), or a value has the wrong
+        type, is out of range or contradicts other values.
     FileNotFoundError
-        Where there is no such file.
+        If a file does not exist.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def read_settings(names: Names, values: Values | None = None,
 
 
 def files(names: Names) -> list[Path]:
-    """Return the paths of parameter files given by name or by path, one or several."""
+    """Return the paths of one or several parameter files given by name or path."""
     given = [names] if isinstance(names, (str, os.PathLike)) else names
     if isinstance(given, (bytes, Mapping)) or not isinstance(given, Iterable):
         raise ValueError(f'names is {given!r}; expected the name or the path of a parameter '
@@ -88,14 +88,14 @@ def files(names: Names) -> list[Path]:
 
 
 def checked_path(argument: str, path: Any) -> Name:
-    """Return a path; raise ValueError, naming the argument, where it is none."""
+    """Return a path; raise ValueError, with the name of the argument, if it is not a path."""
     if not isinstance(path, (str, os.PathLike)):
         raise ValueError(f'{argument} is {path!r}; expected a path')
     return path
 
 
 def plain(values: Values | None) -> dict[str, Any]:
-    """Return values by name, arrays and numbers of NumPy as those of Python, bit by bit."""
+    """Return values by name, with NumPy arrays and numbers converted exactly to Python ones."""
     if values is None:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
@@ -121,18 +121,18 @@ def presets(name: str | None = None) -> dict[str, Any]:
     Parameters
     ----------
     name : str, optional
-        One preset.
+        Name of a preset.
 
     Returns
     -------
     dict
-        Without a name: the class of instruments of every preset, by name. With a name: the
-        values of that preset by parameter, which ``read_settings`` takes.
+        Without a name: the description of every preset, by its name. With a name: the values of
+        that preset by parameter, for ``read_settings``.
 
     Raises
     ------
     ValueError
-        Where no preset has that name; the sentence gives the nearest one.
+        If no preset has that name; the message gives the nearest one.
 
     Examples
     --------

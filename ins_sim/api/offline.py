@@ -1,4 +1,4 @@
-"""Simulations and predictions from settings."""
+"""Offline simulation, and prediction by linear theory."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ Progress = Optional[Callable[[float], None]]
 def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress = None,
              motion: Motion | None = None) -> Run:
     """
-    Simulate motion, IMU and strapdown.
+    Simulate a motion, the IMU and the strapdown navigation, and compare it with the truth.
 
     Parameters
     ----------
     settings : SimulationSettings
-        Of ``read_settings``.
+        From ``read_settings``.
     twin : bool, optional
-        Whether to simulate the zero-delay twin as well, if any channel has a delay.
+        Whether to repeat the run with all channel delays set to zero, if there are any. The
+        difference shows what the delays alone cause.
     progress : callable, optional
         Called with the fraction done, 0 to 1.
     motion : Motion, optional
-        A motion of your own, in place of the one that the settings name.
+        A motion of your own, used instead of the one in the settings.
 
     Returns
     -------
@@ -40,8 +41,8 @@ def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress
     Raises
     ------
     ValueError
-        In one sentence, where the settings describe no run of finite length or no motion, and
-        where the motion returns arrays of wrong shapes or that are not finite.
+        If the settings describe no run of finite length or no valid motion, or if your motion
+        returns arrays of a wrong shape or values that are not finite.
 
     Examples
     --------
@@ -59,7 +60,7 @@ def simulate(settings: SimulationSettings, twin: bool = True, progress: Progress
 
 def _simulate(settings: SimulationSettings, aided: AidedSimulationSettings | None, twin: bool,
               progress: Progress, motion: Motion | None) -> Run:
-    """Steer a guided motion by the aided solution, or that of the strapdown, and simulate it."""
+    """Steer a guided motion by the aided solution, or by the strapdown, and simulate it."""
     flown = given_motion(settings, motion)
     steered = guided_flight.fly(settings, flown, aided, progress)
     result = inertial.simulate(settings, flown, twin, progress)
@@ -68,25 +69,28 @@ def _simulate(settings: SimulationSettings, aided: AidedSimulationSettings | Non
 
 def predict(settings: SimulationSettings, motion: Motion | None = None) -> Prediction:
     """
-    Predict drift and errors by the linear theory, without a simulation.
+    Predict drift and errors that gyro channel delays cause, by linear theory.
+
+    Nothing is simulated. Instrument errors are not included.
 
     Parameters
     ----------
     settings : SimulationSettings
+        From ``read_settings``.
     motion : Motion, optional
-        A motion of your own, in place of the one that the settings name.
+        A motion of your own, used instead of the one in the settings.
 
     Returns
     -------
     Prediction
-        drift (3,) rad/s, East, North, Up; t_s (n,); attitude (n, 3) rad and position (n, 3) m;
-        drift_bound, rad/s, and position_bound, m: what the theory may leave out. Errors of the
-        instruments are not covered.
+        Its attributes include ``drift`` (3,), rad/s; ``t_s`` (n,), s; ``attitude`` (n, 3), rad;
+        ``position`` (n, 3), m, in the order East, North, Up; and ``drift_bound``, rad/s, and
+        ``position_bound``, m, the bounds of the terms that the theory neglects.
 
     Raises
     ------
     ValueError
-        Where the settings describe no run of finite length, or no prediction is possible.
+        If the settings describe no run of finite length, or no prediction is possible.
 
     Examples
     --------
@@ -108,14 +112,14 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     Parameters
     ----------
     settings : AidedSimulationSettings
-        Of ``read_settings(..., aided=True)``.
+        From ``read_settings(..., aided=True)``.
     twin : bool, optional
-        Whether to simulate the zero-delay twin of the unaided part as well.
+        Whether to repeat the unaided part with all channel delays set to zero, if there are any.
     progress : callable, optional
-        Called with the fraction done, 0 to 1: first by the unaided part, then by the aided one
-        (before both by the steering of a guided motion).
+        Called with the fraction done, 0 to 1, for each part in turn: steering (guided motions
+        only), unaided part, aided part.
     motion : Motion, optional
-        A motion of your own, in place of the one that the settings name.
+        A motion of your own, used instead of the one in the settings.
 
     Returns
     -------
@@ -124,7 +128,7 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
     Raises
     ------
     ValueError
-        As ``simulate`` does, and where a sensor does not fit.
+        As ``simulate``, and if the settings of an aiding sensor contradict others.
 
     Examples
     --------
@@ -144,7 +148,7 @@ def simulate_aided(settings: AidedSimulationSettings, twin: bool = True,
 
 
 def check_settings(settings: object, expected: type) -> None:
-    """Raise ValueError where settings are not of a class."""
+    """Raise ValueError unless settings are of the expected class."""
     if not isinstance(settings, expected):
         aided = expected is AidedSimulationSettings
         raise ValueError(f'settings are {type(settings).__name__}; expected {expected.__name__} '
@@ -152,7 +156,7 @@ def check_settings(settings: object, expected: type) -> None:
 
 
 def given_motion(settings: SimulationSettings, motion: Motion | None) -> Motion:
-    """Return the motion of the settings, or the one given once it is checked."""
+    """Return the motion of the settings or, after a check, the given one."""
     generator = settings.motion_generator
     if motion is None:
         return read_motion(generator)

@@ -1,4 +1,4 @@
-"""The readers of motions and bags."""
+"""Open motions and bags."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .inputs import checked_path, Name, plain, Values
 def open_motion(source: Name | SimulationSettings | AidedSimulationSettings,
                 values: Values | None = None) -> Motion:
     """
-    Return a motion, to be evaluated at any instant.
+    Return a motion, which can be evaluated at any instant.
 
     Parameters
     ----------
@@ -30,15 +30,15 @@ def open_motion(source: Name | SimulationSettings | AidedSimulationSettings,
     Returns
     -------
     Motion
-        ``at(t_ns)`` gives the Truth at motion times (n,), int64 ns: place, velocity, attitude,
-        rate and specific force.
+        ``at(t_ns)`` returns the Truth at motion times (n,), int64 ns: position, velocity,
+        attitude, angular rate and specific force.
 
     Raises
     ------
     ValueError
-        In one sentence, on a recording or settings that cannot be used.
+        If the recording or the settings cannot be used.
     FileNotFoundError
-        Where there is no such recording.
+        If the recording does not exist.
 
     Examples
     --------
@@ -74,15 +74,15 @@ def open_bag(path: Name) -> BagReader:
     Returns
     -------
     BagReader
-        A context manager: ``topics`` are the channels by name, ``arrays(topic, fields)`` the
-        messages as one structured array.
+        A context manager. ``topics`` holds the channels by name; ``arrays(topic, fields)``
+        returns the messages as one structured array.
 
     Raises
     ------
     ValueError
-        In one sentence, where it is no bag, or one that cannot be read.
+        If it is not a bag, or a bag that cannot be read.
     OSError
-        Where it does not exist or may not be read.
+        If it does not exist or access is denied.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Navigation over a recorded IMU."""
+"""Strapdown navigation with a recorded IMU, and its result."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ SHORTEST_NS = 50_000
 @dataclass(frozen=True, eq=False, repr=False)
 class ImuRecord:
     """
-    A recorded IMU in arrays, in the axes of the sensor.
+    Samples of a recorded IMU as arrays, in the axes of the sensor.
 
     Parameters
     ----------
     t_ns : (n,) int64 array
-        Rising stamps, ns.
+        Time stamps in ascending order, ns.
     omega : (n, 3) array
         Angular rate, rad/s.
     f : (n, 3) array
-        Specific force, m/s^2. At rest it points up.
+        Specific force, m/s^2; it points up at rest.
 
     Raises
     ------
     ValueError
-        In one sentence, on other shapes or types, on numbers that are not finite, and on stamps
-        that do not rise or are closer than those of any IMU.
+        On other shapes or types, values that are not finite, and stamps that are not in ascending
+        order or have a median step below 50 us.
     """
 
     t_ns: np.ndarray
@@ -56,7 +56,7 @@ class ImuRecord:
     f: np.ndarray
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return f'<ImuRecord: {len(self.t_ns)} samples>'
 
     def __post_init__(self) -> None:
@@ -96,13 +96,13 @@ def _array(name: str, values: Any, expected: str) -> np.ndarray:
 @dataclass(frozen=True, eq=False, repr=False)
 class Navigation:
     """
-    A navigation over a recorded IMU.
+    Solution of the strapdown navigation with a recorded IMU.
 
     Attributes
     ----------
     settings : NavigateSettings
     name : str
-        What was navigated.
+        Name of the recording.
     result : NavigationResult
         The arrays; the properties below give its fields.
     """
@@ -112,28 +112,28 @@ class Navigation:
     result: replay.NavigationResult
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return (f'<Navigation: {self.name}, {len(self.segments)} segments, compared with '
                 f'{len(self.comparisons)} references>')
 
     @property
     def segments(self) -> list[NavStates]:
-        """The solution, a NavStates for each segment between gaps."""
+        """Solution: one NavStates for each segment between gaps."""
         return self.result.states
 
     @property
     def comparisons(self) -> list[Any]:
-        """Solution less reference, a Comparison for each reference."""
+        """Solution minus reference: one Comparison for each reference."""
         return self.result.comparisons
 
     @property
     def notes(self) -> list[str]:
-        """What was found and done, in sentences."""
+        """Sentences about the recording and how it was processed."""
         return self.result.notes
 
     @property
     def figures(self) -> dict[str, Any]:
-        """The same as numbers by name."""
+        """Figures of the alignment and of the comparisons, by name."""
         return self.result.figures
 
     def to_dataframe(self, record: str = 'states', reference: int = 0) -> pandas.DataFrame:
@@ -145,7 +145,7 @@ class Navigation:
         record : {'states', 'position', 'velocity', 'attitude'}
             The solution, or its error at the stamps of a reference.
         reference : int, optional
-            Which of ``comparisons``.
+            Index into ``comparisons``.
 
         Returns
         -------
@@ -156,9 +156,9 @@ class Navigation:
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         ValueError
-            Where there is no such record or reference.
+            If there is no such record or reference.
         """
         t_ns, fields = self._record(record, reference)
         table: dict[str, np.ndarray] = {}
@@ -173,21 +173,21 @@ class Navigation:
         Parameters
         ----------
         record, reference
-            As of ``to_dataframe``.
+            As in ``to_dataframe``.
 
         Returns
         -------
         xarray.Dataset
             The dimensions are ``time``, the stamps of the recording in whole nanoseconds, and
-            ``axis`` (east, north, up) or ``quaternion`` (x, y, z, w). A variable has its unit in
-            the attribute ``units``.
+            ``axis`` (east, north, up) or ``quaternion`` (x, y, z, w). The attribute ``units`` of
+            a variable holds its unit.
 
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         ValueError
-            Where there is no such record or reference.
+            If there is no such record or reference.
         """
         return track_dataset(*self._record(record, reference), {'record': record})
 
@@ -211,25 +211,25 @@ class Navigation:
     def save(self, folder: Folder, overwrite: bool = False, *, csv: bool = False,
              tum: bool = False) -> None:
         """
-        Write the navigation as ``ins_sim navigate -o`` does.
+        Write the solution into a folder, as ``ins_sim navigate -o``.
 
         Parameters
         ----------
         folder : str or path
-            It appears when it is complete, with nav.npz, parameters.yaml, summary.json and
+            It is created when it is complete, with nav.npz, parameters.yaml, summary.json and
             navigation.png.
         overwrite : bool, optional
             Replace the folder if it holds a navigation.
         csv : bool, optional
-            Write the solution and its errors as CSV tables too.
+            Also write the solution and its errors as CSV tables.
         tum : bool, optional
-            Write the solution as a TUM file too, which evo reads, in the plane tangent to the
-            Earth at its first position.
+            Also write the solution as a TUM file for evo, in the plane tangent to the Earth at
+            its first position.
 
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or holds no navigation.
+            If the folder exists and must not be replaced, or does not hold a navigation.
         """
         from ins_sim.own_folders import whole_folder
         from ins_sim.report import navigation
@@ -241,7 +241,7 @@ class Navigation:
 def navigate(source: Name | ImuRecord, values: Values | None = None, names: Names = (),
              progress: Progress = None) -> Navigation:
     """
-    Run the strapdown over a recorded IMU, and compare it with a reference if there is one.
+    Navigate with a recorded IMU, and compare the solution with references if there are any.
 
     Parameters
     ----------
@@ -262,9 +262,9 @@ def navigate(source: Name | ImuRecord, values: Values | None = None, names: Name
     Raises
     ------
     ValueError
-        In one sentence, on parameters or a recording that cannot be used.
+        If the parameters or the recording cannot be used.
     FileNotFoundError
-        Where there is no such recording.
+        If the recording does not exist.
 
     Examples
     --------

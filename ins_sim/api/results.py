@@ -1,4 +1,4 @@
-"""What the simulations return: arrays, tables, and a folder on disk."""
+"""Results of the simulations: arrays, DataFrames and Datasets, and a folder on disk."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Folder = Union[str, 'os.PathLike[str]']
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """
-    One simulated run.
+    Result of a simulation of motion, IMU and strapdown.
 
     Attributes
     ----------
@@ -39,12 +39,12 @@ class Run:
     motion : Motion
         The motion that was simulated.
     result : SimulationResult
-        The arrays; the properties below give its fields.
+        All arrays; the properties below give its fields.
     own_motion : bool
         Whether the motion was given as an object, so that the settings do not describe it.
     steered : GuidedResult
-        How a guided motion was steered: ``estimates`` and ``states`` at the control instants;
-        None of any other motion.
+        Steering of a guided motion: ``estimates`` and ``states`` at the control instants. None
+        for any other motion.
     """
 
     settings: SimulationSettings
@@ -54,37 +54,37 @@ class Run:
     steered: GuidedResult | None = None
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         return f'<Run: {_length(self.states)}>'
 
     @property
     def truth(self) -> Truth:
-        """The true motion at the output instants (n,)."""
+        """True motion at the output instants (n,)."""
         return self.result.truth
 
     @property
     def imu(self) -> ImuSamples:
-        """Every reading of the IMU, in b: rad/s and m/s^2."""
+        """All IMU samples in body axes: rad/s and m/s^2."""
         return self.result.imu
 
     @property
     def states(self) -> NavStates:
-        """The solution of the strapdown at the output instants (n,)."""
+        """Strapdown solution at the output instants (n,)."""
         return self.result.states
 
     @property
     def errors(self) -> NavErrors:
-        """Solution less truth, East, North, Up, at the output instants: rad, m/s, m, rad/s."""
+        """Solution minus truth at the output instants: East, North, Up; rad, m/s, m, rad/s."""
         return self.result.errors
 
     @property
     def twin(self) -> NavErrors | None:
-        """The errors of the same run without delays; None where it was not simulated."""
+        """Errors of the same run without delays; None if it was not simulated."""
         return self.result.twin
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """A sentence for each gap at which the strapdown started anew."""
+        """One sentence for each gap at which the strapdown started again."""
         return self.result.faults
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
@@ -104,9 +104,9 @@ class Run:
         Raises
         ------
         ImportError
-            Where pandas is not installed.
+            If pandas is not installed.
         ValueError
-            Where the run has no such record.
+            If the run has no such record.
         """
         return history_dataframe(self._record(record))
 
@@ -121,16 +121,16 @@ class Run:
         Returns
         -------
         xarray.Dataset
-            The dimensions are ``time``, motion time in whole nanoseconds, and of arrays ``axis``
-            (east, north, up), ``body_axis`` (x, y, z) or ``quaternion`` (x, y, z, w), so that
-            records can be merged. A variable has its unit in the attribute ``units``.
+            The dimensions are ``time`` (motion time in whole nanoseconds) and, for vectors,
+            ``axis`` (east, north, up), ``body_axis`` (x, y, z) or ``quaternion`` (x, y, z, w), so
+            that records can be merged. The attribute ``units`` of a variable holds its unit.
 
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
         ValueError
-            Where the run has no such record.
+            If the run has no such record.
         """
         return history_dataset(self._record(record), {'record': record})
 
@@ -141,12 +141,11 @@ class Run:
     def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
              tum: bool = False) -> None:
         """
-        Write the run as ``ins_sim simulate -o`` does.
+        Write the run into a folder, as ``ins_sim simulate -o``.
 
-        The folder appears when it is complete. It holds run.npz, parameters.yaml,
-        manifest.yaml, summary.json, the figures as PNG, report.html and, where the vehicle
-        moves, track.kml. A motion given as an object is in the arrays but not in
-        parameters.yaml.
+        The folder is created when it is complete. It holds run.npz, parameters.yaml,
+        manifest.yaml, summary.json, the figures as PNG, report.html and, if the vehicle moves,
+        track.kml. A motion of your own is in the arrays but not in parameters.yaml.
 
         Parameters
         ----------
@@ -154,17 +153,17 @@ class Run:
         overwrite : bool, optional
             Replace the folder if it holds a run.
         thin : int, optional
-            Write every thin-th output instant of truth, solution and errors; the record of the
-            IMU stays whole.
+            Write only every thin-th output instant of truth, solution and errors; all IMU samples
+            are written.
         csv : bool, optional
-            Write a CSV table of each record too, with the columns of ``to_dataframe``.
+            Also write a CSV table of each record, with the columns of ``to_dataframe``.
         tum : bool, optional
-            Write the trajectories in the map frame too, as TUM files, which evo reads.
+            Also write the trajectories in the map frame as TUM files, for evo.
 
         Raises
         ------
         ValueError
-            Where the folder exists and is not to be replaced, or holds no run.
+            If the folder exists and must not be replaced, or does not hold a run.
         """
         self._write(folder, overwrite, None, (thin, csv, tum))
 
@@ -199,7 +198,7 @@ class Run:
 @dataclass(frozen=True, eq=False, repr=False)
 class AidedRun:
     """
-    One simulated run with velocity meter, GNSS and the aided navigator.
+    Result of a simulation with velocity meter, GNSS and the aided navigator.
 
     Attributes
     ----------
@@ -215,44 +214,44 @@ class AidedRun:
     result: AidedResult
 
     def __repr__(self) -> str:
-        """Return one line; a notebook shows it."""
+        """Return one line, which a notebook shows."""
         name = self.settings.aided_navigator.filter
         return (f'<AidedRun: filter {name}, {_length(self.states)}, {len(self.velocity_fixes)} '
                 f'velocity and {len(self.gnss_fixes)} GNSS fixes>')
 
     @property
     def truth(self) -> Truth:
-        """The true motion at the output instants of the aided navigator (n,)."""
+        """True motion at the output instants of the aided navigator (n,)."""
         return self.result.truth
 
     @property
     def states(self) -> NavStates:
-        """The aided solution (n,)."""
+        """Aided solution (n,)."""
         return self.result.states
 
     @property
     def errors(self) -> AidedErrors:
-        """Aided solution less truth, East, North, Up, and the standard deviations, (n, 3)."""
+        """Aided solution minus truth and its standard deviations, (n, 3): East, North, Up."""
         return self.result.errors
 
     @property
     def judged(self) -> Sequence[Any]:
-        """A JudgedFix for every fix, in the order of arrival: taken or not, and why."""
+        """One JudgedFix for each fix, in the order of arrival: whether it was used, and why."""
         return self.result.judged
 
     @property
     def velocity_fixes(self) -> Sequence[VelocityFix]:
-        """What the velocity meter reported."""
+        """Fixes of the velocity meter."""
         return self.result.velocity_fixes
 
     @property
     def gnss_fixes(self) -> Sequence[GnssFix]:
-        """What GNSS reported."""
+        """GNSS fixes."""
         return self.result.gnss_fixes
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """A sentence for each fault at which the navigator started anew or dropped a fix."""
+        """One sentence for each fault at which the navigator started again or dropped a fix."""
         return self.result.faults
 
     def to_dataframe(self, record: str = 'errors') -> pandas.DataFrame:
@@ -262,7 +261,7 @@ class AidedRun:
         Parameters
         ----------
         record : {'errors', 'states', 'truth'}
-            Records of the unaided part: ``run.to_dataframe``.
+            For records of the unaided part use ``run.to_dataframe``.
         """
         return history_dataframe(self._record(record))
 
@@ -273,8 +272,8 @@ class AidedRun:
         Parameters
         ----------
         record : {'errors', 'states', 'truth'}
-            ``estimates`` of errors have the dimension ``estimate``. Records of the unaided part:
-            ``run.to_xarray``.
+            ``estimates`` in errors has the dimension ``estimate``. For records of the unaided
+            part use ``run.to_xarray``.
         """
         return history_dataset(self._record(record), {'record': record})
 
@@ -284,7 +283,7 @@ class AidedRun:
 
     def save(self, folder: Folder, overwrite: bool = False, *, thin: int = 1, csv: bool = False,
              tum: bool = False) -> None:
-        """Write the run as ``ins_sim simulate --aided -o`` does; see ``Run.save``."""
+        """Write the run into a folder, as ``ins_sim simulate --aided -o``; see ``Run.save``."""
         from ins_sim.report import aided
         rows = aided.aided_rows(self.settings, self.result, self.run.states, self.run.errors)
         self.run._write(folder, overwrite, aided.AidedReport(self.settings, self.result, rows),

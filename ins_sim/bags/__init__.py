@@ -1,7 +1,6 @@
 """
-rosbag2 bags, MCAP and SQLite, read and written without ROS.
+Read and write rosbag2 bags, MCAP and SQLite, without ROS.
 
-Start with ``bag_reader`` and ``bag_writer``. Only the format stands here; ``ins_sim.io`` turns
-bags
-into motions and records.
+Start with ``bag_reader`` and ``bag_writer``. This package handles only the format; ``ins_sim.io``
+converts bags to motions and records.
 """

@@ -1,4 +1,4 @@
-"""Reading bags: topics into arrays, or messages in the order of their log times."""
+"""Read bags: topics as arrays, or messages in the order of their log times."""
 
 from dataclasses import dataclass
 import heapq
@@ -22,15 +22,15 @@ def open_bag(path) -> 'BagReader':
     """
     Return the BagReader of a bag: a folder with or without metadata.yaml, or one of its files.
 
-    Raises ValueError, in one sentence, if it is no bag, or one that cannot be read; OSError if
-    it does not exist or may not be read.
+    Raises ValueError if it is not a bag or cannot be read, and OSError if it does not exist or
+    access is denied.
     """
     return BagReader(path)
 
 
 @dataclass(frozen=True)
 class Span:
-    """How many messages there are, and the first and last log time, ns (None if no message)."""
+    """Number of messages, and first and last log time, ns (None without messages)."""
 
     count: int = 0
     first_ns: int | None = None
@@ -39,12 +39,18 @@ class Span:
 
 class BagReader:
     """
-    A bag.  Use as a context manager, or close it.
+    A bag.  Use it as a context manager, or close it.
 
-    topics {name: Channel} as they are declared, in order; files: paths; storage: 'mcap' or
-    'sqlite3'; compression: names of those of the chunks; cut: '' or a sentence that says why the
-    bag is not whole; odd_stamps {topic: how many stamps have nanosec of a second or more} of the
-    topics read.  Names of topics that are given may leave out the first slash.
+    Topic names may be given without the leading slash.
+
+    Attributes
+    ----------
+    topics : {name: Channel}, in the order of declaration
+    files : paths of the files
+    storage : 'mcap' or 'sqlite3'
+    compression : names of the compressions of the chunks
+    cut : '' or a sentence that says why the bag is not complete
+    odd_stamps : {topic read: number of stamps whose nanosec is a second or more}
     """
 
     def __init__(self, path):
@@ -95,13 +101,13 @@ class BagReader:
         self.close()
 
     def close(self):
-        """Close the files; arrays that were read stay."""
+        """Close the files; arrays that were read stay valid."""
         for part in self._parts:
             part.close()
         self._parts = []
 
     def topic(self, name):
-        """Return the Channel of a topic; ValueError, naming the nearest one, if there is none."""
+        """Return the Channel of a topic; raise ValueError, with the nearest name, if missing."""
         if name not in self.topics:
             name = '/' + name.lstrip('/')
         if name not in self.topics:
@@ -126,20 +132,31 @@ class BagReader:
         """
         Return the messages of a topic as a structured array in the order of the log times.
 
-        It has 'log_ns' and 'stamp_ns' (int64) and the fields of the message by their ROS names
-        (``messages.columns``), by default all: of an Imu 'orientation' (4,),
-        'angular_velocity' (3,)...; fields selects some.  Raises ValueError if there is no such
-        topic, if its type is not type_name (where given) or none with a layout, or for messages
-        that cannot be read.
+        Parameters
+        ----------
+        name : name of the topic
+        fields : fields of the message by their ROS names (``messages.columns``), such as
+            'angular_velocity', which is (n, 3); None for all
+        type_name : expected message type, or None
+
+        Returns
+        -------
+        structured array (n,) with 'log_ns' and 'stamp_ns' (int64) and the fields
+
+        Raises
+        ------
+        ValueError
+            If the topic is missing or its type is not the expected one or not supported, or if a
+            message cannot be read.
         """
         name = self._readable(name, type_name).name
         return self.tables({name: fields})[name]
 
     def tables(self, wanted):
         """
-        Return {topic: array} of several topics, read together; wanted: {topic: fields or None}.
+        Return {topic: array} of several topics, given as {topic: fields or None}.
 
-        The arrays are those of ``arrays``, and so are the errors.
+        They are read in one pass.  Arrays and errors are those of ``arrays``.
         """
         tables, channels, odd = {}, {}, {}
         for name, fields in wanted.items():
@@ -161,7 +178,7 @@ class BagReader:
         return list(self.frame_counts(name))
 
     def frame_counts(self, name):
-        """Return {strings (frame ids): how many messages of a topic have them}."""
+        """Return {strings (frame ids): number of messages of a topic that have them}."""
         channel = self._readable(name, None)
         columns.column_dtype(channel.type_name)
         found = {}
@@ -190,7 +207,7 @@ class BagReader:
         """
         Yield (topic, Piece) of topics, by default all, in the order of the files.
 
-        Raises ValueError for an unknown topic and for a file that turns out to be corrupt.
+        Raises ValueError if a topic is unknown or a file is corrupt.
         """
         names = self._names(names)
         for part in self._parts:
@@ -204,8 +221,8 @@ class BagReader:
         """
         Yield (topic, log_ns, data) in the order of the log times, data as bytes.
 
-        names: of topics, by default all.  Raises ValueError for an unknown topic and for a file
-        that turns out to be corrupt.
+        names are the topics, by default all.  Raises ValueError if a topic is unknown or a file
+        is corrupt.
         """
         names = self._names(names)
         return heapq.merge(*(self._part_messages(part, names) for part in self._parts),
@@ -219,14 +236,14 @@ class BagReader:
 
 
 class _Table:
-    """A structured array that grows, and knows whether its log times ascend."""
+    """A growing structured array that records whether its log times ascend."""
 
     def __init__(self, expected, dtype):
         self._rows, self._filled = np.empty(expected, dtype=dtype), 0
         self._ascends, self._last_ns = True, None
 
     def more(self, log_ns):
-        """Return the next rows, for messages of these log times, to be filled."""
+        """Return new rows for messages with these log times, to be filled by the caller."""
         first, self._filled = self._filled, self._filled + len(log_ns)
         if self._filled > len(self._rows):
             rows = np.empty(max(self._filled, 2 * len(self._rows)), dtype=self._rows.dtype)
@@ -241,7 +258,7 @@ class _Table:
         return out
 
     def in_order(self):
-        """Return the rows by log time."""
+        """Return the rows in the order of the log times."""
         rows = self._rows[:self._filled]
         if not self._ascends:
             rows = rows[np.argsort(rows['log_ns'], kind='stable')]
@@ -268,5 +285,5 @@ def _storage(path):
 
 
 def _number(path):
-    """Return the key that sorts splits: bag_2 before bag_10."""
+    """Return the sort key of a file, which puts bag_2 before bag_10."""
     return [int(word) if word.isdigit() else word for word in re.split(r'(\d+)', path.name)]

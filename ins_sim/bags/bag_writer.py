@@ -1,4 +1,4 @@
-"""Writing bags: single messages of a recorder, or whole blocks of simulated ones."""
+"""Write bags, from single messages of a recorder or from blocks of simulated messages."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,26 +16,32 @@ from .records import arrange_records, fill_records, Records
 
 WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
            'sqlite3': (sqlite_writer.SqliteWriter, sqlite_writer.SUFFIX)}
-# files that SQLite keeps beside its own
+# Suffixes of the files that SQLite keeps next to a database.
 COMPANIONS = {mcap_writer.SUFFIX: (), sqlite_writer.SUFFIX: ('-wal', '-shm', '-journal')}
 CHUNK_BYTES = 1 << 21
-# of a recorder that is killed, what is older than this in log time is in the bag
+# A bag of a killed recorder has all messages that are older than this in log time.
 CHUNK_NS = 1_000_000_000
-# as far as these are: stamps of two clocks in turns would make a chunk of every message
+# Least messages in a chunk; alternating stamps of two clocks would make one of each message.
 CHUNK_LEAST = 64
 LATEST_NS = 2**63 - 1
 
 
 class BagWriter:
     """
-    A bag in writing.  Use as a context manager, or close it.
+    A bag that is being written.  Use it as a context manager, or close it.
 
-    path: the folder; storage: 'mcap' or 'sqlite3'; compression of MCAP chunks: 'none', 'lz4' or
-    'zstd'; split_bytes, split_ns: begin another file where one is as large, or its messages span
-    as much by one clock (``log_clocks``).  The bag grows in place and gets its metadata.yaml
-    last: without one it is not whole, but what was written can be read.  A bag that is there is
-    refused, or, with replace, stays until the new one is whole, which grows in ``folder`` beside
-    it.  Raises ValueError for such, and OSError where it cannot be written.
+    The bag is written in place, with metadata.yaml last; without it the bag is incomplete but
+    readable.  With replace, an existing bag stays until the new one in ``folder`` is complete.
+
+    Parameters
+    ----------
+    path : folder of the bag
+    storage : 'mcap' or 'sqlite3'
+    compression : compression of MCAP chunks: 'none', 'lz4' or 'zstd'
+    split_bytes, split_ns : size, or span of log time (``log_clocks``), at which a new file begins
+    replace : replace an existing bag instead of raising ValueError
+
+    Raises ValueError if the bag exists, and OSError if it cannot be written.
     """
 
     def __init__(self, path, storage='mcap', compression='none', replace=False, split_bytes=None,
@@ -49,20 +55,20 @@ class BagWriter:
         self._own.note(metadata.NAME)
         self.topics, self._files, self._file = {}, [], None
         self._written = 0
-        # one buffer for every chunk: fresh memory costs more than what is put into it
+        # All chunks use one buffer, because allocating memory costs more than filling it.
         self._buffer = bytearray(CHUNK_BYTES)
         self._empty()
 
     @property
     def folder(self):
-        """Return where the bag is now."""
+        """Return the present path of the bag."""
         return self._own.work
 
     def _empty(self):
         self._used, self._columns, self._single = 0, [], ([], [], [])
 
     def _take(self, size):
-        """Return where the next size bytes of the buffer begin."""
+        """Reserve size bytes in the buffer and return their start."""
         start, self._used = self._used, self._used + size
         if self._used > len(self._buffer):
             self._buffer += bytes(self._used - len(self._buffer))
@@ -80,11 +86,11 @@ class BagWriter:
     def add_topic(self, name, type_name, profile=qos.RELIABLE, definition=None, type_hash='',
                   definition_encoding='ros2msg', encoding='cdr'):
         """
-        Declare a topic; a name without its first slash gets one.
+        Declare a topic; a missing leading slash is added to its name.
 
-        profile: its offered quality of service (``bags.qos``); definition and type_hash: those of
-        its type, by default as ROS 2 Jazzy has them.  Raises ValueError if the topic is declared
-        already or its type is unknown.
+        profile is the offered quality of service (``bags.qos``); definition and type_hash are by
+        default those of ROS 2 Jazzy.  Raises ValueError if the topic is already declared or its
+        type is unknown.
         """
         name = '/' + name.lstrip('/')
         if name in self.topics:
@@ -110,8 +116,8 @@ class BagWriter:
         """
         Write one message (bytes).
 
-        It is on disk when its chunk is: after CHUNK_BYTES, after CHUNK_NS of log time and
-        CHUNK_LEAST messages, or after ``flush``.
+        It is written to disk with its chunk: after CHUNK_BYTES, after CHUNK_NS of log time and
+        CHUNK_LEAST messages, or by ``flush``.
         """
         if not 0 <= log_ns <= LATEST_NS:
             raise ValueError(f'{name}: the log time is {log_ns} ns; expected 0 or later')
@@ -133,10 +139,10 @@ class BagWriter:
 
     def write_blocks(self, blocks):
         """
-        Write blocks of messages, in the order of their log times, ties as the blocks stand.
+        Write blocks of messages in the order of log times; ties keep the order of the blocks.
 
-        blocks: {name: (log_ns (n,), messages (n,))}, messages a NumPy array of one element a
-        message: of ``messages.cdr.Writer.block``, or of bytes as objects, of any length.
+        blocks is {name: (log_ns (n,), messages (n,))}. messages is a NumPy array with one element
+        per message, from ``messages.cdr.Writer.block`` or bytes objects of any length.
         """
         ready = []
         for name, (log_ns, messages) in blocks.items():
@@ -148,7 +154,7 @@ class BagWriter:
                 raise ValueError(f'{name}: the log time is {log_ns.min()} ns; expected 0 or '
                                  'later')
             if messages.dtype != object:
-                # as opaque elements they are copied whole, and not field by field
+                # Opaque elements are copied as a whole and not field by field.
                 messages = np.ascontiguousarray(messages.view(f'V{messages.dtype.itemsize}'))
             ready.append((self._channel(name).id, log_ns, messages))
         ready = [block for block in ready if len(block[1])]
@@ -171,13 +177,13 @@ class BagWriter:
             first = stop
 
     def _seal(self):
-        """Turn the lists of single messages into columns."""
+        """Convert the lists of single messages to columns."""
         if self._single[0]:
             self._columns.append(tuple(np.array(x, dtype=np.int64) for x in self._single))
             self._single = ([], [], [])
 
     def flush(self):
-        """Hand what is waiting to the operating system, as one chunk or transaction."""
+        """Write the waiting messages as one chunk or transaction."""
         self._seal()
         if not self._columns:
             return
@@ -188,7 +194,7 @@ class BagWriter:
             self._append(part, begins_file)
 
     def _split(self, records):
-        """Yield Records, and whether another file begins with them by the time that one spans."""
+        """Yield Records, and whether a new file begins with them because of its time span."""
         if self._clocks is None:
             yield False, records
             return
@@ -254,7 +260,7 @@ class BagWriter:
 
     @contextmanager
     def _disk(self):
-        """On an error of the disk close the file as it is, and say what is kept."""
+        """On a disk error close the file as it is, and raise OSError that says what is kept."""
         try:
             yield
         except OSError as error:
@@ -264,7 +270,7 @@ class BagWriter:
                           ) from None
 
     def abort(self):
-        """Leave the bag as it is on disk, not closed."""
+        """Leave the bag on disk as it is, without completing it."""
         if self._file is not None:
             self._file.abort()
             self._file = None
@@ -278,7 +284,7 @@ class BagWriter:
 
 
 def check_target(path, storage, compression, replace):
-    """Raise ValueError unless a bag may be written so: a new one, or one to be replaced."""
+    """Raise ValueError unless a bag can be written with these arguments."""
     if storage not in WRITERS:
         raise ValueError(f'the storage is {storage!r}; expected one of {", ".join(WRITERS)}')
     if compression not in NAMES:

@@ -1,15 +1,15 @@
-"""YAML as rosbag2 writes it."""
+"""Write YAML in the style of rosbag2."""
 
 import json
 import re
 
-# what needs no quotes in YAML 1.1, and is no number, truth value or nothing
+# Strings that need no quotes in YAML 1.1 and are not numbers, booleans or null.
 _PLAIN = re.compile(r'(?!(?:true|false|yes|no|on|off|y|n|null)$)[A-Za-z_/][\w/.\-]*', re.ASCII
                     | re.IGNORECASE)
 
 
 def dump_yaml(tree):
-    """Return dicts, lists, texts, whole numbers, truth values and None in the style of rosbag2."""
+    """Return a tree of dict, list, str, int, bool and None as YAML in the style of rosbag2."""
     return '\n'.join(_lines(tree))
 
 
@@ -32,6 +32,6 @@ def _scalar(value):
     if value is None:
         return '~'
     if isinstance(value, str):
-        # a text of JSON is one of YAML
+        # A JSON string is a valid YAML string.
         return value if _PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)
     return json.dumps(value)

@@ -1,24 +1,24 @@
-"""Compression of MCAP chunks, with no more memory on reading than a chunk says it needs."""
+"""Compress MCAP chunks, and decompress them with a limit on the memory."""
 
 from functools import lru_cache
 from importlib import import_module
 
 NAMES = ('none', 'lz4', 'zstd')
-# Any one of the modules will do.  compression.zstd is in the standard library from Python 3.14;
+# One of the modules suffices.  compression.zstd is in the standard library from Python 3.14;
 # zstandard is the library that Debian and Ubuntu package.
 MODULES = {'lz4': ('lz4.frame',), 'zstd': ('compression.zstd', 'backports.zstd', 'zstandard')}
 APT_PACKAGES = {'lz4': 'python3-lz4', 'zstd': 'python3-zstandard'}
-# what the format can gain at most
+# Largest compression ratio that the format allows.
 _LZ4_RATIO = 256
-# A chunk of a bag has about 1 MB, and messages shrink to a tenth; what gains more than a hundred
-# times is made to fill the memory.
+# A chunk of a bag has about 1 MB, and messages compress to a tenth; a ratio above a hundred is an
+# attempt to fill the memory.
 LARGEST = 1 << 30
 _FREE, _RATIO = 1 << 26, 100
 
 
 @lru_cache(maxsize=None)
 def compression_library(name):
-    """Return the module for 'lz4' or 'zstd'; ValueError where none is installed."""
+    """Return the module for 'lz4' or 'zstd'; raise ValueError if none is installed."""
     for module in MODULES[name]:
         try:
             return import_module(module)
@@ -29,7 +29,7 @@ def compression_library(name):
 
 
 def compress(data, name):
-    """Return bytes compressed by 'lz4' or 'zstd' at the fastest level; '' leaves them."""
+    """Return data compressed by 'lz4' or 'zstd' at the fastest level; unchanged for ''."""
     if name == 'lz4':
         return compression_library(name).compress(data, store_size=True)
     if name == 'zstd':
@@ -42,9 +42,9 @@ def compress(data, name):
 
 def decompress(data, name, size):
     """
-    Return size bytes.
+    Return the decompressed data, which has size bytes.
 
-    Raises ValueError if the compression is unknown, the data corrupt or of another size.
+    Raises ValueError if the compression is unknown, or the data is corrupt or of another size.
     """
     most = min(LARGEST, max(_FREE, _RATIO * len(data))) if name else LARGEST
     if size > most:
@@ -71,7 +71,7 @@ def decompress(data, name, size):
 
 def _whole(decompressor, data, size, failure):
     try:
-        # one byte more than expected shows that there is more
+        # Reading one byte more than expected shows whether there is more.
         raw = decompressor.decompress(data, max_length=size + 1)
     except (failure, EOFError) as error:
         raise ValueError(f'its compressed data are corrupt ({error})') from None
@@ -81,9 +81,9 @@ def _whole(decompressor, data, size, failure):
 
 
 def _read(zstandard, data, size):
-    """Return the data, but at most one byte more than size."""
+    """Return the decompressed data, at most one byte more than size."""
     try:
-        # The other ways of zstandard to decompress have no limit to their memory.
+        # The other decompression functions of zstandard do not limit the memory.
         with zstandard.ZstdDecompressor().stream_reader(data) as reader:
             return reader.read(size + 1)
     except zstandard.ZstdError as error:

@@ -1,4 +1,4 @@
-"""What says that two bags are the same: SHA-256 of the files, and of the messages alone."""
+"""SHA-256 of bag files, and of the messages alone, to compare bags."""
 
 import hashlib
 
@@ -20,9 +20,10 @@ def file_digest(path):
 
 def payload_digest(path):
     """
-    Return the SHA-256 of the messages of a bag, whatever its storage and compression.
+    Return the SHA-256 of the messages of a bag, independent of storage and compression.
 
-    Of each topic, by name: name and type, log times, sizes and data of its messages as written.
+    For each topic in the order of names it covers name, type, and the log times, sizes and data
+    of the messages as written.
     """
     whole = hashlib.sha256()
     with open_bag(path) as bag:
@@ -40,7 +41,7 @@ def payload_digest(path):
 
 
 def _joined(piece):
-    """Return the data of the messages of a Piece, one behind another."""
+    """Return the concatenated data of the messages of a Piece."""
     size = int(piece.sizes[0])
     if size and (piece.sizes == size).all():
         return np.ndarray(len(piece.data) - size + 1, f'V{size}', piece.data,

@@ -1,27 +1,27 @@
-"""When a file of a bag spans as much as it may, its log times being of one clock or several."""
+"""Decide when a bag file has reached its time span, with log times of one or several clocks."""
 
-# log times nearer than this to those of a clock are of that clock
+# Log times closer than this to those of a clock belong to that clock.
 NEAR_NS = 10_000_000_000
 MOST = 16
-# another clock, or a long silence, begins another file only behind so many messages
+# Number of messages after which another clock, or a long silence, begins a new file.
 LEAST = 100
 
 
 class LogClocks:
     """
-    Tells where another file begins: where one of the clocks has gone on by split_ns.
+    Decides where a new file begins: when one of the clocks has advanced by split_ns.
 
-    Streams of which one is stamped from the start of a computer and another one from 1970 lie
-    decades apart; neither makes the file of the other one longer.
+    Topics stamped since the start of a computer and topics stamped since 1970 are decades apart;
+    this difference does not count as time span of a file.
     """
 
     def __init__(self, split_ns):
         self._split_ns, self._near_ns = split_ns, max(split_ns, NEAR_NS)
-        # [first in this file or None, last], the newest one last
+        # [first time in this file or None, last time] of each clock, the most recent clock last.
         self._clocks, self._count = [], 0
 
     def begins_file(self, log_ns):
-        """Take the log time of the next message; return whether another file begins with it."""
+        """Return whether a new file begins with the next message, which has this log time."""
         found = None
         for clock in reversed(self._clocks):
             if abs(log_ns - clock[1]) < self._near_ns:

@@ -1,8 +1,8 @@
 """
-The records of MCAP: opcodes, packing and reading of those that a ROS 2 bag has.
+Pack and read the MCAP records that occur in ROS 2 bags.
 
 Source: MCAP format specification, version 0 (mcap.dev/spec).  Integers are little-endian; a
-record is an opcode, the length of its content as 64 bits, and the content.
+record consists of an opcode, the 64-bit length of its content, and the content.
 """
 
 import struct
@@ -14,7 +14,7 @@ HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = ra
 STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = range(11, 16)
 
 RECORD = struct.Struct('<BQ')
-# opcode and length of a message record, channel, sequence, log time, publish time
+# Opcode and length of a message record, channel, sequence, log time, publish time.
 MESSAGE_HEAD = struct.Struct('<BQHIQQ')
 CHUNK_HEAD = struct.Struct('<QQQI')
 FOOTER_BODY = struct.Struct('<QQI')
@@ -23,7 +23,7 @@ INDEX_ENTRY = np.dtype([('log_ns', '<u8'), ('start', '<u8')])
 
 
 def record(opcode, body):
-    """Return a whole record."""
+    """Return a record with opcode and length."""
     return RECORD.pack(opcode, len(body)) + body
 
 
@@ -47,7 +47,7 @@ class Fields:
     """
     Reads the fields of a record one after another.
 
-    Raises ValueError where the record ends too early or a string is no UTF-8.
+    Raises ValueError if the record ends too early or a string is not UTF-8.
     """
 
     def __init__(self, data):
@@ -64,7 +64,7 @@ class Fields:
         return values
 
     def data(self, form='I'):
-        """Return bytes behind their length as a view."""
+        """Return length-prefixed bytes as a view."""
         size, = self.numbers(form)
         start, self._at = self._at, self._at + size
         if self._at > len(self._data):

@@ -1,8 +1,8 @@
 """
-What the records of an MCAP file say: its walk from record to record, without opening chunks.
+Index an MCAP file by reading record after record, without decompressing chunks.
 
-It costs little (a chunk holds a thousand messages), and is the same for whole files, cut ones and
-such without a summary.
+This is fast (a chunk holds a thousand messages) and works for complete files, truncated ones and
+files without a summary.
 """
 
 from dataclasses import dataclass, field
@@ -15,16 +15,16 @@ from . import mcap_format as form
 from .mcap_format import Fields
 from .piece import Channel
 
-# channel, sequence, log time and publish time are at least behind the length of a message
+# Least length of a message record: channel, sequence, log time and publish time.
 BEHIND_LENGTH = form.MESSAGE_HEAD.size - form.RECORD.size
 LATEST_NS = 2**63 - 1
-# So much is read before its pages are given back.
+# Number of bytes that are read before their memory pages are released.
 HELD_BYTES = 1 << 25
 
 
 @dataclass
 class Chunk:
-    """Where a chunk is; index {channel: (offset, entries)} of its message index, or None."""
+    """Position of a chunk, and its message index {channel: (offset, entries)} or None."""
 
     position: int
     start_ns: int
@@ -40,9 +40,9 @@ class McapIndex:
     """
     One MCAP file.
 
-    channels {id: Channel}; chunks; loose: positions of messages outside of chunks; expected: how
-    many messages the summary counts, or None; cut: a sentence saying where a file that was not
-    closed ends, else ''.  Raises ValueError if the file is empty, no MCAP, or corrupt.
+    Attributes: channels {id: Channel}; chunks; loose, the positions of messages outside of
+    chunks; expected, the number of messages by the summary, or None; cut, a sentence on where an
+    unclosed file ends, else ''.  Raises ValueError if the file is empty, not MCAP, or corrupt.
     """
 
     def __init__(self, path):
@@ -65,7 +65,7 @@ class McapIndex:
         elif not self.cut:
             self.cut = f'{self.path.name} has no summary'
         if not end and self.chunks:
-            # the index behind the last chunk may lack channels
+            # The message index of the last chunk may lack channels.
             self.chunks[-1].index = None
 
     def corrupt(self, position, why):
@@ -73,13 +73,13 @@ class McapIndex:
         return ValueError(f'{self.path} is corrupt at byte {position}: {why}')
 
     def give_back(self, start, stop):
-        """Let go of the memory of a part of the file; it is read again where it is used again."""
+        """Release the memory of a part of the file; it is read again when needed."""
         start -= start % mmap.PAGESIZE
         if hasattr(mmap, 'MADV_DONTNEED'):
             self.mapped.madvise(mmap.MADV_DONTNEED, start, stop - start)
 
     def _walk(self, closed):
-        """Find chunks, schemas, channels and loose messages; return whether there is an end."""
+        """Find chunks, schemas, channels and loose messages; return whether the file is closed."""
         position, size = len(form.MAGIC), self._size
         held = 0
         unpack, head = form.RECORD.unpack_from, form.RECORD.size
@@ -141,14 +141,14 @@ class McapIndex:
             raise ValueError(f'a record has the opcode {opcode}')
 
     def take_schema(self, view):
-        """Remember a schema record."""
+        """Store a schema record."""
         fields = Fields(view)
         number, = fields.numbers('H')
         name, encoding = fields.text(), fields.text()
         self._schemas[number] = name, encoding, str(fields.data(), 'utf-8', 'replace')
 
     def take_channel(self, view):
-        """Remember a channel record; ValueError if there is another one of its number."""
+        """Store a channel record; raise ValueError if another one has the same number."""
         fields = Fields(view)
         number, schema = fields.numbers('HH')
         name, encoding, metadata = fields.text(), fields.text(), fields.text_map()
@@ -161,7 +161,7 @@ class McapIndex:
                              f'{self.channels[number].name}')
 
     def _read_summary(self):
-        """Take schemas and channels of the summary; hold its count against what was found."""
+        """Read schemas, channels and the message count of the summary."""
         foot = self._size - form.FOOTER_SIZE
         if self._size < form.FOOTER_SIZE + len(form.MAGIC) or \
                 form.RECORD.unpack_from(self.mapped, foot) != (form.FOOTER, form.FOOTER_BODY.size):

@@ -1,4 +1,4 @@
-"""Reading MCAP files: the messages of their chunks as columns."""
+"""Read MCAP files: the messages of their chunks as columns."""
 
 from zlib import crc32
 
@@ -13,15 +13,15 @@ from .records import HEAD
 
 class McapReader(McapIndex):
     """
-    The messages of one MCAP file; compression: the names of those of its chunks.
+    The messages of one MCAP file; compression lists the compressions of its chunks.
 
-    Raises ValueError as McapIndex does, and for messages of channels that are not declared.
+    Raises ValueError as McapIndex, and for messages of undeclared channels.
     """
 
     def __init__(self, path):
         super().__init__(path)
         self._scanned = {}
-        # Ask for the library here: later its absence would pass for a chunk that is corrupt.
+        # Import the library here; a missing one would later be reported as a corrupt chunk.
         for name in {chunk.compression for chunk in self.chunks} & MODULES.keys():
             try:
                 compression_library(name)
@@ -31,9 +31,9 @@ class McapReader(McapIndex):
         self.compression = sorted({c.compression or 'none' for c in self.chunks} or {'none'})
 
     def _look_into_chunks(self):
-        """Open the chunks that have no index or unknown channels; count all messages."""
+        """Open the chunks without index or with unknown channels; count all messages."""
         if self.cut and self.chunks:
-            # a crash of the machine can leave a last chunk that is whole in its length alone
+            # After a crash of the machine the last chunk can have its full length but no data.
             try:
                 self._scan(self.chunks[-1], self._open(self.chunks[-1]))
             except ValueError as error:
@@ -59,7 +59,7 @@ class McapReader(McapIndex):
                                  f'messages, its chunks hold {found}')
 
     def _counted(self, times=True):
-        """Yield (count, channel, (first, last) log time or None) of every chunk and channel."""
+        """Yield (count, channel, (first, last) log time or None) for every chunk and channel."""
         for spans in self._scanned.values():
             for number, (count, first, last) in spans.items():
                 yield count, number, (first, last)
@@ -72,7 +72,7 @@ class McapReader(McapIndex):
                 yield count, number, span
 
     def count(self, wanted):
-        """Return how many messages of channels there are, if that is known at once."""
+        """Return the number of messages of channels, if it is known without reading."""
         return sum(n for n, number, _ in self._counted(times=False) if number in wanted)
 
     def spans(self):
@@ -85,9 +85,9 @@ class McapReader(McapIndex):
 
     def pieces(self, wanted):
         """
-        Yield (time before which no later piece has messages, place in the file, Piece).
+        Yield (time, place in the file, Piece); no later piece has messages before the time.
 
-        wanted: ids of channels.  Raises ValueError for a corrupt chunk.
+        wanted holds the ids of channels.  Raises ValueError on a corrupt chunk.
         """
         for chunk, own in self._by_chunk(wanted, lambda c: (c.start_ns, c.position)):
             pieces = [piece for _, piece in own]
@@ -120,7 +120,7 @@ class McapReader(McapIndex):
                 raw = self._open(chunk)
                 yield chunk, ((n, self._indexed(chunk, raw, n)) for n in own)
                 if self.mapped is not None:
-                    # The indices of its channels stand behind the chunk.
+                    # The message indices follow the chunk.
                     self.give_back(chunk.first, max(
                         offset + count * form.INDEX_ENTRY.itemsize
                         for offset, count in chunk.index.values()))
@@ -133,13 +133,13 @@ class McapReader(McapIndex):
             if chunk.crc and crc32(raw) != chunk.crc:
                 raise ValueError('it has another checksum')
             if not chunk.compression:
-                chunk.crc = 0  # what is mapped need not be checked twice
+                chunk.crc = 0  # Mapped data need not be checked twice.
         except ValueError as error:
             raise self.corrupt(chunk.position, f'a chunk cannot be read: {error}') from None
         return np.frombuffer(raw, dtype=np.uint8)
 
     def _indexed(self, chunk, raw, number):
-        """Return the Piece of a channel by the message index."""
+        """Return the Piece of a channel, found by the message index."""
         offset, count = chunk.index[number]
         entries = np.frombuffer(self.mapped, form.INDEX_ENTRY, count, offset)
         if entries['start'].max() + HEAD.itemsize > len(raw):
@@ -164,7 +164,7 @@ class McapReader(McapIndex):
                         starts + HEAD.itemsize, length.astype(np.int64) - BEHIND_LENGTH), heads
 
     def _scan(self, chunk, raw):
-        """Return the Piece of all messages of a chunk, found by walking through it."""
+        """Return the Piece of all messages of a chunk, found by reading its records."""
         position, starts, data, size = 0, [], memoryview(raw), len(raw)
         unpack, head = form.RECORD.unpack_from, form.RECORD.size
         while position < size:
@@ -195,7 +195,7 @@ class McapReader(McapIndex):
                            np.array(self.loose, dtype=np.int64))[0]
 
     def close(self):
-        """Let go of the file; arrays and messages that were read stay."""
+        """Close the file; arrays and messages that were read stay valid."""
         self.mapped = None
 
 

@@ -1,4 +1,4 @@
-"""Writing MCAP files: whole chunks and their indices from arrays."""
+"""Write MCAP files: whole chunks and their indices from arrays."""
 
 from contextlib import suppress
 import os
@@ -16,10 +16,10 @@ LIBRARY = 'ins_sim'
 
 class McapWriter:
     """
-    One MCAP file, of which everything that was appended is readable at once.
+    One MCAP file, in which appended messages can be read immediately.
 
-    path must not exist; compression: 'lz4', 'zstd' or ''.  Schemas and channels stand before the
-    chunks, which hold nothing but messages.  No time and nothing random is in the file.
+    path must not exist; compression is 'lz4', 'zstd' or ''.  Schemas and channels precede the
+    chunks, which hold only messages.  The content depends on no clock and no random number.
     """
 
     def __init__(self, path, compression):
@@ -32,7 +32,7 @@ class McapWriter:
         self._put(form.MAGIC, form.record(form.HEADER, form.text('ros2') + form.text(LIBRARY)))
 
     def _put(self, *parts):
-        """Write all parts, or raise OSError with the file as it was."""
+        """Write all parts, or restore the file and raise OSError."""
         parts = [memoryview(part) for part in parts]
         start, left = self.size, sum(part.nbytes for part in parts)
         try:

@@ -1,4 +1,4 @@
-"""metadata.yaml of rosbag2, and the quality of service it has of each topic."""
+"""Read and write metadata.yaml of rosbag2, with the quality of service of each topic."""
 
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -15,7 +15,7 @@ NEWEST = 9
 
 @dataclass(frozen=True)
 class Metadata:
-    """What a reader needs of metadata.yaml: storage and the names of the files in order."""
+    """The part of metadata.yaml that a reader needs: storage and names of the files in order."""
 
     storage: str
     files: tuple
@@ -23,9 +23,9 @@ class Metadata:
 
 def read_metadata(folder):
     """
-    Return the Metadata of a bag, or None where it has none.
+    Return the Metadata of a bag, or None if it has none.
 
-    Raises ValueError if it cannot be read, is too new, or says that the files are compressed.
+    Raises ValueError if it cannot be read, has too new a version, or the files are compressed.
     """
     path = Path(folder) / NAME
     try:
@@ -54,13 +54,13 @@ def read_metadata(folder):
     if not isinstance(files, list) or not files or not all(isinstance(f, str) for f in files):
         raise ValueError(f'{path} has the relative_file_paths {shown(files)}; expected names of '
                          'files')
-    # rosbag2 once wrote paths from where it was started; the files are beside their metadata
+    # Old versions of rosbag2 wrote paths relative to where they were started.
     return Metadata(storage, tuple(PurePosixPath(f).name for f in files))
 
 
 @dataclass(frozen=True)
 class FileCounts:
-    """A file of a bag: its name, how many messages it has by topic, first and last log time."""
+    """A file of a bag: name, number of messages by topic, first and last log time."""
 
     name: str
     counts: dict
@@ -72,13 +72,13 @@ def metadata_text(storage, topics, files):
     """
     Return metadata.yaml as rosbag2 of ROS 2 Jazzy writes it (version 9).
 
-    topics: Channels; files: FileCounts in order.
+    topics are Channels, files the FileCounts in order.
     """
     return dump_yaml({TOP: metadata_tree(storage, topics, files)}) + '\n'
 
 
 def inner_text(storage, topics, files):
-    """Return what rosbag2 keeps of it within a file of the bag."""
+    """Return the part of the metadata that rosbag2 stores inside a file of the bag."""
     return dump_yaml(metadata_tree(storage, topics, files))
 
 

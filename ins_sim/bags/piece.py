@@ -1,4 +1,4 @@
-"""Messages of a bag as they lie in memory: bytes in one buffer, columns for the rest."""
+"""Messages of a bag in memory: data in one buffer, everything else in columns."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,16 @@ from ins_sim.visible_text import visible
 @dataclass(frozen=True)
 class Channel:
     """
-    A topic as a file declares it.
+    A topic as declared in a file.
 
-    id: its number in the file; name and type_name as in ROS; encoding of the messages ('cdr');
-    definition of the type in the language definition_encoding ('ros2msg'), type_hash (RIHS01)
-    and qos (the offered profiles as YAML) as far as the file has them.
+    Attributes
+    ----------
+    id : number in the file
+    name, type_name : names as in ROS
+    encoding : encoding of the messages ('cdr')
+    definition : definition of the type in the language definition_encoding ('ros2msg')
+    type_hash : RIHS01 hash, if the file has it
+    qos : offered profiles as YAML, if the file has them
     """
 
     id: int
@@ -28,7 +33,7 @@ class Channel:
 
     @classmethod
     def as_read(cls, number, name, type_name, encoding, *more):
-        """Return the Channel of a file, escapes in its names in place of what cannot be seen."""
+        """Return the Channel of a file, with invisible characters in its names escaped."""
         return cls(number, visible(name), visible(type_name), visible(encoding), *more)
 
 
@@ -37,8 +42,8 @@ class BagPiece:
     """
     Some messages in the order of the file.
 
-    data: uint8; channel, log_ns, starts and sizes (n,) int64: of which channel each is, when it
-    was logged, and where in data it is.
+    data is an uint8 array; channel, log_ns, starts and sizes, (n,) int64, give the channel, the
+    log time and the place in data of each message.
     """
 
     data: np.ndarray
@@ -59,8 +64,8 @@ def in_log_order(pieces):
     """
     Yield (channel, log_ns, bytes) of pieces in the order of the log times.
 
-    pieces: (time, place, Piece), no message of it or of a later one being before the time.
-    Messages of equal log time keep the order of the places.
+    pieces yields (time, place, Piece), where neither this Piece nor a later one has a message
+    before the time. Messages with equal log times keep the order of the places.
     """
     waiting = []
     for not_before_ns, place, piece in pieces:
@@ -90,13 +95,13 @@ def _merged(pieces):
 
 
 def split_by_channel(piece):
-    """Yield (channel id, Piece of its messages) of a Piece."""
+    """Yield (channel id, Piece with its messages) for each channel of a Piece."""
     for number in np.unique(piece.channel).tolist():
         yield number, piece[piece.channel == number]
 
 
 def join_pieces(pieces):
-    """Return the messages of pieces of the same data as one Piece."""
+    """Join pieces with the same data to one Piece."""
     if len(pieces) == 1:
         return pieces[0]
     return BagPiece(pieces[0].data, *(np.concatenate([getattr(p, name) for p in pieces])

@@ -1,4 +1,4 @@
-"""Quality of service as rosbag2 keeps it: a YAML list of the profiles that were offered."""
+"""Quality of service in the form of rosbag2: a YAML list of the offered profiles."""
 
 from functools import lru_cache
 
@@ -10,7 +10,7 @@ _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
 def profile_yaml(durability='volatile', reliability='reliable'):
-    """Return one offered profile as YAML, as a recorder finds it by discovery."""
+    """Return an offered profile as YAML, in the form that a recorder finds by discovery."""
     return dump_yaml([{
         'history': 'unknown', 'depth': 0, 'reliability': reliability, 'durability': durability,
         'deadline': _FOREVER, 'lifespan': _FOREVER, 'liveliness': 'automatic',
@@ -23,7 +23,7 @@ LATCHED = profile_yaml('transient_local')
 
 @lru_cache(maxsize=100)
 def read_profiles(text):
-    """Return the profiles of a YAML list; ValueError if it is none."""
+    """Return the profiles of a YAML list; raise ValueError if it is not such a list."""
     try:
         tree = load(text) or []
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Messages on their way into a bag: many topics in one run of bytes, by log time."""
+"""Arrange messages of many topics as one sequence of MCAP records, by log time."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,10 @@ HEAD = np.dtype([('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'), ('sequ
 @dataclass(frozen=True)
 class Records:
     """
-    Message records of MCAP, one behind another.
+    A sequence of MCAP message records.
 
-    data: their bytes; channel, log_ns, starts (n,) int64: channel, log time and first byte.
+    data holds their bytes; channel, log_ns and starts, (n,) int64, give channel, log time and
+    first byte of each.
     """
 
     data: memoryview
@@ -27,10 +28,10 @@ class Records:
 @dataclass(frozen=True)
 class Order:
     """
-    The order of the messages of several blocks by log time, ties as the blocks stand.
+    Order of the messages of several blocks by log time; ties keep the order of the blocks.
 
-    channel, log_ns, sizes (n,): of each record in order; ranks: for each block the places of its
-    messages, which ascend; blocks: their messages in this order.
+    channel, log_ns and sizes, (n,), describe the records in this order; ranks holds the ascending
+    places of the messages of each block, blocks the messages of each block in this order.
     """
 
     channel: np.ndarray
@@ -44,7 +45,7 @@ def arrange_records(blocks):
     """
     Return the Order of blocks (channel id, log_ns (n,), messages (n,)).
 
-    messages: of type V, or of bytes as objects where not all are equally long.
+    messages is an array of type V, or of bytes objects if their lengths differ.
     """
     counts = [len(log_ns) for _, log_ns, _ in blocks]
     log_ns = np.concatenate([log_ns for _, log_ns, _ in blocks])
@@ -65,14 +66,14 @@ def arrange_records(blocks):
 
 
 def _lengths(messages):
-    """Return how many bytes each message takes (n,)."""
+    """Return the number of bytes of each message, (n,)."""
     if messages.dtype != object:
         return np.full(len(messages), messages.dtype.itemsize)
     return np.array([len(message) for message in messages], dtype=np.int64)
 
 
 def fill_records(order, first, stop, data, starts):
-    """Put the records first to stop of an Order into data (uint8), where they start in it."""
+    """Write the records [first, stop) of an Order into data (uint8) at the given starts."""
     for rank, messages in zip(order.ranks, order.blocks):
         a, b = np.searchsorted(rank, (first, stop))
         if a == b:
@@ -94,10 +95,10 @@ def fill_records(order, first, stop, data, starts):
 
 def _scatter(data, starts, items):
     size = items.dtype.itemsize
-    items = items.view(f'V{size}')  # copied as it is, not field by field
+    items = items.view(f'V{size}')  # Copied as a whole, not field by field.
     step = int(starts[1] - starts[0]) if len(starts) > 1 else size
     if (np.diff(starts) == step).all():
-        # regular, as topics of one rate are: a stride instead of an index for each
+        # Topics of one rate lie at regular steps: a stride replaces an index for each message.
         np.ndarray(len(starts), f'V{size}', data, int(starts[0]), (step,))[...] = items
         return
     np.ndarray((len(data) - size + 1,), f'V{size}', data, strides=(1,))[starts] = items

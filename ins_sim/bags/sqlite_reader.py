@@ -1,4 +1,4 @@
-"""Reading the SQLite files of rosbag2 (.db3), schema versions 1 to 4."""
+"""Read SQLite files of rosbag2 (.db3), schema versions 1 to 4."""
 
 from pathlib import Path
 import sqlite3
@@ -9,7 +9,7 @@ from ins_sim.regular_file import check_regular
 from .piece import BagPiece, Channel, split_by_channel
 
 ROWS = 1000
-# what a sound file needs at most: some thirty operations for a message of twenty bytes
+# Limit of operations: a valid file needs about thirty for a message of twenty bytes.
 _OPERATIONS_PER_BYTE = 4
 _TICK = 100_000
 
@@ -18,8 +18,8 @@ class SqliteReader:
     """
     The messages of one .db3 file, with the attributes of ``McapReader``.
 
-    A file that was not closed is read with its write-ahead log.  Raises ValueError if the file
-    is empty, no SQLite bag, or corrupt.
+    A file that was not closed is read with its write-ahead log.  Raises ValueError if the file is
+    empty, corrupt or not an SQLite bag.
     """
 
     compression = ['none']
@@ -35,14 +35,14 @@ class SqliteReader:
         with open(self.path, 'rb') as stream:
             if (magic := stream.read(16)) != b'SQLite format 3\x00':
                 raise ValueError(f'{self.path} is no SQLite file; it begins with {magic!r}')
-        # immutable: no lock and no other file is needed, so that a folder may be read-only
+        # "immutable" needs neither lock nor further files, so that the folder may be read-only.
         mode = 'mode=ro' if logged else 'immutable=1'
         self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 20 * _TICK
         self._ticks = 0
         try:
             self._database = sqlite3.connect(f'{self.path.absolute().as_uri()}?{mode}', uri=True)
             if hasattr(self._database, 'setlimit'):
-                # no value can be longer than the file (Python 3.11)
+                # No value can be longer than the file (needs Python 3.11).
                 self._database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, size + logged)
             self._database.set_progress_handler(self._on_tick, _TICK)
         except sqlite3.Error as error:
@@ -63,7 +63,7 @@ class SqliteReader:
         if why == 'interrupted':
             why = 'its tables go round in circles'
         elif why.startswith('Could not decode'):
-            # the rest of it is the text
+            # The rest of the row is the text.
             why = 'it holds a text that is no UTF-8'
         return ValueError(f'{self.path} is corrupt: {why}')
 
@@ -120,20 +120,20 @@ class SqliteReader:
         return result
 
     def count(self, wanted):
-        """Return 0: to count takes SQLite about as long as to read."""
+        """Return 0 for unknown, because SQLite counts about as slowly as it reads."""
         return 0
 
     def pieces(self, wanted):
         """
-        Yield (time before which no later piece has messages, place, Piece) by log time.
+        Yield (time, place, Piece) by log time; no later piece has messages before the time.
 
-        wanted: ids of channels.  Raises ValueError for a corrupt file.
+        wanted holds the ids of channels.  Raises ValueError on a corrupt file.
         """
         ids, times = self._times(wanted)
         if (np.diff(times) >= 0).all():
             ordered = self._select(wanted)
         else:
-            # not by the index of the file, which need not agree with its table
+            # The index of the file is not used, because it may contradict its table.
             order = np.argsort(times, kind='stable')
             ordered = self._one_by_one(ids[order].tolist())
         for place, piece in enumerate(ordered):
@@ -145,7 +145,7 @@ class SqliteReader:
             yield from split_by_channel(piece)
 
     def _times(self, wanted):
-        """Return number and time of the messages of channels, as written."""
+        """Return number and log time of the messages of channels, in the order written."""
         blocks = [np.zeros((0, 2), dtype=np.int64)]
         for rows in self._blocks('SELECT id, timestamp FROM messages NOT INDEXED WHERE topic_id '
                                  f'IN ({_marks(wanted)}) ORDER BY id', *wanted):

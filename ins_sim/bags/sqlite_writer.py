@@ -1,4 +1,4 @@
-"""Writing the SQLite files of rosbag2 (.db3), schema version 4."""
+"""Write SQLite files of rosbag2 (.db3), schema version 4."""
 
 import sqlite3
 
@@ -25,10 +25,10 @@ METADATA_VERSION = 9
 
 class SqliteWriter:
     """
-    One .db3 file, of which everything that was appended is readable at once.
+    One .db3 file, in which appended messages can be read immediately.
 
-    While it is open a write-ahead log beside it holds the newest messages: a writer that is
-    killed leaves no half-written page.  Errors of the disk are OSError.
+    While it is open, a write-ahead log next to it holds the newest messages, so that a killed
+    writer leaves no half-written page.  Disk errors are raised as OSError.
     """
 
     def __init__(self, path, compression):
@@ -38,7 +38,7 @@ class SqliteWriter:
         self._path, self._types = path, set()
         self._database = sqlite3.connect(path, isolation_level=None)
         self._run('PRAGMA journal_mode=WAL')
-        # against a crash of the process; against one of the machine nothing is promised
+        # This protects against a crash of the process, but not of the machine.
         self._run('PRAGMA synchronous=OFF')
         for statement in _SCHEMA.strip().split(';\n'):
             self._run(statement)
@@ -81,7 +81,7 @@ class SqliteWriter:
         self.size += len(records.data)
 
     def close(self, metadata):
-        """Write the metadata of rosbag2 (YAML), take in the log, and close the file."""
+        """Write the metadata of rosbag2 (YAML), merge the write-ahead log, and close the file."""
         self._run('INSERT INTO metadata (metadata_version, metadata) VALUES (?, ?)',
                   (METADATA_VERSION, metadata))
         self._run('PRAGMA journal_mode=DELETE')

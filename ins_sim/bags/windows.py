@@ -1,4 +1,4 @@
-"""Records of any length into a bag, a window of all topics at a time."""
+"""Write records of any length into a bag, one time window of all topics after another."""
 
 import numpy as np
 
@@ -9,12 +9,21 @@ from .bag_writer import BagWriter
 
 def write_windows(path, chosen, windows, storage='mcap', compression='none', replace=False):
     """
-    Write windows into a bag that appears only if it is whole; return {topic: message count}.
+    Write windows into a bag and return {topic: number of messages}.
 
-    chosen: {Topic: the Topic as which it is written}; windows: an iterable of {Topic: (stamps_ns
-    (n,), values (n, k))}, in which every chosen one is; the rest as of BagWriter.  Where values
-    are an array of objects they are the messages, bytes, of any length.  A message is logged at
-    its own stamp.  Raises as BagWriter and ``messages.cdr.Writer.block`` do.
+    The bag is created only if it is complete. A message is logged at its stamp.
+
+    Parameters
+    ----------
+    path, storage, compression, replace : see BagWriter
+    chosen : {Topic: Topic that is written for it}
+    windows : iterable of {Topic: (stamps_ns (n,), values (n, k))} with all chosen topics; values
+        may also be an array of bytes objects, the messages
+
+    Raises
+    ------
+    ValueError, OSError
+        See BagWriter and ``messages.cdr.Writer.block``.
     """
     bag = BagWriter(path, storage, compression, replace)
     try:
@@ -29,7 +38,7 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
             for topic, written in chosen.items():
                 stamps_ns, values = blocks[topic]
                 packed = values is not None and values.dtype == object
-                # the first stamp may jitter to before the epoch, a time of logging can not
+                # Jitter may put the first stamp before the epoch, but not the log time.
                 messages[written.name] = (
                     np.maximum(stamps_ns, 0),
                     values if packed else writers[topic].block(stamps_ns, values))
@@ -37,7 +46,7 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
             bag.write_blocks(messages)
         bag.close()
     except OSError:
-        raise  # a full disk: what is written is kept, and the error says so
+        raise  # The disk is full; the written part is kept, as the message says.
     except BaseException:
         bag.discard()
         raise

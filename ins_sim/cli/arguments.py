@@ -1,26 +1,27 @@
-"""The arguments that several verbs share, and the settings that they lead to."""
+"""Command-line arguments shared by several verbs, and the settings read from them."""
 
 
 def add_settings(parser, default=''):
-    """Add --params-file and -p; default: the files that are read if none is given."""
+    """Add --params-file and -p; default names the files that are read if none is given."""
     parser.add_argument('--params-file', action='append', default=[], metavar='FILE',
                         help='ROS parameter file, or the name of a shipped one such as motion_2; '
-                        'may be repeated; the same section of a later one wins'
+                        'may be repeated; a section of a later file overrides the same '
+                        'section of an earlier one'
                         + (f' (default: {default})' if default else ''))
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
-                        help='one parameter, for every node that knows it; as in ROS 2 the '
-                        'section of a node in a file may win over it, but not over '
-                        'NODE:NAME:=VALUE')
+                        help='value of a parameter, for every node that has it. As in ROS 2, the '
+                        'section of a node in a parameter file overrides it; '
+                        'NODE:NAME:=VALUE overrides that too')
 
 
 def add_output(parser, default, content):
-    """Add -o; default: a folder; content: what it is, such as 'folder of the run'."""
+    """Add -o; default is a folder, content its description, such as 'folder of the run'."""
     parser.add_argument('-o', '--output', default=default, metavar='DIR',
                         help=f'{content} (default: %(default)s)')
 
 
 def add_force(parser, replaced):
-    """Add --force; replaced: what it replaces, such as 'the run in DIR'."""
+    """Add --force; replaced says what it replaces, such as 'the run in DIR'."""
     parser.add_argument('--force', action='store_true', help=f'replace {replaced}')
 
 
@@ -29,7 +30,8 @@ def add_jobs(parser):
     parser.add_argument('--jobs', type=int, default=0, metavar='N', help='number of '
                         'processes (default: one for each core)')
     parser.add_argument('--scheduler', metavar='ADDRESS', default=None, help='compute on the Dask '
-                        'cluster of this scheduler, such as tcp://host:8786 (extra cluster)')
+                        'cluster of this scheduler, such as tcp://host:8786 (needs the pip extra '
+                        'cluster)')
 
 
 def add_tables(parser):
@@ -53,7 +55,7 @@ def add_storage(parser):
     parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap',
                         help='storage of the bag (default: %(default)s)')
     parser.add_argument('--compression', choices=('none', 'lz4', 'zstd'), default='none',
-                        help='compression of its chunks, of mcap (default: %(default)s)')
+                        help='compression of the chunks of an mcap bag (default: %(default)s)')
 
 
 def parameter_paths(chosen, default=()):

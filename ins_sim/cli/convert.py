@@ -1,11 +1,11 @@
-"""Verb convert: a recorded flight or IMU between CSV and bag."""
+"""Verb convert: convert a recorded flight or IMU from CSV to a bag, or back."""
 
 from . import arguments
 
-HELP = 'a flight or an IMU from CSV to a bag, or back'
-DESCRIPTION = ('Write a bag of truth from a recorded flight (CSV) at rate_hz, or of '
-               'sensor_msgs/Imu from the CSV file of an IMU; or such a CSV file, plain or gzip, '
-               'from a bag.')
+HELP = 'convert a recorded flight or IMU from CSV to a bag, or back'
+DESCRIPTION = ('Convert a recorded flight (CSV) to a bag with truth messages at rate_hz, or the '
+               'CSV file of an IMU to a bag with sensor_msgs/Imu messages; or convert such a bag '
+               'to a CSV file, plain or gzip.')
 
 
 def add_arguments(parser):
@@ -13,15 +13,15 @@ def add_arguments(parser):
     parser.add_argument('source', metavar='SOURCE', help='CSV file (.csv, .csv.gz), or bag')
     parser.add_argument('target', metavar='TARGET', help='folder of the bag, or CSV file')
     arguments.add_settings(parser)
-    parser.add_argument('--topic', default=None, metavar='NAME', help='topic of the bag: an Imu, '
-                        'or the Odometry of a truth (default: truth/odometry if there is one, '
-                        'else the only Imu; to a bag: imu/data_raw)')
+    parser.add_argument('--topic', default=None, metavar='NAME', help='topic of the bag, with '
+                        'Imu or truth Odometry messages (default: truth/odometry if it exists, '
+                        'else the only Imu topic; when writing a bag: imu/data_raw)')
     arguments.add_storage(parser)
     arguments.add_force(parser, 'TARGET')
 
 
 def run(chosen):
-    """Convert and say what was written; return the exit code."""
+    """Convert and print what was written; return the exit code."""
     from ins_sim.report.console import PlainConsole
     from ins_sim.io.convert import convert_recording
     from ins_sim import parameter_files

@@ -1,4 +1,4 @@
-"""Verb demo: the three nodes over DDS on motion 2 and then on a flight, against the prediction."""
+"""Verb demo: run the three nodes over DDS, on motion 2 and on a flight, and show the result."""
 
 from dataclasses import replace
 import os
@@ -9,21 +9,22 @@ from . import arguments
 from ins_sim.entry import FAILED
 
 HELP = 'run the three nodes over DDS and show the result'
-DESCRIPTION = ('Start the three nodes, run them in lock-step, record their topics into a bag and '
-               'compare with the prediction.')
+DESCRIPTION = ('Start motion_generator, imu_sensor and strapdown, run them in lock-step, record '
+               'their topics into a bag and compare the errors with the prediction.')
 EVERY = 10
-# the parts, with the delays of their studies
+# Shipped parameter files of the parts.
 MOTION_2 = ('motion_2', 'delay_y_1us')
 CRUISE, RECORDED = ('cruise', 'delays_2_1_3us'), ('recorded_flight', 'delays_2_1_3us')
 
 
 def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
-    arguments.add_output(parser, 'ins_sim_demo', 'folder of bags and figures, replaced')
-    parser.add_argument('--recording', metavar='CSV', default=None, help='recorded flight of the '
-                        'second part (default: the closed-form cruise)')
-    parser.add_argument('--start', type=float, default=1000.0, metavar='S', help='where in the '
-                        'recording to start, s after its first row (default: %(default)s)')
+    arguments.add_output(parser, 'ins_sim_demo', 'folder of bags and figures; an existing one is '
+                         'replaced')
+    parser.add_argument('--recording', metavar='CSV', default=None, help='recorded flight for '
+                        'the second part (default: the closed-form cruise)')
+    parser.add_argument('--start', type=float, default=1000.0, metavar='S', help='start in the '
+                        'recording, s after its first row (default: %(default)s)')
     parser.add_argument('--duration', type=float, default=3600.0, metavar='S',
                         help='simulated length of each part, s (default: %(default)s)')
 
@@ -34,7 +35,7 @@ def run(chosen):
         import rclpy  # noqa: F401
     except ImportError as error:
         raise ValueError(f'rclpy cannot be imported ({error}); source ROS 2 Jazzy or install '
-                         'ins_sim[ros]; "ins_sim simulate" needs no ROS') from None
+                         'ins_sim[ros]; "ins_sim simulate" works without ROS') from None
     from ins_sim.report.console import PlainConsole
     console = PlainConsole()
     folder = Path(chosen.output)
@@ -58,7 +59,7 @@ def run(chosen):
 
 
 def _settings(names, duration_s, assignments=()):
-    """Return the settings of shipped files as the demo runs them: lock-step, recorded."""
+    """Return the settings of shipped files, changed to lock-step with a recorder."""
     from ins_sim import parameter_files, resources
     from ins_sim.io.motion import read_motion
     from ins_sim.settings.node import Pacing

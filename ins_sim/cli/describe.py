@@ -1,4 +1,4 @@
-"""Verb describe: meaning of a parameter, or content of a shipped file."""
+"""Verb describe: describe a parameter, a group, a node, a verb or a shipped file."""
 
 import textwrap
 

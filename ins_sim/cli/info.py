@@ -1,11 +1,11 @@
-"""Verb info: what is in a bag."""
+"""Verb info: show the content of a bag."""
 
 from pathlib import Path
 
 from ins_sim.visible_text import visible
 
-HELP = 'what is in a bag'
-DESCRIPTION = 'Show storage, topics, counts, rates and times of a bag, and whether it is whole.'
+HELP = 'show the content of a bag'
+DESCRIPTION = 'Show storage, topics, counts, rates and times of a bag, and whether it is complete.'
 SECOND_NS = 1_000_000_000
 
 
@@ -22,7 +22,7 @@ def run(chosen):
     with open_bag(chosen.bag) as bag:
         spans = bag.spans()
         counted = [span for span in spans.values() if span.count]
-        # a database that was not closed has most of its messages in the log beside it
+        # Most messages of a database that was not closed are in the write-ahead log next to it.
         logs = (file.with_name(file.name + '-wal') for file in bag.files)
         size = sum(file.stat().st_size for file in (*bag.files, *filter(Path.exists, logs)))
         rows = [

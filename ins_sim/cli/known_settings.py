@@ -21,8 +21,12 @@ class KnownParameter:
     """
     A parameter, as it is defined for some nodes or verbs.
 
-    name: dotted; default: as YAML; words: meaning, unit, bounds, choices; readers: the nodes and
-    verbs, in the order of READERS.
+    Attributes
+    ----------
+    name : dotted name
+    default : default value as YAML
+    words : description, unit, range and choices
+    readers : the nodes and verbs that have it, in the order of READERS
     """
 
     name: str
@@ -33,7 +37,7 @@ class KnownParameter:
 
 @dataclass(frozen=True)
 class KnownGroup:
-    """A group of parameters: its dotted name, a sentence, and the nodes and verbs that have it."""
+    """A group of parameters: dotted name, description, and the nodes and verbs that have it."""
 
     name: str
     words: str

@@ -5,7 +5,7 @@ import textwrap
 HELP = 'list the shipped motions, instruments and studies'
 DESCRIPTION = ('List the shipped parameter files, one per line, and the verbs that are studies. '
                '"ins_sim describe NAME" shows what a file sets.')
-# Indent of a name; least width of the text in a narrow terminal; width of a line in a pipe.
+# Indent of a name, least width of the text in a narrow terminal, width of a line in a pipe.
 INDENT, LEAST, LONGEST = 2, 30, 10000
 KINDS = ('motions', 'instruments', 'studies', 'others')
 
@@ -27,7 +27,7 @@ def run(chosen):
              for kind in kinds]
     if 'studies' in kinds:
         parts.insert(kinds.index('studies') + 1, (
-            'studies, as verbs: ins_sim VERB --help', study_verbs()))
+            'studies with a verb of their own: ins_sim VERB --help', study_verbs()))
     # In a pipe each entry is one line, however long.
     for line in lines(parts, console.width if console.is_terminal else LONGEST):
         console.print(line)

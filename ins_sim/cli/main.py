@@ -1,4 +1,4 @@
-"""The command ``ins_sim``: find the verb, run it, and turn what goes wrong into an exit code."""
+"""The command ``ins_sim``: select the verb, run it, and convert errors to exit codes."""
 
 import argparse
 import sys
@@ -14,9 +14,9 @@ from .studies import (allan, budget, compare_filters, compare_orientation, delay
                       dtg_study, estimate_delays, loop_study, monte_carlo)
 
 ROS_ARGS = '--ros-args'
-# Of a sentence about an error; longer ones are cut.
+# Longest error message; longer ones are truncated.
 LONGEST = 2000
-# In the order of the printed list.
+# The verbs in the order of the help text.
 VERBS = {'simulate': simulate, 'monte-carlo': monte_carlo, 'budget': budget, 'list': listing,
          'describe': describe, 'info': info, 'convert': convert, 'export': export,
          'record': record, 'play': play, 'predict': predict, 'navigate': navigate, 'demo': demo,
@@ -29,7 +29,7 @@ NODE_VERBS = ('record', 'play')
 def parser():
     """Return the parser of all verbs."""
     top = argparse.ArgumentParser(prog='ins_sim', description='Simulate an inertial measurement '
-                                  'unit and the strapdown navigation on it.')
+                                  'unit and the strapdown navigation with it.')
     top.add_argument('--version', action='version', version=f'ins_sim {__version__}')
     verbs = top.add_subparsers(dest='verb', required=True, metavar='VERB')
     for name, verb in VERBS.items():
@@ -41,14 +41,15 @@ def parser():
 
 def main(arguments=None):
     """
-    Run a verb; return the exit code: 0, 2 bad input, 1 a run that failed, 130 interrupted.
+    Run a verb and return the exit code.
 
-    The verbs that are nodes, record and play, have the exit codes of nodes.
+    It is 0 for success, 1 for a failed run, 2 for invalid input and 130 after an interruption. The
+    verbs record and play are nodes and have the exit codes of nodes.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
     cut = words.index(ROS_ARGS) if ROS_ARGS in words else len(words)
     for stream in (sys.stdout, sys.stderr):
-        # A name that the terminal cannot show is shown by its codes.
+        # Characters that the terminal cannot show are printed as escape codes.
         if hasattr(stream, 'reconfigure'):
             stream.reconfigure(errors='backslashreplace')
     top = parser()
@@ -58,7 +59,7 @@ def main(arguments=None):
         chosen.parser.error(f'unrecognized arguments: {" ".join(unknown)}')
     chosen.ros_args = words[cut:]
     if chosen.ros_args and chosen.verb not in NODE_VERBS:
-        top.error(f'{chosen.verb} is no node; {ROS_ARGS} serves {" and ".join(NODE_VERBS)}')
+        top.error(f'{chosen.verb} is not a node; {ROS_ARGS} is for {" and ".join(NODE_VERBS)}')
     tell_warnings(lambda sentence: _say(chosen.verb, sentence))
     try:
         return VERBS[chosen.verb].run(chosen)

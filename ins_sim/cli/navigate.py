@@ -1,10 +1,11 @@
-"""Verb navigate: the strapdown over a recorded IMU, written into a folder."""
+"""Verb navigate: strapdown navigation with a recorded IMU, written into a folder."""
 
 from . import arguments
 
-HELP = 'run the strapdown over a recorded IMU'
-DESCRIPTION = ('Run the strapdown over the sensor_msgs/Imu of a rosbag2 bag, or a CSV file of an '
-               'IMU, from a self-alignment or given values, and compare it with a reference.')
+HELP = 'navigate with a recorded IMU'
+DESCRIPTION = ('Run the strapdown navigation with the sensor_msgs/Imu messages of a rosbag2 bag '
+               'or with the CSV file of an IMU. It starts from an alignment or from given values '
+               'and is compared with a reference, if there is one.')
 
 
 def add_arguments(parser):

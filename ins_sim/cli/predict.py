@@ -1,10 +1,10 @@
-"""Verb predict: what the linear theory expects."""
+"""Verb predict: predict drift and position error by linear theory."""
 
 from . import arguments
 
-HELP = 'predict drift and position error'
-DESCRIPTION = ('Predict the mean drift and the position error by the linear theory, without a '
-               'simulation.')
+HELP = 'predict drift and position error from gyro channel delays'
+DESCRIPTION = ('Predict the mean drift and the position error that delays of the gyro channels '
+               'cause, by linear theory and without a simulation.')
 
 
 def add_arguments(parser):

@@ -1,4 +1,4 @@
-"""The progress of the verbs that take longer than a moment: bars, or lines in a pipe."""
+"""Show progress as bars in a terminal, or as lines on stderr otherwise."""
 
 from contextlib import contextmanager
 import sys
@@ -7,7 +7,7 @@ import time
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 
-# in a pipe or a file: how long until the first line, and from line to line
+# Time to the first line and between lines, if the output is a pipe or a file.
 FIRST_S, NEXT_S = 5.0, 30.0
 
 
@@ -16,21 +16,21 @@ def progress_bars(console, unit=None):
     """
     Show progress bars on a console while the block runs, and remove them at its end.
 
-    Where the console is no terminal a line on stderr tells now and then how far it is.
+    If the console is not a terminal, lines on stderr report the progress instead.
 
     Parameters
     ----------
     console : rich.console.Console
-        Where the bars appear.
+        Console of the bars.
     unit : str, optional
-        What is counted, such as 'flights': a bar shows '3 of 24 flights'. Without it a bar shows
-        a percentage.
+        Unit of the count, such as 'flights': a bar then shows '3 of 24 flights'. Without it a bar
+        shows a percentage.
 
     Yields
     ------
     callable
-        ``add_bar(label, total=1.0)`` adds a bar and returns the function that takes how much of
-        the total is done.
+        ``add_bar(label, total=1.0)`` adds a bar and returns a function; call it with the part of
+        the total that is done.
     """
     if not console.is_terminal:
         yield lambda label, total=1.0: ProgressLines(label, total, unit)
@@ -49,7 +49,7 @@ def progress_bars(console, unit=None):
 
 
 class ProgressLines:
-    """Tells by lines on stderr how much is done, and how long the rest may take."""
+    """Prints lines on stderr with the part that is done and the estimated time left."""
 
     def __init__(self, label, total, unit):
         self._label, self._total, self._unit = label, total, unit
@@ -57,7 +57,7 @@ class ProgressLines:
         self._next = self._start + FIRST_S
 
     def __call__(self, done):
-        """Take how much of the total is done."""
+        """Report the part of the total that is done; a line is printed from time to time."""
         now = time.monotonic()
         if now < self._next or done <= 0.0:
             return

@@ -1,4 +1,4 @@
-"""The shipped parameter files: purpose and values of each."""
+"""Purpose and values of the shipped parameter files."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,17 +15,20 @@ HEADS = {
     INSTRUMENTS: 'instruments, added to a motion: --params-file MOTION --params-file NAME',
     STUDIES: 'studies, for the verb before the colon: --params-file NAME',
     OTHERS: 'others, for reference and for the nodes'}
-# They hold every parameter with its default.
+# The files that hold every parameter with its default.
 DEFAULTS = ('default', 'navigate')
 
 
 @dataclass(frozen=True)
 class ShippedFile:
     """
-    A parameter file.
+    A shipped parameter file.
 
-    name; path; head: the comment at its head, a list of lines; values: (node, '**' for all, name
-    of the parameter, value) in order.
+    Attributes
+    ----------
+    name, path : name without suffix, and path
+    head : list of the lines of the comment at the beginning of the file
+    values : list of (node or '**' for all nodes, name of the parameter, value), in order
     """
 
     name: str
@@ -35,7 +38,7 @@ class ShippedFile:
 
     @property
     def kind(self):
-        """Return its kind: one of HEADS."""
+        """Return the kind of the file, a key of HEADS."""
         names = {name.partition('.')[0] for _, name, _ in self.values}
         if self.name in DEFAULTS:
             return OTHERS
@@ -47,12 +50,12 @@ class ShippedFile:
 
     @property
     def verb(self):
-        """Return the verb that reads a section of its own, or ''."""
+        """Return the verb for which the file has a section, or ''."""
         return next((node.replace('_', '-') for node, _, _ in self.values if node in VERBS), '')
 
     @property
     def words(self):
-        """Return the first sentence of the comment at its head; of a study, after its verb."""
+        """Return the first sentence of the head; for a study, after the name of its verb."""
         told = []
         for line in self.head:
             if not line or line.startswith(' '):

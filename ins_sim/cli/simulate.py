@@ -1,12 +1,12 @@
-"""Verb simulate: an offline run, written into a folder."""
+"""Verb simulate: simulate offline and write the run into a folder."""
 
 from pathlib import Path
 
 from . import arguments
 
-HELP = 'run offline and write the run'
-DESCRIPTION = ('Run motion, IMU and strapdown offline, with the zero-delay twin, and write the '
-               'run into a folder.')
+HELP = 'simulate offline and write the run into a folder'
+DESCRIPTION = ('Simulate motion, IMU and strapdown offline, also without delays (the zero-delay '
+               'twin), and write the run with figures and a report into a folder.')
 
 
 def add_arguments(parser):
@@ -14,9 +14,10 @@ def add_arguments(parser):
     arguments.add_settings(parser)
     arguments.add_output(parser, 'ins_sim_run', 'folder of the run')
     arguments.add_force(parser, 'the run in DIR')
-    parser.add_argument('--no-twin', action='store_true', help='leave out the zero-delay twin')
-    parser.add_argument('--aided', action='store_true', help='also run velocity meter, GNSS and '
-                        'aided navigator on the same readings of the IMU')
+    parser.add_argument('--no-twin', action='store_true', help='do not simulate the zero-delay '
+                        'twin')
+    parser.add_argument('--aided', action='store_true', help='also simulate velocity meter, '
+                        'GNSS and aided navigator with the same IMU samples')
     arguments.add_thin(parser)
     arguments.add_tables(parser)
     parser.add_argument('--bag', metavar='DIR', default=None, help='also write the topics that '
@@ -49,7 +50,7 @@ def run(chosen):
     title = titles.title(settings)
     console = PlainConsole()
     motion = read_motion(settings.motion_generator)
-    # Made before the run, so that settings that do not fit are refused before it.
+    # Created before the run, so that contradicting settings are reported before it.
     instruments = None if aided is None else make_instruments(aided)
     with spool.Spool(existing_parent(chosen.output)) as spooled:
         with whole_folder(chosen.output, chosen.force, storage.MARK) as work:
@@ -63,7 +64,7 @@ def run(chosen):
                 prediction = None
                 console.print(str(reason))
             with progress_bars(console) as add_bar:
-                # The aided stages take whole histories.
+                # The aided part needs whole histories in memory.
                 result = simulate(settings, motion, not chosen.no_twin, add_bar('simulating'),
                                   spooled.store if aided is None else Collected)
                 flown = None if aided is None else simulate_aided(aided, instruments, motion,
@@ -95,7 +96,7 @@ def _report(settings, flown, result):
 
 
 def _bag_writer(chosen, settings):
-    """Return the function that writes the bag of a run, or None; ValueError before the run."""
+    """Return the function that writes the bag of a run, or None; check its arguments now."""
     if chosen.bag is None:
         for name in ('topics', 'storage', 'compression'):
             if getattr(chosen, name) not in (None, 'mcap', 'none'):

@@ -1,12 +1,16 @@
-"""Processes that share the tasks of a verb."""
+"""Distribute the tasks of a verb over processes."""
 
 
 def run_all(tasks, jobs, console, unit):
     """
-    Return what each task returns, in their order.
+    Run tasks in several processes and return their results in order.
 
-    tasks: list of (function, arguments ...), which can be pickled; jobs: processes, 0: as many as
-    cores; unit: what is counted, such as 'flights'.
+    Parameters
+    ----------
+    tasks : list of (function, argument, ...), which can be pickled
+    jobs : number of processes; 0 = one for each core
+    console : console of the progress bar
+    unit : unit of the count in the progress bar, such as 'flights'
     """
     from ins_sim.jobs.blocks import run_blocks
     from ins_sim.jobs.executors import open_executor

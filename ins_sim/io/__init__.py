@@ -1,1 +1,1 @@
-"""Files and bags to objects of the core, and back."""
+"""Convert files and bags to objects of ``ins_sim.core``, and back."""

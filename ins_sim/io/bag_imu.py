@@ -1,4 +1,4 @@
-"""The sensor_msgs/Imu messages of a topic of a bag, whoever wrote them."""
+"""Read the sensor_msgs/Imu messages of a topic of any bag."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ins_sim.settings.recorded_imu import ConvertSettings
 from ins_sim.settings.shown import listed
 from .csv_names import UNITS
 
-# An orientation that is not measured is often all zero; one of another length is no rotation.
+# Unmeasured orientations are often all zero; a quaternion of another length is not a rotation.
 _UNIT = 0.01
 
 
@@ -16,9 +16,9 @@ def read_imu_messages(bag, topic, settings=None):
     """
     Return RecordedImu, frame id and notes (sentences) of a topic, in the order recorded.
 
-    settings: those of a recorded IMU, NavigateSettings or ConvertSettings, the default. Stamps
-    that are all zero give way to the log times. Raises ValueError where there is no message, more
-    than one frame, or no rate or acceleration (REP-145), unless settings.accept says otherwise.
+    settings are NavigateSettings or ConvertSettings (default). If all stamps are zero, log times
+    are used. Raises ValueError if there is no message, more than one frame, or no angular rate or
+    acceleration (REP-145), unless settings.accept allows it.
     """
     settings = settings or ConvertSettings()
     name, accept = f'{bag.path}: {topic}', settings.accept
@@ -57,7 +57,7 @@ def _check_measured(name, table, accept, notes):
 
 
 def _frame(name, frames, accept, notes):
-    """Return the frame id of the messages, the most frequent one where several are accepted."""
+    """Return the frame id of the messages; the most frequent one if several are accepted."""
     count = {texts[0]: n for texts, n in frames.items()}
     usual = max(count, key=count.get)
     if len(count) > 1:
@@ -70,7 +70,7 @@ def _frame(name, frames, accept, notes):
 
 
 def _stamps(name, table, source, odd, notes):
-    """Return the stamps, (n,) int64 ns, of the source of settings."""
+    """Return the stamps, (n,) int64 ns, from the source in the settings."""
     t_ns = table['stamp_ns'].copy()
     if source == 'log':
         notes.append(f'{name}: the times of logging are used')
@@ -91,7 +91,7 @@ def _stamps(name, table, source, odd, notes):
 
 
 def _orientation(name, table, accept, notes):
-    """Return unit quaternions (n, 4), NaN where the message has none."""
+    """Return unit quaternions (n, 4), NaN for messages without orientation."""
     q = table['orientation'].copy()
     with np.errstate(over='ignore', invalid='ignore'):
         norm = np.linalg.norm(q, axis=1)

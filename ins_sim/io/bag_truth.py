@@ -1,4 +1,4 @@
-"""The truth that was recorded into a bag, as poses for a recorded motion."""
+"""Read the truth recorded in a bag as poses for a recorded motion."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from .map_origin import given_origin, map_origin
 from .topic_choice import choose_topic
 
 KEY = 'motion.recording.topic'
-# beside an odometry whose name ends in truth/odometry
+# Topics in the namespace of an odometry whose name ends in truth/odometry.
 SIBLINGS = {topics.TRUTH_FIX: ('latitude', 'longitude', 'altitude'),
             topics.TRUTH_ATTITUDE: ('quaternion',)}
 
@@ -21,12 +21,22 @@ def read_poses(path, topic, datum, key=KEY, origin='fix'):
     """
     Return the RecordedPoses of an Odometry topic of a bag.
 
-    topic: its name, or 'auto' for the only one that ends in truth/odometry; key: what the name is
-    the value of.  Position and attitude are those of truth/fix and truth/attitude beside it where
-    both are there; else the origin of its frame is that of ``map_origin``, for which datum is the
-    one given; origin: 'datum' to put it there in any case.  Raises ValueError in one sentence
-    where the topic is missing, of another type, or holds what is no motion, and where the origin
-    is unknown.
+    Position and attitude are taken from truth/fix and truth/attitude in the same namespace if
+    both exist; otherwise the odometry is converted with the origin of its frame (``map_origin``).
+
+    Parameters
+    ----------
+    path : path of the bag
+    topic : name of the topic, or 'auto' for the only one that ends in truth/odometry
+    datum : Datum of the settings
+    key : parameter that gives the topic, for messages
+    origin : 'fix' to search the origin in the bag, 'datum' to use the datum
+
+    Raises
+    ------
+    ValueError
+        If the topic is missing, has another type or does not hold a motion, or if the origin is
+        unknown.
     """
     with open_bag(path) as bag:
         name = choose_topic(bag, [topics.ODOMETRY], topic, key, topics.TRUTH_ODOMETRY.name,
@@ -61,7 +71,7 @@ def read_poses(path, topic, datum, key=KEY, origin='fix'):
 
 
 def _check(where, t_ns, what, values, good, expected='finite numbers'):
-    """Raise ValueError for the first value that is not good."""
+    """Raise ValueError on the first value that is not good."""
     if not good.all():
         k = int(np.argmin(good))
         raise ValueError(f'{where} at {seconds(t_ns[k])}: {what} is {values[k].tolist()}; '
@@ -69,7 +79,7 @@ def _check(where, t_ns, what, values, good, expected='finite numbers'):
 
 
 def _beside(bag, name):
-    """Return the arrays of truth/fix and truth/attitude beside truth/odometry, or None."""
+    """Return the arrays of truth/fix and truth/attitude next to truth/odometry, or None."""
     ending = topics.TRUTH_ODOMETRY.name
     if not name.endswith(ending):
         return None
@@ -81,7 +91,7 @@ def _beside(bag, name):
 
 
 def _matched(where, table, others):
-    """Return the rows of all arrays whose stamps are in each, in the order of the first."""
+    """Return the rows whose stamps occur in all arrays, in the order of the first array."""
     found, good = [], np.ones(len(table), dtype=bool)
     for other in others:
         stamps, first = np.unique(other['stamp_ns'], return_index=True)

@@ -1,4 +1,4 @@
-"""Records of a bench with known motion: a run, a bag, or a CSV file of an IMU."""
+"""Read records of gyros under a known motion: a run, a bag, or a CSV file of an IMU."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,9 +21,9 @@ from .csv_text import is_csv
 from .motion import read_motion
 from .topic_choice import choose_topic
 
-# Rates that differ by more are two.
+# Relative difference above which two rates count as different.
 RATES_ALIKE = 0.01
-# Motion times end here, s.
+# Latest motion time, s.
 LONGEST_S = 1e7
 TUNED = ('channels of tuned gyros see how the rates of other axes change as well, which passes '
          'for a delay where these change together; rock about each axis of the body in turn')
@@ -33,10 +33,10 @@ HOW = ('give it by motion.*, such as "-p motion.kind:=rocking", or motion.kind r
 
 def is_named(group, names, value, default):
     """
-    Return whether a parameter or a group is given: by one of the names, or by a value not usual.
+    Return whether the user gave a parameter or group, by name or by a value that is not default.
 
-    group: such as ``rate_hz``, or ``motion.`` of all names that begin so; names: parameters that
-    were given one by one, some as NODE:NAME.
+    group is a name such as ``rate_hz``, or a prefix such as ``motion.``; names are the parameters
+    that were given one by one, some as NODE:NAME.
     """
     own = [name.rpartition(':')[2] for name in names]
     return value != default or any(
@@ -45,11 +45,11 @@ def is_named(group, names, value, default):
 
 def record_of_run(name, settings, imu, motion=None):
     """
-    Return the BenchRecord of a run of ``simulate``, and notes, sentences.
+    Return the BenchRecord of a run of ``simulate``, and notes (sentences).
 
-    settings: SimulationSettings of the run; imu: its ImuSamples; motion: the Motion, by default
-    that of the settings. Raises ValueError where the motion is not known from the settings, or
-    the readings have another rate.
+    settings and imu are the SimulationSettings and the ImuSamples of the run, motion its Motion,
+    by default that of the settings. Raises ValueError if the settings do not define the motion,
+    or if the samples have another rate.
     """
     _check_rate(name, imu.t_ns, settings.imu_sensor.rate_hz)
     record = _record(name, imu, period_ns(settings.imu_sensor.rate_hz),
@@ -59,20 +59,21 @@ def record_of_run(name, settings, imu, motion=None):
 
 def read_record(path, settings, imu_settings, names=(), topic=None):
     """
-    Return the BenchRecord of a bag or a CSV file, and notes, sentences.
+    Return the BenchRecord of a bag or a CSV file, and notes (sentences).
 
     Parameters
     ----------
-    path : of the file or folder
-    settings : SimulationSettings: the motion, the place, what a reading is and its white noise
+    path : path of the file or folder
+    settings : SimulationSettings with the motion, the place, the output mode and the white noise
     imu_settings : ConvertSettings, how an IMU is read
-    names : parameters that were given one by one; where neither they nor the settings name a
-        motion, it is the truth in the bag, and where they name no rate, it is that of the stamps
-    topic : of the Imu messages of a bag, or None for the only one
+    names : parameters that were given one by one. If neither they nor the settings name a motion,
+        the truth in the bag is used; if they name no rate, that of the stamps is used
+    topic : topic of the Imu messages in a bag, or None for the only one
 
     Raises
     ------
-    ValueError, OSError : in one sentence, where the record or its motion cannot be used
+    ValueError, OSError
+        If the record or its motion cannot be used.
     """
     path = Path(path)
     if not path.exists():
@@ -107,7 +108,7 @@ def read_record(path, settings, imu_settings, names=(), topic=None):
 
 
 def _imu_topic(bag, topic):
-    """Return the name of the topic of the readings; of several the raw one is the default."""
+    """Return the name of the Imu topic; by default imu/data_raw if there are several."""
     if topic is None:
         raw = [c.name for c in bag.topics.values() if c.type_name == topics.IMU
                and f'/{c.name}'.endswith(f'/{topics.IMU_RAW.name}')]
@@ -125,7 +126,7 @@ def _record(name, imu, dt_ns, motion, settings):
 
 
 def _check_rate(name, t_ns, rate_hz):
-    """Raise ValueError where readings have another rate than the one that is given."""
+    """Raise ValueError if the samples have another rate than the given one."""
     if len(t_ns) > 1:
         found = 1e9 / max(float(np.median(np.diff(t_ns))), 1.0)
         if abs(found / rate_hz - 1.0) > RATES_ALIKE:
@@ -141,7 +142,7 @@ def _known_motion(generator):
 
 
 def _motion(path, settings, named, first_ns):
-    """Return the Motion, the stamp of motion time zero, ns, and a note on it."""
+    """Return the Motion, the stamp of motion time zero, ns, and a note about it."""
     generator = settings.motion_generator
     if not named and is_csv(path):
         raise ValueError(f'{path} does not say how the bench moved; {HOW}')

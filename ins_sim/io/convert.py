@@ -1,4 +1,4 @@
-"""Between bags and CSV files: a recorded flight or truth, and the readings of an IMU."""
+"""Convert recorded flights, truth and IMU samples between bags and CSV files."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -26,20 +26,28 @@ from .topic_choice import choose_topic, short_names
 from .whole_file import check_file
 
 WINDOW = 4096
-# 2005: what is before it is no time of a recording, s.
+# In 2005; earlier stamps are not absolute times of a recording, s.
 OLDEST_S = 1104537600
 
 
 def convert_recording(source, target, settings, topic=None, storage='mcap', compression='none',
                       force=False, imu=None):
     """
-    Write target from source, a CSV file from a bag or a bag from a CSV file; return a sentence.
+    Convert a bag to a CSV file or a CSV file to a bag; return a sentence on what was written.
 
-    settings: MotionGeneratorSettings, of which a flight takes motion.recording, datum, rate_hz and
-    time.epoch_s; imu: ConvertSettings, how an IMU is read.  topic: of the bag; None for
-    truth/odometry if there is one, else the only Imu.
-    storage and compression: as of BagWriter; force: replace what is there.  Raises ValueError or
-    OSError in one sentence where source, target or topic will not do.
+    Parameters
+    ----------
+    source, target : paths; one is a bag and the other a CSV file
+    settings : MotionGeneratorSettings; flights use motion.recording, datum, rate_hz, time.epoch_s
+    topic : topic of the bag; None for truth/odometry if it exists, else the only Imu topic
+    storage, compression : see BagWriter
+    force : replace an existing target
+    imu : ConvertSettings, how an IMU is read
+
+    Raises
+    ------
+    ValueError, OSError
+        If source, target or topic cannot be used.
     """
     source, target, imu = Path(source), Path(target), imu or ConvertSettings()
     if not source.exists():
@@ -103,7 +111,7 @@ def _imu_to_bag(source, target, settings, topic, how, chosen):
 
 
 def _flight_to_bag(source, target, settings, how):
-    """Write the four topics of the truth from the first row, 3 s before start_s, to the last."""
+    """Write the four truth topics, from the first row (3 s before start_s) to the last."""
     recording = replace(settings.motion.recording, path=str(source))
     motion = RecordedMotion(csv_flight.read_poses(source, values_of(recording.columns)), recording,
                             settings.earth)
@@ -116,7 +124,7 @@ def _flight_to_bag(source, target, settings, how):
 
     def windows():
         for k in range(0, count, WINDOW):
-            # Window by window: a long flight at a high rate has more instants than memory.
+            # Written window by window, because a long flight at a high rate exceeds the memory.
             truth = motion.at(step_ns * np.arange(k, min(k + WINDOW, count)) - pad_ns)
             yield {topic: (truth.t_ns + offset_ns, values)
                    for topic, values in blocks.truth_blocks(frame, truth).items()}
@@ -127,7 +135,7 @@ def _flight_to_bag(source, target, settings, how):
 
 
 def _offset_ns(settings):
-    """Return what is added to the stamps of a recording, which has a time of its own, ns."""
+    """Return the time that is added to the stamps of a recording, ns."""
     if settings.time.epoch == 'now':
         raise ValueError('time.epoch is now; expected auto, or fixed, which adds time.epoch_s to '
                          'the stamps of a recording')
@@ -135,7 +143,7 @@ def _offset_ns(settings):
 
 
 def _check_stamps(source, stamps_ns, settings):
-    """Return sentences on stamps of bags; ValueError where a bag cannot hold them."""
+    """Return notes about the stamps; raise ValueError if a bag cannot hold them."""
     first_s = stamps_ns.min() / SECOND
     if first_s < 0:
         raise ValueError(f'{source} begins at {first_s:.9g} s; expected 0 s or later in a bag '

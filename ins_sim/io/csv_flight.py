@@ -10,12 +10,12 @@ from ins_sim.core.motion.recorded.poses import RecordedPoses
 from ins_sim.settings.place import HIGHEST_M
 from .csv_table import CsvTable
 
-# The splines are of latitude and longitude, which end at the poles; hence 89.9.  The heights keep
-# out sentinels (-9999).
+# Splines of latitude and longitude fail at the poles, hence 89.9. The height limits exclude
+# sentinels such as -9999.
 USED = {'lat_deg': (-89.9, 89.9), 'lon_deg': (-180.0, 360.0), 'height_m': (-1000.0, HIGHEST_M),
         'roll_deg': (-180.0, 180.0), 'pitch_deg': (-90.0, 90.0), 'heading_deg': (-180.0, 360.0)}
-# Angles that may have turned on: they are brought into the range above. Ten turns keep out
-# sentinels such as -9999.
+# Angles that may be unwrapped; they are brought into the range above. The limit of ten turns
+# excludes sentinels such as -9999.
 WRAPPED = ('roll_deg', 'pitch_deg', 'heading_deg')
 MOST_DEG = 3600.0
 UNUSED = ('vn_mps', 've_mps', 'vd_mps')
@@ -26,10 +26,11 @@ COLUMNS = (*REQUIRED, *UNUSED)
 @dataclass(frozen=True)
 class RecordedRows:
     """
-    Rows of a file, (n,) each.
+    Columns of a file, (n,) each.
 
-    t_ns int64, the file's own stamps; degrees and metres as in the file, longitude unwrapped;
-    resolution: the rounding step of lat_deg, lon_deg, height_m in their units.
+    t_ns holds the stamps of the file (int64); angles and heights are in degrees and metres as in
+    the file, with the longitude unwrapped; resolution holds the rounding steps of lat_deg, lon_deg
+    and height_m in their units.
     """
 
     path: str
@@ -48,11 +49,11 @@ def read_rows(path, columns=None, key='motion.recording.columns'):
     """
     Return the RecordedRows of a file.
 
-    columns: {name: header of its column}, empty texts where it is found by its name; key: what
-    they are the value of.
+    columns is {name: header of the column}, with empty texts for columns that are found by their
+    names; key is the parameter that gives them.
 
-    Raises ValueError, one sentence with file, line, time, what was found and what was expected,
-    on a file that cannot be read, is no such table, or holds a value that is no such quantity.
+    Raises ValueError, with file, line, time, value and expectation, if the file cannot be read,
+    is not such a table, or holds an invalid value.
     """
     path = str(path)
     table = CsvTable(path, REQUIRED, UNUSED, columns, key=key)
@@ -77,14 +78,14 @@ def read_rows(path, columns=None, key='motion.recording.columns'):
 
 
 def _wrapped(table, name, values, bounds, notes):
-    """Return angles, those beyond their bounds brought into them by whole turns, and note it."""
+    """Return angles brought within their bounds by whole turns; add a note if any changed."""
     low, high = bounds
     beyond = (values < low) | (values > high)
     if not beyond.any():
         return values
     turned = np.where(beyond, (values + 180.0) % 360.0 - 180.0, values)
     if not ((turned >= low) & (turned <= high)).all():
-        # A pitch of 100 degrees is none, however it is turned; the sentence names the row.
+        # A pitch of 100 degrees is invalid with any number of turns; the message names the row.
         table.numbers(name, bounds)
     notes.append(f'{table.path}: {np.count_nonzero(beyond)} values of {name} beyond {low:g}..'
                  f'{high:g} are brought there by whole turns')
@@ -99,10 +100,10 @@ def _decimals(text):
 
 def _resolution(table, name, values):
     """
-    Return the step to which a column is rounded; 0 for a constant one, which makes no noise.
+    Return the step to which a column is rounded; 0 for a constant one, which adds no noise.
 
-    The last decimal any field shows (writers drop trailing zeros, hence the maximum); the
-    spacing of float32 if all values are float32 numbers printed to more decimals than they have.
+    It is the last decimal of the longest field (writers drop trailing zeros), or the spacing of
+    float32 if all values are float32 numbers printed with more decimals than they have.
     """
     if values.min() == values.max():
         return 0.0
@@ -115,7 +116,7 @@ def _resolution(table, name, values):
 
 
 def read_poses(path, columns=None, key='motion.recording.columns'):
-    """Return the RecordedPoses of a CSV file; arguments and ValueError as of ``read_rows``."""
+    """Return the RecordedPoses of a CSV file; arguments and errors as in ``read_rows``."""
     rows = read_rows(path, columns, key)
     q_nb = from_compass(*(np.radians(a) for a in (rows.roll_deg, rows.pitch_deg,
                                                   rows.heading_deg)))

@@ -1,4 +1,4 @@
-"""Columns of a CSV file, plain or gzip: a recorded IMU and its reference."""
+"""Read a recorded IMU, or a reference for it, from a CSV file, plain or gzip."""
 
 import numpy as np
 
@@ -21,9 +21,9 @@ VELOCITY = ('ve_mps', 'vn_mps', 'vd_mps')
 
 def is_imu(path, columns):
     """
-    Return whether a CSV file is one of an IMU rather than of a flight.
+    Return whether a CSV file holds an IMU rather than a flight.
 
-    columns: ImuColumns. Raises ValueError where the file is no table.
+    columns are ImuColumns. Raises ValueError if the file is not a table.
     """
     table = read_lines(path)
     finder = ColumnFinder(f'{path}, line {table.header_line}', table.header, values_of(columns))
@@ -32,11 +32,11 @@ def is_imu(path, columns):
 
 def read_imu(path, columns=None, units=None):
     """
-    Return the RecordedImu of a CSV file, in its own axes, and notes, sentences.
+    Return the RecordedImu of a CSV file, in the axes of the file, and notes (sentences).
 
-    columns, units: ImuColumns and RecordUnits, by default those that find t_s, gx_rps.. and
-    ax_mps2.. by name. Raises ValueError in one sentence with file and line where a column is
-    missing or a field is no number.
+    columns and units are ImuColumns and RecordUnits; by default the columns are recognised by
+    their names. Raises ValueError, with file and line, if a column is missing or a field is not a
+    number.
     """
     table = CsvTable(str(path), ('t_s', *IMU), (), columns and values_of(columns),
                      units and values_of(units))
@@ -47,7 +47,7 @@ def read_imu(path, columns=None, units=None):
 
 
 def _stamps(table, expected):
-    """Return the stamps of a table, (n,) int64 ns, with a clock that wraps unwrapped; notes."""
+    """Return the stamps of a table, (n,) int64 ns, with clock wraps undone, and notes."""
     if not table.rows:
         raise ValueError(f'{table.path} has a header and no rows; expected {expected}')
     t_ns, note = unwrap_clock(table.stamps_ns())
@@ -56,11 +56,11 @@ def _stamps(table, expected):
 
 def read_reference(path, columns=None, keep_zero=False):
     """
-    Return the Reference of a CSV file, and notes, sentences.
+    Return the Reference of a CSV file, and notes (sentences).
 
-    It has position, and attitude and velocity where the file has them. columns: FlightColumns;
-    keep_zero: as of ``positions.usable``. Columns as in a recorded flight (``csv_flight``); v_n
-    is made of vn, ve, vd.
+    It has the position, and attitude and velocity if the file has them. The columns are those of
+    a recorded flight (``csv_flight``) and are given by FlightColumns; v_n is computed from vn, ve
+    and vd. For keep_zero see ``positions.usable``.
     """
     table = CsvTable(str(path), ('t_s', *POSITION), (*ATTITUDE, *VELOCITY),
                      columns and values_of(columns), key='reference.columns')

@@ -1,11 +1,11 @@
 """
-The lines of a CSV file, whoever wrote it: its separator, its header, and its rows as texts.
+Split a CSV file of any origin into its header and its rows of texts.
 
-Fields are separated by commas, semicolons or tabs; where it is not commas, a comma may be the
-decimal point. Lines that begin with # or % are comments, but the last one before the numbers is
-the header if it has as many fields as they (ROS 1: ``%time,field...``; EuRoC: ``#timestamp
-[ns],...``). A header that is repeated amid the rows, as where files were put together, is left
-out. Without a header the columns are called ``column 1``, ``column 2`` and so on.
+Fields are separated by commas, semicolons or tabs; if not by commas, the decimal point may be a
+comma. Lines that begin with # or % are comments, except that the last one before the numbers is
+the header if it has the same number of fields (ROS 1: ``%time,field...``; EuRoC: ``#timestamp
+[ns],...``). Repeated headers, as in concatenated files, are skipped. Without a header the columns
+are named ``column 1``, ``column 2`` and so on.
 """
 
 import csv
@@ -17,7 +17,7 @@ from .csv_text import read_text
 
 DELIMITERS = {',': 'commas', ';': 'semicolons', '\t': 'tabs'}
 _COMMENTS = ('#', '%')
-# So many lines show what a file is.
+# Number of lines that are examined to find the layout of a file.
 _LOOKED_AT = 500
 
 
@@ -26,10 +26,14 @@ class CsvLines:
     """
     A table of texts.
 
-    header: names of the columns; header_line: the line it stands in, where headless the first
-    line of numbers; headless: whether the columns have no names; lines: that of each row;
-    rows: lists of texts, not yet known to be as long as the header; notes: what was left out or
-    taken for something else, in sentences.
+    Attributes
+    ----------
+    header : names of the columns
+    header_line : number of the header line, or of the first line of numbers if headless
+    headless : whether the columns have no names
+    lines : line number of each row
+    rows : lists of texts, whose lengths are not checked yet
+    notes : sentences about skipped or reinterpreted lines
     """
 
     header: list
@@ -41,7 +45,7 @@ class CsvLines:
 
 
 def read_lines(path):
-    """Return the CsvLines of a file; ValueError, in one sentence, where there is no table."""
+    """Return the CsvLines of a file; raise ValueError if it is not a table."""
     text = read_text(str(path))
     delimiter, commented = _layout(text)
     source = _Numbered(text, commented)
@@ -77,7 +81,7 @@ def read_lines(path):
 
 
 class _Numbered:
-    """The lines that are no comments, and the number of the one given last."""
+    """Iterator over the lines that are not comments, with the number of the last one."""
 
     def __init__(self, text, kept):
         self._lines, self._kept = io.StringIO(text, newline=''), kept
@@ -108,7 +112,7 @@ def _layout(text):
              if count > 1 and count == len(_fields(second, mark))]
     if not found:
         return ',', 0
-    # Decimal commas part a line of numbers as well as what separates the numbers does.
+    # In a line of numbers decimal commas occur as often as separators do.
     delimiter = found[-1] if _is_row(_fields(first, found[-1]), found[-1]) else found[0]
     headed = comment and _is_row(_fields(first, delimiter), delimiter) and (
         len(_fields(comment, delimiter)) == counts[delimiter])
@@ -116,7 +120,7 @@ def _layout(text):
 
 
 def _is_row(fields, delimiter):
-    """Return whether fields begin with a number, as those of a header do not."""
+    """Return whether the first field is a number, unlike that of a header."""
     return is_number(fields[0] if delimiter == ',' else fields[0].replace(',', '.'))
 
 
@@ -132,7 +136,7 @@ def _fields(line, delimiter):
 
 
 def number(text):
-    """Return the float of a text; Python's 1_000 is no number of a CSV file."""
+    """Return a text as float; underscores, as in 1_000, are not allowed."""
     if '_' in text:
         raise ValueError(text)
     return float(text)

@@ -1,4 +1,4 @@
-"""Which column of a CSV file holds what, and in which unit: by a map, or by its own name."""
+"""Find the columns of a CSV file and their units, by settings or by their names."""
 
 import math
 import re
@@ -8,8 +8,7 @@ from ins_sim.settings.shown import listed, shown
 from ins_sim.settings.suggest import nearest_name
 
 _DEG, _FOOT, _KNOT = math.pi / 180.0, 0.3048, 1852.0 / 3600.0
-# What the numbers are multiplied by, for each kind of quantity, by the unit as it is written
-# without blanks and in small letters.
+# Factors to the internal unit by kind of quantity and unit, in lower case without blanks.
 UNITS = {
     'time': {'s': 1.0, 'sec': 1.0, 'secs': 1.0, 'second': 1.0, 'seconds': 1.0, 'ms': 1e-3,
              'us': 1e-6, 'microseconds': 1e-6, 'ns': 1e-9, 'nsec': 1e-9, 'nanoseconds': 1e-9},
@@ -32,7 +31,7 @@ _BRACKETS = re.compile(r'\s*[(\[]([^()\[\]]*)[)\]]\s*$')
 
 
 def _imu(kind, axis):
-    """Return the patterns of what others call an axis of an IMU, with the unit they have."""
+    """Return patterns of common names for an axis of an IMU, with the unit that they imply."""
     if kind == 'rate':
         return ((rf'(.*[./])?angular_velocity[./_]{axis}', 'rad/s'),
                 (rf'w_rs_s_{axis}|omega_{axis}_rad_s', 'rad/s'),
@@ -44,8 +43,8 @@ def _imu(kind, axis):
 
 _TIME = ((r'field\.header\.stamp', 'ns'), (r'%time', 'ns'), (r'#?timestamp', None),
          (r'time|t', None), (r't_ns', 'ns'), (r'__time', 's'))
-# Kind of each column, and patterns of other names with the unit that goes with the name; None
-# where it has to be in brackets, or named.
+# Kind of each column, and patterns of other names with the unit that they imply; None if the unit
+# must be given in brackets or by the settings.
 KNOWN = {
     't_s': ('time', _TIME),
     **{f'g{axis}_rps': ('rate', _imu('rate', axis)) for axis in 'xyz'},
@@ -64,8 +63,8 @@ class ColumnFinder:
     """
     Finds columns in a header.
 
-    where: file and line of the header; columns: {name: header of its column, or ''}; units:
-    {kind: unit, or 'auto'}, what settings say of them under the keys columns_key and units.
+    where gives file and line of the header for messages. columns {name: header or ''} and units
+    {kind: unit or 'auto'} are the settings, whose keys are key and units.
     """
 
     def __init__(self, where, header, columns=None, units=None, columns_key='columns'):
@@ -75,9 +74,9 @@ class ColumnFinder:
 
     def find(self, name):
         """
-        Return the index of a column and the factor of its unit, or None where there is none.
+        Return the index of a column and the factor of its unit, or None if it is missing.
 
-        Raises ValueError where two columns may be it, or its unit is unknown.
+        Raises ValueError if several columns match, or if the unit is unknown.
         """
         kind, patterns = KNOWN[name]
         k, habit = self._index(name, patterns)
@@ -129,10 +128,10 @@ class ColumnFinder:
         return factor
 
     def is_known(self, name):
-        """Return whether a column is there."""
+        """Return whether a column exists."""
         return self._index(name, KNOWN[name][1])[0] is not None
 
 
 def _normal(name):
-    """Return a header without its unit, in small letters and with single blanks."""
+    """Return a header without its unit, in lower case and with single blanks."""
     return ' '.join(_BRACKETS.sub('', name).lower().split())

@@ -1,4 +1,4 @@
-"""A table of numbers from a CSV file by column name; errors name the line and the column."""
+"""Read columns of numbers from a CSV file by name; errors give the line and the column."""
 
 from decimal import Decimal
 import difflib
@@ -15,11 +15,11 @@ LONGEST_STAMP_S = 9.2e9
 
 class CsvTable:
     """
-    The fields of a CSV file by column name; every error names file, line and time.
+    The fields of a CSV file by column name; every error gives file, line and time.
 
-    required, optional: names of the columns that the file must have and may have; the first
-    required one is the time ``t_s``. columns, units, key: as of ``ColumnFinder``. notes: what was
-    left out or not used, in sentences.
+    required and optional are the names of the columns that the file must and may have; the first
+    required one is the time ``t_s``. For columns, units and key see ``ColumnFinder``. notes are
+    sentences about skipped or unused data.
     """
 
     def __init__(self, path, required, optional=(), columns=None, units=None, key='columns'):
@@ -46,7 +46,7 @@ class CsvTable:
         self.notes += self._renamed(table.header)
 
     def _renamed(self, header):
-        """Return a note on the columns that are not named as those of ins_sim, if any."""
+        """Return a note about columns with names other than those of ins_sim, if any."""
         other = [f'{name} from {header[k]}' + (f' times {factor:.9g}' if factor != 1.0 else '')
                  for name, (k, factor) in self._found.items() if header[k] != name or (
                      factor != 1.0)]
@@ -81,18 +81,18 @@ class CsvTable:
         return name in self._found
 
     def factor(self, name):
-        """Return what the numbers of a column are multiplied by."""
+        """Return the factor from the unit of a column to the internal unit."""
         return self._found[name][1]
 
     def texts(self, name):
-        """Return the fields of a column as they stand in the file."""
+        """Return the fields of a column as texts of the file."""
         return self._texts.get(name, ())
 
     def numbers(self, name, bounds, blank=False):
         """Return a column, (n,), within bounds; blank fields, where allowed, become NaN."""
         values = self.floats(name, blank)
         low, high = bounds
-        # Comparisons with NaN are false, so this is also the test of finiteness.
+        # Comparisons with NaN are false, so this also tests finiteness.
         ok = (values >= low) & (values <= high)
         if blank:
             ok |= np.array([not text or text.isspace() for text in self.texts(name)], dtype=bool)
@@ -106,7 +106,7 @@ class CsvTable:
         """Return a column in its SI or canonical unit, (n,); blank fields are NaN if allowed."""
         texts, factor = self.texts(name), self._found[name][1]
         try:
-            # Python's 1_000 is no number of a CSV file.
+            # Python accepts 1_000, but in a CSV file it is not a number.
             values = np.array(list(map(float, texts)))
             plain = not any('_' in text for text in texts)
         except ValueError:
@@ -130,7 +130,7 @@ class CsvTable:
                          f'expected {expected}')
 
     def stamps_ns(self):
-        """Return the stamps, (n,) int64 ns; ValueError where one is no time that ns can hold."""
+        """Return the stamps, (n,) int64 ns; raise ValueError if one does not fit int64."""
         t_s = self.floats('t_s')
         # Comparisons with NaN are false.
         ok = np.abs(t_s) <= LONGEST_STAMP_S
@@ -148,9 +148,9 @@ def _unknown(name, known):
 
 def nanoseconds(texts, t_s, factor=1.0):
     """
-    Return stamps in ns from their decimal text: floats of epoch size resolve only 0.24 us.
+    Return stamps in ns from decimal texts, because floats since 1970 resolve only 0.24 us.
 
-    factor: seconds in the unit of the texts.
+    factor is the unit of the texts, s.
     """
     if len(t_s) and np.abs(t_s).max() < 1e5:
         return np.round(t_s * 1e9).astype(np.int64)

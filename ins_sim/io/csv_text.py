@@ -1,4 +1,4 @@
-"""The text of a CSV file, plain or gzip, with a bound on its size before it is read."""
+"""Read the text of a CSV file, plain or gzip, after a check of its size."""
 
 import gzip
 from pathlib import Path
@@ -6,26 +6,26 @@ import zlib
 
 from ins_sim.regular_file import check_regular
 
-# What a file is named where bags may be meant too, in small or capital letters.
+# Suffixes that distinguish CSV files from bags, in any case.
 SUFFIXES = ('.csv', '.csv.gz')
-# A day of an IMU at 100 Hz has some 1 GB.
+# A day of IMU samples at 100 Hz has about 1 GB.
 LARGEST = 2 << 30
-# Numbers in decimal text shrink to a half or a tenth; what shrinks by more is no record.
+# Decimal numbers compress to a half or a tenth; a file that compresses more is not a recording.
 _FREE, _RATIO = 64 << 20, 100
 _BLOCK = 1 << 20
 GZIP = b'\x1f\x8b'
 
 
 def is_csv(path):
-    """Return whether a path is named as a CSV file: .csv or .csv.gz, in any letters."""
+    """Return whether a path ends in .csv or .csv.gz, in any case."""
     return Path(path).name.lower().endswith(SUFFIXES)
 
 
 def read_text(path):
     """
-    Return the decoded content of a plain or gzip file, told apart by their first bytes.
+    Return the text of a plain or gzip file, distinguished by their first bytes.
 
-    Raises ValueError or FileNotFoundError in one sentence.
+    Raises ValueError or FileNotFoundError with a message of one sentence.
     """
     if not path:
         raise ValueError("motion.recording.path is ''; expected the path of a CSV file")
@@ -54,7 +54,7 @@ def read_text(path):
 
 
 def _unpacked(path, size):
-    """Return the bytes in a gzip file, but not those of one that is made to fill the memory."""
+    """Return the content of a gzip file; refuse one that would fill the memory."""
     most = min(LARGEST, max(_FREE, _RATIO * size))
     blocks, count = [], 0
     try:

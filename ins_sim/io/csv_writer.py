@@ -1,4 +1,4 @@
-"""Write CSV files, of which each number gives its bits back, and those that are read here."""
+"""Write CSV files whose numbers are exact to the last bit, as csv_flight and csv_imu read."""
 
 import gzip
 from pathlib import Path
@@ -12,7 +12,7 @@ from .whole_file import write_whole
 
 
 def write_flight(path, poses):
-    """Write RecordedPoses with velocity; what is there is replaced.  Raises OSError."""
+    """Write RecordedPoses with velocity and replace an existing file.  Raises OSError."""
     lon = within_half_turn_deg(poses.lon_deg)
     east, north, up = poses.v_n.T
     values = (poses.lat_deg, lon, poses.height_m,
@@ -21,12 +21,12 @@ def write_flight(path, poses):
 
 
 def write_imu(path, imu):
-    """Write RecordedImu without its orientation; what is there is replaced.  Raises OSError."""
+    """Write a RecordedImu without orientation; replace an existing file.  Raises OSError."""
     _write(path, imu.t_ns, csv_imu.IMU, (*imu.omega.T, *imu.f.T))
 
 
 def write_rows(path, names, blocks):
-    """Write names and blocks of rows, each block being its columns.  Raises OSError."""
+    """Write names and blocks of rows, each block given by its columns.  Raises OSError."""
     with open(path, 'w', encoding='utf-8') as file:
         file.write(','.join(names) + '\n')
         for block in blocks:
@@ -34,7 +34,7 @@ def write_rows(path, names, blocks):
 
 
 def _texts(column):
-    """Return the numbers of a column in the shortest text that gives their bits back."""
+    """Return the numbers of a column as the shortest texts that are exact."""
     return map(repr, column.tolist())
 
 
@@ -43,7 +43,7 @@ def _rows(texts):
 
 
 def _write(path, t_ns, names, values):
-    """Write t_s, exact, and columns."""
+    """Write t_s, exact to the nanosecond, and columns."""
     path = Path(path)
     stamps = (seconds(t).removesuffix(' s') for t in t_ns.tolist())
     lines = [','.join(('t_s', *names)), *_rows([stamps, *map(_texts, values)]), '']

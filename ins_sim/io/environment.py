@@ -1,4 +1,4 @@
-"""imu/mag and imu/pressure: from the truth to messages, live and offline alike."""
+"""Simulate imu/mag and imu/pressure from the truth, both live and offline."""
 
 import math
 
@@ -10,9 +10,9 @@ from .magnetic_field import magnetic_field
 
 def environment_topics(settings):
     """
-    Return the Topics of the sensors that ImuSensorSettings switch on.
+    Return the Topics of the sensors that are enabled in ImuSensorSettings.
 
-    Raises ValueError where the model of the magnetic field is asked for and missing.
+    Raises ValueError if the magnetometer is enabled and its field model is not installed.
     """
     found = ()
     if settings.magnetometer.publish:
@@ -25,10 +25,10 @@ def environment_topics(settings):
 
 class EnvironmentSensors:
     """
-    The magnetometer and the barometer of ImuSensorSettings.
+    Magnetometer and barometer of ImuSensorSettings.
 
-    topics: {Topic: the same with its frame and the variance of its sensor}.  Raises ValueError as
-    ``environment_topics``.
+    The attribute topics maps each Topic to the same Topic with frame and variance of its sensor.
+    Raises ValueError as ``environment_topics``.
     """
 
     def __init__(self, settings):
@@ -41,7 +41,7 @@ class EnvironmentSensors:
                 settings.frames.names())
 
     def reset(self):
-        """Forget which samples have been taken."""
+        """Forget which samples were taken."""
         settings = self._settings
         for topic in environment_topics(settings):
             self._sensors[topic] = Barometer(settings) if topic is topics.IMU_PRESSURE else \
@@ -49,9 +49,9 @@ class EnvironmentSensors:
 
     def read(self, t_ns, r_m, q_mb, v_b):
         """
-        Return [(Topic, run of its message)] of the sensors that are due.
+        Return [(Topic, values of its message)] of the sensors that have a sample at t_ns.
 
-        t_ns: motion time; r_m, q_mb, v_b: pose and velocity of the truth, as of truth/odometry.
+        t_ns is motion time; r_m, q_mb, v_b are true pose and velocity as in truth/odometry.
         """
         found, place = [], None
         for topic, sensor in self._sensors.items():

@@ -1,4 +1,4 @@
-"""A recorded IMU with its reference, from a rosbag2 bag or from CSV files, without ROS."""
+"""Read a recorded IMU and its reference from a rosbag2 bag or CSV files, without ROS."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -22,10 +22,9 @@ TF = 'tf2_msgs/msg/TFMessage'
 
 def read_imu(path, settings):
     """
-    Return the Sources of NavigateSettings in a bag or a CSV file of an IMU.
+    Return the Sources that NavigateSettings select in a bag or a CSV file of an IMU.
 
-    Raises ValueError or OSError in one sentence where the path, a topic or a message is not as
-    expected.
+    Raises ValueError or OSError if the path, a topic or a message cannot be used.
     """
     path = Path(path)
     if not path.exists():
@@ -39,7 +38,7 @@ def read_imu(path, settings):
 
 
 def with_reference(sources, settings):
-    """Return Sources with the reference of the file that NavigateSettings name, if any."""
+    """Return Sources with the reference file of NavigateSettings, if one is given."""
     wanted = settings.reference
     if wanted.path:
         reference, notes = csv_imu.read_reference(wanted.path, wanted.columns,
@@ -65,7 +64,7 @@ def _bag(path, settings):
 
 
 def _reference(bag, fix, velocity, keep_zero, notes):
-    """Return the Reference or None, and why it has no position."""
+    """Return the Reference or None, and the reason if it has no position."""
     position, without = (None, NO_FIXES) if fix is None else _fixes(bag, fix, keep_zero, notes)
     speed = None if velocity is None else _velocities(bag, velocity, notes)
     if position is None and speed is None:
@@ -75,7 +74,7 @@ def _reference(bag, fix, velocity, keep_zero, notes):
 
 
 def _fixes(bag, topic, keep_zero, notes):
-    """Return the SampledTrack of the fixes that are positions, or None and why there is none."""
+    """Return the SampledTrack of the valid fixes, or None and the reason."""
     table = bag.arrays(topic, ('latitude', 'longitude', 'altitude', 'status'))
     if not len(table):
         return None, f'{topic} has no message'
@@ -96,7 +95,7 @@ def _velocities(bag, topic, notes):
 
 
 def _track(t_ns, values):
-    """Return the Track in the order of the stamps, or None."""
+    """Return the Track sorted by stamps, or None."""
     t_ns, values = keep_rising(t_ns, values)
     return SampledTrack(t_ns, values) if len(t_ns) else None
 
@@ -125,7 +124,7 @@ def _odometry(bag, topic, notes):
 
 
 def _static_transforms(bag):
-    """Return {(parent, child): q from child to parent} of every topic named tf_static."""
+    """Return {(parent, child): q from child to parent} of all topics named tf_static."""
     static = {}
     for topic, channel in bag.topics.items():
         if channel.type_name == TF and topic.rpartition('/')[2] == 'tf_static':

@@ -1,9 +1,8 @@
 """
-The imu.yaml of Kalibr, of the instrument that an IMU is simulated with.
+Write the imu.yaml of Kalibr for the simulated IMU.
 
-Kalibr knows two processes of a channel, white noise and a random walk of the bias, each by its
-density in SI units; it refuses zero.  docs/how_to/recipes/kalibr.md says what becomes of the
-others.
+Kalibr models white noise and a random walk of the bias, each given by its density in SI units,
+which must not be zero.  For the other errors see docs/how_to/recipes/kalibr.md.
 """
 
 import math
@@ -12,9 +11,9 @@ from ins_sim.core.sensors.imu.triad_model import FLICKER_FLOOR, triad_model
 from ins_sim.settings.shown import listed
 from .whole_file import check_file, write_whole
 
-# About the length of a recording for Kalibr, s: over it a walk has to grow as the bias does.
+# Typical length of a recording for Kalibr, s, over which walk and bias must agree.
 RECORDING_S = 60.0
-# A Gauss-Markov process without correlation time is a walk by its sigma in an hour, s.
+# A Gauss-Markov process of infinite correlation time walks by its sigma in this time, s.
 HOUR_S = 3600.0
 TRIADS = {'gyroscope': ('gyro', 'rad/s'), 'accelerometer': ('accelerometer', 'm/s^2')}
 FIELDS = (('noise_density', 'white', '{}/sqrt(Hz)'),
@@ -23,11 +22,11 @@ FIELDS = (('noise_density', 'white', '{}/sqrt(Hz)'),
 
 def bias_walk(model):
     """
-    Return the densities by axis of the random walks nearest to the bias of a TriadModel.
+    Return the densities, by axis, of the random walks that approximate the bias of a TriadModel.
 
-    They are in U/s/sqrt(Hz), U of the model.  Over RECORDING_S they have the Allan deviation of
-    walk and flicker noise together, K sqrt(t/3) and 0.664 B; a Gauss-Markov process adds the walk
-    that it begins as.
+    The unit is U/s/sqrt(Hz), where U is the unit of the model.  At RECORDING_S their Allan
+    deviation equals that of random walk, K sqrt(t/3), and flicker noise, 0.664 B, together; a
+    Gauss-Markov process contributes the random walk of its initial growth.
     """
     found = []
     for k in range(3):
@@ -40,11 +39,19 @@ def bias_walk(model):
 
 def export_kalibr(path, settings, topic, force=False):
     """
-    Write an imu.yaml; return sentences on what was written and which axes differ.
+    Write an imu.yaml; return sentences about its content and about axes that differ.
 
-    settings: ImuSensorSettings; topic: of the Imu in the bags; force: replace a file that is
-    there.  Raises ValueError or OSError, one sentence, where the instrument has no noise, or
-    path will not do.
+    Parameters
+    ----------
+    path : file to write
+    settings : ImuSensorSettings
+    topic : topic of the Imu messages in the bags
+    force : replace an existing file
+
+    Raises
+    ------
+    ValueError, OSError
+        If the instrument has no noise, or the file cannot be written.
     """
     check_file(path, force)
     if settings.gyro.model != 'ideal':

@@ -1,4 +1,4 @@
-"""The magnetic field of the Earth and its declination: the World Magnetic Model, by pygeomag."""
+"""Magnetic field of the Earth and its declination by the World Magnetic Model (pygeomag)."""
 
 from functools import lru_cache
 import math
@@ -6,16 +6,17 @@ import math
 from ins_sim.core.numerics import elementary
 
 NT = 1e-9
-# The model is WMM2025, which holds for these years.
+# Years for which WMM2025 is valid.
 FIRST_YEAR, LAST_YEAR = 2025.0, 2030.0
 _YEAR_NS = 365.2425 * 86400e9
 
 
 def magnetic_field(year):
     """
-    Return a function (lat rad, lon rad, height m) -> field in East, North, Up, T.
+    Return a function of latitude (rad), longitude (rad), height (m) that gives the field.
 
-    year: decimal year.  Raises ValueError, one sentence, where pygeomag is missing.
+    The field is in East, North, Up, T, at the decimal year.  Raises ValueError if pygeomag is not
+    installed.
     """
     model = _model()
 
@@ -29,10 +30,10 @@ def magnetic_field(year):
 
 def declination_source(initial):
     """
-    Return a function (stamp ns, (lat rad, lon rad, height m)) -> declination, rad, and a text.
+    Return a function of stamp (ns) and position (rad, rad, m) that gives the declination.
 
-    initial: settings of the start. Where the model cannot tell, it is taken for zero, which the
-    text says.
+    It returns the declination, rad, and a text for messages. If the model is not available, the
+    declination is zero and the text says so. initial holds the settings of the start.
     """
     def given(t_ns, place):
         return math.radians(initial.declination_deg), 'as given'

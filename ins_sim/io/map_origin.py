@@ -1,4 +1,4 @@
-"""The origin of the map frame of an odometry in a bag, found from a NavSatFix beside it."""
+"""Find the origin of the map frame of an odometry in a bag from a NavSatFix of the same bag."""
 
 import math
 
@@ -12,9 +12,9 @@ from ins_sim.messages import topics
 from ins_sim.settings.place import Datum
 
 ODOMETRY, FIX = 'odometry', 'fix'
-# Pairs of an odometry and the NavSatFix of the same solution that the nodes publish.
+# Odometry and NavSatFix topics of the same solution, as the nodes publish them.
 PAIRS = tuple(f'{room}/' for room in ('truth', 'ins', 'aided'))
-# The origin is a place: what it may move by while the vehicle travels, m.
+# Largest movement of the computed origin during the recording, m.
 STEADY_M = 1.0
 ROUNDS = 100
 
@@ -23,10 +23,19 @@ def map_origin(bag, name, given):
     """
     Return the Datum of the frame of an Odometry topic, and a sentence about it.
 
-    bag: BagReader; name: of the topic; given: Datum of the settings, which counts as given where
-    it is not the default one.  The origin is where a NavSatFix of the same stamps puts it: that of
-    the same solution, or of another one in the same namespace; without such a fix it is the given
-    datum.  Raises ValueError if the bag has no such fix and the datum is the default one.
+    The origin is computed from NavSatFix messages with the same stamps, of the same solution or of
+    another one in the same namespace. Without such messages the given datum is used.
+
+    Parameters
+    ----------
+    bag : BagReader
+    name : name of the odometry topic
+    given : Datum of the settings; the default one counts as not given
+
+    Raises
+    ------
+    ValueError
+        If the bag has no such NavSatFix and no datum is given.
     """
     for odometry, fix in _pairs(bag, name):
         origins = _origins(bag, odometry, fix)
@@ -51,14 +60,14 @@ def map_origin(bag, name, given):
 
 
 def given_origin(bag, name, given):
-    """Return the given Datum as that of an Odometry topic, and a sentence about it."""
+    """Return the given Datum as origin of an Odometry topic, and a sentence about it."""
     return given, (f'{bag.path}: the origin of the frame of {name} is taken to be the datum '
                    f'given, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
                    f'{given.height_m:.6g} m')
 
 
 def _pairs(bag, name):
-    """Yield the names of an Odometry and a NavSatFix that tell the origin, the best first."""
+    """Yield pairs of Odometry and NavSatFix topics that determine the origin, the best first."""
     known = {topic: channel.type_name for topic, channel in bag.topics.items()}
     own = f'{name.removesuffix(ODOMETRY)}{FIX}'
     space = next((name.removesuffix(pair + ODOMETRY) for pair in PAIRS
@@ -74,7 +83,7 @@ def _pairs(bag, name):
 
 
 def _origins(bag, odometry, fix):
-    """Return the origins (lat, lon, height) at the first, middle and last common stamp."""
+    """Return the origins (lat, lon, height) computed at the first, middle and last stamp."""
     poses = bag.arrays(odometry, ('position',))
     fixes = bag.arrays(fix, ('latitude', 'longitude', 'altitude', 'status'))
     fixes = fixes[(fixes['status'] >= 0) & np.isfinite(fixes['altitude'])
@@ -92,7 +101,7 @@ def _origins(bag, odometry, fix):
 
 
 def _origin(place, r_m):
-    """Return lat, lon, height of the origin of the frame in which a place has coordinates r_m."""
+    """Return the origin (lat, lon, height) of the frame in which a place has coordinates r_m."""
     x = _ecef(*place)
     origin = place
     for _ in range(ROUNDS):

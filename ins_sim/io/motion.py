@@ -1,4 +1,4 @@
-"""The motion that settings name: in closed form, or read from a CSV file or a bag."""
+"""Create the motion of the settings, in closed form or from a CSV file or a bag."""
 
 import warnings
 
@@ -12,9 +12,8 @@ def read_motion(settings) -> Motion:
     """
     Return the motion of MotionGeneratorSettings or ImuSensorSettings.
 
-    What was assumed of a recording, cut, smoothed or found noisy is given as warnings, a sentence
-    each.  Raises ValueError or OSError in one sentence on settings or a recording that cannot be
-    used.
+    Assumptions, cuts, smoothing and noise of a recording are reported as warnings.  Raises
+    ValueError or OSError if the settings or the recording cannot be used.
     """
     motion = settings.motion
     if motion.kind != 'recording':

@@ -1,20 +1,20 @@
-"""Positions that somebody recorded: which of them are places on Earth, and why the others not."""
+"""Select the valid ones of recorded positions, and count the others by reason."""
 
 import numpy as np
 
-# What receivers and drivers put where they have no position (sensor_msgs/NavSatStatus: -1 no fix,
+# Status that receivers and drivers give without a position (sensor_msgs/NavSatStatus: -1 no fix,
 # -2 unknown).
 UNKNOWN_STATUS = -2
-# Beyond any vehicle and any frame of odometry: bits that fell, or another unit.
+# Larger than in any vehicle or odometry frame; such values are corrupt or in another unit.
 MOST_M_S, MOST_DEG, MOST_M = 1e5, 1e6, 1e9
 
 
 def usable(lat_deg, lon_deg, height_m, status=None, keep_zero=False):
     """
-    Return which positions can be used, (n,) bool, and {reason: how many were dropped for it}.
+    Return which positions are valid, (n,) bool, and {reason: number of invalid ones}.
 
-    lat_deg, lon_deg, height_m, status (n,); keep_zero: whether what lies at latitude 0,
-    longitude 0 to the last bit, where many receivers are before their first fix, is one.
+    lat_deg, lon_deg, height_m and status have the shape (n,). keep_zero accepts positions at
+    exactly latitude 0, longitude 0, which many receivers report before their first fix.
     """
     good, dropped = np.ones(len(lat_deg), dtype=bool), {}
 
@@ -39,7 +39,7 @@ def usable(lat_deg, lon_deg, height_m, status=None, keep_zero=False):
 
 
 def plausible(name, values, most, unit, notes):
-    """Return values (n,) or (n, k) with NaN for the rows beyond a bound, which are noted."""
+    """Return values (n,) or (n, k) with NaN in rows beyond a bound, and add a note."""
     size = np.abs(values).reshape(len(values), -1).max(axis=1, initial=0.0)
     # Comparisons with NaN are false.
     bad = size > most
@@ -51,11 +51,11 @@ def plausible(name, values, most, unit, notes):
 
 
 def sentence(name, what, count, dropped):
-    """Return what was dropped and why: '/fix: 5 of 16 fixes dropped: 5 of unknown status'."""
+    """Return a sentence such as '/fix: 5 of 16 fixes dropped: 5 of unknown status'."""
     reasons = ', '.join(f'{n} {reason}' for reason, n in dropped.items())
     return f'{name}: {sum(dropped.values())} of {count} {what} dropped: {reasons}'
 
 
 def track(lat_deg, lon_deg, height_m):
-    """Return (n, 3) latitude and longitude, rad, the latter continuous, and height, m."""
+    """Return (n, 3) latitude, rad, unwrapped longitude, rad, and height, m."""
     return np.stack([np.radians(lat_deg), np.unwrap(np.radians(lon_deg)), height_m], axis=-1)

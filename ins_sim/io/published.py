@@ -1,4 +1,4 @@
-"""Reading what nodes publish back from a bag, without ROS."""
+"""Read messages of the nodes from a bag, without ROS."""
 
 import numpy as np
 
@@ -11,9 +11,9 @@ from .topic_choice import choose_topic
 
 def read_errors(path, namespace=''):
     """
-    Return the NavErrors of ins/error/* in a bag; t_ns are the stamps.
+    Return the NavErrors of the four ``ins/error`` topics of a bag; t_ns holds the stamps.
 
-    Raises ValueError if a topic is missing, or the four do not have the same stamps.
+    Raises ValueError if a topic is missing, or if their stamps differ.
     """
     prefix = f'/{namespace.strip("/")}/' if namespace else '/'
     names = [prefix + topic.name for topic in topics.ERRORS]
@@ -33,9 +33,8 @@ def read_imu(path, topic=None):
     """
     Return the ImuSamples of the sensor_msgs/msg/Imu messages of a bag, in the order recorded.
 
-    topic: which, or None for the only one there is; t_ns are the stamps of the headers, omega and
-    f angular velocity and linear acceleration.  Raises ValueError where there is no such topic, or
-    more than one to choose from.
+    topic is the name, or None for the only one. t_ns holds the header stamps, omega and f angular
+    velocity and linear acceleration.  Raises ValueError if there is no such topic, or several.
     """
     with open_bag(path) as bag:
         topic = choose_topic(bag, [topics.IMU], 'auto' if topic is None else topic, '--topic',

@@ -1,4 +1,4 @@
-"""An offline run as a bag: the topics that the nodes would publish, at their own stamps."""
+"""Write an offline run as a bag with the messages that the nodes would publish."""
 
 from bisect import bisect_left, bisect_right
 
@@ -22,16 +22,16 @@ from .simulated_topics.aiding import AidingSource, message_columns
 from .simulated_topics.covariance import CovarianceSource
 from .simulated_topics.transforms import SimulatedTransforms
 
-# samples of the generator that are in memory as messages at once
+# Number of generator samples that are converted to messages at a time.
 WINDOW = 4096
 CLOCK_HZ = 100.0
 
 
 def published_topics(settings, aided=False):
     """
-    Return the Topics that the nodes of Settings publish, in the order of equal stamps.
+    Return the Topics that the nodes publish, in the order of messages with equal stamps.
 
-    aided: velocity_meter, gnss and aided_navigator too.
+    aided includes velocity_meter, gnss and aided_navigator.
     """
     data = (topics.IMU_DATA,) if settings.strapdown.imu_data else ()
     clock = (topics.CLOCK_TOPIC,) if settings.motion_generator.publish_clock else ()
@@ -46,13 +46,12 @@ def published_topics(settings, aided=False):
 
 def select_topics(settings, names, aided=False):
     """
-    Return the Topics of these names, in the order of ``published_topics``; all where names is
-    None.
+    Return the Topics with the given names, in the order of ``published_topics``; None for all.
 
-    aided: as of ``published_topics``.
+    For aided see ``published_topics``.
 
-    Raises ValueError, naming the nearest one, for a topic that the nodes do not publish, and where
-    TF waits for an aided solution that there is not.
+    Raises ValueError if the nodes do not publish a topic (the message gives the nearest one), or
+    if tf.source is aided without an aided solution.
     """
     if settings.motion_generator.tf.source == 'aided' and not aided:
         raise ValueError('tf.source is aided without velocity_meter, gnss and aided_navigator; '
@@ -71,13 +70,20 @@ def select_topics(settings, names, aided=False):
 def write_bag(path, settings, run, chosen, storage='mcap', compression='none', replace=False,
               progress=None, aided=None, motion=None, steered=None):
     """
-    Write a SimulationResult into a bag that appears only if it is whole; return {topic: message
-    count}.
+    Write a SimulationResult into a bag and return {topic: number of messages}.
 
-    settings: SimulationSettings; chosen: Topics of ``select_topics``; the rest as of BagWriter;
-    progress: called with the fraction done; aided: AidedSimulationSettings and the AidedResult on
-    this run, or None; motion: that of the run, None for the one of the settings; steered: the
-    GuidedResult of a guided motion.  A message is logged at its own stamp.
+    The bag is created only if it is complete. A message is logged at its stamp.
+
+    Parameters
+    ----------
+    path, storage, compression, replace : see BagWriter
+    settings : SimulationSettings
+    run : SimulationResult
+    chosen : Topics of ``select_topics``
+    progress : called with the fraction done
+    aided : AidedSimulationSettings and AidedResult of this run, or None
+    motion : Motion of the run; None for that of the settings
+    steered : GuidedResult of a guided motion, or None
     """
     aiding, generator = None, settings.motion_generator
     epoch_ns = generator.time.epoch_ns(round(generator.start_s * SECOND), live=False)
@@ -114,7 +120,7 @@ def _as_published(topic, settings, aiding):
 
 
 class _Source:
-    """The records of a run, and the truth at every sample of the generator, by windows."""
+    """Messages of a run and the truth at every generator sample, window by window."""
 
     def __init__(self, settings, run, aiding, transforms, epoch_ns, motion, commands):
         generator = settings.motion_generator
@@ -143,7 +149,7 @@ class _Source:
         """Return {Topic: (stamps_ns, values)} from sample first of the generator to stop."""
         k = np.arange(first, stop, dtype=np.int64)
         truth = self._motion.at(self._first_ns + k * self._dt_ns)
-        # whatever is behind the last sample belongs to the last window
+        # Everything after the last sample belongs to the last window.
         last = stop == self.count
         begin = int(truth.t_ns[0]) if first else -np.inf
         end = np.inf if last else self._first_ns + stop * self._dt_ns
@@ -162,7 +168,7 @@ class _Source:
         if self._parity is not None:
             blocks[topics.IMU_PARITY] = imu.t_ns, self._parity[sensed]
         if self._commands is not None:
-            # the last sample needs no further command
+            # The last sample needs no further command.
             until = truth.t_ns[-1] if last else end
             commands = self._commands[_between(self._commands.t_ns, begin, until)]
             blocks[topics.GUIDANCE_COMMAND] = commands.t_ns, convert.command_block(commands)
@@ -177,7 +183,7 @@ class _Source:
         return stamped
 
     def _around(self, truth, odometry):
-        """Return {Topic: (instants, values)} of magnetometer and barometer, by the messages."""
+        """Return {Topic: (instants, values)} of magnetometer and barometer."""
         found = {topic: ([], []) for topic in self._environment.topics}
         if found:
             for t_ns, row in zip(truth.t_ns.tolist(), odometry.tolist()):
@@ -200,12 +206,12 @@ class _Source:
 
 
 def _between(t_ns, begin, end):
-    """Return the slice of the instants from begin to before end."""
+    """Return the slice of the instants in [begin, end)."""
     return slice(bisect_left(t_ns, begin), bisect_left(t_ns, end))
 
 
 def _readings_at(t_ns, instants_ns, readings):
-    """Return the readings (n, 3) at instants t_ns, zero where there is none."""
+    """Return the readings (n, 3) at the instants t_ns, zero if there is no sample."""
     if not len(instants_ns):
         return np.zeros((len(t_ns), 3))
     k = np.minimum(np.searchsorted(instants_ns, t_ns), len(instants_ns) - 1)

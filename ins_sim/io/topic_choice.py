@@ -1,4 +1,4 @@
-"""Which topic of a bag is meant, said in one sentence where there is none or more than one."""
+"""Choose a topic of a bag by name or type."""
 
 from ins_sim.settings.shown import listed, shown
 from ins_sim.settings.suggest import nearest_name
@@ -6,12 +6,22 @@ from ins_sim.settings.suggest import nearest_name
 
 def choose_topic(bag, types, wanted, key, ending='', needed=False):
     """
-    Return the name of the topic of one of the types that is meant, or None.
+    Return the name of a topic of one of the types, or None.
 
-    bag: BagReader; wanted: the name of one, 'auto' for the only one whose name ends as given, or
-    'none' where none is needed; key: what wanted is the value of.  Raises ValueError where 'auto'
-    finds more than one, or none though one is needed, and for a name of no topic, or of one of
-    another type.
+    Parameters
+    ----------
+    bag : BagReader
+    types : accepted message types
+    wanted : name of the topic, 'auto' for the only one whose name ends in ending, or 'none'
+    key : parameter that gives wanted, for messages
+    ending : end of the name for 'auto'
+    needed : whether a topic must be found
+
+    Raises
+    ------
+    ValueError
+        If 'auto' finds several topics, or none though one is needed; if there is no topic of this
+        name, or it has another type.
     """
     if wanted == 'none' and not needed:
         return None
@@ -39,5 +49,5 @@ def choose_topic(bag, types, wanted, key, ending='', needed=False):
 
 
 def short_names(types):
-    """Return type names as people write them: sensor_msgs/Imu or ..."""
+    """Return type names in the short form for messages: sensor_msgs/Imu or ..."""
     return ' or '.join(t.replace('/msg/', '/') for t in types)

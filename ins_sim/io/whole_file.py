@@ -1,11 +1,11 @@
-"""Files that a command writes: whole or not at all, and nobody else's."""
+"""Write files completely or not at all."""
 
 import os
 from pathlib import Path
 
 
 def check_file(path, force):
-    """Raise ValueError, one sentence, where a file is there and force does not replace it."""
+    """Raise ValueError if the file exists and force does not allow to replace it."""
     path = Path(path)
     if path.exists() and not force:
         raise ValueError(f'{path} exists; expected a new file (or --force)')
@@ -14,10 +14,10 @@ def check_file(path, force):
 
 
 def write_whole(path, data):
-    """Write bytes; what is there is replaced.  Raises OSError."""
+    """Write bytes and replace an existing file.  Raises OSError."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # a name of this process: of two that write at once the last one's file stands, whole
+    # The name contains the process id, so that of two writers the last one wins with a whole file.
     part = path.with_name(f'.{path.name}.{os.getpid()}.part')
     try:
         part.write_bytes(data)

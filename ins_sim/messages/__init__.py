@@ -1,5 +1,5 @@
 """
-Messages of the topics as CDR bytes, without ROS: layouts, topics, and records as messages.
+Pack and read the messages of all topics as CDR bytes, without ROS.
 
 Start with ``topics`` (the table of topics) and ``cdr`` (the layouts).
 """

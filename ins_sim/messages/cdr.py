@@ -1,10 +1,10 @@
 """
-Messages as bytes: the CDR layouts of the messages used here, packed and read without ROS.
+Pack and read messages as bytes in CDR (Common Data Representation), without ROS.
 
-Every layout is a stamp, strings, and doubles in one run, in a NavSatFix between a few small
-integers.  CDR aligns from behind its encapsulation header of four bytes.  The padding is zero, so
-that equal messages are equal bytes.  Source: OMG Data Distribution Service Interoperability Wire
-Protocol 2.2, section 10; the ROS 2 Jazzy message definitions.
+Every layout used here consists of a stamp, strings, and one sequence of doubles; a NavSatFix also
+has a few small integers.  CDR aligns relative to the end of its encapsulation header of four
+bytes.  The padding is zero, so that equal messages are equal bytes.  Source: OMG Data Distribution
+Service Interoperability Wire Protocol 2.2, section 10; the ROS 2 Jazzy message definitions.
 """
 
 from dataclasses import dataclass
@@ -21,12 +21,15 @@ STAMP_END_NS = 2**31 * SECOND
 @dataclass(frozen=True)
 class Layout:
     """
-    What a message type holds, in the order of the bytes.
+    Content of a message type, in the order of the bytes.
 
-    strings: how many follow the stamp; doubles: how many follow; runs: slices of the doubles
-    that a writer takes, the others stay constant; fix: whether it is a NavSatFix, with a byte and
-    a 16-bit number (NavSatStatus: status, service) before the doubles and a byte
-    (position_covariance_type) behind them.
+    Attributes
+    ----------
+    strings : number of strings after the stamp
+    doubles : number of doubles after the strings
+    runs : slices of the doubles that a writer sets with each message; the others are constant
+    fix : whether it is a NavSatFix, with status and service (8 and 16 bits) before the doubles and
+        position_covariance_type (8 bits) after them
     """
 
     strings: int
@@ -51,19 +54,25 @@ LAYOUTS = {
 
 
 def aligned_offset(offset, size):
-    """Return the first multiple of size at or behind an offset."""
+    """Return the first multiple of size that is not less than an offset."""
     return (offset + size - 1) // size * size
 
 
 class Writer:
     """
-    Packs messages of one type whose strings and constants are fixed once.
+    Packs messages of one type with fixed strings and constants.
 
-    strings: frame ids; runs: slices (start, stop) of the doubles given with each message, by
-    default those of the layout; constants: {index: value} of the other doubles, else zero;
-    numbers: status, service and position_covariance_type of a NavSatFix, by default a fix, unknown
-    and unknown.  ``dtype`` is the NumPy dtype of a whole message: 'sec', 'nanosec' and 'values0',
-    'values1'..., and of a NavSatFix 'status' and 'position_covariance_type'.
+    ``dtype`` is the NumPy dtype of a whole message, with the fields 'sec', 'nanosec', 'values0',
+    'values1', ... and, for a NavSatFix, 'status' and 'position_covariance_type'.
+
+    Parameters
+    ----------
+    type_name : message type
+    strings : frame ids
+    runs : slices (start, stop) of the doubles given with each message; default: of the layout
+    constants : {index: value} of other doubles; the rest is zero
+    numbers : status, service and position_covariance_type of a NavSatFix; default: fix, unknown,
+        unknown
     """
 
     def __init__(self, type_name, *strings, runs=None, constants=None, numbers=(0, 0, 0)):
@@ -107,16 +116,16 @@ class Writer:
 
     def pack(self, stamp_ns, *values):
         """
-        Return the bytes of one message; values: one sequence of floats for each run.
+        Return the bytes of one message; values are one sequence of floats for each run.
 
-        Raises ValueError where one of them is not finite.
+        Raises ValueError if a value is not finite.
         """
         buffer, total = self._template, 0.0
         self._stamp(buffer, 4, *divmod(stamp_ns, SECOND))
         for (pack_into, offset), run in zip(self._slots, values):
             pack_into(buffer, offset, *run)
             total += sum(run)
-        # of an infinity the difference is no number, and of no number it is none either
+        # The difference of an infinity, or of a NaN, to itself is NaN.
         if total - total != 0.0 and not all(math.isfinite(x) for run in values for x in run):
             raise ValueError(f'{self._name} of {stamp_ns / SECOND:.9f} s would hold {values}; '
                              'expected finite numbers; it is not sent')
@@ -126,7 +135,7 @@ class Writer:
         """
         Return the messages of stamps (n,) and values (n, k) as an array of ``dtype``.
 
-        Raises ValueError for a stamp that a ROS message cannot hold.
+        Raises ValueError if a stamp does not fit into a ROS message.
         """
         stamps_ns = np.asarray(stamps_ns, dtype=np.int64)
         if len(stamps_ns) and not -STAMP_END_NS <= stamps_ns.min() <= stamps_ns.max() < \
@@ -151,7 +160,7 @@ class Writer:
 
 
 def stamp_of(data):
-    """Return the stamp at the head of a message, ns; None if it is too short or big-endian."""
+    """Return the stamp of a message, ns; None if it is too short or big-endian."""
     if len(data) < 12 or data[1] != 1:
         return None
     sec, nanosec = _STAMP(data, 4)
@@ -159,16 +168,16 @@ def stamp_of(data):
 
 
 def _middle(offset, layout):
-    """Return the offset behind the status of a fix, a byte and a 16-bit number."""
+    """Return the offset after status and service of a fix."""
     return aligned_offset(offset + 1, 2) + 2 if layout.fix else offset
 
 
 class Reader:
     """
-    Reads messages of one type, whatever the length of their strings.
+    Reads messages of one type with strings of any length.
 
-    runs: slices (start, stop) of the doubles to return, each as a tuple; by default one tuple
-    of all of them.
+    runs are slices (start, stop) of the doubles, each of which is returned as a tuple; by default
+    one tuple with all doubles.
     """
 
     def __init__(self, type_name, runs=None):
@@ -178,7 +187,7 @@ class Reader:
         self._known = {}
 
     def read(self, buffer):
-        """Return stamp_ns and the doubles of each run as tuples; ValueError on a bad buffer."""
+        """Return stamp_ns and a tuple for each run; raise ValueError on an invalid message."""
         try:
             if buffer[:2] != b'\x00\x01':
                 raise ValueError(f'{self._name} begins with {bytes(buffer[:2])!r}; expected the '
@@ -225,7 +234,7 @@ class Reader:
         return first, _LENGTH(buffer, aligned_offset(16 + first, 4))[0]
 
     def _find(self, key):
-        """Return the slots of the doubles for these string lengths and remember them."""
+        """Find and store the unpacking of the doubles for these string lengths."""
         offset = 8
         if self._layout.strings:
             for length in key if isinstance(key, tuple) else (key,):
@@ -234,7 +243,7 @@ class Reader:
         first = 4 + (aligned_offset(offset, 8) if self._layout.doubles else offset)
         slots = []
         for start, stop in self._runs:
-            # the skipped rest is unpacked too, so that a message cut anywhere is found short
+            # The unused rest is unpacked too, so that any truncated message is detected.
             skip = 8 * (self._layout.doubles - stop) + self._layout.fix
             unpack = struct.Struct(f'<{stop - start}d{skip}x').unpack_from
             slots.append((unpack, first + 8 * start))

@@ -1,7 +1,8 @@
 """
-Messages as columns: the named fields of many messages in one NumPy structured array.
+Read the fields of many messages into one NumPy structured array.
 
-The names are those of the ROS messages.  The counterpart for writing is ``cdr.Writer.block``.
+The field names are those of the ROS messages.  The counterpart for writing is
+``cdr.Writer.block``.
 """
 
 from functools import lru_cache
@@ -13,7 +14,7 @@ from .cdr import aligned_offset, LAYOUTS, SECOND
 _POSE = (('position', 3), ('orientation', 4), ('pose_covariance', 36))
 _TWIST = (('linear', 3), ('angular', 3), ('twist_covariance', 36))
 
-# the doubles of each layout in order, with how many of them a field has
+# Fields of the doubles of each layout in order, with the number of doubles of each field.
 DOUBLES = {
     'std_msgs/msg/Header': (),
     'rosgraph_msgs/msg/Clock': (),
@@ -43,9 +44,9 @@ _LITTLE_ENDIAN = 0x0100
 @lru_cache(maxsize=1000)
 def message_dtype(type_name, lengths=None):
     """
-    Return the dtype of a whole message whose strings take these bytes, with their last zero.
+    Return the dtype of a message whose strings have these lengths, terminating zero included.
 
-    It has the doubles by name and, in NavSatFix, 'status', 'service' and
+    Its fields are the doubles by name and, for NavSatFix, 'status', 'service' and
     'position_covariance_type'.
     """
     layout = LAYOUTS[type_name]
@@ -57,7 +58,7 @@ def message_dtype(type_name, lengths=None):
         small = [('status', '<i1', offset), ('service', '<u2', aligned_offset(offset + 1, 2))]
         offset = aligned_offset(offset + 1, 2) + 2
     if layout.doubles:
-        # CDR counts from behind the encapsulation, of four bytes
+        # CDR offsets count from the end of the encapsulation header of four bytes.
         offset = 4 + aligned_offset(offset - 4, 8)
     for name, width in DOUBLES[type_name]:
         columns.append((name, '<f8' if width == 1 else ('<f8', (width,)), offset))
@@ -75,7 +76,7 @@ def column_dtype(type_name, fields=None):
     """
     Return the dtype of ``read_columns``: 'log_ns', 'stamp_ns' and the fields, by default all.
 
-    Raises ValueError for a type without a layout and for an unknown field.
+    Raises ValueError if the type has no layout or a field is unknown.
     """
     if type_name not in LAYOUTS:
         raise ValueError(f'messages of type {type_name} cannot be read into arrays; expected '
@@ -91,11 +92,23 @@ def column_dtype(type_name, fields=None):
 
 def read_columns(type_name, data, starts, sizes, out):
     """
-    Read messages into an array of ``column_dtype``, but for its 'log_ns'.
+    Read messages into an array of ``column_dtype``, except its 'log_ns'.
 
-    data: bytes as uint8; starts and sizes (n,) int64: where in data the messages are; out (n,).
-    Return how many stamps have nanosec of a second or more. Raises ValueError for a message that
-    is too short or no little-endian CDR.
+    Parameters
+    ----------
+    type_name : message type
+    data : uint8 array with the bytes of the messages
+    starts, sizes : (n,) int64, position and size of each message in data
+    out : (n,) array of ``column_dtype`` to fill
+
+    Returns
+    -------
+    number of stamps whose nanosec is a second or more
+
+    Raises
+    ------
+    ValueError
+        If a message is too short or not little-endian CDR.
     """
     odd = 0
     if not len(starts):
@@ -116,7 +129,7 @@ def read_columns(type_name, data, starts, sizes, out):
 
 
 def count_strings(type_name, data, starts, sizes):
-    """Return {the strings (frame ids) of a message: how many have them}, as they appear."""
+    """Return {strings (frame ids): number of messages that have them}, in order of appearance."""
     found = {}
     if not len(starts):
         return {}
@@ -144,7 +157,7 @@ def count_strings(type_name, data, starts, sizes):
 
 
 class _Messages:
-    """The same bytes of many messages as opaque elements: (n,) of some V type."""
+    """Access to the same bytes of many messages, as (n,) arrays of a V dtype."""
 
     def __init__(self, data, starts):
         self._data, self._starts = data, starts
@@ -152,7 +165,7 @@ class _Messages:
         self._regular = bool((np.diff(starts) == self._step).all())
 
     def look(self, offset, size):
-        """Return size bytes of each message, as a view where they lie at regular steps."""
+        """Return size bytes of each message; a view if the messages lie at regular steps."""
         if self._regular:
             return np.ndarray(len(self._starts), f'V{size}', self._data,
                               int(self._starts[0]) + offset, (self._step,))
@@ -160,13 +173,13 @@ class _Messages:
         return windows[self._starts + offset]
 
     def take(self, offset, size):
-        """Return a copy that may be viewed as another dtype of this size."""
+        """Return a copy that can be viewed as another dtype of this size."""
         return np.ascontiguousarray(self.look(offset, size))
 
 
 @lru_cache(maxsize=1000)
 def _runs(whole, target):
-    """Return (offset in the message, dtype of the same bytes in target, size) of each run."""
+    """Return (offset in the message, dtype in target, size) of each contiguous group of fields."""
     runs = []
     for name in target.names[2:]:
         dtype, at = whole.fields[name]
@@ -180,7 +193,7 @@ def _runs(whole, target):
 
 
 def _by_lengths(type_name, data, starts, sizes):
-    """Yield (rows, lengths of the strings) of the messages whose strings are equally long."""
+    """Yield (rows, string lengths) for each group of messages with equal string lengths."""
     layout = LAYOUTS[type_name]
     everything = slice(None)
     _check_sizes(type_name, sizes, _HEAD.itemsize)

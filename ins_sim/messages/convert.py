@@ -1,8 +1,8 @@
 """
-Records and messages: which quantity is which double of which message.
+Convert records to the doubles of messages.
 
-Blocks are arrays of one row a message, in the order of the writer's runs; the ``..._one``
-functions give the runs of a single message as tuples of floats.
+Blocks are arrays with one row per message, in the order of the runs of the writer; the
+functions ``..._one`` return the runs of a single message as tuples of floats.
 """
 
 import math
@@ -14,12 +14,12 @@ from ins_sim.core.attitude.angles import within_half_turn_deg
 from ins_sim.core.attitude.matrix import dcm_of, turned_back
 from . import topics
 
-# of what is published on aided/sigma/*
+# Number of standard deviations published on aided/sigma/*.
 SIGMAS = 3.0
 
 
 def truth_blocks(frame, truth):
-    """Return {Topic: values (n, k)} of a Truth record; frame: MapFrame."""
+    """Return {Topic: values (n, k)} of a Truth record; frame is a MapFrame."""
     r_m, q_mb, v_b = frame.pose(truth.lat, truth.lon, truth.height, truth.v_n, truth.q_nb)
     return {
         topics.TRUTH_ODOMETRY: np.concatenate(
@@ -46,8 +46,8 @@ def state_blocks(frame, states, imu, known):
     """
     Return {Topic: values} of NavStates.
 
-    imu: ImuSamples of the same stamps, from whose rates the angular velocity of the odometry is
-    that relative to the Earth; known: PublishedCovariance of arrays, of each state.
+    imu holds the ImuSamples of the same stamps, from which the angular velocity relative to the
+    Earth is computed; known is a PublishedCovariance with arrays for all states.
     """
     r_m, q_mb, v_b = frame.pose(states.lat, states.lon, states.height, states.v_n, states.q_nb)
     velocity = turned_back(dcm_of(np.moveaxis(states.q_nb, -1, 0)), known.velocity.T)
@@ -87,8 +87,7 @@ def ins_odometry_one(frame, solution, omega, known):
     """
     Return the runs of ins/odometry.
 
-    solution: lat, lon, height, v_n, q_nb; omega: the reading of the gyros; known:
-    PublishedCovariance.
+    solution is lat, lon, height, v_n, q_nb; omega the gyro reading; known a PublishedCovariance.
     """
     pose, twist = odometry_one(frame, solution, omega)
     return (pose, known.pose, twist,
@@ -96,13 +95,13 @@ def ins_odometry_one(frame, solution, omega, known):
 
 
 def orientation_one(pose, known):
-    """Return the runs of the orientation of imu/data: of the pose of ins/odometry."""
+    """Return orientation and covariance of imu/data, from the pose of ins/odometry."""
     c = known.pose
     return pose[3:], (*c[21:24], *c[27:30], *c[33:36])
 
 
 def odometry_one(frame, solution, omega):
-    """Return pose and twist of an odometry: of a solution and a reading of the gyros."""
+    """Return pose and twist of an odometry, from a solution and a gyro reading."""
     r_m, q_mb, v_b = frame.pose_one(*solution)
     turn = quaternion.rotate_back(q_mb, frame.omega_ie_m)
     return (*r_m, *q_mb), (*v_b, omega[0] - turn[0], omega[1] - turn[1], omega[2] - turn[2])
@@ -120,9 +119,9 @@ def aided_odometry_one(frame, solution, omega, sigmas, rate_variance):
     """
     Return the runs of aided/odometry, pose and twist each followed by its covariance.
 
-    sigmas: of position (m), velocity (m/s) and attitude (rad) in East, North, Up, or None.  Their
-    covariances are turned into the axes of map and base_link, correlations being left out; what
-    has no sigmas is unknown.  rate_variance: of the angular velocity about each axis, (rad/s)^2.
+    sigmas are the standard deviations of position (m), velocity (m/s) and attitude (rad) in East,
+    North, Up, or None for unknown.  The covariances are rotated to the axes of map and base_link;
+    correlations are neglected.  rate_variance is that of the angular velocity, (rad/s)^2.
     """
     pose, twist = odometry_one(frame, solution, omega)
     rates = _diagonal(rate_variance)
@@ -136,7 +135,7 @@ def aided_odometry_one(frame, solution, omega, sigmas, rate_variance):
 
 
 def _diagonal(variance):
-    """Return a covariance of 3 x 3 row by row, the same along each axis."""
+    """Return a 3 x 3 covariance row by row, with the same variance along each axis."""
     return (variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, variance)
 
 
@@ -152,7 +151,7 @@ def _turned(q, sigmas):
 
 
 def _blocks(upper, lower):
-    """Return the covariance of 6 x 6 with two blocks of 3 x 3 in its diagonal."""
+    """Return the 6 x 6 covariance with two 3 x 3 blocks on its diagonal."""
     a, b, c, d, e, f, g, h, i = upper
     j, k, m, n, o, p, q, r, s = lower
     return (a, b, c, 0.0, 0.0, 0.0, d, e, f, 0.0, 0.0, 0.0, g, h, i, 0.0, 0.0, 0.0,
@@ -160,7 +159,7 @@ def _blocks(upper, lower):
 
 
 def aided_fix_one(solution, sigmas):
-    """Return the runs of aided/fix: place and variances by East, North, Up; zero: unknown."""
+    """Return the runs of aided/fix: position and variances (East, North, Up; 0 = unknown)."""
     variances = ((s * s,) for s in (sigmas[0] if sigmas else (0.0,) * 3))
     return fix_one(solution), *variances
 

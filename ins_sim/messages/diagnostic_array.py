@@ -1,4 +1,4 @@
-"""diagnostic_msgs/DiagnosticArray as bytes, packed and read without ROS."""
+"""Pack and read diagnostic_msgs/DiagnosticArray as bytes, without ROS."""
 
 from dataclasses import dataclass
 import struct
@@ -6,13 +6,13 @@ import struct
 from .cdr import aligned_offset, ENCAPSULATION, SECOND, stamp_of
 
 OK, WARN = 0, 1
-# the shortest status: a byte and, aligned, the lengths of four strings and of the values
+# Shortest status: a byte and, aligned, the lengths of four strings and of the values.
 _SHORTEST = 20
 
 
 @dataclass(frozen=True)
 class Status:
-    """A DiagnosticStatus: level (a small integer) and texts; values: pairs of key and text."""
+    """A DiagnosticStatus: level (small integer), texts, and values as pairs of key and text."""
 
     level: int
     name: str
@@ -47,7 +47,7 @@ def pack_diagnostics(stamp_ns, frame, statuses):
 
 
 def read_diagnostics(buffer):
-    """Return stamp_ns, frame id and the list of Statuses; ValueError on a bad message."""
+    """Return stamp_ns, frame id and list of Statuses; raise ValueError on an invalid message."""
     try:
         return _read(bytes(buffer))
     except (struct.error, IndexError, UnicodeDecodeError):
@@ -91,7 +91,7 @@ def _read(buffer):
 
 
 def _count(count, size, buffer):
-    """Return a length that the message can hold."""
+    """Return count if the message can hold so many elements of this size; else raise."""
     if count * size > len(buffer):
         raise IndexError
     return count

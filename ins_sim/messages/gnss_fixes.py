@@ -1,4 +1,4 @@
-"""A GnssFix as two messages, gnss/fix and gnss/velocity, and as one again by their stamp."""
+"""Convert a GnssFix to the messages gnss/fix and gnss/velocity, and back by their stamps."""
 
 from collections import deque
 import math
@@ -8,7 +8,7 @@ from . import topics
 from .convert import fix_one
 from .plausible import check_stamp
 
-# fixes or velocities that wait for their other half
+# Largest number of fixes or velocities that wait for their counterpart.
 _WAITING = 100
 
 
@@ -16,8 +16,8 @@ class GnssWriter:
     """
     Packs GnssFixes.
 
-    epoch_ns: stamp of motion time zero, which may change; names: as of ``Topic.named``, None for
-    the default ones.
+    epoch_ns is the stamp of motion time zero, which may change; for names see ``Topic.named``,
+    None for the default ones.
     """
 
     def __init__(self, epoch_ns, names=None):
@@ -27,7 +27,7 @@ class GnssWriter:
             for topic in (topics.GNSS_FIX, topics.GNSS_NO_FIX, topics.GNSS_VELOCITY))
 
     def fix(self, fix):
-        """Return gnss/fix: degrees; a fix that is none has status -1 and NaN."""
+        """Return gnss/fix in degrees; an invalid fix has status -1 and NaN."""
         stamp_ns = fix.t_ns + self.epoch_ns
         if not fix.valid:
             return self._none(stamp_ns)
@@ -35,20 +35,20 @@ class GnssWriter:
                          *((sigma * sigma,) for sigma in fix.position_sigma))
 
     def velocity(self, fix):
-        """Return gnss/velocity of a fix that is one."""
+        """Return gnss/velocity of a valid fix."""
         return self._velocity(fix.t_ns + self.epoch_ns, fix.v_n,
                               *((sigma * sigma,) for sigma in fix.velocity_sigma))
 
 
 class GnssPairs:
     """
-    GnssFixes from both topics, matched by their stamps.
+    Builds GnssFixes from both topics, matched by their stamps.
 
-    epoch_ns: stamp of motion time zero, which may change; latency_ns: a fix is there this long
-    after its instant.  Both push methods return the list of fixes that are complete, in their
-    order, and raise ValueError on a bad message.  A repeated message is passed over, stamps that
-    jump back begin anew, and a fix whose velocity is lost, a later one being there, is passed over
-    and counted in ``lost``.
+    epoch_ns is the stamp of motion time zero, which may change; latency_ns the delay from the
+    instant of a fix to its delivery.  Both push methods return the list of complete fixes, in
+    order, and raise ValueError on an invalid message.  Repeated messages are ignored; backward
+    stamps reset the object.  A fix whose velocity is lost is skipped when a later velocity has
+    arrived, and counted in ``lost``.
     """
 
     def __init__(self, epoch_ns, latency_ns):
@@ -59,14 +59,14 @@ class GnssPairs:
         self._fixes, self._velocities = deque(maxlen=_WAITING), deque(maxlen=_WAITING)
 
     def push_fix(self, data):
-        """Take a message of gnss/fix."""
+        """Process a message of gnss/fix."""
         stamp_ns, place, *variances = self._fix_reader.read(data)
         check_stamp(topics.GNSS_FIX.name, stamp_ns)
         valid = self._fix_reader.numbers(data)[0] >= 0
         return self._push(self._fixes, (stamp_ns, place if valid else None, variances))
 
     def push_velocity(self, data):
-        """Take a message of gnss/velocity."""
+        """Process a message of gnss/velocity."""
         message = self._velocity_reader.read(data)
         check_stamp(topics.GNSS_VELOCITY.name, message[0])
         return self._push(self._velocities, message)
@@ -107,5 +107,5 @@ class GnssPairs:
 
 
 def _sigma(variance):
-    """Return the standard deviation; 0 of what is no variance, which the navigator refuses."""
+    """Return the standard deviation; 0 for an invalid variance, which the navigator refuses."""
     return math.sqrt(variance) if variance > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""imu/data: a message of imu/data_raw, whoever sent it, with an orientation."""
+"""Build imu/data from a message of imu/data_raw and an orientation."""
 
 import struct
 
@@ -13,7 +13,8 @@ def with_orientation(raw, stamp_ns, orientation, covariance):
     """
     Return an Imu message, bytes, with another stamp, orientation and its covariance.
 
-    raw: a message that has been read; orientation: x, y, z, w; covariance: nine, rad^2.
+    raw is a message that was read before; orientation is x, y, z, w; covariance has nine numbers,
+    rad^2.
     """
     message = bytearray(raw)
     _STAMP(message, 4, *divmod(stamp_ns, SECOND))

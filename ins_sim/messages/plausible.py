@@ -1,9 +1,9 @@
 """
-Messages that hold what can be, whoever sent them; the bounds are of ``core.timeseries.bounds``.
+Refuse messages with impossible values; the bounds are in ``core.timeseries.bounds``.
 
-A node reads the streams that drive it by a PlausibleReader.  A fix is read whatever it holds, but
-for its instants: the navigator refuses it (``core.aiding.fix_checks``), so that it is not waited
-for.
+A node reads its main inputs with a PlausibleReader.  Of a fix only the instants are checked here:
+a fix with impossible values must reach the navigator, which refuses it
+(``core.aiding.fix_checks``) and then no longer waits for it.
 """
 
 import math
@@ -13,7 +13,7 @@ from . import topics
 from .cdr import Reader, SECOND
 
 _EARLIEST_NS, _LATEST_NS, _hypot = bounds.EARLIEST_NS, bounds.LATEST_NS, math.hypot
-# By message type and run of doubles: name, what the norm of the run stays below, and unit.
+# By message type and run of doubles: name, bound of the norm, and unit.
 BOUNDS = {
     (topics.IMU, (0, 4)): ('orientation', bounds.QUATERNION, ''),
     (topics.IMU, (13, 16)): ('angular velocity', bounds.RATE_RAD_S, ' rad/s'),
@@ -23,7 +23,7 @@ BOUNDS = {
     (topics.ODOMETRY, (43, 46)): ('linear velocity', bounds.SPEED_M_S, ' m/s'),
     (topics.ODOMETRY, (46, 49)): ('angular velocity', bounds.RATE_RAD_S, ' rad/s'),
 }
-# Norms of a message of so many runs, written out: a loop would cost as much again.
+# Norms of a message by its number of runs, written out because a loop takes twice as long.
 _NORMS = {1: lambda _, a: _hypot(*a), 2: lambda _, a, b: _hypot(*a, *b),
           3: lambda _, a, b, c: _hypot(*a, *b, *c),
           4: lambda _, a, b, c, d: _hypot(*a, *b, *c, *d)}
@@ -31,22 +31,22 @@ _NORMS = {1: lambda _, a: _hypot(*a), 2: lambda _, a, b: _hypot(*a, *b),
 
 class PlausibleReader:
     """
-    Reads messages of a Topic, and refuses those that hold what cannot be.
+    Reads messages of a Topic, and refuses those with impossible values.
 
-    runs: slices of the doubles to return, each of them in the table; by default those of the
-    topic's writer.
+    runs are slices of the doubles to return, all of which must be in the table; by default those
+    of the writer of the topic.
     """
 
     def __init__(self, topic, runs=None):
         runs = topic.writer().runs if runs is None else tuple(runs)
         self._name, self._read = topic.name, Reader(topic.type_name, runs).read
         self._bounds = [BOUNDS[topic.type_name, run] for run in runs]
-        # which almost all messages stay below as a whole, places far from the datum apart
+        # Almost all messages are below this bound as a whole, except far from the datum.
         self._norm = _NORMS[len(runs)]
         self._least = min(bound for _, bound, _ in self._bounds)
 
     def read(self, data):
-        """Return stamp_ns and the doubles of each run; ValueError, one sentence, else."""
+        """Return stamp_ns and the doubles of each run; raise ValueError on impossible values."""
         message = self._read(data)
         if not (_EARLIEST_NS <= message[0] < _LATEST_NS
                 and self._norm(*message) < self._least):
@@ -56,7 +56,7 @@ class PlausibleReader:
     def _look(self, stamp_ns, *runs):
         check_stamp(self._name, stamp_ns)
         for run, (name, bound, unit) in zip(runs, self._bounds):
-            # false for what is not a number
+            # The comparison is false for NaN.
             if not math.hypot(*run) < bound:
                 found = ', '.join(f'{value:.6g}' for value in run)
                 raise ValueError(f'{self._name} at {stamp_ns / SECOND:.9f} s holds the {name} '
@@ -65,14 +65,14 @@ class PlausibleReader:
 
 
 def check_stamp(name, stamp_ns):
-    """Raise ValueError for a stamp that a run cannot have; name: the topic."""
+    """Raise ValueError on a stamp that is impossible in a run; name is the topic."""
     if not bounds.EARLIEST_NS <= stamp_ns < bounds.LATEST_NS:
         raise ValueError(f'{name} holds the instant {str(stamp_ns)[:25]} ns; expected one from 0 '
                          f'to {bounds.LATEST_NS} ns; the message was dropped')
 
 
 def check_arrival(name, stamp_ns, arrival_ns):
-    """Raise ValueError for a fix that is there too long after its instant."""
+    """Raise ValueError on a fix that is delivered too long after its instant."""
     if not 0 <= arrival_ns - stamp_ns <= bounds.LATENCY_NS:
         raise ValueError(f'{name} of {stamp_ns / SECOND:.9f} s arrives at the instant '
                          f'{str(arrival_ns)[:25]} ns; expected at most '

@@ -1,7 +1,7 @@
 """
-The run as its generator announces it on sim/run, latched: epoch, start, rate and end.
+The latched message on sim/run with which motion_generator announces epoch, start, rate and end.
 
-A DiagnosticArray of one status, so that ``ros2 topic echo`` shows it with names
+It is a DiagnosticArray with one status, so that ``ros2 topic echo`` shows the names
 (docs/design/time_and_frames.md).
 """
 
@@ -20,9 +20,9 @@ _WHOLE = ('epoch_ns', 'start_ns', 'end_ns')
 @dataclass(frozen=True)
 class RunAnnouncement:
     """
-    A run: stamps are epoch_ns plus motion time, which samples at rate_hz from start_ns to end_ns.
+    A run: stamps are epoch_ns plus motion time, with samples at rate_hz from start_ns to end_ns.
 
-    Times are in ns.  end_ns of an endless run is the last sample before the stamps of ROS end.
+    Times are in ns.  For an endless run end_ns is the last sample that fits into a ROS stamp.
     """
 
     epoch_ns: int
@@ -44,12 +44,12 @@ class RunAnnouncement:
         return diagnostic_array.pack_diagnostics(self.first_stamp_ns, '', [status])
 
 
-# What is assumed where nobody announces a run: motion time is the stamp itself.
+# Assumed without an announcement: motion time is the stamp itself.
 UNANNOUNCED = RunAnnouncement(0, 0, math.inf, LATEST_NS)
 
 
 def read_announcement(data):
-    """Return the RunAnnouncement of a message; ValueError, one sentence, where it holds none."""
+    """Return the RunAnnouncement of a message; raise ValueError if it is invalid."""
     _, _, statuses = diagnostic_array.read_diagnostics(data)
     if len(statuses) != 1 or statuses[0].name != NAME:
         raise ValueError(f'{topics.RUN.name} holds {len(statuses)} statuses; expected one of the '

@@ -1,4 +1,4 @@
-"""Every topic: name, type and frames stand here and nowhere else.  No ROS is imported."""
+"""Table of all topics with names, types and frames.  ROS is not imported."""
 
 from dataclasses import dataclass, replace
 from math import nan
@@ -19,23 +19,28 @@ TWIST = 'geometry_msgs/msg/TwistWithCovarianceStamped'
 DIAGNOSTICS = 'diagnostic_msgs/msg/DiagnosticArray'
 TRANSFORMS = 'tf2_msgs/msg/TFMessage'
 
-# the variance, m^2, rad^2, (m/s)^2 or (rad/s)^2, of what is not measured or not known
+# Variance of unmeasured or unknown quantities, m^2, rad^2, (m/s)^2 or (rad/s)^2.
 UNMEASURED = 1e9
-# Variances that the truth states, since filters take zero for unknown or divide by it: of 1 mm,
-# 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2.  A perfect IMU states the last two.
+# Variances of the truth, for 1 mm, 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2. They are not zero,
+# which filters divide by or read as unknown.  An error-free IMU has the last two.
 TRUE_PLACE, TRUE_VELOCITY, TRUE_ATTITUDE, TRUE_RATE, TRUE_FORCE = 1e-6, 1e-6, 1e-8, 1e-12, 1e-10
-# Those of a perfect magnetometer and barometer, of 1 nT and 0.01 Pa.
+# Variances of an error-free magnetometer and barometer, for 1 nT and 0.01 Pa.
 TRUE_FIELD, TRUE_PRESSURE = 1e-18, 1e-4
 
 
 @dataclass(frozen=True)
 class Topic:
     """
-    A topic: name (relative, unless ROS wants it absolute), message type and frame ids.
+    A topic.
 
-    frames: by their default names, in whose place ``named`` puts those of a vehicle; constants:
-    {index: value} of the doubles that a writer of it fills once.  numbers: those of a NavSatFix,
-    see Writer.  latched: whether a late subscriber gets the last message.
+    Attributes
+    ----------
+    name : relative name, or absolute if ROS requires it
+    type_name : message type
+    frames : frame ids by their default names, which ``named`` replaces by those of a vehicle
+    constants : {index: value} of doubles that are the same in all messages
+    numbers : integers of a NavSatFix, see Writer
+    latched : whether a late subscriber gets the last message
     """
 
     name: str
@@ -47,7 +52,7 @@ class Topic:
     latched: bool = False
 
     def named(self, names):
-        """Return this topic with the frame ids of a vehicle, {default name: name}."""
+        """Return this topic with the frame ids of a vehicle; names is {default name: name}."""
         return replace(self, frames=tuple(names.get(frame, frame) for frame in self.frames))
 
     def writer(self):
@@ -61,7 +66,7 @@ class Topic:
 
 
 def _diagonal(first, size, *variances):
-    """Return constants of the diagonal of a covariance (size x size): three of each variance."""
+    """Return the constants of a diagonal covariance (size x size), three of each variance."""
     return tuple((first + k * (size + 1), variances[k // 3]) for k in range(size))
 
 
@@ -72,88 +77,88 @@ TRUTH_ODOMETRY = Topic('truth/odometry', ODOMETRY, ('map', 'base_link'),
                        _diagonal(7, 6, TRUE_PLACE, TRUE_ATTITUDE)
                        + _diagonal(49, 6, TRUE_VELOCITY, TRUE_RATE))
 TRUTH_ATTITUDE = Topic('truth/attitude', QUATERNION, ('enu',))
-# its covariance is diagonal, known
+# With a known diagonal covariance.
 TRUTH_FIX = Topic('truth/fix', FIX, ('base_link',), _diagonal(3, 3, TRUE_PLACE),
                   numbers=(0, 0, 2))
-# an orientation that is not measured: identity, and -1 at the head of its covariance (REP-145)
+# Unmeasured orientation: identity, with -1 as first element of its covariance (REP-145).
 IMU_RAW = Topic('imu/data_raw', IMU, ('imu_link',), ((3, 1.0), (4, -1.0)), ((13, 16), (25, 28)))
-# x: parity of the reading, y: its mean over the last window, z: what that may be; rad/s
+# x: parity of the sample, y: its mean over the last window, z: threshold of the mean; rad/s.
 IMU_PARITY = Topic('imu/parity', VECTOR, ('imu_link',))
-# what imu/data_raw holds, with the orientation of the INS (REP-145)
+# Content of imu/data_raw with the orientation of the INS (REP-145).
 IMU_DATA = Topic('imu/data', IMU, ('imu_link',), (), ((0, 4), (4, 13), (13, 16), (25, 28)))
-# field in b, T; static pressure, Pa
+# Field in b, T; static pressure, Pa.
 IMU_MAG = Topic('imu/mag', MAGNETIC, ('imu_link',))
 IMU_PRESSURE = Topic('imu/pressure', PRESSURE, ('imu_link',))
-# pose and twist, each followed by its covariance
+# Pose and twist, each followed by its covariance.
 _WITH_COVARIANCE = ((0, 7), (7, 43), (43, 49), (49, 85))
-# in the coordinates of map as the free INS has them, continuous and drifting (REP-105)
+# Free INS solution in odom, continuous but drifting (REP-105).
 INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('odom', 'base_link'), (), _WITH_COVARIANCE)
 # its covariance is known
 INS_FIX = Topic('ins/fix', FIX, ('base_link',), (), ((0, 3), (3, 12)), (0, 0, 3))
-# by East, North, Up at the vehicle, from which the axes of map, at the datum, differ by the angle
-# between the two places
+# In East, North, Up at the vehicle. The axes of map, at the datum, differ by the angle between
+# both places.
 ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('map',))
 ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('map',))
 ERROR_POSITION = Topic('ins/error/position', VECTOR, ('map',))
 ERROR_DRIFT = Topic('ins/error/drift', VECTOR, ('map',))
-# the complete fix, see velocity_record, stamped at the end of its window
+# Complete fix, see velocity_record; stamped at the end of its window.
 METER_RECORD = Topic('velocity_meter/record', DIAGNOSTICS, ('velocity_meter_link',))
-# stamped at the middle of the window; up is no measurement, nor is a rate
+# Stamped at the middle of the window; the up component and the rate are not measured.
 _NO_RATE = ((27, UNMEASURED), (34, UNMEASURED), (41, UNMEASURED))
 METER_VELOCITY = Topic('velocity_meter/velocity', TWIST, ('velocity_meter_link',),
                        ((20, UNMEASURED), *_NO_RATE), ((0, 3), (6, 7), (13, 14)))
-# service GPS; covariance diagonal, known
+# Service GPS, with a known diagonal covariance.
 GNSS_FIX = Topic('gnss/fix', FIX, ('gnss_link',), (), ((0, 3), (3, 4), (7, 8), (11, 12)),
                  (0, 1, 2))
-# without a place: not a number, as a receiver of ROS says it
+# Without a position the values are NaN, as in ROS drivers.
 GNSS_NO_FIX = replace(GNSS_FIX, constants=tuple((k, nan) for k in range(3)), runs=(),
                       numbers=(-1, 1, 0))
 GNSS_VELOCITY = Topic('gnss/velocity', TWIST, ('enu',), _NO_RATE,
                       ((0, 3), (6, 7), (13, 14), (20, 21)))
 AIDED_ODOMETRY = Topic('aided/odometry', ODOMETRY, ('map', 'base_link'), (), _WITH_COVARIANCE)
-# covariance diagonal, known, or of filters without one unknown
+# With a known diagonal covariance, or unknown for filters without covariance.
 AIDED_FIX = Topic('aided/fix', FIX, ('base_link',), (), GNSS_FIX.runs, (0, 0, 2))
 AIDED_FIX_ALONE = replace(AIDED_FIX, numbers=(0, 0, 0))
-# solution less truth, and three standard deviations by the filter
+# Solution minus truth, and three standard deviations of the filter.
 AIDED_ERRORS = tuple(Topic(f'aided/error/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
 AIDED_SIGMAS = tuple(Topic(f'aided/sigma/{name}', VECTOR, ('map',))
                      for name in ('attitude', 'velocity', 'position'))
-# x: along the leg, y: height, z: right of it; m
+# x: along the leg, y: height, z: to the right of the leg; m.
 AIDED_ORTHODROME = Topic('aided/orthodrome', VECTOR, ('leg',))
-# at a control instant, x: commanded sideslip, rad; y and z: estimated offset to the right of the
-# leg, m, and its rate, m/s, zero without an estimate
+# At a control instant. x: commanded sideslip, rad; y and z: estimated offset to the right of the
+# leg, m, and its rate, m/s, zero without an estimate.
 GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
-# of another simulator, for truth_adapter; any frames
+# Odometry of another simulator for truth_adapter, in any frames.
 OTHER_ODOMETRY = Topic('odom', ODOMETRY, ('odom', 'base_link'))
 ACK = Topic('sim/ack', HEADER)
-STATUS = Topic('sim/status', STRING, latched=True)
-# what the generator announces, see run_announcement
+STATUS = Topic('sim/status', STRING)
+# Announcement of the run, see run_announcement.
 RUN = Topic('sim/run', DIAGNOSTICS, latched=True)
 CLOCK_TOPIC = Topic('/clock', CLOCK)
-# see transforms
+# See ``transforms``.
 TF = Topic('/tf', TRANSFORMS)
 TF_STATIC = Topic('/tf_static', TRANSFORMS, latched=True)
 
 ERRORS = (ERROR_ATTITUDE, ERROR_VELOCITY, ERROR_POSITION, ERROR_DRIFT)
 TRUTH = (TRUTH_ODOMETRY, TRUTH_ATTITUDE, TRUTH_FIX, TRUTH_IMU)
 DATA = (*TRUTH, IMU_RAW, INS_ODOMETRY, INS_FIX, *ERRORS)
-# what is published where it is asked for, or with tuned gyros
+# Topics that are published on request, or with tuned gyros.
 BESIDE = (IMU_DATA, IMU_MAG, IMU_PRESSURE, IMU_PARITY)
-# of velocity_meter, gnss and aided_navigator
+# Topics of velocity_meter, gnss and aided_navigator.
 AIDING = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, AIDED_ODOMETRY, AIDED_FIX,
           *AIDED_ERRORS, *AIDED_SIGMAS, AIDED_ORTHODROME)
-# of motion_generator with a guided motion
+# Topics of motion_generator with a guided motion.
 GUIDANCE = (GUIDANCE_COMMAND,)
-# of which nothing may come with the first sample, nor ever
+# Topics that may have no message at the first sample, or none at all.
 SELDOM = (METER_RECORD, METER_VELOCITY, GNSS_FIX, GNSS_VELOCITY, *AIDED_SIGMAS, *GUIDANCE)
 
 
 def imu_raw(rate_variance, force_variance, topic=IMU_RAW):
     """
-    Return IMU_RAW, or IMU_DATA, with covariances: variances by axis, (rad/s)^2 and (m/s^2)^2.
+    Return IMU_RAW, or IMU_DATA, with the given variances by axis, (rad/s)^2 and (m/s^2)^2.
 
-    None is less than that of the truth.
+    Variances are at least those of the truth.
     """
     variances = (*(max(v, TRUE_RATE) for v in rate_variance),
                  *(max(v, TRUE_FORCE) for v in force_variance))

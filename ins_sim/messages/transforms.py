@@ -1,7 +1,7 @@
 """
-Messages of type tf2_msgs/msg/TFMessage: any number of transforms, each with two frames.
+Pack and read messages of type tf2_msgs/msg/TFMessage, without ROS.
 
-A pose is that of the child frame in its parent: three coordinates, m, and the quaternion
+A pose is that of the child frame in the parent frame: three coordinates, m, and the quaternion
 (x, y, z, w) from child to parent.
 """
 
@@ -15,16 +15,16 @@ _LENGTH_OF = struct.Struct('<I')
 _LENGTH = _LENGTH_OF.unpack_from
 _STAMP = struct.Struct('<iI')
 _DOUBLES = struct.Struct('<7d')
-# Serialization may fill up the last four bytes of a message.
+# Serialization may pad the last four bytes of a message.
 _MOST_PADDING = 3
 AT_PARENT = (0.0, 0.0, 0.0, *quaternion.IDENTITY)
 
 
 class TransformWriter:
     """
-    Packs TFMessages of fixed frames.
+    Packs TFMessages with fixed frames.
 
-    pairs: (parent, child) of each transform of a message.
+    pairs are (parent, child) of each transform of a message.
     """
 
     def __init__(self, *pairs):
@@ -44,7 +44,7 @@ class TransformWriter:
         self._buffer = bytearray(ENCAPSULATION + body)
 
     def pack(self, stamp_ns, *poses):
-        """Return the bytes of a message; ValueError where a pose is not finite."""
+        """Return the bytes of a message; raise ValueError if a pose is not finite."""
         for (stamp, first), pose in zip(self._places, poses, strict=True):
             if not math.isfinite(sum(pose)):
                 raise ValueError(f'a transform of {stamp_ns / SECOND:.9f} s would hold {pose}; '
@@ -55,23 +55,23 @@ class TransformWriter:
 
 
 def _align(body, size):
-    """Fill a body up to a multiple of a size."""
+    """Pad a body to a multiple of a size."""
     body += bytes(aligned_offset(len(body), size) - len(body))
 
 
 def pose_between(pose, other):
-    """Return the pose in which the frame other stands so that its child has the pose: A B^-1."""
+    """Return A B^-1, the pose of a frame whose child has the pose A, and B (other) in it."""
     turn = quaternion.multiply(pose[3:], quaternion.conjugate(other[3:]))
     moved = quaternion.rotate(turn, other[:3])
     return (pose[0] - moved[0], pose[1] - moved[1], pose[2] - moved[2], *turn)
 
 
 def first_stamp(data):
-    """Return the stamp of the first transform of a TFMessage, ns, or None where it has none."""
+    """Return the stamp of the first transform of a TFMessage, ns; None if there is none."""
     try:
         (_, _, stamp_ns, _), *_ = read_transforms(data)
     except ValueError:
-        # no TFMessage, or one without transforms
+        # Not a TFMessage, or one without transforms.
         return None
     return stamp_ns
 
@@ -114,7 +114,7 @@ def read_transforms(data):
     if data[:2] != ENCAPSULATION[:2]:
         raise ValueError(f'it begins with {bytes(data[:2])!r}; expected the encapsulation of '
                          'little-endian CDR')
-    # CDR aligns relative to the byte behind the encapsulation.
+    # CDR aligns relative to the end of the encapsulation header.
     body = memoryview(data)[len(ENCAPSULATION):]
     try:
         count, = _LENGTH(body, 0)
@@ -136,7 +136,7 @@ def read_transforms(data):
 
 
 def _string(body, offset):
-    """Return the string at an offset, and the offset behind it."""
+    """Return the string at an offset, and the offset of its end."""
     length, = _LENGTH(body, offset)
     stop = offset + 4 + length
     if stop > len(body):

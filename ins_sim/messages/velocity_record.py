@@ -1,9 +1,9 @@
 """
-A VelocityFix as messages: the complete record, and the velocity for display.
+Convert a VelocityFix to messages: the complete record, and the velocity for display.
 
-The record is a DiagnosticArray of one status (docs/design/velocity_record.md): stamped at the
-end of the window, its instants stamps in ns, its floats by repr, so that they come back bit for
-bit.
+The record is a DiagnosticArray with one status (docs/design/velocity_record.md), stamped at the
+end of the window. Instants are stamps in ns, and floats are written by repr, so that they are
+read back bit for bit.
 """
 
 from ins_sim.core.timeseries.fixes import VALID, VelocityFix
@@ -12,7 +12,7 @@ from .diagnostic_array import Status
 from .plausible import check_arrival, check_stamp
 
 NAME = 'velocity_meter'
-# of a stranger's texts and statuses so much is repeated
+# Length of foreign texts and statuses in messages.
 TEXT, MOST = 80, 3
 _FLOATS = (('velocity', ('velocity_x', 'velocity_y')), ('sigma', ('sigma_x', 'sigma_y')),
            ('tau', ('tau12', 'tau23')), ('g', ('g12', 'g23')))
@@ -22,7 +22,8 @@ def pack_fix(fix, epoch_ns, names=None):
     """
     Return the message velocity_meter/record of a VelocityFix.
 
-    epoch_ns: stamp of zero; names: as of ``Topic.named``, None for the default ones.
+    epoch_ns is the stamp of motion time zero; for names see ``Topic.named``, None for the default
+    ones.
     """
     values = [('window_start_ns', str(fix.start_ns + epoch_ns)),
               ('window_end_ns', str(fix.end_ns + epoch_ns)), ('cycles', str(fix.cycles)),
@@ -37,7 +38,7 @@ def pack_fix(fix, epoch_ns, names=None):
 
 
 def read_fix(data, epoch_ns):
-    """Return the VelocityFix of a message; ValueError, one sentence, where it holds none."""
+    """Return the VelocityFix of a message; raise ValueError if it is invalid."""
     _, _, statuses = diagnostic_array.read_diagnostics(data)
     name = topics.METER_RECORD.name
     if len(statuses) != 1 or statuses[0].name != NAME:

@@ -1,4 +1,4 @@
-"""The frames that the odometry of another simulator names."""
+"""Check the frames in the odometry of another simulator."""
 
 import re
 
@@ -10,9 +10,9 @@ NOT_ENU = ('ned', 'frd', 'esd')
 
 class WorldFrames:
     """
-    Sees that odometry is in one world, with axis z up.
+    Checks that all odometry messages have the same frames, with z up.
 
-    name: of the topic. The frames of the first message are those expected of all.
+    name is the topic. All messages must have the frames of the first one.
     """
 
     def __init__(self, name):
@@ -20,14 +20,14 @@ class WorldFrames:
         self.forget()
 
     def forget(self):
-        """Let the next message name the frames."""
+        """Accept the frames of the next message as the expected ones."""
         self._frames = None
 
     def check(self, data):
         """
-        Return a sentence on what is assumed of the first message, else ''.
+        Return a sentence about assumptions for the first message, else ''.
 
-        Raise ValueError, one sentence, for frames that are not ENU or others than those before.
+        Raises ValueError if the frames are not ENU or differ from those of earlier messages.
         """
         frames = self._read(data)
         if frames == self._frames:

@@ -1,7 +1,7 @@
 """
-Settings: what a user can set, as frozen groups of values with unit, bounds and description.
+Settings: all parameters of nodes and commands, in frozen groups with unit, range and description.
 
-Start with ``field`` (how one value is described) and ``catalogue`` (flat names and checks). One
-file
-holds the settings of one node; ``by_node`` lists them. Only the standard library is imported here.
+Start with ``field`` (how one parameter is described) and ``catalogue`` (dotted names and checks).
+Each file holds the settings of one node or command; ``by_node`` lists those of the nodes. Modules
+of this package import only the standard library.
 """

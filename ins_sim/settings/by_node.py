@@ -1,8 +1,8 @@
 """
-The settings of every node, by the name of the node.
+Settings classes of all nodes, by node name.
 
-A node that starts imports only its own settings, because making the classes of all nodes takes
-milliseconds.
+A node imports only its own settings when it starts, because creating the classes of all nodes
+takes several milliseconds.
 """
 
 from .aided_navigator import AidedNavigatorSettings
@@ -18,10 +18,10 @@ from .velocity_meter import VelocityMeterSettings
 
 NODES = {'motion_generator': MotionGeneratorSettings, 'imu_sensor': ImuSensorSettings,
          'strapdown': StrapdownSettings}
-# the instruments that aid, and the navigator that they aid
+# The aiding sensors and the navigator that they aid.
 AIDING = {'velocity_meter': VelocityMeterSettings, 'gnss': GnssSettings,
           'aided_navigator': AidedNavigatorSettings}
-# those of a simulation, the one that watches it, and the one that holds them in one process
+# All nodes, with the adapter of other simulators, the recorder and the one-process simulation.
 ALL_NODES = {**NODES, **AIDING, 'truth_adapter': TruthAdapterSettings,
              'recorder': RecorderSettings, 'simulation': OneProcessSettings}
 ALL_NAMES = frozenset(name for cls in ALL_NODES.values() for name in flatten(cls))

@@ -1,4 +1,4 @@
-"""Settings as flat {dotted name: value}, and back, with the checks of single values."""
+"""Convert settings objects to flat {dotted name: value} and back, and check single values."""
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -43,7 +43,7 @@ def value_text(value):
 
 
 def remark(f, settable=False):
-    """Return what is said of a field: doc, unit, range, choices, whether it can be set later."""
+    """Return the description of a field: doc, unit, range, choices, and whether it is settable."""
     m = f.metadata
     parts = [m['doc']]
     if m['unit']:
@@ -58,7 +58,7 @@ def remark(f, settable=False):
 
 
 def groups_of(cls, prefix=''):
-    """Return {dotted name: class} of the groups of a settings class, in the order of naming."""
+    """Return {dotted name: class} of the groups of a settings class, in declaration order."""
     names = {}
     for f in fields(cls):
         if is_dataclass(f.default_factory):
@@ -75,10 +75,18 @@ def sentence_of(cls):
 
 def build(cls, values):
     """
-    Return the settings object of a class from {dotted name: value}; missing names take defaults.
+    Return the settings object of a class from dotted names; missing names take defaults.
 
-    Raises ValueError, in one sentence that names key, value and expectation, on an unknown name,
-    a wrong type, NaN, a value out of range, and on values that do not go together.
+    Parameters
+    ----------
+    cls : settings class
+    values : {dotted name: value}
+
+    Raises
+    ------
+    ValueError
+        On an unknown name, a wrong type, NaN, a value out of range and contradicting values.
+        The message names key, value and expectation in one sentence.
     """
     known = flatten(cls)
     checked = {}
@@ -101,29 +109,29 @@ def _assemble(cls, values, prefix):
 
 
 def is_of_ros(name):
-    """Return whether a parameter is one that ROS gives to every node."""
+    """Return whether a parameter is one that ROS declares on every node."""
     return name in OF_ROS or name.startswith('qos_overrides.')
 
 
 def from_ros(value, f):
-    """Return a value of a ROS parameter as its field f takes it."""
+    """Convert the value of a ROS parameter to the type of its field f."""
     if value is None and f.type not in _KINDS:
-        # what ROS makes of an empty list
+        # ROS reads an empty list as a parameter without a value.
         return ()
     if value is True and 'y' in f.metadata['choices']:
-        # ROS takes a plain y for yes
+        # ROS reads an unquoted y as true.
         return 'y'
     return value.tolist() if hasattr(value, 'tolist') else value
 
 
 def for_all_axes(value, f):
-    """Return a number as that of each axis where its field f takes one for all; else value."""
+    """Repeat a single number for each axis if the field f allows it; else return value."""
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     return (value,) * f.metadata['size'] if is_number and f.metadata['equal_axes'] else value
 
 
 def check_value(name, value, f):
-    """Return the value in the type of its field f; raise ValueError on anything unfit."""
+    """Return the value in the type of its field f; raise ValueError if it does not fit."""
     kind, unit = f.type, f.metadata['unit']
     if kind in (bool, int, float, str):
         value = _scalar(name, value, kind)
@@ -140,7 +148,7 @@ def check_value(name, value, f):
             raise ValueError(f'{name} has {len(value)} entries; expected {size}')
     low, high, choices = f.metadata['low'], f.metadata['high'], f.metadata['choices']
     for v in values:
-        # infinity is a value only where it is the bound
+        # Infinity is accepted only if it is the upper bound.
         if isinstance(v, float) and not math.isfinite(v) and v != high:
             raise ValueError(f'{name} is {v}; expected a finite number')
         if choices and v not in choices:

@@ -1,4 +1,4 @@
-"""How one setting is described: default, unit, bounds, choices and doc in one place."""
+"""Describe one parameter: default, unit, range, choices and description in one place."""
 
 from dataclasses import dataclass, field, FrozenInstanceError
 
@@ -6,10 +6,18 @@ from dataclasses import dataclass, field, FrozenInstanceError
 def setting(default, doc, unit='', low=None, high=None, choices=(), size=None,
             equal_axes=False):
     """
-    Return a dataclass field carrying its unit, closed bounds, choices, array size and doc.
+    Return a dataclass field with its description as metadata.
 
-    choices is kept, not copied, so that entries added to a table later are accepted as well.
-    equal_axes: whether one number may be given for all entries of the array.
+    Parameters
+    ----------
+    default : default value
+    doc : description shown to users
+    unit : unit, '' for none
+    low, high : closed range; None for none
+    choices : accepted values; a table is kept, not copied, so that entries added to it later are
+        accepted as well
+    size : length of an array; None for any length
+    equal_axes : whether one number may be given for all entries of the array
     """
     return field(default=default, metadata={
         'doc': doc, 'unit': unit, 'low': low, 'high': high, 'choices': choices,
@@ -17,9 +25,9 @@ def setting(default, doc, unit='', low=None, high=None, choices=(), size=None,
 
 
 def column(what):
-    """Return a field for the header of the column of a CSV file that holds something."""
-    return setting('', f'header of the column with the {what}; its unit may stand in brackets '
-                   'behind it, as in "Time (s)" or "w_x [rad s^-1]"; empty: found by its name')
+    """Return a field for the header of the CSV column that holds a quantity."""
+    return setting('', f'Header of the column with the {what}; the unit may follow in brackets, '
+                   'as in "Time (s)" or "w_x [rad s^-1]"; empty = recognised by its name')
 
 
 def group(cls):
@@ -31,14 +39,14 @@ class SettingsGroup:
     """
     A frozen record of settings, compared and shown by value.
 
-    A subclass overrides ``check`` where values must fit each other; it runs whenever an object is
-    made. ``catalogue.build`` checks the range of each single value before.
+    A subclass overrides ``check`` if values must fit each other; ``check`` runs whenever an
+    object is created. ``catalogue.build`` checks the range of each single value before that.
 
-    What dataclass(frozen=True) would write for each class stands here once: to make thirty such
-    classes takes 25 ms, on the way of every node's start, and this a quarter of it.
+    The methods that dataclass(frozen=True) would generate for each class are written here once:
+    generating them for thirty classes takes 25 ms at the start of every node, this a quarter.
 
-    SETTABLE: names of what the node of these settings takes while it runs; SPANS: groups with
-    lists ``start_s`` and ``end_s`` among them.
+    ``SETTABLE`` lists the parameters that can be set while the node runs; ``SPANS`` those of its
+    groups that hold the lists ``start_s`` and ``end_s``.
     """
 
     SETTABLE, SPANS = (), ()
@@ -48,16 +56,16 @@ class SettingsGroup:
         self.check()
 
     def check(self):
-        """Raise ValueError, in one sentence, where values do not go together."""
+        """Raise ValueError, with a message of one sentence, if values contradict each other."""
 
     def __setattr__(self, name, value):
-        """Take each attribute once."""
+        """Set an attribute that is not set yet; refuse to change one."""
         if name in self.__dict__:
             raise FrozenInstanceError(f'{type(self).__name__}.{name} cannot be changed')
         self.__dict__[name] = value
 
     def __delattr__(self, name):
-        """Refuse."""
+        """Refuse to delete an attribute."""
         raise FrozenInstanceError(f'{type(self).__name__}.{name} cannot be deleted')
 
     def __eq__(self, other):
@@ -75,5 +83,5 @@ class SettingsGroup:
 
 
 def settings_class(cls):
-    """Return a subclass of Settings as a dataclass."""
+    """Make a subclass of SettingsGroup a dataclass (class decorator)."""
     return dataclass(repr=False, eq=False, match_args=False)(cls)

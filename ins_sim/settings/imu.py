@@ -10,12 +10,16 @@ from .tuned_gyro import TunedGyroPairSettings
 
 @settings_class
 class DelaysUs(SettingsGroup):
-    """Delay of each channel, by FLU axis (the paper's tau1, tau2, tau3 are y, x, z)."""
+    """
+    Delay of each channel, by FLU axis.
 
-    x: float = setting(0.0, 'delay of the forward channel', 'us', -1e6, 1e6)
-    y: float = setting(0.0, 'delay of the left channel (tau1, right, in the paper)', 'us',
-                       -1e6, 1e6)
-    z: float = setting(0.0, 'delay of the up channel', 'us', -1e6, 1e6)
+    The delays tau1, tau2, tau3 of Bogdanov and Fomichev 2018 are those of y, x, z.
+    """
+
+    x: float = setting(0.0, 'Delay of the forward channel', 'us', -1e6, 1e6)
+    y: float = setting(0.0, 'Delay of the left channel (tau1, to the right, in Bogdanov and '
+                       'Fomichev 2018)', 'us', -1e6, 1e6)
+    z: float = setting(0.0, 'Delay of the up channel', 'us', -1e6, 1e6)
 
     def in_ns(self):
         """Return the delays of the channels x, y, z in nanoseconds."""
@@ -26,8 +30,9 @@ class DelaysUs(SettingsGroup):
 class Gyro(SettingsGroup):
     """The gyro triad."""
 
-    model: str = setting('ideal', 'ideal, or dtg: two dynamically tuned gyros (needs output '
-                         'integrated)', choices=('ideal', 'dtg'))
+    model: str = setting('ideal', 'Model of the gyros. ideal: rate integration with gyro.errors; '
+                         'dtg: two dynamically tuned gyros, which need output integrated',
+                         choices=('ideal', 'dtg'))
     dtg: TunedGyroPairSettings = group(TunedGyroPairSettings)
     delay_us: DelaysUs = group(DelaysUs)
     errors: GyroErrors = group(GyroErrors)
@@ -43,23 +48,25 @@ class Accelerometer(SettingsGroup):
 
 @settings_class
 class MagnetometerSettings(SettingsGroup):
-    """The magnetometer beside the IMU, imu/mag: the World Magnetic Model (extra magnetic)."""
+    """Magnetometer on imu/mag (World Magnetic Model; pip extra ``magnetic``)."""
 
-    publish: bool = setting(False, 'publish imu/mag')
-    rate_hz: float = setting(50.0, 'its rate, at most that of the truth', 'Hz', 0.01, 20000.0)
-    noise_nt: float = setting(100.0, 'noise of a sample, standard deviation, each axis', 'nT',
-                              0.0, 1e6)
-    year: float = setting(2025.0, 'decimal year of the field, whatever the stamps', 'year',
-                          2025.0, 2030.0)
+    publish: bool = setting(False, 'Whether the magnetometer publishes imu/mag')
+    rate_hz: float = setting(50.0, 'Rate of the magnetometer, at most that of the truth', 'Hz',
+                             0.01, 20000.0)
+    noise_nt: float = setting(100.0, 'Standard deviation of the noise of a sample, each axis',
+                              'nT', 0.0, 1e6)
+    year: float = setting(2025.0, 'Decimal year for which the field is computed; the time stamps '
+                          'are not used for it', 'year', 2025.0, 2030.0)
 
 
 @settings_class
 class BarometerSettings(SettingsGroup):
-    """The barometer beside the IMU, imu/pressure: the standard atmosphere."""
+    """Barometer on imu/pressure: standard atmosphere."""
 
-    publish: bool = setting(False, 'publish imu/pressure')
-    rate_hz: float = setting(50.0, 'its rate, at most that of the truth', 'Hz', 0.01, 20000.0)
-    noise_pa: float = setting(2.0, 'noise of a sample, standard deviation', 'Pa', 0.0, 1e5)
+    publish: bool = setting(False, 'Whether the barometer publishes imu/pressure')
+    rate_hz: float = setting(50.0, 'Rate of the barometer, at most that of the truth', 'Hz', 0.01,
+                             20000.0)
+    noise_pa: float = setting(2.0, 'Standard deviation of the noise of a sample', 'Pa', 0.0, 1e5)
 
 
 OUTPUTS = ('rotation_vector', 'integrated')
@@ -67,7 +74,7 @@ OUTPUTS = ('rotation_vector', 'integrated')
 
 @settings_class
 class ImuSensorSettings(SettingsGroup):
-    """Node imu_sensor."""
+    """Settings of the node imu_sensor."""
 
     SETTABLE = ('gyro.errors.bias_deg_h', 'accelerometer.errors.bias_ug', 'gyro.dtg.fault.channel',
                 'gyro.dtg.fault.bias_deg_h', 'gyro.dtg.fault.scale', 'gyro.dtg.fault.start_s',
@@ -84,26 +91,30 @@ class ImuSensorSettings(SettingsGroup):
     temperature: Temperature = group(Temperature)
     sampling: Sampling = group(Sampling)
     topics: Topics = group(Topics)
-    seed: int = setting(0, 'seed of the random errors: the same seed, the same errors', '', 0,
+    seed: int = setting(0, 'Seed of the random errors; the same seed gives the same errors', '', 0,
                         2147483647)
-    run: int = setting(0, 'number of the run in an ensemble: each draws other random errors', '',
-                       0, 2147483647)
-    rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
-    source: str = setting('stream', 'where the motion comes from: the streamed truth, or the '
-                          'closed form or recording of motion.* (the stream then only paces)',
-                          choices=('stream', 'motion'))
-    output: str = setting('rotation_vector', 'rotation_vector: mean of the finite rotation and of '
-                          'the inertially rotated velocity increment; integrated: plain '
-                          'integrals of rate and specific force', choices=OUTPUTS)
-    history: str = setting('analytic', 'motion before the first instant: continued backwards '
-                           '(analytic) or held (frozen). A stream is continued by the straight '
-                           'line through rate and force of its first two samples for 50 ms, and '
-                           'by constant ones before', choices=('analytic', 'frozen'))
-    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
-                            'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
+    run: int = setting(0, 'Number of the run in a Monte Carlo ensemble; each number gives other '
+                       'random errors', '', 0, 2147483647)
+    rate_hz: float = setting(100.0, 'Rate of the IMU', 'Hz', 0.01, 20000.0)
+    source: str = setting('stream', 'Source of the motion. stream: the truth messages; motion: '
+                          'the closed form or recording given by motion.*, the truth messages '
+                          'then only set the pace', choices=('stream', 'motion'))
+    output: str = setting('rotation_vector', 'Meaning of a sample, which is a mean over the '
+                          'sampling period. rotation_vector: of the finite rotation, and of the '
+                          'velocity increment rotated to the body axes at the start of the '
+                          'period; integrated: plain integrals of angular rate and specific force '
+                          'in the moving body axes', choices=OUTPUTS)
+    history: str = setting('analytic', 'Motion before the first instant, which delayed channels '
+                           'need: continued backward (analytic) or held (frozen). Streamed truth '
+                           'is continued for 50 ms along the straight line through rate and '
+                           'specific force of its first two samples, and with constant values '
+                           'before that', choices=('analytic', 'frozen'))
+    on_fault: str = setting('reset', 'What the node does after a gap, a backward time stamp or an '
+                            'invalid message: start anew (reset) or end (stop)',
+                            choices=('reset', 'stop'))
 
     def check(self):
-        """Refuse tuned gyros without the output that they have."""
+        """Raise ValueError if tuned gyros are set with another output than integrated."""
         if self.gyro.model == 'dtg' and self.output != 'integrated':
             raise ValueError(f'output is {self.output} with gyro.model dtg; expected integrated: '
                              'a tuned gyro reads the integral of its rate')

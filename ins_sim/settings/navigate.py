@@ -1,4 +1,4 @@
-"""Settings of the command ``navigate``: the strapdown over a recorded IMU."""
+"""Settings of the command ``navigate``: strapdown navigation with a recorded IMU."""
 
 from .field import group, setting, settings_class, SettingsGroup
 from .motion import FlightColumns
@@ -9,61 +9,68 @@ from .recorded_imu import (AcceptNavigated, AlignmentSettings, GivenState, ImuCo
 
 @settings_class
 class ReferenceSource(SettingsGroup):
-    """What the solution is compared with."""
+    """Reference with which the solution is compared."""
 
-    fix: str = setting('auto', 'topic of NavSatFix; auto: the only one, if there is one; none')
-    odometry: str = setting('auto', 'topic of Odometry, its frame laid on the solution at the '
-                            'start; auto: the only one, if there is one; none')
-    velocity: str = setting('auto', 'topic of TwistStamped in East, North, Up; auto: the only '
-                            'one, if there is one; none')
-    path: str = setting('', 'CSV file of a reference (columns of a recorded flight, its t_s on '
-                        'the clock of the IMU); topics then serve for nothing')
+    fix: str = setting('auto', 'Topic of the NavSatFix messages of the reference; auto: the only '
+                       'such topic, if there is exactly one; none: not used')
+    odometry: str = setting('auto', 'Topic of the Odometry messages of the reference, whose frame '
+                            'is aligned with the solution at the start; auto: the only such '
+                            'topic, if there is exactly one; none: not used')
+    velocity: str = setting('auto', 'Topic of the TwistStamped messages of the reference, in '
+                            'East, North, Up; auto: the only such topic, if there is exactly one; '
+                            'none: not used')
+    path: str = setting('', 'CSV file of the reference, with the columns of a recorded flight and '
+                        't_s on the clock of the IMU; the reference topics are then not used')
     columns: FlightColumns = group(FlightColumns)
 
 
 @settings_class
 class MountingSettings(MountingAngles):
-    """How the IMU sits in the vehicle: the rotation from base_link to the frame of the IMU."""
+    """Mounting of the IMU: rotation from base_link to the frame of the IMU."""
 
-    base_frame: str = setting('base_link', 'frame of the vehicle in /tf_static')
+    base_frame: str = setting('base_link', 'Name of the vehicle frame in /tf_static')
 
 
 @settings_class
 class StartSettings(GivenState):
-    """State at the start; the values serve only where their source is "given"."""
+    """Initial state; each value is used only if its source is "given"."""
 
-    attitude: str = setting('align', 'align: from a stationary interval; given: roll_deg, '
-                            'pitch_deg and heading_deg; reference: its attitude; imu: the '
-                            'orientation in the IMU messages',
-                            choices=('align', 'given', 'reference', 'imu'))
-    heading: str = setting('auto', 'heading of an alignment. gyrocompass; given: heading_deg; '
-                           'reference: its attitude (of Odometry: its x is taken for East); '
-                           'course: of the reference, once it has moved; auto: the first '
-                           'of gyrocompass, reference in East, North, Up, course, reference '
-                           'that the data allow',
+    attitude: str = setting('align', 'Source of the initial attitude. align: alignment in a '
+                            'stationary interval; given: roll_deg, pitch_deg, heading_deg; '
+                            'reference: attitude of the reference; imu: orientation in the IMU '
+                            'messages', choices=('align', 'given', 'reference', 'imu'))
+    heading: str = setting('auto', 'Source of the heading of an alignment. gyrocompass: from the '
+                           'rotation of the Earth; given: heading_deg; reference: attitude of the '
+                           'reference (the x axis of an Odometry frame is assumed to point East); '
+                           'course: direction of travel of the reference, once it has moved; '
+                           'auto: the first that the data allow of gyrocompass, reference in '
+                           'East, North, Up, course, reference',
                            choices=('auto', 'gyrocompass', 'given', 'reference', 'course'))
-    velocity: str = setting('auto', 'given: velocity_m_s; reference; auto: zero after an '
-                            'alignment, else reference',
-                            choices=('auto', 'given', 'reference'))
-    position: str = setting('reference', 'given: latitude_deg, longitude_deg, height_m; '
-                            'reference: NavSatFix or the CSV file',
+    velocity: str = setting('auto', 'Source of the initial velocity. given: velocity_m_s; '
+                            'reference: velocity of the reference; auto: zero after an alignment, '
+                            'otherwise the reference', choices=('auto', 'given', 'reference'))
+    position: str = setting('reference', 'Source of the initial position. given: latitude_deg, '
+                            'longitude_deg, height_m; reference: NavSatFix or the CSV file',
                             choices=('given', 'reference'))
 
 
 @settings_class
 class FreeVertical(SettingsGroup):
-    """The vertical channel."""
+    """Vertical channel."""
 
-    channel: str = setting('free', 'free, or damped towards the height of the reference',
+    channel: str = setting('free', 'How height and vertical velocity are found: free '
+                           '(integrated), or damped towards the height of the reference',
                            choices=('free', 'damped'))
-    time_constant_s: float = setting(20.0, 'time constant of the damped channel', 's', 0.1, 1e4)
+    time_constant_s: float = setting(20.0, 'Time constant of the damped vertical channel', 's',
+                                     0.1, 1e4)
 
 
 @settings_class
 class NavigateSettings(SettingsGroup):
-    """The command navigate."""
+    """Settings of the command navigate."""
 
-    topic: str = setting('auto', 'topic of sensor_msgs/Imu; auto: the only one')
+    topic: str = setting('auto', 'Topic of the sensor_msgs/Imu messages; auto: the only such '
+                         'topic of the bag')
     columns: ImuColumns = group(ImuColumns)
     units: RecordUnits = group(RecordUnits)
     stamps: StampSettings = group(StampSettings)
@@ -74,26 +81,27 @@ class NavigateSettings(SettingsGroup):
     initial: StartSettings = group(StartSettings)
     alignment: AlignmentSettings = group(AlignmentSettings)
     vertical: FreeVertical = group(FreeVertical)
-    start_s: float = setting(0.0, 'start, or begin the search for a stationary interval, this '
-                             'long after the first sample', 's', 0.0, 1e7)
-    duration_s: float = setting(0.0, 'length of the navigation; 0 = to the end', 's', 0.0, 1e7)
-    input: str = setting('instant', 'what a sample is. instant: the value at its stamp, as from '
-                         'most drivers; integrated: the mean since the sample before; '
-                         'rotation_vector: as imu_sensor sends it by default', choices=INPUTS)
-    gap_factor: float = setting(3.0, 'a step longer than this many median steps is a gap', '',
-                                1.1, 1e6)
-    on_gap: str = setting('stop', 'stop: the solution ends there; restart: from the reference, '
-                          'or from a stationary interval behind the gap; bridge: rate and '
-                          'force are drawn straight across the gap',
-                          choices=('stop', 'restart', 'bridge'))
-    longest_bridge_s: float = setting(600.0, 'the longest gap that is bridged; the solution ends '
-                                      'at a longer one', 's', 0.0, 1e5)
+    start_s: float = setting(0.0, 'Time after the first sample at which the navigation, or the '
+                             'search for a stationary interval, begins', 's', 0.0, 1e7)
+    duration_s: float = setting(0.0, 'Length of the navigation; 0 = to the end of the recording',
+                                's', 0.0, 1e7)
+    input: str = setting('instant', 'Meaning of a sample. instant: the value at its stamp, as '
+                         'from most drivers; integrated: the mean since the previous sample; '
+                         'rotation_vector: the default output of imu_sensor', choices=INPUTS)
+    gap_factor: float = setting(3.0, 'Number of median sampling intervals above which an interval '
+                                'counts as a gap', '', 1.1, 1e6)
+    on_gap: str = setting('stop', 'What to do at a gap. stop: end the solution; restart: start '
+                          'again from the reference or from a stationary interval after the gap; '
+                          'bridge: interpolate angular rate and specific force linearly across '
+                          'the gap', choices=('stop', 'restart', 'bridge'))
+    longest_bridge_s: float = setting(600.0, 'Longest gap that is bridged; the solution ends at a '
+                                      'longer one', 's', 0.0, 1e5)
 
     def check(self):
         """
-        Refuse a value that its source leaves unused.
+        Raise ValueError if a value is given that would not be used.
 
-        A heading that is given but not used would look as if it had been used.
+        The user would otherwise believe that it was used.
         """
         initial, mounting = self.initial, self.mounting
         attitude = initial.attitude == 'given'

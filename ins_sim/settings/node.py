@@ -1,4 +1,4 @@
-"""Settings of a node that no computation depends on: time of the epoch, topics and pacing."""
+"""Settings of a node that do not affect its computation: epoch, topics and pacing."""
 
 import time
 
@@ -7,47 +7,50 @@ from .field import setting, settings_class, SettingsGroup
 
 @settings_class
 class LockStepPacing(SettingsGroup):
-    """How a master of time waits for those who use what it sends."""
+    """Lock-step: how the node that sets the pace waits for the consumers of its messages."""
 
-    lock_step: bool = setting(False, 'wait for the acknowledgements of the required consumers')
-    window: int = setting(200, 'unanswered steps allowed in lock-step', 'steps', 1, 2000)
-    required: tuple[str, ...] = setting(('strapdown',), 'names of the consumers that must '
-                                        'acknowledge')
-    timeout_s: float = setting(30.0, 'wall time without an acknowledgement before the missing '
-                               'consumer is named and the run ends', 's', 0.1, 1e5)
+    lock_step: bool = setting(False, 'Whether to wait for the acknowledgements of the required '
+                              'consumers')
+    window: int = setting(200, 'Number of unacknowledged steps allowed in lock-step', 'steps', 1,
+                          2000)
+    required: tuple[str, ...] = setting(('strapdown',), 'Names of the consumers that must '
+                                        'acknowledge each step in lock-step')
+    timeout_s: float = setting(30.0, 'Wall-clock time without an acknowledgement after which the '
+                               'run ends with an error that names the missing consumer', 's', 0.1,
+                               1e5)
 
     @property
     def waits(self) -> bool:
-        """Whether the consumers are waited for."""
+        """Whether the node waits for its consumers."""
         return self.lock_step
 
     def check(self):
-        """Refuse lock-step without a consumer."""
+        """Raise ValueError if lock-step has no consumer."""
         if not self.required and self.waits:
             raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
 
     def check_depth(self, depth):
-        """Refuse a window that queues of topics.depth cannot hold."""
+        """Raise ValueError if the window exceeds the queue depth topics.depth."""
         if self.window > depth:
             raise ValueError(f'pacing.window is {self.window}; expected at most topics.depth, '
-                             f'{depth}: a queue must hold a window')
+                             f'{depth}, because a queue must hold a window')
 
 
 @settings_class
 class Pacing(LockStepPacing):
-    """How fast the generator goes."""
+    """Speed of the simulation."""
 
-    real_time_factor: float = setting(1.0, 'simulated seconds per second; 0 = as fast as the '
-                                      'slowest required consumer (implies lock_step)', '',
+    real_time_factor: float = setting(1.0, 'Simulated seconds per wall-clock second; 0 = as fast '
+                                      'as the slowest required consumer (implies lock_step)', '',
                                       0.0, 1e6)
 
     @property
     def waits(self) -> bool:
-        """Whether the consumers are waited for."""
+        """Whether the node waits for its consumers."""
         return self.lock_step or self.real_time_factor == 0.0
 
 
-# 2025-01-01: a stamp that tools take for one, and early enough for long runs.
+# 2025-01-01, a plausible date for other tools, and early enough for long runs.
 EPOCH_S = 1735689600
 MILLISECOND = 1_000_000
 
@@ -56,22 +59,27 @@ MILLISECOND = 1_000_000
 class Time(SettingsGroup):
     """Stamp of motion time zero; motion_generator announces it on sim/run."""
 
-    epoch: str = setting('auto', 'now: such that the first stamp is the time of the wall clock at '
-                         'the start; fixed: epoch_s; auto: epoch_s where it is not the default, '
-                         'else live now, and offline fixed, so that a run can be repeated',
+    epoch: str = setting('auto', 'Stamp of motion time zero. now: chosen so that the first stamp '
+                         'is the wall-clock time at the start; fixed: epoch_s; auto: epoch_s if '
+                         'it differs from its default, otherwise now in a live run and fixed '
+                         'offline, so that offline runs can be repeated',
                          choices=('auto', 'now', 'fixed'))
-    epoch_s: int = setting(EPOCH_S, 'stamp of motion time zero', 's', 0, 2147483647)
+    epoch_s: int = setting(EPOCH_S, 'Stamp of motion time zero, if time.epoch is fixed or auto',
+                           's', 0, 2147483647)
 
     @property
     def given(self):
-        """Whether epoch_s counts, live as well."""
+        """Whether epoch_s is used, also in a live run."""
         return self.epoch == 'fixed' or self.epoch == 'auto' and self.epoch_s != EPOCH_S
 
     def epoch_ns(self, first_ns, live):
         """
-        Return the stamp of motion time zero, ns; one that is taken from the clock in whole ms.
+        Return the stamp of motion time zero, ns.
 
-        first_ns: motion time of the first sample; live: whether the run goes with the wall clock.
+        Parameters
+        ----------
+        first_ns : motion time of the first sample, ns
+        live : whether this is a live run, whose epoch follows the clock (to whole milliseconds)
         """
         if self.given or self.epoch == 'auto' and not live:
             return 1_000_000_000 * self.epoch_s
@@ -82,13 +90,13 @@ class Time(SettingsGroup):
 class Topics(SettingsGroup):
     """Quality of service of the data topics (reliable, volatile)."""
 
-    depth: int = setting(10000, 'queue depth of publishers and subscriptions', 'messages', 1,
+    depth: int = setting(10000, 'Queue depth of publishers and subscriptions', 'messages', 1,
                          100000)
 
 
 @settings_class
 class OneProcessSettings(SettingsGroup):
-    """Which nodes the executable simulation holds."""
+    """Nodes in the process of the executable simulation."""
 
-    aided: bool = setting(False, 'velocity_meter, gnss and aided_navigator run beside '
-                          'motion_generator, imu_sensor and strapdown')
+    aided: bool = setting(False, 'Whether velocity_meter, gnss and aided_navigator run in the '
+                          'process as well, besides motion_generator, imu_sensor and strapdown')

@@ -1,50 +1,52 @@
-"""Settings that all nodes share: the datum, the Earth, and the frames of the vehicle."""
+"""Settings shared by all nodes: datum, Earth model, frames of the vehicle and transforms."""
 
 from .field import setting, settings_class, SettingsGroup
 
-# The change from Cartesian coordinates to latitude, longitude and height holds up to here.
+# The conversion from Cartesian coordinates to latitude, longitude, height is accurate up to here.
 HIGHEST_M = 1e6
-# The frames that have a name of their own among the settings.
+# The frames whose names are settings.
 ROLES = ('map', 'odom', 'base_link', 'imu_link', 'gnss_link', 'velocity_meter_link')
-# Axes in which some topics are resolved: East, North, Up at the vehicle, and along a leg.
+# Axes without a frame setting: East, North, Up at the vehicle, and along a leg.
 AXES = ('enu', 'leg')
 
 
 @settings_class
 class Datum(SettingsGroup):
-    """Origin of ``map``; the bench motions stand there."""
+    """Datum: origin of the frame ``map`` and position of the bench motions."""
 
-    latitude_deg: float = setting(55.75, 'geodetic latitude', 'deg', -89.9, 89.9)
-    longitude_deg: float = setting(37.62, 'longitude', 'deg', -180.0, 180.0)
-    height_m: float = setting(0.0, 'height above the WGS-84 ellipsoid', 'm', -500.0, HIGHEST_M)
+    latitude_deg: float = setting(55.75, 'Geodetic latitude of the datum', 'deg', -89.9, 89.9)
+    longitude_deg: float = setting(37.62, 'Longitude of the datum', 'deg', -180.0, 180.0)
+    height_m: float = setting(0.0, 'Height of the datum above the WGS-84 ellipsoid', 'm', -500.0,
+                              HIGHEST_M)
 
 
 @settings_class
 class Earth(SettingsGroup):
-    """The Earth of the truth and of the navigation; a node has its own."""
+    """Earth model; set it under ``/**`` so that truth and navigation use the same."""
 
-    rotation: bool = setting(True, 'the Earth rotates, in the truth and in the navigation')
-    gravity: str = setting('free_air', 'normal gravity by height: free_air, of first order (off '
-                           'by 14 ug at 10 km, 180 ug at 50 km, 1.7 % at 500 km), or '
-                           'second_order (off by 2 ug at 50 km, 0.2 % at 500 km)',
+    rotation: bool = setting(True, 'Whether the Earth rotates, in the truth and in the navigation')
+    gravity: str = setting('free_air', 'Model of normal gravity above the ellipsoid. free_air: '
+                           'first order in height (error 14 ug at 10 km, 180 ug at 50 km, 1.7 % '
+                           'at 500 km); second_order: error 2 ug at 50 km, 0.2 % at 500 km',
                            choices=('free_air', 'second_order'))
 
 
 @settings_class
 class Frames(SettingsGroup):
-    """Names of the frames (REP-105), the same in all nodes of a vehicle."""
+    """Names of the frames (REP-105); all nodes of a vehicle need the same."""
 
-    prefix: str = setting('', 'name of the vehicle, put before every frame with a slash: uav1 '
-                          'makes uav1/map, uav1/base_link, ...')
-    map: str = setting('map', 'East, North, Up at the datum: truth and the aided solution')
-    odom: str = setting('odom', 'the same axes as the free INS has them, which drift')
-    base_link: str = setting('base_link', 'the vehicle: forward, left, up')
-    imu_link: str = setting('imu_link', 'the IMU')
-    gnss_link: str = setting('gnss_link', 'the antenna of GNSS')
-    velocity_meter_link: str = setting('velocity_meter_link', 'the antennas of the velocity meter')
+    prefix: str = setting('', 'Name of the vehicle, put before the name of every frame: uav1 '
+                          'gives uav1/map, uav1/base_link, ...')
+    map: str = setting('map', 'Frame East, North, Up at the datum, of truth and aided solution')
+    odom: str = setting('odom', 'Frame of the free INS solution, which drifts relative to map')
+    base_link: str = setting('base_link', 'Frame of the vehicle: forward, left, up')
+    imu_link: str = setting('imu_link', 'Frame of the IMU')
+    gnss_link: str = setting('gnss_link', 'Frame of the GNSS antenna')
+    velocity_meter_link: str = setting('velocity_meter_link', 'Frame of the antennas of the '
+                                       'velocity meter')
 
     def check(self):
-        """Refuse names that TF does not take, and two frames of one name."""
+        """Raise ValueError on a name that TF does not accept or that occurs twice."""
         given = {name: getattr(self, name) for name in ('prefix', *ROLES)}
         for name, text in given.items():
             if text.startswith('/') or text.endswith('/'):
@@ -70,10 +72,11 @@ class Frames(SettingsGroup):
 
 @settings_class
 class Tf(SettingsGroup):
-    """Transforms on /tf and /tf_static, the same in all nodes of a vehicle."""
+    """Transforms on /tf and /tf_static; all nodes of a vehicle need the same."""
 
-    source: str = setting('none', 'who places the vehicle on /tf. truth: map -> base_link; ins: '
-                          'odom -> base_link by strapdown, map -> odom fixed at the start; aided: '
-                          'odom -> base_link by strapdown, map -> odom by aided_navigator; none: '
-                          'no transforms. With all others /tf_static holds the instruments',
+    source: str = setting('none', 'Source of the vehicle pose on /tf. truth: map -> base_link; '
+                          'ins: odom -> base_link by strapdown, and map -> odom fixed at the '
+                          'start; aided: odom -> base_link by strapdown, and map -> odom by '
+                          'aided_navigator; none: no transforms. With all but none, /tf_static '
+                          'holds the frames of the sensors',
                           choices=('none', 'truth', 'ins', 'aided'))

@@ -1,12 +1,15 @@
 """
-Instrument error presets, each a class of instruments with the figures of its data sheets.
+Presets of instrument errors, one for each class of IMU, from data sheets.
 
-A value marked with the name of an instrument in the comments is that of its published data sheet
-or brochure; every other one is engineering judgement, as data sheets leave it out (rate random
-walk, temperature, non-linearity, pulses).  Data sheets give the lowest Allan deviation as "in-run
-stability" or "bias instability": it is 0.664 B, and the setting bias_instability is B, so that
-figure over 0.664.  The lowest point of a record, where N and K add to B, lies somewhat above.
-Presets cannot be changed: ``preset`` returns a new dict of settings to be read below one's own.
+Values that a comment attributes to an instrument are from its published data sheet or brochure.
+All others (rate random walk, temperature, non-linearity, pulses) are not in data sheets and are
+engineering judgement.
+
+Data sheets give the lowest Allan deviation as "in-run stability" or "bias instability". It is
+0.664 B; the setting bias_instability is B, therefore the figure of the data sheet divided by
+0.664. The minimum measured on a record is somewhat higher, because N and K add to B.
+
+Presets are read-only; ``preset`` returns a new dict of settings, which other settings override.
 """
 
 from dataclasses import dataclass
@@ -23,10 +26,14 @@ ROTORS = 'gyro.dtg.errors.'
 @dataclass(frozen=True)
 class Preset:
     """
-    A class of instruments.
+    Errors of a class of instruments.
 
-    datasheet: the class; figures: those of its data sheets; values: read-only {dotted key of
-    imu_sensor: value}.
+    Attributes
+    ----------
+    name : name of the preset
+    datasheet : description of the class
+    figures : its figures from data sheets, as text
+    values : read-only {dotted key of imu_sensor: value}
     """
 
     name: str
@@ -43,11 +50,11 @@ def _preset(name, datasheet, figures, gyro, accelerometer, more=MappingProxyType
     return Preset(name, datasheet, figures, MappingProxyType(values))
 
 
-# Honeywell HG4930 (CA51), the better of the class, in noise, biases and ranges; Sensonor STIM300
-# (TS1524) in scale factor 500 and 300 ppm, gyro non-linearity 50 ppm at 400 deg/s, 1 deg/h/g with
-# compensation, filter 262 Hz.  The others of the class are noisier: STIM300 0.15 deg/sqrt(h), 0.3
-# to 0.5 deg/h in run, 0.06 m/s/sqrt(h), 50 ug; Analog Devices ADIS16490 0.09 deg/sqrt(h), 1.8
-# deg/h.
+# Noise, biases and ranges are those of Honeywell HG4930 (CA51), one of the better of the class.
+# Scale factors 500 and 300 ppm, gyro non-linearity 50 ppm at 400 deg/s, 1 deg/h/g with
+# compensation and the filter of 262 Hz are those of Sensonor STIM300 (TS1524). Others are noisier:
+# STIM300 has 0.15 deg/sqrt(h), 0.3 to 0.5 deg/h in run, 0.06 m/s/sqrt(h), 50 ug; Analog Devices
+# ADIS16490 has 0.09 deg/sqrt(h), 1.8 deg/h.
 _MEMS = _preset(
     'tactical_mems', 'tactical-grade MEMS IMU (class of HG4930, STIM300, ADIS16490)',
     'gyro: repeatability 7 deg/h, in-run 0.25 deg/h, ARW 0.04 deg/sqrt(h), range 400 deg/s '
@@ -68,16 +75,16 @@ _MEMS = _preset(
      'bandwidth_hz': 262.0, 'bandwidth_order': 2, 'saturation_g': 20.0,
      'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 50.0, 'temperature_scale_ppm_c': 10.0})
 
-# KVH 1750 in noise, in-run stability, linearity, bandwidth and range of the gyros, and in the
-# range of the accelerometers; Northrop Grumman LN-200 in biases, scale factors, alignment and the
-# noise of the accelerometers, 35 ug/sqrt(Hz).  The gyros of the LN-200 are noisier: 0.07
-# deg/sqrt(h).
+# Noise, in-run stability, linearity, bandwidth and range of the gyros, and the range of the
+# accelerometers, are those of KVH 1750. Biases, scale factors, alignment and the noise of the
+# accelerometers, 35 ug/sqrt(Hz), are those of Northrop Grumman LN-200. Its gyros are noisier,
+# 0.07 deg/sqrt(h).
 _FOG = _preset(
     'tactical_fog', 'tactical-grade fibre-optic IMU (class of LN-200, KVH 1750)',
     'gyro: in-run 0.05 deg/h, ARW 0.012 deg/sqrt(h), range 490 deg/s, bandwidth 440 Hz (KVH '
     '1750), repeatability 1 deg/h, scale factor 100 ppm, alignment 0.1 mrad (LN-200); '
     'accelerometer: repeatability 0.3 mg, VRW 0.02 m/s/sqrt(h), scale factor 300 ppm (LN-200), '
-    'range 30 g (KVH 1750); the rest is judgement, in-run 13 ug among it',
+    'range 30 g (KVH 1750); the rest, such as in-run 13 ug, is judgement',
     {'turn_on_bias_sigma_deg_h': 1.0, 'angle_random_walk_deg_sqrt_h': 0.012,
      'bias_instability_deg_h': 0.075, 'rate_random_walk_deg_h_sqrt_h': 0.3,
      'scale_factor_sigma_ppm': 100.0, 'scale_asymmetry_ppm': 10.0, 'cubic_ppm_s2_deg2': 2e-4,
@@ -91,10 +98,10 @@ _FOG = _preset(
      'bandwidth_hz': 200.0, 'bandwidth_order': 2, 'saturation_g': 30.0,
      'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 20.0, 'temperature_scale_ppm_c': 5.0})
 
-# Honeywell HG9900 (brochure N61-1638) in the noise, bias and scale factor of the gyros, and the
-# bias and scale factor of the accelerometers; the GG1320 alone has 0.0035 deg/sqrt(h), the LN-100
-# 0.001.  No data sheet of the class gives a floor or a walk of the gyros: they lie below the white
-# noise for hours, and only records of weeks show them (test_allan).
+# Noise, bias and scale factor of the gyros, and bias and scale factor of the accelerometers, are
+# those of Honeywell HG9900 (brochure N61-1638); GG1320 has 0.0035 deg/sqrt(h), LN-100 0.001. No
+# data sheet of the class gives bias instability or rate random walk of the gyros: they are below
+# the white noise for hours, and only records of weeks show them (test_allan).
 _RLG = _preset(
     'navigation_rlg', 'navigation-grade ring-laser IMU with quartz accelerometers (class of '
     '1 nmi/h: HG9900, GG1320, LN-100)',
@@ -115,8 +122,8 @@ _RLG = _preset(
      'bandwidth_hz': 300.0, 'bandwidth_order': 2, 'saturation_g': 25.0,
      'quantisation_mm_s': 0.002, 'temperature_bias_ug_c': 1.0, 'temperature_scale_ppm_c': 1.0})
 
-# IEEE Std 813 gives the terms of the model and no figures.  These are judgement throughout, the
-# middle of what tactical two-axis gyros with compensation are said to have: fixed drift 0.1 to 3
+# IEEE Std 813 gives the terms of the model and no figures.  All values are judgement, from the
+# middle of the ranges reported for tactical two-axis gyros with compensation: fixed drift 0.1 to 3
 # deg/h, in-run 0.02 to 0.2 deg/h over 100 to 1000 s, mass unbalance 0.1 to 1 deg/h/g, anisoelastic
 # 0.01 to 0.05 deg/h/g^2, torquer 50 to 500 ppm and 10 to 50 ppm, 100 to 400 deg/s, axes 0.05 to
 # 0.5 mrad, ARW 0.002 to 0.02 deg/sqrt(h), pulses 0.1 to 1 arcsec.
@@ -143,7 +150,7 @@ _DTG = _preset(
      'cubic_ug_g3': 1.0, 'misalignment_sigma_mrad': 0.2, 'non_orthogonality_mrad': 0.1,
      'bandwidth_hz': 300.0, 'bandwidth_order': 2, 'saturation_g': 20.0,
      'quantisation_mm_s': 0.01, 'temperature_bias_ug_c': 10.0, 'temperature_scale_ppm_c': 3.0},
-    # of a rigid rotor the quadrature is opposite on y and z
+    # The quadrature of a rigid rotor has opposite signs on y and z.
     {ROTORS + 'mass_unbalance_deg_h_g': (0.5,) * 4,
      ROTORS + 'quadrature_unbalance_deg_h_g': (1.0, -1.0) * 2,
      ROTORS + 'spin_axis_deg_h_g': (0.1,) * 4, ROTORS + 'anisoelastic_deg_h_g2': (0.02,) * 4,
@@ -158,9 +165,9 @@ PRESETS = MappingProxyType({p.name: p for p in (_MEMS, _FOG, _RLG, _DTG)})
 
 def preset(name):
     """
-    Return a new dict {dotted key of imu_sensor: value} of the preset of that name.
+    Return a new dict {dotted key of imu_sensor: value} of a preset.
 
-    Raises ValueError, naming the nearest known one, where there is none.
+    Raises ValueError, with the nearest known name, if there is no such preset.
     """
     if name not in PRESETS:
         raise ValueError(f'unknown instrument preset {name!r}; the nearest known one is '
@@ -170,16 +177,17 @@ def preset(name):
 
 def navigator_values(entry):
     """
-    Return {dotted key of aided_navigator: value} of a Preset: what its filter believes.
+    Return the settings of the filter of aided_navigator that match a Preset.
 
-    In level flight a scale factor of the gyros is one with an axis out of place, which is also a
-    bias of the accelerometers; what a gyro drifts for 1 g is a bias.
+    Gyro scale factor and misalignment are combined into one value. In level flight misalignment
+    of the accelerometers and the drift of a gyro under 1 g act as biases, so they are added to
+    the bias sigmas. Keys are the dotted keys of aided_navigator.
     """
     def one(key):
         return max(map(abs, entry.values.get(key, (0.0,))))
 
     def together(*parts):
-        # as many digits as a data sheet has
+        # Four digits, as data sheets have no more.
         return float(f'{math.hypot(*parts):.4g}')
 
     of_g = (one(GYRO + 'g_sensitivity_deg_h_g'), one(ROTORS + 'mass_unbalance_deg_h_g'))
@@ -199,7 +207,7 @@ def navigator_values(entry):
 
 
 def strapdown_values(entry):
-    """Return {dotted key of strapdown: value} of a Preset: the errors of which it knows."""
+    """Return {dotted key of strapdown: value} of a Preset, for its covariances."""
     return {key: value for key, value in entry.values.items()
             if key.startswith((GYRO, ACCELEROMETER))}
 

@@ -1,11 +1,11 @@
-"""Values and names as they are repeated in a sentence: never longer than a sentence may be."""
+"""Shorten values and names so that they fit into a message."""
 
 LONGEST = 60
 MOST = 8
 
 
 def shown(value, longest=LONGEST):
-    """Return the repr of a value, cut where it is longer than a sentence can bear."""
+    """Return the repr of a value, truncated after `longest` characters."""
     try:
         text = repr(value if not isinstance(value, str) else value[:longest + 1])
         size = len(value) if isinstance(value, str) else len(text)
@@ -18,19 +18,19 @@ def shown(value, longest=LONGEST):
 
 
 def listed(names, most=MOST):
-    """Return names separated by commas, the first few of many."""
+    """Return the first few names, separated by commas, and the number of the others."""
     names = list(names)
     text = ', '.join(cut(str(name)) for name in names[:most])
     return text if len(names) <= most else f'{text} and {len(names) - most} more'
 
 
 def cut(text, longest=LONGEST):
-    """Return a text, its end left out where it is too long."""
+    """Return a text, truncated after `longest` characters."""
     return text if len(text) <= longest else f'{text[:longest]}... ({len(text)} characters)'
 
 
 def exact(number):
-    """Return a number with as many digits as tell it from its neighbours: 2147483648, 0.1."""
+    """Return the shortest text that is exactly the number, such as 2147483648 or 0.1."""
     try:
         short = f'{number:g}'
         if float(short) == number:

@@ -1,4 +1,4 @@
-"""Settings of a whole simulation: those of its nodes, checked against each other."""
+"""Settings of a whole simulation: the settings of its nodes, checked against each other."""
 
 from dataclasses import dataclass, replace
 
@@ -14,14 +14,14 @@ from .velocity_meter import VelocityMeterSettings
 
 @dataclass(frozen=True)
 class SimulationSettings:
-    """Settings of the three stages."""
+    """Settings of motion_generator, imu_sensor and strapdown."""
 
     motion_generator: MotionGeneratorSettings
     imu_sensor: ImuSensorSettings
     strapdown: StrapdownSettings
 
     def __post_init__(self):
-        """Refuse rates that do not go together; a live strapdown reports them."""
+        """Raise ValueError on contradictions that a live strapdown would report."""
         sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
         if sends != expects:
             raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
@@ -36,12 +36,12 @@ class SimulationSettings:
 
     @property
     def lead_ns(self):
-        """Return how far ahead a channel of negative delay reads the motion, ns."""
+        """Return the time by which a channel with negative delay reads the motion ahead, ns."""
         imu = self.imu_sensor
         return -min(0, *imu.gyro.delay_us.in_ns(), *imu.accelerometer.delay_us.in_ns())
 
     def without_delays(self):
-        """Return the settings of the zero-delay twin; it has the same instrument errors."""
+        """Return the settings of the twin, the zero-delay reference run; other errors are kept."""
         imu = self.imu_sensor
         return replace(self, imu_sensor=replace(
             imu, gyro=replace(imu.gyro, delay_us=DelaysUs()),
@@ -58,13 +58,13 @@ class SimulationSettings:
 
     @property
     def delayed(self):
-        """Return whether any channel is late."""
+        """Return whether any channel has a delay."""
         imu = self.imu_sensor
         return imu.gyro.delay_us != DelaysUs() or imu.accelerometer.delay_us != DelaysUs()
 
 
 def check_frames(generator, **nodes):
-    """Raise ValueError unless nodes have the frames of the generator, and its source of TF."""
+    """Raise ValueError unless all nodes have the frames and tf settings of the generator."""
     for node, settings in nodes.items():
         for group in ('frames', 'tf'):
             ours, theirs = (values_of(getattr(one, group)) for one in (settings, generator))
@@ -75,15 +75,15 @@ def check_frames(generator, **nodes):
                                      'of frames')
 
 
-# The nodes beside imu_sensor that draw random numbers.
+# The nodes other than imu_sensor that draw random numbers.
 DRAWING = ('velocity_meter', 'gnss', 'aided_navigator')
-# What the settings of an instrument and of the navigator must have in common.
+# Settings that an aiding sensor and the navigator must have in common.
 AGREED = (('velocity_meter', ('rate_hz', 'window')), ('gnss', ('gnss',)))
 
 
 @dataclass(frozen=True)
 class AidedSimulationSettings:
-    """Settings of the six stages; raises ValueError where both sides of a fix do not agree."""
+    """Settings of the six nodes of an aided simulation; raises ValueError on contradictions."""
 
     simulation: SimulationSettings
     velocity_meter: VelocityMeterSettings
@@ -91,7 +91,7 @@ class AidedSimulationSettings:
     aided_navigator: AidedNavigatorSettings
 
     def __post_init__(self):
-        """Refuse what a live navigator would report with every fix."""
+        """Raise ValueError on contradictions that a live navigator would report with every fix."""
         navigator, sensor = self.aided_navigator, self.simulation.imu_sensor
         for name, keys in AGREED:
             for key in keys:
@@ -129,7 +129,7 @@ class AidedSimulationSettings:
         return nodes
 
     def _check_run(self):
-        """Refuse nodes of different runs."""
+        """Raise ValueError unless all nodes have the same run number."""
         for node in DRAWING:
             theirs = getattr(self, node).run
             if theirs != self.run:
@@ -137,7 +137,7 @@ class AidedSimulationSettings:
                                  f'{self.run}: all nodes fly one run of an ensemble')
 
     def _check_streams(self):
-        """Refuse streams that the live stages would report with every message."""
+        """Raise ValueError on rates and stamps that live nodes would report with every message."""
         generator, sensor = self.simulation.motion_generator, self.simulation.imu_sensor
         sent = generator.rate_hz
         if self.velocity_meter.rate_hz != sent:
@@ -154,7 +154,7 @@ class AidedSimulationSettings:
                                  'aided_navigator, which needs the truth of the same stamp')
 
     def _check_steering(self):
-        """Refuse a strapdown for which a fix, and the solution to steer by, would wait."""
+        """Raise ValueError if fixes, and so the steering, would wait for the strapdown."""
         simulation = self.simulation
         if (simulation.motion_generator.motion.kind == 'guided'
                 and self.velocity_meter.attack_angle == 'ins'
@@ -164,10 +164,10 @@ class AidedSimulationSettings:
                              'of a window waits for the strapdown')
 
     def _check_route(self):
-        """Refuse a route for the orthodromic coordinates that is not the one flown."""
+        """Raise ValueError unless the orthodromic coordinates refer to the route that is flown."""
         points, motion = self.aided_navigator.motion.route.points, \
             self.simulation.motion_generator.motion
         if motion.kind in ('route', 'guided') and points != motion.route.points:
             raise ValueError('aided_navigator: motion.route.points are not those of '
-                             'motion_generator; expected the route that is flown: name it under '
+                             'motion_generator; expected the route that is flown: give it under '
                              '"/**", for both')

@@ -11,41 +11,49 @@ from .recorded_imu import (AlignmentSettings, GapSettings, INPUTS, MountingAngle
 
 @settings_class
 class Vertical(SettingsGroup):
-    """The vertical channel."""
+    """Vertical channel."""
 
-    channel: str = setting('truth', 'height and vertical velocity from truth, free, or damped '
-                           'towards the height of the truth', choices=('truth', 'free', 'damped'))
-    time_constant_s: float = setting(20.0, 'time constant of the damped channel', 's', 0.1, 1e4)
-    reference: str = setting('fix', 'without truth, towards what height the channel is damped: '
-                             'that of inputs.fix, or by inputs.pressure in the standard '
-                             'atmosphere, from the height of the start on',
+    channel: str = setting('truth', 'How height and vertical velocity are found. truth: taken '
+                           'from the truth; free: integrated; damped: integrated and damped '
+                           'towards the height of the truth or of vertical.reference',
+                           choices=('truth', 'free', 'damped'))
+    time_constant_s: float = setting(20.0, 'Time constant of the damped vertical channel', 's',
+                                     0.1, 1e4)
+    reference: str = setting('fix', 'Height towards which the vertical channel is damped without '
+                             'truth. fix: height of inputs.fix; pressure: height of the start, '
+                             'changed by inputs.pressure through the standard atmosphere',
                              choices=('fix', 'pressure'))
 
 
 @settings_class
 class Initial(StandaloneStart):
     """
-    The state at the start, and its errors.
+    Initial state and its errors.
 
-    The errors are added to the truth, resolved in East, North, Up. The standard deviations are
-    those that the covariances of ins/* begin with; the errors are squared in.
+    The errors are added to the truth, resolved in East, North, Up. The standard deviations set
+    the initial covariances on the ins/ topics, to which the squared errors are added.
     """
 
-    after_s: float = setting(0.0, 'start this long after the first IMU sample', 's', 0.0, 1e6)
-    attitude_error_deg: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'rotation vector of the '
-                                                    'attitude error', 'deg', -180.0, 180.0, size=3)
-    velocity_error_m_s: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'velocity error', 'm/s',
-                                                    -1e4, 1e4, size=3)
-    position_error_m: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'position error', 'm', -1e6,
-                                                  1e6, size=3)
-    position_sigma_m: float = setting(0.0, 'standard deviation of the position, each axis', 'm',
-                                      0.0, 1e6)
-    velocity_sigma_m_s: float = setting(0.0, 'that of the velocity, each axis', 'm/s', 0.0, 1e3)
-    tilt_sigma_mrad: float = setting(0.0, 'that of the tilt, each axis', 'mrad', 0.0, 500.0)
-    azimuth_sigma_mrad: float = setting(0.0, 'that of the azimuth', 'mrad', 0.0, 3142.0)
+    after_s: float = setting(0.0, 'Time from the first IMU sample to the start of the navigation',
+                             's', 0.0, 1e6)
+    attitude_error_deg: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'Rotation vector of the '
+                                                    'initial attitude error: East, North, Up',
+                                                    'deg', -180.0, 180.0, size=3)
+    velocity_error_m_s: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'Initial velocity error: '
+                                                    'East, North, Up', 'm/s', -1e4, 1e4, size=3)
+    position_error_m: tuple[float, ...] = setting((0.0, 0.0, 0.0), 'Initial position error: East, '
+                                                  'North, Up', 'm', -1e6, 1e6, size=3)
+    position_sigma_m: float = setting(0.0, 'Standard deviation of the initial position, each axis',
+                                      'm', 0.0, 1e6)
+    velocity_sigma_m_s: float = setting(0.0, 'Standard deviation of the initial velocity, each '
+                                        'axis', 'm/s', 0.0, 1e3)
+    tilt_sigma_mrad: float = setting(0.0, 'Standard deviation of the initial tilt, each axis',
+                                     'mrad', 0.0, 500.0)
+    azimuth_sigma_mrad: float = setting(0.0, 'Standard deviation of the initial azimuth', 'mrad',
+                                        0.0, 3142.0)
 
     def check(self):
-        """Refuse values that the source of the start leaves unused."""
+        """Raise ValueError if a value is given that would not be used."""
         self.check_used()
         given = [key for key in ('attitude_error_deg', 'velocity_error_m_s', 'position_error_m')
                  if any(getattr(self, key))]
@@ -56,21 +64,21 @@ class Initial(StandaloneStart):
 
 @settings_class
 class GyroFigures(SettingsGroup):
-    """The gyros, of which the covariances of ins/* need the errors alone."""
+    """Gyros: only their errors are used, for the covariances on the ins/ topics."""
 
     errors: GyroErrors = group(GyroErrors)
 
 
 @settings_class
 class AccelerometerFigures(SettingsGroup):
-    """The accelerometers, likewise."""
+    """Accelerometers: only their errors are used, for the covariances on the ins/ topics."""
 
     errors: AccelerometerErrors = group(AccelerometerErrors)
 
 
 @settings_class
 class StrapdownSettings(SettingsGroup):
-    """Node strapdown."""
+    """Settings of the node strapdown."""
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
@@ -86,39 +94,41 @@ class StrapdownSettings(SettingsGroup):
     mounting: MountingAngles = group(MountingAngles)
     alignment: AlignmentSettings = group(AlignmentSettings)
     gaps: GapSettings = group(GapSettings)
-    rate_hz: float = setting(100.0, 'rate of the IMU', 'Hz', 0.01, 20000.0)
-    input: str = setting('rotation_vector', 'what the IMU sends (imu_sensor: output). instant: '
-                         'the value at its stamp, as from most drivers; only without truth',
-                         choices=INPUTS)
-    orientation: str = setting('quaternion', 'attitude algorithm: quaternion (exact), or by RK4 '
-                               'the matrix of Poisson\'s equation or the Euler vector',
+    rate_hz: float = setting(100.0, 'Rate of the IMU', 'Hz', 0.01, 20000.0)
+    input: str = setting('rotation_vector', 'Meaning of the IMU samples; must equal output of '
+                         'imu_sensor. Without truth also instant: the value at its stamp, as from '
+                         'most drivers', choices=INPUTS)
+    orientation: str = setting('quaternion', 'Attitude algorithm. quaternion: exact; poisson: RK4 '
+                               'integration of the direction cosine matrix (equation of Poisson); '
+                               'euler_vector: RK4 integration of the Euler vector',
                                choices=('quaternion', 'poisson', 'euler_vector'))
-    imu_time: str = setting('stamp', 'instant of a reading: its stamp, or the nearest multiple of '
-                            'the period in motion time (nominal; for jitter and latency)',
-                            choices=('stamp', 'nominal'))
-    imu_latency_us: float = setting(0.0, 'known latency of the stamps, taken off before the '
+    imu_time: str = setting('stamp', 'Instant of a reading. stamp: its stamp; nominal: the '
+                            'nearest multiple of the sampling period in motion time, for stamps '
+                            'with jitter and latency', choices=('stamp', 'nominal'))
+    imu_latency_us: float = setting(0.0, 'Known latency of the stamps, subtracted before the '
                                     'nominal instant is found', 'us', -1e6, 1e6)
-    imu_data: bool = setting(False, 'publish imu/data: imu/data_raw with the orientation of the '
-                             'INS and its covariance')
-    output_every: int = setting(1, 'publish every n-th step', 'steps', 1, 1000000)
-    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
-                            'anew from truth (reset) or end the node (stop)',
+    imu_data: bool = setting(False, 'Whether to publish imu/data: imu/data_raw with the '
+                             'orientation of the INS and its covariance')
+    output_every: int = setting(1, 'Number of steps from one published solution to the next',
+                                'steps', 1, 1000000)
+    on_fault: str = setting('reset', 'What the node does after a gap, a backward time stamp or an '
+                            'invalid message: start anew from truth (reset) or end (stop)',
                             choices=('reset', 'stop'))
 
     @property
     def standalone(self):
-        """Whether the node needs no truth."""
+        """Whether the node works without truth."""
         return self.initial.source != 'truth'
 
     def check(self):
-        """Refuse readings that the strapdown beside the truth does not take."""
+        """Raise ValueError if input or mounting contradict the source of the initial state."""
         if self.input not in OUTPUTS and not self.standalone:
             raise ValueError(f'input is {self.input} and initial.source truth; expected one of '
                              f'{", ".join(OUTPUTS)}, as imu_sensor sends them')
         if self.mounting.source == 'level' and self.initial.source != 'alignment':
             raise ValueError(f'mounting.source is level and initial.source {self.initial.source}; '
-                             'expected initial.source alignment, whose standstill shows what is '
-                             'level')
+                             'expected initial.source alignment, which levels the IMU at '
+                             'standstill')
         if any(self.mounting.rpy_deg) and not self.standalone:
             raise ValueError(f'mounting.rpy_deg is {list(self.mounting.rpy_deg)} and would not be '
                              'used with initial.source truth; expected zeros')

@@ -1,4 +1,4 @@
-"""The nearest known name to a misspelt one; imported only when there is an error to report."""
+"""Find the known name nearest to a misspelt one, for error messages."""
 
 from .shown import LONGEST, shown
 
@@ -6,7 +6,7 @@ SIMILAR = 0.75
 
 
 def nearest_name(name, known):
-    """Return the known text that is most like name."""
+    """Return the known text that is most similar to name."""
     return _matches(name, known, 0.0)[0]
 
 
@@ -22,6 +22,6 @@ def _matches(name, known, cutoff):
 
 
 def unknown_key(name, known):
-    """Return the sentence about an unknown key, naming the nearest known one."""
+    """Return the message about an unknown parameter, with the nearest known one."""
     near = nearest_name(name, known)
     return f'unknown parameter {shown(name)}; the nearest known one is {near!r}'

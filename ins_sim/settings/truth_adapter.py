@@ -7,15 +7,15 @@ from .place import Datum, Earth, Frames, Tf
 
 @settings_class
 class World(SettingsGroup):
-    """The flat world of the other simulator: the plane tangent to the Earth at the datum."""
+    """Flat world of the other simulator: the plane tangent to the Earth at the datum."""
 
-    yaw_deg: float = setting(0.0, 'angle from East to its axis x, counter-clockwise', 'deg',
-                             -360.0, 360.0)
+    yaw_deg: float = setting(0.0, 'Angle from East to the x axis of the world, counter-clockwise',
+                             'deg', -360.0, 360.0)
 
 
 @settings_class
 class TruthAdapterSettings(SettingsGroup):
-    """Node truth_adapter: the odometry of another simulator in, truth out."""
+    """Settings of the node truth_adapter (odometry of another simulator in, truth out)."""
 
     datum: Datum = group(Datum)
     earth: Earth = group(Earth)
@@ -24,23 +24,25 @@ class TruthAdapterSettings(SettingsGroup):
     topics: Topics = group(Topics)
     pacing: LockStepPacing = group(LockStepPacing)
     world: World = group(World)
-    rate_hz: float = setting(100.0, 'rate of the IMU; a denser input is fitted down to it', 'Hz',
-                             0.01, 20000.0)
-    truth_rate_hz: float = setting(0.0, 'rate of the truth, at least twice that of the IMU; 0 = '
-                                   'twice that', 'Hz', 0.0, 40000.0)
-    twist: str = setting('auto', 'whether velocity and rate of the input are believed (use), '
-                         'only its poses serve (ignore), or two seconds of it decide (auto)',
-                         choices=('auto', 'use', 'ignore'))
-    twist_frame: str = setting('auto', 'axes of the twist of the input: those of the child, as '
-                               'nav_msgs/Odometry wants it, those of the parent, or what fits the '
-                               'poses (auto)', choices=('auto', 'child', 'parent'))
-    smoothing_s: float = setting(0.0, 'length over which poses are smoothed where the twist is '
-                                 'not believed; the truth is late by half of it', 's', 0.0, 2.0)
-    stamps: str = setting('believed', 'instant of a sample: its stamp (believed), or that of a '
-                          'steady rate which follows the stamps (nominal)',
+    rate_hz: float = setting(100.0, 'Rate of the IMU; denser input is reduced to it by a fit',
+                             'Hz', 0.01, 20000.0)
+    truth_rate_hz: float = setting(0.0, 'Rate of the published truth, at least twice that of the '
+                                   'IMU; 0 = twice that of the IMU', 'Hz', 0.0, 40000.0)
+    twist: str = setting('auto', 'Whether velocity and angular rate of the input are used: use; '
+                         'ignore (they are computed from the poses); auto (decided from the first '
+                         'two seconds)', choices=('auto', 'use', 'ignore'))
+    twist_frame: str = setting('auto', 'Axes in which the twist of the input is resolved. child: '
+                               'the child frame, as nav_msgs/Odometry requires; parent: the '
+                               'parent frame; auto: the one that fits the poses',
+                               choices=('auto', 'child', 'parent'))
+    smoothing_s: float = setting(0.0, 'Length over which poses are smoothed when the twist is not '
+                                 'used; it delays the truth by half of this time', 's', 0.0, 2.0)
+    stamps: str = setting('believed', 'Instant of a sample. believed: its stamp; nominal: the '
+                          'instant of a steady rate that follows the stamps',
                           choices=('believed', 'nominal'))
-    on_fault: str = setting('reset', 'after a gap, a backwards stamp or a bad message: start '
-                            'anew (reset) or end the node (stop)', choices=('reset', 'stop'))
+    on_fault: str = setting('reset', 'What the node does after a gap, a backward time stamp or an '
+                            'invalid message: start anew (reset) or end (stop)',
+                            choices=('reset', 'stop'))
 
     @property
     def truth_hz(self) -> float:
@@ -48,8 +50,8 @@ class TruthAdapterSettings(SettingsGroup):
         return self.truth_rate_hz or 2.0 * self.rate_hz
 
     def check(self):
-        """Refuse a truth too coarse for the IMU, and a window that the queues cannot hold."""
+        """Raise ValueError on too low a truth rate or a window above the queue depth."""
         if self.truth_hz < 2.0 * self.rate_hz:
             raise ValueError(f'truth_rate_hz is {self.truth_rate_hz:g} Hz; expected at least '
-                             f'twice rate_hz, {2.0 * self.rate_hz:g} Hz, or 0 for just that')
+                             f'twice rate_hz, {2.0 * self.rate_hz:g} Hz, or 0 for exactly that')
         self.pacing.check_depth(self.topics.depth)

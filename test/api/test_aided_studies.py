@@ -20,14 +20,14 @@ def ensemble(settings):
 
 
 def test_a_run_of_the_ensemble_flies_alone(settings, ensemble):
-    """To the bit, by its number."""
+    """A run of the ensemble, simulated alone by its number, is equal to the bit."""
     alone = ins_sim.simulate_aided(settings.with_run(3), twin=False)
     np.testing.assert_array_equal(ensemble.final_errors['position'][1], alone.errors.position[-1])
     assert ensemble.runs == range(2, 5) and ensemble.diverged == ()
 
 
 def test_nees_and_nis_are_columns(ensemble):
-    """Beside the statistics of the errors, with their intervals; NIS a row a fix."""
+    """NEES columns accompany the error statistics, with intervals; NIS has one row per fix."""
     pytest.importorskip('pandas')
     table = ensemble.to_dataframe()
     assert table['nees_state_expected'].tolist()[1:] == [13.0, 13.0]
@@ -41,7 +41,7 @@ def test_nees_and_nis_are_columns(ensemble):
 
 
 def test_nees_and_nis_are_variables(ensemble):
-    """With dimensions time and block, and the instants of the fixes."""
+    """NEES has the dimensions time and block, NIS the instants of the fixes."""
     pytest.importorskip('xarray')
     found = ensemble.to_xarray()
     assert found['nees'].sel(block='attitude').shape == (3,)
@@ -50,7 +50,7 @@ def test_nees_and_nis_are_variables(ensemble):
 
 
 def test_the_comparison(settings, tmp_path):
-    """A row a filter, arrays by filter, flight and time, and what the command writes."""
+    """The comparison has a row per filter, arrays by filter, flight, time, and a folder."""
     with pytest.raises(ValueError, match='gnss_model.use'):
         ins_sim.read_settings(['route_flight'], {**VALUES, 'filter': 'free'}, aided=True)
     study = ins_sim.compare_filters(settings, runs=2, filters=['free', 'eskf'], jobs=1)
@@ -76,6 +76,6 @@ def test_the_comparison(settings, tmp_path):
     (lambda s: ins_sim.compare_filters(s, filters='eskf'), "filters is 'eskf'; expected a list"),
     (lambda s: ins_sim.compare_filters(s, runs=0), 'runs is 0; expected a whole number from 1')])
 def test_refusals(settings, call, sentence):
-    """In one sentence."""
+    """Bad arguments are refused in one sentence."""
     with pytest.raises(ValueError, match=sentence):
         call(settings)

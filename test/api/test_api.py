@@ -35,7 +35,7 @@ def aided():
 
 
 def test_import_loads_neither_numpy_nor_yaml():
-    """The names are imported when they are used."""
+    """Importing ins_sim loads neither NumPy nor YAML."""
     code = ('import sys, ins_sim; print(sorted({"numpy", "yaml", "scipy", "ins_sim.api"} '
             '& set(sys.modules))); print("simulate" in dir(ins_sim)); ins_sim.simulate; '
             'print("numpy" in sys.modules, "matplotlib" in sys.modules, "pandas" in sys.modules)')
@@ -46,7 +46,7 @@ def test_import_loads_neither_numpy_nor_yaml():
 
 @pytest.mark.parametrize('name', ins_sim.__all__)
 def test_every_public_name_can_be_imported_and_is_described(name):
-    """Each has a docstring; an unknown name is an AttributeError."""
+    """Each public name has a docstring; an unknown name raises AttributeError."""
     assert getattr(ins_sim, name).__doc__
     with pytest.raises(AttributeError, match="no attribute 'simulat'"):
         ins_sim.simulat
@@ -78,7 +78,7 @@ def test_types():
 
 
 def test_values_are_taken_bit_by_bit():
-    """A float, a NumPy number and an array pass without being written as text."""
+    """Floats, NumPy numbers and arrays are passed exactly, not through text."""
     third = 1.0 / 3.0
     settings = ins_sim.read_settings(LATE_MOTION_2, {
         'gyro.delay_us.y': third, 'gyro.delay_us.x': np.float64(third),
@@ -91,7 +91,7 @@ def test_values_are_taken_bit_by_bit():
 
 
 def test_a_saved_run_is_that_of_the_command_line(run, tmp_path):
-    """Arrays, parameters and summary are the same; the folder is not overwritten unasked."""
+    """A saved run equals that of the command; an existing folder is kept without overwrite."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'verb')]) == 0
     run.save(tmp_path / 'api')
@@ -107,7 +107,7 @@ def test_a_saved_run_is_that_of_the_command_line(run, tmp_path):
 
 
 def test_a_saved_aided_run_is_that_of_the_command_line(aided, tmp_path):
-    """Arrays, parameters and summary are the same."""
+    """A saved aided run has the arrays, parameters and summary of the command."""
     assert main(['simulate', '--aided', '--params-file', 'route_flight', '--params-file',
                  'grade_mid', '-p', 'duration_s:=3.0', '-p', 'window.cycles:=100', '-o',
                  str(tmp_path / 'verb')]) == 0
@@ -154,7 +154,7 @@ def test_tables(run, aided):
 
 
 def test_tables_without_pandas(run, monkeypatch):
-    """The sentence says what to install."""
+    """Without pandas, to_dataframe says what to install."""
     monkeypatch.setitem(sys.modules, 'pandas', None)
     with pytest.raises(ImportError, match=r"pip install 'ins_sim\[dataframe\]'"):
         run.to_dataframe()
@@ -202,7 +202,7 @@ def test_a_motion_of_settings_and_of_a_bag(tmp_path):
 
 
 def test_results_are_one_line_in_a_notebook(run, aided):
-    """The arrays are not printed."""
+    """The repr of a result is one line without arrays."""
     start = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
              'initial.attitude': 'given', 'initial.velocity': 'given'}
     record = record_at_rest(100)

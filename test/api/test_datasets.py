@@ -1,4 +1,4 @@
-"""Records as xarray Datasets: the arrays as they are, with dimensions, labels and units."""
+"""Records as xarray Datasets keep the arrays, with dimensions, labels and units."""
 
 import sys
 
@@ -61,7 +61,7 @@ def test_records_of_runs(run, aided):
 
 
 def test_records_of_a_navigation(tmp_path):
-    """The solution, and its errors beside a reference."""
+    """A Navigation gives Datasets of the solution and of its errors against a reference."""
     pytest.importorskip('xarray', reason='xarray is not installed')
     (tmp_path / 'track.csv').write_text('t_s,lat_deg,lon_deg,height_m\n' + ''.join(
         f'{k},45.0,0.0,0.0\n' for k in range(4)))
@@ -79,7 +79,7 @@ def test_records_of_a_navigation(tmp_path):
 
 
 def test_a_dataset_of_many_runs():
-    """Dimensions as they are named; a dimension or variable without unit has no attribute."""
+    """Dimensions have the given names; one without a unit has no attribute units."""
     pytest.importorskip('xarray', reason='xarray is not installed')
     values = np.arange(24.0).reshape(2, 4, 3)
     found = dataset({'run': ((3, 7), ''), 'time': (np.arange(4), 'ns'), 'axis': (ENU, '')},
@@ -91,7 +91,7 @@ def test_a_dataset_of_many_runs():
 
 
 def test_without_xarray(run, monkeypatch):
-    """The sentence says what to install."""
+    """Without xarray, to_xarray says what to install."""
     monkeypatch.setitem(sys.modules, 'xarray', None)
     with pytest.raises(ImportError, match=r"expected pip install 'ins_sim\[xarray\]'"):
         run.to_xarray()

@@ -16,7 +16,7 @@ AIDED = {'duration_s': 3.0, 'window.cycles': 100}
     ('motion.kind', 'rockin'), ('strapdown:output_every', 1.5), ('gyro.delay_us.y', 'late'),
     ('gyro.errors.bias_deg_h', [1.0, 2.0]), ('rate_hz', True)])
 def test_values_are_refused_in_the_words_of_the_command_line(word, value, tmp_path, capsys):
-    """The sentence is that of -p."""
+    """A bad value gives the message of -p on the command line."""
     with pytest.raises(ValueError) as refused:
         ins_sim.read_settings('motion_2', {word: value})
     text = {True: 'true', 'nan': '.nan'}.get(value if value is True else str(value), str(value))
@@ -30,26 +30,26 @@ def test_values_are_refused_in_the_words_of_the_command_line(word, value, tmp_pa
 @pytest.mark.parametrize('values, said', [
     (['duration_s:=1'], 'values are'), ({1: 2.0}, 'values are')])
 def test_values_that_are_no_mapping(values, said):
-    """The sentence says what is expected."""
+    """Values that are not a mapping are refused with the expectation."""
     with pytest.raises(ValueError, match=said):
         ins_sim.read_settings('motion_2', values)
 
 
 def test_an_unknown_file_names_those_there_are():
-    """As on the command line."""
+    """An unknown parameter file is refused with the names of the existing ones."""
     with pytest.raises(FileNotFoundError, match="no config named 'motion_3'; expected one of"):
         ins_sim.read_settings('motion_3')
 
 
 @pytest.mark.parametrize('names', [None, 3, b'motion_2', {'duration_s': 1.0}, [None]])
 def test_names_that_are_no_paths(names):
-    """The sentence says what is expected."""
+    """Names that are not paths are refused with the expectation."""
     with pytest.raises(ValueError, match='^names is .*expected'):
         ins_sim.read_settings(names)
 
 
 def test_paths_and_presets_of_a_wrong_type(tmp_path, monkeypatch):
-    """No TypeError of the library below comes out."""
+    """Paths and presets of a wrong type raise ValueError, not TypeError."""
     monkeypatch.chdir(tmp_path)
     run = ins_sim.simulate(ins_sim.read_settings('motion_2', SHORT))
     for function, argument in ((ins_sim.open_bag, 'path'), (run.save, 'folder'),
@@ -62,13 +62,13 @@ def test_paths_and_presets_of_a_wrong_type(tmp_path, monkeypatch):
 @pytest.mark.parametrize('function', [ins_sim.navigate, ins_sim.open_motion, ins_sim.open_bag])
 @pytest.mark.parametrize('name', ['nowhere.csv', 'nowhere', 'nowhere.csv.gz'])
 def test_what_does_not_exist_is_not_found(function, name):
-    """As the docstrings say."""
+    """A missing file raises FileNotFoundError."""
     with pytest.raises(FileNotFoundError, match=f'^{name} does not exist; expected'):
         function(name)
 
 
 def test_settings_of_the_wrong_function_are_refused():
-    """Aided settings go to simulate_aided, and the others to simulate and predict."""
+    """simulate and predict refuse aided settings, simulate_aided the others."""
     aided = ins_sim.read_settings(['route_flight', 'grade_mid'], AIDED, aided=True)
     for function in (ins_sim.simulate, ins_sim.predict):
         with pytest.raises(ValueError, match=r'expected SimulationSettings of read_settings'):
@@ -93,7 +93,7 @@ BAD = [
 
 @pytest.mark.parametrize('changed, said', BAD)
 def test_bad_arrays_are_refused_in_one_sentence(changed, said):
-    """Nothing of NumPy's own errors comes out."""
+    """Bad arrays give a ValueError of ours, not an error of NumPy."""
     with pytest.raises(ValueError, match=said) as refused:
         record_at_rest(100, **changed)
     assert '\n' not in str(refused.value)
@@ -106,19 +106,19 @@ def test_bad_arrays_are_refused_in_one_sentence(changed, said):
     (ins_sim.open_motion, 'nowhere.csv', 'nowhere.csv'),
     (ins_sim.open_bag, 'nowhere.mcap', 'nowhere.mcap')])
 def test_bad_sources_are_refused(function, given, said):
-    """What cannot be read is named."""
+    """A source that cannot be read is named in the message."""
     with pytest.raises((ValueError, OSError), match=said):
         function(given)
 
 
 def test_an_empty_record_is_refused():
-    """No sample is nothing to navigate on."""
+    """A record without samples is refused."""
     with pytest.raises(ValueError, match='the IMU has 0 samples'):
         ins_sim.navigate(record_at_rest(0, omega=np.zeros((0, 3)), f=np.zeros((0, 3))))
 
 
 def test_a_standstill_that_fills_the_record_names_the_alignment():
-    """The alignment, not the recording, is what can be made shorter."""
+    """If the alignment uses the whole record, the message names the alignment settings."""
     place = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
              'initial.heading': 'given'}
     with pytest.raises(ValueError, match=r'expected .*alignment \(alignment.longest_s is 60 s\)'):
@@ -128,7 +128,7 @@ def test_a_standstill_that_fills_the_record_names_the_alignment():
 
 
 def test_an_own_motion_is_checked():
-    """A motion that returns anything unfit is refused before the run."""
+    """A motion that returns invalid arrays is refused before the run."""
     settings = ins_sim.read_settings('motion_2', SHORT)
 
     class Broken(ins_sim.Motion):

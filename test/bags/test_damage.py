@@ -78,7 +78,7 @@ def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
 
 
 def test_corrupt_chunks_are_found(tmp_path, capsys):
-    """A flipped bit in a chunk, in an index, in the summary, in a length."""
+    """A flipped bit in a chunk, an index, the summary or a length is detected."""
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data = path.read_bytes()
 

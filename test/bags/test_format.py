@@ -1,4 +1,4 @@
-"""Bags on disk: order, splits, metadata, hashes of types, tables, empty ones."""
+"""Format of bags: order, splits, metadata, type hashes, tables, empty bags."""
 
 import hashlib
 import json

@@ -53,7 +53,7 @@ def files(tmp_path_factory):
 
 
 def unchecked(path, kind):
-    """Return the bytes of a file by the mcap library."""
+    """Return the bytes of a file written by the mcap library without checksums."""
     mcap_writer = pytest.importorskip('mcap.writer')
     options = {'indexed': {}, 'scanned': {'index_types': mcap_writer.IndexType.NONE},
                'loose': {'use_chunking': False}}[kind]

@@ -82,7 +82,7 @@ def test_metadata_that_is_no_text(tmp_path, capsys):
 
 
 def test_bags_compressed_by_rosbags_as_a_whole(tmp_path, capsys):
-    """Both modes of rosbag2's own compression are refused by name."""
+    """Both compression modes of rosbag2 itself are refused by name."""
     rosbag2 = pytest.importorskip('rosbags.rosbag2')
     from rosbags.typesys import get_typestore, Stores
     for mode in ('FILE', 'MESSAGE'):

@@ -35,7 +35,7 @@ def test_every_type_has_the_definition_and_hash_of_rosbags():
 
 
 def test_an_unknown_type_is_one_sentence():
-    """The recorder then asks ROS for the definition."""
+    """An unknown type is refused in one sentence; the recorder then asks ROS."""
     with pytest.raises(ValueError, match="the type 'my_msgs/msg/Thing' is not known"):
         message_definition('my_msgs/msg/Thing')
 
@@ -68,7 +68,7 @@ def packed(transforms):
 
 @given(TRANSFORMS)
 def test_transforms_are_those_that_rosbags_packed(transforms):
-    """Frames of any length and alphabet, any number of transforms."""
+    """Transforms with frames of any length and alphabet equal those of rosbags."""
     assert read_rotations(packed(transforms)) == transforms
 
 
@@ -83,7 +83,7 @@ def test_a_cut_message_is_refused(transforms, draw):
 
 @given(st.binary(max_size=100))
 def test_other_bytes_are_read_or_refused(data):
-    """No bytes raise anything but ValueError."""
+    """Random bytes raise only ValueError."""
     try:
         read_rotations(b'\0\1\0\0' + data)
     except ValueError:

@@ -16,7 +16,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_everything_comes_back_by_every_reader(storage, compression, tmp_path):
-    """Every byte of every message of every type, in the order of the log times, and decoded."""
+    """Every message of every type is read back to the byte, in log order and decoded."""
     expected = write_everything(tmp_path / 'bag', storage, compression)
     with open_bag(tmp_path / 'bag') as bag:
         messages = list(bag.messages())

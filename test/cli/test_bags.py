@@ -30,7 +30,7 @@ def bag_of(tmp_path, *arguments, name='bag', motion=MOTION):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
-    """Every topic of the nodes, at its own stamp, with the numbers of the offline run."""
+    """The bag has every topic at its stamps, with the numbers of the offline run."""
     path = bag_of(tmp_path, '--storage', storage)
     shown = capsys.readouterr().out
     assert 'written: ' in shown and f'{1 + 11 * 501} messages on 12 topics' in shown.replace(

@@ -22,7 +22,7 @@ def digest(text):
 
 
 def test_the_command_shows_table_and_figure(tmp_path, capsys):
-    """Six filters and two more windows of the eskf; one process or two give the same numbers."""
+    """Six filters and two more windows of eskf; one process or two give equal numbers."""
     words = ['--cycles', '100', '1000', '10']
     rows = compare(tmp_path / 'a', *words)
     text = capsys.readouterr().out

@@ -37,7 +37,7 @@ def test_numbers_are_never_cut(terminal, width):
 
 
 def test_words_are_as_they_are():
-    """No markup, no wrapping of a path, no control characters."""
+    """Texts are printed without markup, wrapped paths or control characters."""
     out = io.StringIO()
     name = '/tmp/' + 'a' * 200 + ' [red] :smile: \x1b[31m\x07'
     PlainConsole(file=out).print(f'written: {name}')

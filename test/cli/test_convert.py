@@ -118,7 +118,7 @@ def imu_of(n=5000):
 
 @pytest.mark.parametrize('name', ['imu.csv', 'imu.csv.gz'])
 def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
-    """Stamps to the nanosecond, and every reading; more than one window."""
+    """Stamps to the nanosecond and all samples, in several windows, are equal to the bit."""
     imu, path = imu_of(), tmp_path / name
     imu.omega[7, 1] = np.nan
     csv_writer.write_imu(path, imu)
@@ -134,7 +134,7 @@ def test_imu_to_bag_and_back_is_the_same_to_the_bit(name, tmp_path, capsys):
 
 
 def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
-    """The same samples give the same solution, to the bit."""
+    """A CSV file and a bag with the same samples give the same solution to the bit."""
     given = ['motion.kind:=static', 'duration_s:=60.0', 'output:=integrated',
              'input:=integrated']
     words = [word for a in given for word in ('-p', a)]

@@ -13,7 +13,7 @@ def convert(*words):
 
 
 def test_an_imu_of_others_by_a_map_of_its_columns(tmp_path, capsys):
-    """columns, units and stamps are those of navigate."""
+    """columns, units and stamps work as in navigate."""
     rows = '\n'.join(f'{k} {k},{0.1 * k:g},1,2,4,5,9.8'.replace(' ', ',') for k in range(20))
     (tmp_path / 'x.csv').write_text('n,tick,p,q,r,fx,fy,fz,note\n' + rows.replace('\n', ',a\n')
                                     + ',a\n')
@@ -31,7 +31,7 @@ def test_an_imu_of_others_by_a_map_of_its_columns(tmp_path, capsys):
 
 
 def test_a_flight_of_others_by_a_map_of_its_columns(tmp_path):
-    """motion.recording.columns, with units in brackets, and without velocities."""
+    """motion.recording.columns reads units in brackets and files without velocities."""
     header = 'clock [us],Lat,Long [deg],Alt [ft],R [rad],P [rad],Course [deg],sats'
     rows = [f'{100_000 * k},{55.0 + 3.6e-5 * k:.7f},37.0,{1000.0},0.01,0.02,3.0,9'
             for k in range(101)]

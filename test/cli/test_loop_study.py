@@ -48,7 +48,7 @@ def test_flights_and_conditions(short, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_map(short, tmp_path):
-    """One panel, two gains: the linear limits, and those from 1 m and 100 m."""
+    """One panel with two gains has the linear limits and those from 1 m and 100 m."""
     panel, = study(tmp_path / 'b', '--parts', 'map', '--gains', '2', '--jobs', '1')['map']
     assert panel['filter'] == 'sliding conventional, N 10'
     assert panel['flown']['1 m'] == pytest.approx(panel['linear'], rel=0.01)

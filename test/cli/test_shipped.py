@@ -97,19 +97,19 @@ def test_a_group(capsys):
     said = capsys.readouterr().out
     assert said.startswith('gyro.errors  (imu_sensor, strapdown)\n    Errors of the gyro triad.')
     words = ' '.join(said.split())
-    assert ('gyro.errors.bias_deg_h: [0.0, 0.0, 0.0] bias, the same in every '
+    assert ('gyro.errors.bias_deg_h: [0.0, 0.0, 0.0] Bias, the same in every '
             'run [deg/h]; -1e+09 to 1e+09; can be set while imu_sensor runs') in words
     assert 'accelerometer' not in said
 
 
 @pytest.mark.parametrize('name, first, inside', [
     ('gyro.delay_us.y', 'gyro.delay_us.y: 0.0  (imu_sensor)', '[us]; -1e+06 to 1e+06'),
-    ('strapdown', 'strapdown\n    Node strapdown', 'initial.source: '),
+    ('strapdown', 'strapdown\n    Settings of the node strapdown', 'initial.source: '),
     ('motion.kind', 'motion.kind: racetrack', 'one of static, rocking'),
     ('dtg_study', 'dtg_study', 'sweep: '), ('navigate', '', 'initial.heading: '),
     ('imu_tactical_fog', '', 'gyro.errors.turn_on_bias_sigma_deg_h: [')])
 def test_other_names(name, first, inside, capsys):
-    """A parameter, a node, a verb, a file."""
+    """Parameters, nodes, commands and files are described."""
     assert main(['describe', name]) == 0
     said = capsys.readouterr().out
     assert said.startswith(first) and inside in ' '.join(said.split())
@@ -139,7 +139,7 @@ def test_unknown_names(name, sentence, capsys):
 
 
 def test_an_unknown_kind(capsys):
-    """The usage of the verb."""
+    """An unknown kind gives the usage of the command."""
     with pytest.raises(SystemExit) as end:
         main(['list', 'motion'])
     assert end.value.code == 2 and 'motions' in capsys.readouterr().err

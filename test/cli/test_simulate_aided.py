@@ -261,7 +261,7 @@ def test_an_aided_run_is_replaced_with_force_alone(tmp_path, capsys):
 
 @pytest.mark.parametrize('where', ['aiding', 'writing'])
 def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys):
-    """Ctrl-C while the navigator steps, and while the figure is drawn; the old run stays."""
+    """After Ctrl-C in the navigator or while drawing, the old run stays."""
     flight = ('duration_s:=5.0',)
     assert command(tmp_path, flight=flight) == 0
     before = sorted((p.name, p.read_bytes()) for p in (tmp_path / 'run').iterdir())

@@ -106,7 +106,7 @@ def wrong_fix(path):
     (lambda path: path.mkdir(), [], 'is no bag'),
 ])
 def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path, capsys):
-    """Exit code 2, and nothing is written."""
+    """A bag without a valid motion gives exit code 2; nothing is written."""
     write(tmp_path / 'bag')
     words = [word for a in ['motion.kind:=recording', f'motion.recording.path:={tmp_path}/bag',
                             'duration_s:=1.0', *more] for word in ('-p', a)]
@@ -134,7 +134,7 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
 
 
 def test_a_topic_without_a_bag_is_refused(tmp_path):
-    """A CSV file has no topics."""
+    """motion.recording.topic with a CSV file is refused."""
     chosen = recorded(tmp_path / 'x.csv', MOTION_2, **{'motion.recording.topic': 'odom'})
     with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is no bag"):
         read_motion(chosen.motion_generator)

@@ -156,7 +156,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
 
 
 def test_topics_order_and_every_reader(run, bag_path, capsys):
-    """All topics, messages in the order of the stamps, and rosbags decodes each."""
+    """All topics are in the order of stamps, and rosbags decodes each."""
     pytest.importorskip('rosbags')
     from rosbags.highlevel import AnyReader
     with open_bag(bag_path) as bag:
@@ -233,7 +233,7 @@ def test_what_is_refused(tmp_path, capsys):
 
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch):
-    """Ctrl-C while the fixes are packed: no bag, exit code 130."""
+    """Ctrl-C while fixes are packed leaves no bag; exit code 130."""
     def interrupt(*arguments):
         raise KeyboardInterrupt
 

@@ -76,7 +76,7 @@ def test_frames_of_all_topics(bags):
 
 
 def test_the_run_is_announced(bags):
-    """Once, latched, at the stamp of the first sample."""
+    """sim/run is written once, latched, at the stamp of the first sample."""
     with open_bag(bags('truth')) as bag:
         (name, log_ns, data), = bag.messages([topics.RUN.name])
         durabilities = {n: read_profiles(channel.qos)[0]['durability']

@@ -129,7 +129,7 @@ def test_records_that_are_none_are_refused():
 
 
 def test_the_velocity_for_display():
-    """Stamp of the middle, variances; up and the rates have a huge one."""
+    """The velocity is stamped mid-window; up and the rates have a huge variance."""
     t_ns, *runs = velocity_record.velocity_one(WINDOW)
     data = topics.METER_VELOCITY.writer().pack(t_ns + EPOCH, *runs)
     message = ros(topics.TWIST)[1](data)
@@ -207,7 +207,7 @@ def test_repeated_lost_and_restarted_messages():
 
 
 def test_the_status_of_a_fix_as_ros_reads_it():
-    """Fix, GPS, diagonal known; without one -1, NaN and unknown; the truth 1 mm, the INS known."""
+    """A valid fix has status 0, GPS, known diagonal; an invalid one -1, NaN, unknown."""
     _, load, _ = ros(topics.FIX)
     writer = GnssWriter(EPOCH)
     message = load(writer.fix(FIX))
@@ -252,7 +252,7 @@ def test_the_numbers_of_a_fix(frame):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_bags_keep_them(storage, tmp_path):
-    """Records, fixes with their status and covariances, and the velocities as columns."""
+    """A bag returns records, fixes with status and covariance, and velocities as columns."""
     writer = GnssWriter(EPOCH)
     none = no_gnss_fix(8 * SECOND, OUTAGE, 8 * SECOND)
     data = {topics.METER_RECORD: [velocity_record.pack_fix(f, EPOCH) for f in (WINDOW, NO_WINDOW)],

@@ -11,7 +11,7 @@ RUN = RunAnnouncement(1735689600 * 10**9 + 123, 5 * 10**9, 200.0 / 3.0, 3600 * 1
 
 
 def changed(**values):
-    """Return the message with other texts; None leaves one out."""
+    """Return the message with changed texts; None removes one."""
     _, frame, (status,) = read_diagnostics(RUN.pack())
     pairs = {**dict(status.values), **values}
     return pack_diagnostics(0, frame, [replace(status, values=tuple(

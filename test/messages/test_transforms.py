@@ -63,7 +63,7 @@ def test_map_to_odom_brings_the_free_pose_onto_the_aided_one():
 
 
 def test_what_stands_fixed():
-    """Lever arm of GNSS; the antennas of the velocity meter are turned left by their error."""
+    """The GNSS antenna sits at its lever arm; the meter is turned left by its mounting error."""
     gnss = build(GnssSettings, {'lever_arm_m': [1.0, -2.0, 0.5]})
     assert placements.gnss_mounting(gnss) == ('base_link', 'gnss_link', (
         1.0, -2.0, 0.5, 0.0, 0.0, 0.0, 1.0))

@@ -26,18 +26,18 @@ def expect(found, bits):
 
 
 def test_the_bits_are_those_stored(bits):
-    """Whatever the versions of Python, NumPy and the C library are here."""
+    """The digests are those stored, with any Python, NumPy and C library."""
     expect(bits.in_child(options=['--plain']), bits)
 
 
 def test_an_older_processor_gives_the_same_bits(bits):
-    """NumPy and the C library take their loops without AVX and fused multiply-add."""
+    """Without AVX and fused multiply-add the digests are the same."""
     expect(bits.in_child(bits.older_processor(), ['--plain']), bits)
 
 
 @pytest.mark.slow
 def test_compiled_loops_give_the_same_bits(bits):
-    """Every loop compiled from its first sample on."""
+    """With all loops compiled from the first sample the digests are the same."""
     if numba() is None:
         pytest.skip('Numba is not installed')
     expect(bits.in_child(options=['--compiled']), bits)

@@ -56,7 +56,7 @@ def test_versions_agree():
 
 
 def test_graph_names_executables():
-    """Each process of the table is an installed executable, started by the same module."""
+    """Each process of ins_sim.graph is an installed executable of the same module."""
     for process in (*graph.PROCESSES, *graph.AIDING, graph.RECORDER, graph.ONE_PROCESS):
         module, function = SCRIPTS[process.executable].split(':')
         assert function == process.executable
@@ -65,7 +65,7 @@ def test_graph_names_executables():
 
 
 def test_command_passes_names_files_and_values():
-    """The runner of the demo speaks the same ROS arguments as launch."""
+    """process_command passes node name, parameter files and values as launch does."""
     words = graph.process_command(graph.PROCESSES[0], ['a.yaml'], [('rate_hz', 10.0)],
                                   namespace='/left')
     assert words[4:] == ['--ros-args', '-r', '__node:=strapdown', '-r', '__ns:=/left',
@@ -73,7 +73,7 @@ def test_command_passes_names_files_and_values():
 
 
 def test_scripts_exist():
-    """Each console script names a function that is there."""
+    """Each console script refers to an existing function."""
     assert set(SCRIPTS) == {'motion_generator', 'imu_sensor', 'strapdown', 'velocity_meter',
                             'gnss', 'aided_navigator', 'recorder', 'truth_adapter', 'simulation',
                             'ins_sim'}
@@ -83,14 +83,14 @@ def test_scripts_exist():
 
 
 def test_missing_configuration_is_named_with_those_there_are():
-    """A wrong name of a configuration is answered with the right ones."""
+    """An unknown parameter file is refused with the known names."""
     with pytest.raises(FileNotFoundError, match="no config named 'motion_3'; expected one of "
                                                 '.*motion_1, motion_2'):
         resources.config('motion_3')
 
 
 def test_resources_stand_without_ament(monkeypatch):
-    """Without ROS the configuration is found all the same."""
+    """Without ROS the parameter files are found."""
     monkeypatch.delenv('AMENT_PREFIX_PATH', raising=False)
     assert resources.config('default').is_file()
     monkeypatch.setitem(sys.modules, 'ament_index_python', None)

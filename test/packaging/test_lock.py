@@ -56,14 +56,14 @@ def test_every_requirement_has_a_version_and_hashes():
 
 
 def test_no_index_is_named():
-    """Where the files come from is the business of each machine."""
+    """The lock file names no package index."""
     for word in ('://', '--index', '--extra', '--find', ' @ '):
         assert word not in LOCK
 
 
 @pytest.mark.parametrize('python', PYTHONS)
 def test_what_setup_asks_for_is_locked(setup_arguments, python):
-    """Run time, tests, compression and rclpy, each within its bounds."""
+    """Requirements, extras test and compression, and rclpy are locked within their bounds."""
     versions = locked(python)
     extras = setup_arguments['extras_require']
     for text in [*setup_arguments['install_requires'], *extras['ros'], *extras['test'],
@@ -111,14 +111,14 @@ def installed_by(bootstrap, monkeypatch, tmp_path, with_ros, **facts):
 
 
 def test_without_ros_the_lock_is_installed(bootstrap, monkeypatch, tmp_path):
-    """Hashes are required, and the package itself brings nothing along."""
+    """Without ROS the lock is installed with hashes, and the package without dependencies."""
     libraries, package = installed_by(bootstrap, monkeypatch, tmp_path, with_ros=False)
     assert {'--require-hashes', '--requirement', bootstrap.LOCK} <= set(libraries)
     assert {'--no-deps', '--no-build-isolation', '--editable'} <= set(package)
 
 
 def test_beside_ros_the_lock_is_left_alone(bootstrap, monkeypatch, tmp_path):
-    """The NumPy that the messages of ROS are compiled for stays."""
+    """With a sourced ROS the lock is not used, so that NumPy stays that of ROS."""
     monkeypatch.setenv('ROS_DISTRO', 'jazzy')
     command, = installed_by(bootstrap, monkeypatch, tmp_path, with_ros=True, numpy='1.26.4')
     assert bootstrap.LOCK not in command and '--require-hashes' not in command

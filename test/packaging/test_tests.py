@@ -1,4 +1,4 @@
-"""The tests are a house too: short files, small folders, nothing timed, one place to share."""
+"""The tests: short files, small folders, no timing, shared code in test/support."""
 
 import ast
 
@@ -12,19 +12,19 @@ FOLDERS = sorted({path.parent for path in FILES.values()})
 
 @pytest.mark.parametrize('name', FILES)
 def test_a_file_is_short(name):
-    """At most 300 lines, as everywhere."""
+    """A test file has at most 300 lines."""
     assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= 300
 
 
 @pytest.mark.parametrize('folder', FOLDERS, ids=lambda folder: str(folder.relative_to(ROOT)))
 def test_a_folder_is_a_table_of_contents(folder):
-    """At most 24 entries."""
+    """A test folder has at most 24 entries."""
     assert len([path for path in folder.iterdir() if path.name != '__pycache__']) <= 24
 
 
 @pytest.mark.parametrize('name', FILES)
 def test_nothing_is_imported_from_a_test_and_no_path_is_set(name):
-    """What tests share stands in test/support; sys.path is that of setup.cfg."""
+    """Shared code is in test/support; no test imports a test or changes sys.path."""
     tree = ast.parse(FILES[name].read_text(encoding='utf-8'))
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):

@@ -11,7 +11,7 @@ def test_help(name, capsys):
     assert answer(name, [name, '--help']) == 0
     said = capsys.readouterr().out
     assert said.startswith(f'usage: {name} [--ros-args')
-    assert ('record.depth: queue depth of each subscription [messages] (default: 10000)' in said) \
+    assert ('record.depth: Queue depth of each subscription [messages] (default: 10000)' in said) \
         == (name == 'recorder')
 
 

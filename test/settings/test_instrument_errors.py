@@ -45,7 +45,7 @@ def three(value):
     (AccelerometerErrors, 'velocity_random_walk_m_s_sqrt_h', three(-1.0), 'expected 0 to'),
     (AccelerometerErrors, 'gauss_markov_time_s', three(0.0), 'expected 0.001 to')])
 def test_a_bad_value_is_refused(cls, key, value, says):
-    """One sentence names key, value and expectation."""
+    """A bad value is refused with a sentence that names key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         TriadErrors(cls(**{key: value}), 1, 0, 'gyro', DT)
     message = str(raised.value)
@@ -61,14 +61,14 @@ def test_a_bad_value_is_refused(cls, key, value, says):
      'gyro.saturation_deg_s is 4 on axis x; expected at least 10, one pulse '
      '(quantisation_arcsec) a sample')])
 def test_saturation_below_noise_is_refused(terms, says):
-    """So is a range less than a pulse."""
+    """A saturation below the noise, or below one output pulse, is refused."""
     with pytest.raises(ValueError) as raised:
         TriadErrors(GyroErrors(**{k: three(v) for k, v in terms.items()}), 1, 0, 'gyro', DT)
     assert str(raised.value) == says
 
 
 def test_infinite_correlation_time():
-    """A random walk, in parameter files too; no other key takes infinity."""
+    """Only a correlation time may be infinite, which makes a random walk; files accept it too."""
     key = 'gauss_markov_time_s'
     model = triad_model(GyroErrors(gauss_markov_time_s=three(math.inf)), DT)
     assert model.gauss_markov_time == three(math.inf)
@@ -91,7 +91,7 @@ def test_every_key_has_unit_bounds_and_doc(cls):
 
 
 def test_reported_variance():
-    """N^2/dt + (q/dt)^2/6 per axis, or the square of the override, axis by axis."""
+    """The reported variance is N^2/dt + (q/dt)^2/6 by axis, or the square of the override."""
     gyro = GyroErrors(angle_random_walk_deg_sqrt_h=(0.1, 0.2, 0.0),
                       quantisation_arcsec=(0.0, 0.0, 0.6),
                       reported_sigma_deg_s=(-1.0, 0.5, 0.0))
@@ -106,7 +106,7 @@ def test_reported_variance():
 
 @pytest.mark.parametrize('name', PRESETS)
 def test_presets_are_complete_and_cannot_be_changed(name):
-    """Each builds, names its class and figures, and a changed copy changes nothing."""
+    """Each preset builds and names its class and figures; changing a copy does not change it."""
     one = PRESETS[name]
     assert one.name == name and one.datasheet and 'ARW' in one.figures and 'VRW' in one.figures
     values = preset(name)
@@ -123,14 +123,14 @@ def test_presets_are_complete_and_cannot_be_changed(name):
 
 
 def test_an_unknown_preset_names_the_nearest():
-    """One sentence."""
+    """An unknown preset is refused with a sentence that names the nearest one."""
     with pytest.raises(ValueError, match="unknown instrument preset 'tactical_mens'; the nearest "
                        "known one is 'tactical_mems'"):
         preset('tactical_mens')
 
 
 def test_sampling():
-    """Latency is constant, jitter has its sigma and keeps the order, losses their number."""
+    """Latency is constant, jitter has its sigma and keeps the order, losses their share."""
     dt, n = 10_000_000, 20000
     assert Sampler(Sampling(), 1, 0, 'sampling', dt).stamp(5, 7) == 7
     late = Sampler(Sampling(latency_us=1500.0), 1, 0, 'sampling', dt)
@@ -154,7 +154,7 @@ def test_sampling():
     ({'drop_out_probability': 1.5}, 'sampling.drop_out_probability is 1.5; expected 0 to 1'),
     ({'latency_us': math.nan}, 'sampling.latency_us is nan; expected a finite number')])
 def test_bad_sampling_is_refused(terms, says):
-    """One sentence names key, value and expectation."""
+    """Bad sampling settings are refused with key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         Sampler(Sampling(**terms), 1, 0, 'sampling', 10_000_000)
     assert says in str(raised.value)

@@ -1,4 +1,4 @@
-"""Parameters and parameter files: every shipped one loads and runs, every bad one is named."""
+"""Parameters and parameter files: every shipped file loads and runs, errors are named."""
 
 from dataclasses import replace
 import runpy
@@ -64,7 +64,7 @@ def test_every_shipped_file_runs(name, shared_flight):
 
 
 def test_the_file_of_a_real_imu_is_none_of_a_simulation():
-    """Its strapdown aligns itself, which a run without nodes refuses; test_real_imu runs it."""
+    """Offline runs refuse real_imu.yaml, whose strapdown aligns itself (see test_real_imu)."""
     with pytest.raises(ValueError, match='initial.source is alignment; expected truth'):
         parameter_files.read([resources.config('real_imu')])
 
@@ -78,7 +78,7 @@ def shared_flight(request):
 
 
 def test_dump_and_read_are_inverse(tmp_path):
-    """The parameters written beside a run give the run again."""
+    """The parameters written with a run reproduce its settings."""
     settings = parameter_files.read([resources.config('aggressive')], ['rate_hz:=37.5'])
     path = tmp_path / 'p.yaml'
     path.write_text(parameter_files.dump(settings))
@@ -116,7 +116,7 @@ BAD_ASSIGNMENTS = [
 
 @pytest.mark.parametrize('assignment, sentence', BAD_ASSIGNMENTS)
 def test_bad_assignments(assignment, sentence):
-    """One sentence that names key, value and expectation."""
+    """A bad assignment is refused with a sentence that names key, value and expectation."""
     with pytest.raises(ValueError) as error:
         parameter_files.read([], [assignment])
     assert sentence in str(error.value)
@@ -147,7 +147,7 @@ BAD_FILES = [
 
 @pytest.mark.parametrize('content, sentence', BAD_FILES)
 def test_bad_files(tmp_path, content, sentence):
-    """One sentence that names the file."""
+    """A bad parameter file is refused with a sentence that names the file."""
     path = tmp_path / 'bad.yaml'
     path.write_bytes(content)
     with pytest.raises(ValueError) as error:
@@ -157,7 +157,7 @@ def test_bad_files(tmp_path, content, sentence):
 
 
 def test_what_ros_allows_is_allowed(tmp_path):
-    """ROS' own keys pass, sections of a namespace count, 1e-3 and 100 are numbers."""
+    """Parameters of ROS itself are accepted, namespaces count, 1e-3 and 100 are numbers."""
     path = tmp_path / 'ok.yaml'
     path.write_text('/**:\n  ros__parameters: {use_sim_time: true, rate_hz: 50}\n'
                     '/robot/imu_sensor:\n  ros__parameters: {gyro: {delay_us: {x: 1e-3}}}\n')
@@ -214,7 +214,7 @@ def test_endless_and_too_long_runs_are_refused(shared_data):
 
 
 def test_an_assignment_may_name_its_node():
-    """NODE:NAME:=VALUE as ROS has it reaches that node alone; an unknown node is said."""
+    """NODE:NAME:=VALUE sets the parameter of that node alone; an unknown node is reported."""
     settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
     assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
     assert settings.simulation.imu_sensor.seed == 0
@@ -224,7 +224,7 @@ def test_an_assignment_may_name_its_node():
 
 
 def told(paths, assignments=()):
-    """Return the settings, and what is said beside."""
+    """Return the settings, and the warnings."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter('always')
         settings = parameter_files.read(paths, assignments)
@@ -232,7 +232,7 @@ def told(paths, assignments=()):
 
 
 def test_sections_of_other_nodes_are_ignored_with_a_word(tmp_path):
-    """A file may serve a camera too; a name near one of ours is said."""
+    """Sections of foreign nodes are ignored; one with a name similar to ours gives a warning."""
     path = tmp_path / 'p.yaml'
     path.write_text('/**/motion_generator: {ros__parameters: {duration_s: 2.0}}\n'
                     '/my_camera: {ros__parameters: {fps: 30}}\n'
@@ -250,7 +250,7 @@ def test_sections_of_other_nodes_are_ignored_with_a_word(tmp_path):
     ('/imu1/*: {ros__parameters: {duration_s: 2.0}}', '/imu1'),
     ('/*: {ros__parameters: {duration_s: 2.0}}', '')])
 def test_sections_within_sections(tmp_path, text, namespace):
-    """Names of nodes and of namespaces may be nested; one namespace is that of all nodes."""
+    """Names of nodes and namespaces may be nested; a single namespace applies to all nodes."""
     path = tmp_path / 'p.yaml'
     path.write_text(text)
     settings, said = told([path])
@@ -264,7 +264,7 @@ def test_sections_within_sections(tmp_path, text, namespace):
 
 
 def test_an_assignment_that_ros_overrules_is_said(tmp_path):
-    """A section behind /** wins over -p, as in a node; with the name of the node -p wins."""
+    """A section after /** overrides -p with a warning; NODE:NAME:=VALUE overrides the section."""
     path = tmp_path / 'prec.yaml'
     path.write_text('/**: {ros__parameters: {rate_hz: 100.0}}\n'
                     '/**/motion_generator: {ros__parameters: {duration_s: 0.2}}')
@@ -289,7 +289,7 @@ def test_an_assignment_that_ros_overrules_is_said(tmp_path):
 
 
 def test_texts_that_ros_takes_for_something_else(tmp_path):
-    """A plain y is the axis, and what is dumped is read again as the text it was."""
+    """A plain y is the axis y; dumped texts are read back as texts."""
     settings = parameter_files.read([], ['motion.coning.axis:=y', 'motion.recording.path:="1e5"'])
     assert settings.motion_generator.motion.coning.axis == 'y'
     path = tmp_path / 'p.yaml'

@@ -1,4 +1,4 @@
-"""What sentences repeat of values: never longer than a sentence, and never a bound of its own."""
+"""Values in messages are shortened, and remain distinguishable from bounds."""
 
 import pytest
 
@@ -12,7 +12,7 @@ from ins_sim.settings.shown import exact, listed, shown
                                    {'a': 'z' * 10 ** 6}],
                          ids=['text', 'list', 'digits', 'mapping'])
 def test_a_value_of_megabytes_is_cut(value):
-    """The sentence has at most some hundred characters, and says how many there were."""
+    """A long value is truncated to about a hundred characters, with its length."""
     assert len(shown(value)) < 100
     for name in ('gap_factor', 'initial.velocity_m_s', 'on_gap'):
         with pytest.raises(ValueError) as caught:
@@ -21,13 +21,13 @@ def test_a_value_of_megabytes_is_cut(value):
 
 
 def test_names_are_counted():
-    """A million names are eight and a number."""
+    """A list of a million names is shown as eight names and the number of the others."""
     assert listed(f'c{k}' for k in range(1_000_000)).endswith('c7 and 999992 more')
     assert listed('ab') == 'a, b'
 
 
 def test_a_value_beside_its_bound_is_told_from_it():
-    """2**31 is not '2.14748e+09; expected 0 to 2.14748e+09'."""
+    """2**31 is shown exactly, not as '2.14748e+09; expected 0 to 2.14748e+09'."""
     assert exact(2 ** 31) == '2147483648' and exact(0.1) == '0.1' and exact(1e6) == '1e+06'
     assert exact(50000.0) == '50000' and exact(1e300) == '1e+300'
     with pytest.raises(ValueError, match='is 2147483648; expected 0 to 2147483647'):

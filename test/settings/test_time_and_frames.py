@@ -18,7 +18,7 @@ SECOND = 10**9
     ({'epoch': 'fixed', 'epoch_s': 0}, True, 0), ({'epoch_s': 5}, True, 5),
     ({'epoch_s': 5}, False, 5)])
 def test_a_fixed_epoch(values, live, epoch_s):
-    """By default offline; live where it is asked for, or where epoch_s is given."""
+    """The epoch is fixed offline by default, and live on request or if epoch_s is given."""
     assert build(Time, values).epoch_ns(3 * SECOND, live) == epoch_s * SECOND
     assert EPOCH_S == 1735689600
 
@@ -26,14 +26,14 @@ def test_a_fixed_epoch(values, live, epoch_s):
 @pytest.mark.parametrize('values, live', [({}, True), ({'epoch': 'now'}, True),
                                           ({'epoch': 'now', 'epoch_s': 5}, False)])
 def test_the_epoch_of_now(values, live):
-    """The first sample, here at 100 s of motion time, has the time of the clock in whole ms."""
+    """With epoch now the first sample, at motion time 100 s, has the clock time in whole ms."""
     before = time.time_ns()
     first_ns = build(Time, values).epoch_ns(100 * SECOND, live) + 100 * SECOND
     assert before - 10**6 <= first_ns <= time.time_ns() and first_ns % 10**6 == 0
 
 
 def test_only_the_generator_has_an_epoch():
-    """There is no second place to set; every node has the frames and the source of TF."""
+    """Only motion_generator has time.epoch; every node has frames and tf.source."""
     for name, settings in {**NODES, **AIDING}.items():
         names = flatten(settings)
         assert ('time.epoch_s' in names) == (name == 'motion_generator')
@@ -41,7 +41,7 @@ def test_only_the_generator_has_an_epoch():
 
 
 def test_names_of_frames():
-    """The prefix stands before every frame, before those without a name of their own too."""
+    """The prefix is put before every frame, including those without a setting."""
     names = build(Frames, {'prefix': 'uav1', 'base_link': 'body'}).names()
     assert names['map'] == 'uav1/map' and names['base_link'] == 'uav1/body'
     assert names['enu'] == 'uav1/enu' and names['leg'] == 'uav1/leg'

@@ -29,7 +29,7 @@ FILE = """/**:
 
 
 def test_a_number_in_a_file_in_an_assignment_and_in_python_is_three(tmp_path):
-    """A whole number too; strapdown and the IMU have the same triads."""
+    """One number, also an integer, stands for three axes; strapdown and IMU have equal triads."""
     path = tmp_path / 'scalars.yaml'
     path.write_text(FILE)
     for read in (parameter_files.read([path], ['accelerometer.errors.scale_factor_ppm:=-2.5']),
@@ -48,7 +48,7 @@ def test_a_number_in_a_file_in_an_assignment_and_in_python_is_three(tmp_path):
 
 
 def test_places_and_rotations_take_no_single_number():
-    """What is no property of three like axes asks for a list; texts are refused in both."""
+    """Positions and rotations need a list; texts are refused in both cases."""
     names = {name for cls in ALL_NODES.values() for name, f in flatten(cls).items()
              if f.metadata['size'] == 3 and not f.metadata['equal_axes']}
     assert {'lever_arm_m', 'jump.offset_m'} <= names and not any('errors' in n for n in names)
@@ -81,7 +81,7 @@ def test_a_density_is_the_random_walk_in_other_units(cls, walk, density, one):
 
 @pytest.mark.parametrize('cls, walk, density, one', PAIRS)
 def test_both_are_refused(cls, walk, density, one):
-    """One sentence names both, whatever the axes; a zero is no noise."""
+    """Random walk and density together are refused in one sentence; a zero does not count."""
     with pytest.raises(ValueError) as raised:
         cls(**{walk: (0.0, 0.1, 0.0), density: 1e-4})
     assert str(raised.value) == (
@@ -93,6 +93,6 @@ def test_both_are_refused(cls, walk, density, one):
 
 
 def test_a_range_below_the_noise_names_what_was_given():
-    """The key of the user stands in the sentence."""
+    """The message about a range below the noise names the key that was given."""
     with pytest.raises(ValueError, match=r'white noise \(noise_density_rad_s_sqrt_hz\)'):
         triad_model(GyroErrors(saturation_deg_s=4.0, noise_density_rad_s_sqrt_hz=0.1), DT)

@@ -34,7 +34,7 @@ from ins_sim.settings.velocity_meter import Limits, Signal, VelocityMeterSetting
     ({'drop_outs.start_s': (-1.0,), 'drop_outs.end_s': (10.0,)}, 'drop_outs.start_s is -1 s; '
      'expected 0 to')])
 def test_a_bad_value_is_refused(values, says):
-    """The sentence names key, value and expectation."""
+    """A bad value is refused with key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         build(VelocityMeterSettings, {'mode': 'signal', **values})
     message = str(raised.value)
@@ -42,7 +42,7 @@ def test_a_bad_value_is_refused(values, says):
 
 
 def test_settings_made_by_hand_check_themselves():
-    """Values that do not go together are refused however the settings are made."""
+    """Contradicting values are refused however the settings are created."""
     with pytest.raises(ValueError, match='signal.lags is 167'):
         VelocityMeterSettings(mode='signal', signal=Signal(lags=167))
     with pytest.raises(ValueError, match='limits.speed_min_m_s is 400'):
@@ -50,7 +50,7 @@ def test_settings_made_by_hand_check_themselves():
 
 
 def test_lags_too_long_for_the_fastest_delay():
-    """A low PRF leaves every delay before lag 1."""
+    """A PRF so low that every delay lies before lag 1 is refused."""
     with pytest.raises(ValueError) as raised:
         VelocityMeter(meter_settings(mode='signal', signal__prf_hz=5000.0, signal__lags=8,
                                      limits__speed_min_m_s=100.0))
@@ -60,7 +60,7 @@ def test_lags_too_long_for_the_fastest_delay():
 
 
 def test_a_cycle_that_takes_too_much():
-    """A fast PRF in a long cycle would take all memory."""
+    """A high PRF with a long cycle, which would exceed the memory, is refused."""
     with pytest.raises(ValueError) as raised:
         VelocityMeter(meter_settings(mode='signal', signal__prf_hz=1e7, signal__lags=4096,
                                      rate_hz=1.0))
@@ -70,7 +70,7 @@ def test_a_cycle_that_takes_too_much():
 
 
 def test_the_surrogate_has_no_signals():
-    """It does not mind how they would be."""
+    """Mode surrogate ignores the settings of the signals."""
     VelocityMeter(meter_settings(signal__lags=4000))
 
 

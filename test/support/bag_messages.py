@@ -1,4 +1,4 @@
-"""Messages of every type, and bags of them, for the tests of the format."""
+"""Messages of every type, and bags of them, for tests of the format."""
 
 from ins_sim.bags import qos
 from ins_sim.bags.bag_writer import BagWriter

@@ -1,4 +1,4 @@
-"""The covariance of a free INS against Monte Carlo: settings, prediction, ensemble."""
+"""Covariance of a free INS compared with Monte Carlo: settings, prediction, ensemble."""
 
 from dataclasses import replace
 

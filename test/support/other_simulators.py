@@ -1,4 +1,4 @@
-"""What another simulator would say of our motions, and what the truth adapter makes of it."""
+"""Odometry of another simulator on our motions, and the output of TruthAdapter for it."""
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class OtherSimulator:
         return sigma * self._random.standard_normal(self.r.shape if shape is None else shape)
 
     def without_twist(self):
-        """Leave the twist zero."""
+        """Set the twist to zero."""
         self.v, self.w = np.zeros_like(self.v), np.zeros_like(self.w)
         return self
 
@@ -83,7 +83,7 @@ class OtherSimulator:
         return self
 
     def off_stamps(self, sigma_s):
-        """Let each stamp be off its sample."""
+        """Add a random error to each stamp."""
         off_ns = np.rint(1e9 * self._normal(sigma_s, self.t_ns.shape)).astype(np.int64)
         self.t_ns = self.t_ns + off_ns - off_ns[0]
         return self

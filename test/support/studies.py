@@ -1,4 +1,4 @@
-"""Settings of the studies the tests share, and their runs."""
+"""Settings of studies that tests share, and their runs."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import lru_cache

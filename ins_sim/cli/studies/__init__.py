@@ -1,1 +1,1 @@
-"""Verbs that compute over many runs, or compare with a published table; one file holds each."""
+"""Verbs that evaluate many runs or compare with published results, one file for each."""

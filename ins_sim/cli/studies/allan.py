@@ -1,4 +1,4 @@
-"""Verb allan: the Allan deviation of both triads, from a run, a bag or the settings alone."""
+"""Verb allan: Allan deviation of both triads, from a run, a bag or simulated noise."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ def add_arguments(parser):
                         help='folder of a run or of a rosbag2 bag')
     arguments.add_settings(parser)
     parser.add_argument('--topic', default=None, metavar='NAME',
-                        help='topic of the bag, where it has more than one of sensor_msgs/msg/Imu')
+                        help='topic of the bag, if it has more than one of sensor_msgs/msg/Imu')
     parser.add_argument('--duration', type=float, default=None, metavar='S',
                         help=f'length of the simulated record, s (default: {DURATION_S:.0f})')
     arguments.add_output(parser, 'ins_sim_allan', 'folder of the two figures and the report')
@@ -60,7 +60,7 @@ def _analyse(chosen, work):
     for triad, samples in (('gyro', imu.omega), ('accelerometer', imu.f)):
         sensor = settings and getattr(settings.imu_sensor, triad)
         tuned = settings and triad == 'gyro' and sensor.model == 'dtg'
-        # An axis of a pair of tuned gyros combines one channel, or two.
+        # An axis of a pair of tuned gyros combines the readings of one channel or two.
         factors = COVARIANCE_FACTORS if tuned else (1.0, 1.0, 1.0)
         noise = noise_terms.analyse_noise(triad, samples, rate_hz, sensor and sensor.errors,
                                           factors)
@@ -86,7 +86,7 @@ def _analyse(chosen, work):
 
 
 def _given_rate(chosen, settings):
-    """Return the rate that -p gives the readings of SOURCE, Hz, or None."""
+    """Return the rate, Hz, that -p gives for SOURCE, or None."""
     given = chosen.source is not None and any(
         text.partition(':=')[0] in ('rate_hz', 'imu_sensor:rate_hz') for text in chosen.param)
     return settings.imu_sensor.rate_hz if given else None
@@ -94,9 +94,9 @@ def _given_rate(chosen, settings):
 
 def _record(chosen, console, note):
     """
-    Return the ImuSamples, the SimulationSettings behind them or None, and a name.
+    Return the ImuSamples, their SimulationSettings or None, and a name.
 
-    note: function that takes a sentence about the record.
+    note is a function that reports a sentence about the record.
     """
     from ins_sim import parameter_files
     from ins_sim.bags.storages import is_bag

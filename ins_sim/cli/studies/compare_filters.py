@@ -1,32 +1,32 @@
-"""Verb compare-filters: all filters over the same flights and seeds, on all cores."""
+"""Verb compare-filters: compare the aiding filters on the same flights."""
 
 from ins_sim.settings.aided_navigator import FILTERS
 from .. import arguments
 
-HELP = 'all filters of the aided navigator over the same flights'
-DESCRIPTION = ('Fly the filters of the aided navigator over the same flights and seeds, on all '
-               'cores or a cluster, and show tables and figures of their errors and of their '
-               'consistency.')
+HELP = 'compare the filters of the aided navigator on the same flights'
+DESCRIPTION = ('Simulate the same flights with each filter of the aided navigator, on all cores '
+               'or a cluster, and show tables and figures of their errors and their consistency.')
 SHIPPED = ('route_flight', 'grade_mid')
 
 
 def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser, ' and '.join(SHIPPED))
-    parser.add_argument('--runs', type=int, default=24, metavar='N', help='flights, each with '
-                        'seeds of its own (default: %(default)s)')
+    parser.add_argument('--runs', type=int, default=24, metavar='N', help='number of '
+                        'flights, each with other seeds (default: %(default)s)')
     parser.add_argument('--filters', nargs='+', choices=FILTERS, default=None, metavar='NAME',
-                        help=f'of {", ".join(FILTERS)} (default: all)')
+                        help=f'one or more of {", ".join(FILTERS)} (default: all)')
     parser.add_argument('--cycles', nargs='+', type=int, default=None, metavar='N',
-                        help='cycles of a fix: the first for all filters, the others for eskf as '
-                        'well (default: window.cycles)')
+                        help='number of navigation cycles in a fix of the velocity meter; the '
+                        'first is used for all filters, the others in addition for eskf '
+                        '(default: window.cycles)')
     arguments.add_jobs(parser)
     arguments.add_output(parser, 'ins_sim_filters', 'folder of report, figures and numbers')
-    arguments.add_force(parser, 'the comparison in DIR, and flights of another one')
+    arguments.add_force(parser, 'the comparison in DIR, and kept flights of another one')
 
 
 def run(chosen):
-    """Fly, show and save; return the exit code."""
+    """Simulate, print and save; return the exit code."""
     from ins_sim.core.motion.factory import make_motion
     from ins_sim.core.motion.motion import check_length
     from ins_sim.jobs.executors import check_jobs, open_executor
@@ -40,7 +40,7 @@ def run(chosen):
     check_jobs(chosen.jobs, chosen.scheduler)
     plan = FilterPlan(settings, chosen.runs, cases_of(
         chosen.filters, chosen.cycles or [settings.velocity_meter.window.cycles]))
-    # Checked here, so that a flight that is refused is reported once and not by every worker.
+    # Checked here, so that an invalid flight is reported once and not by every worker.
     generator = run_settings(settings, 0).simulation.motion_generator
     check_length(generator, make_motion(generator.motion, generator.datum, generator.earth))
     console = PlainConsole()
@@ -58,7 +58,7 @@ def run(chosen):
         except BaseException:
             if len(store):
                 console.print(f'{len(store)} of {plan.flights} flights are kept in '
-                              f'{store.folder}: the same command goes on from there')
+                              f'{store.folder}: the same command resumes from there')
             raise
         rows = [filters.filter_row(case, list(f)) for case, f in zip(plan.cases, found.flown)]
         page = filter_charts.page_of(title, settings, rows, found.flown, found.digest)

@@ -1,12 +1,12 @@
-"""Verb compare-orientation: the orientation algorithms on one run, in one table."""
+"""Verb compare-orientation: compare the attitude algorithms on one run."""
 
 import math
 
 from .. import arguments
 
-HELP = 'the orientation algorithms on one run'
-DESCRIPTION = ("Navigate one offline run by quaternion, Poisson's equation and Euler vector, and "
-               'compare them.')
+HELP = 'compare the attitude algorithms on one run'
+DESCRIPTION = ("Navigate one offline run with the quaternion, Poisson's equation and the Euler "
+               'vector, and show their errors and CPU times in one table.')
 
 
 def add_arguments(parser):

@@ -1,10 +1,10 @@
-"""Verb delay-study: figures and tables of the paper on gyro channel delays, and more."""
+"""Verb delay-study: repeat the study of gyro channel delays of Bogdanov and Fomichev 2018."""
 
 import json
 
 from .. import arguments
 
-HELP = 'figures and tables of the paper on delays of gyro channels'
+HELP = 'repeat the published study of gyro channel delays'
 DESCRIPTION = ('Simulate the motions of Bogdanov and Fomichev (2018) with delayed gyro channels, '
                'and compare the errors with the published ones: position errors of motion 2, '
                'tuned and detuned, and of three flights; maps of the drift over the rates of '
@@ -20,9 +20,9 @@ def add_arguments(parser):
                         help='recorded flight, a CSV file or a bag, as a figure; may be repeated. '
                         'Without --params-file only these figures are made')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
-                        help='one parameter, for every figure')
-    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
-                        'as many as cores)')
+                        help='value of a parameter, for every figure')
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='number of processes '
+                        '(default: one for each core)')
     arguments.add_output(parser, 'ins_sim_delay_study', 'folder of figures and numbers')
     arguments.add_force(parser, 'what is in DIR')
 

@@ -1,10 +1,10 @@
-"""Verb dtg-report: what the tuned gyros of the parameters are good for."""
+"""Verb dtg-report: performance of the tuned gyros that the parameters describe."""
 
 from .. import arguments
 
-HELP = 'roots, bandwidth and margin of a tuned gyro'
-DESCRIPTION = ('Show what the tuned gyros of gyro.dtg.* are good for: roots, time constant, '
-               'bandwidth, stability margin and the steps that RK4 allows.')
+HELP = 'show roots, bandwidth and stability margin of the tuned gyros'
+DESCRIPTION = ('Show the performance of the tuned gyros of gyro.dtg.*: roots, time constant, '
+               'bandwidth, stability margin and the steps for which RK4 is stable.')
 
 
 def add_arguments(parser):
@@ -13,7 +13,7 @@ def add_arguments(parser):
 
 
 def run(chosen):
-    """Show roots, time constant, bandwidth, margin and the steps of RK4; return the exit code."""
+    """Print roots, time constant, bandwidth, margin and RK4 steps; return the exit code."""
     from ins_sim.core.numerics.instants import period_ns
     from ins_sim.core.sensors.tuned_gyro.instrument import rotor_parameters
     from ins_sim.core.sensors.tuned_gyro.report import tuned_gyro_report

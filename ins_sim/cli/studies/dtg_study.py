@@ -1,13 +1,14 @@
-"""Verb dtg-study: tables, figures and limits of stability of the DTG paper, one file each."""
+"""Verb dtg-study: repeat the tables of Sapegin, Romanov and Bugaiov 2016 on tuned gyros."""
 
 from itertools import count
 from pathlib import Path
 
 from .. import arguments
 
-HELP = 'the tables and figures of the tuned-gyro paper'
-DESCRIPTION = ('Recover a rocking base through two dynamically tuned gyros as the paper does, and '
-               'compare with what it prints.')
+HELP = 'repeat the published study of tuned gyros'
+DESCRIPTION = ('Measure the rocking of a base with two dynamically tuned gyros, as Sapegin, '
+               'Romanov and Bugaiov (2016), and compare the amplitudes and stability limits with '
+               'theirs.')
 NODE = 'dtg_study'
 SHIPPED = ('dtg_study_frequency', 'dtg_study_speed')
 
@@ -18,9 +19,9 @@ def add_arguments(parser):
                         help='parameter file of one table, or the name of a shipped one; may be '
                         f'repeated (default: {" and ".join(SHIPPED)})')
     parser.add_argument('-p', '--param', action='append', default=[], metavar='NAME:=VALUE',
-                        help='one parameter, for every table')
-    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures and the report, '
-                         'replaced')
+                        help='value of a parameter, for every table')
+    arguments.add_output(parser, 'ins_sim_dtg_study', 'folder of the figures and the report; '
+                         'an existing one is replaced')
 
 
 def run(chosen):
@@ -36,7 +37,7 @@ def run(chosen):
     for path in arguments.parameter_paths(chosen, SHIPPED):
         if path.stem in studies:
             raise ValueError(f'two parameter files are named {path.stem}; expected different '
-                             'names, as the figures bear them')
+                             'names, as the figures are named after them')
         studies[path.stem] = parameter_files.read_nodes([path], chosen.param,
                                                         {NODE: TunedGyroStudySettings})[NODE]
     console = PlainConsole()
@@ -52,7 +53,7 @@ def run(chosen):
 
 
 def _study(name, settings, console):
-    """Show one table; return its TunedGyroStudy."""
+    """Compute and print one table; return its TunedGyroStudy."""
     from ins_sim.report.studies import tuned_gyro as report
     from ins_sim.studies import tuned_gyro as study
     from ..progress import progress_bars

@@ -1,17 +1,17 @@
-"""Verb loop-study: what the filters do to the loop in which their solution steers."""
+"""Verb loop-study: stability of a vehicle that is steered by its own aided solution."""
 
 from dataclasses import asdict
 import json
 
 from .. import arguments
 
-HELP = 'a vehicle steered by its own aided solution: the study of the loop'
-DESCRIPTION = ('Steer a vehicle by the solution that a velocity meter with a lateral scale error '
-               'aids: a table of flights of the whole chain, limits of stability beside those of '
-               'the linear theory, the map of stability, and flights with noise, wind, gusts and '
-               'the signals of the meter. The flights set filter, gain, windows, lateral scale '
-               'error, first offset, length and when the autopilot is engaged; all else is that '
-               'of the parameters.')
+HELP = 'study a vehicle that is steered by its own aided solution'
+DESCRIPTION = ('Steer a vehicle by a solution that is aided by a velocity meter with a lateral '
+               'scale error. Shows a table of simulated flights, stability limits compared with '
+               'linear theory, a stability map, and flights with noise, wind, gusts and the '
+               'signals of the meter. The study sets filter, gain, windows, lateral scale error, '
+               'initial offset, length and engagement of the autopilot; everything else is taken '
+               'from the parameters.')
 SHIPPED = ('guided_flight',)
 MARK = 'loop_study.json'
 TITLE = 'Flight steered by its own aided solution'
@@ -22,17 +22,17 @@ def add_arguments(parser):
     """Add the arguments of the verb to its parser."""
     arguments.add_settings(parser, ' and '.join(SHIPPED))
     parser.add_argument('--parts', nargs='+', choices=PARTS, default=list(PARTS), metavar='PART',
-                        help=f'of {", ".join(PARTS)} (default: all)')
-    parser.add_argument('--gains', type=int, default=15, metavar='N', help='gains of each panel '
-                        'of the map (default: %(default)s)')
-    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='processes (default: '
-                        'as many as cores)')
+                        help=f'one or more of {", ".join(PARTS)} (default: all)')
+    parser.add_argument('--gains', type=int, default=15, metavar='N', help='number of gains in '
+                        'each panel of the map (default: %(default)s)')
+    parser.add_argument('--jobs', type=int, default=0, metavar='N', help='number of processes '
+                        '(default: one for each core)')
     arguments.add_output(parser, 'ins_sim_loop', 'folder of figures, numbers and report')
     arguments.add_force(parser, 'what is in DIR')
 
 
 def run(chosen):
-    """Fly, show and save; return the exit code."""
+    """Simulate, print and save; return the exit code."""
     from ins_sim.core.guidance.steering import margin_sentence
     from ins_sim.own_folders import whole_folder
     from ins_sim.report.charts.png import save_chart

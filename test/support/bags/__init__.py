@@ -1,1 +1,1 @@
-"""Bags of truth for tests, and what programs of others say of ours."""
+"""Bags of truth for tests, and readers of other packages."""

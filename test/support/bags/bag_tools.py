@@ -1,4 +1,4 @@
-"""What programs of others say of a bag of ours; those that are not installed skip the test."""
+"""Readers and linters of other packages; a test is skipped if one is not installed."""
 
 import json
 import subprocess
@@ -76,7 +76,7 @@ def served_by_foxglove(path):
         with FoxgloveClient(server.port) as client:
             client.wait_channels(channels)
             client.subscribe(channels)
-            # What is sent before a subscription has arrived is heard by nobody.
+            # A message sent before the subscription has arrived is lost.
             end = time.monotonic() + GUARD_S
             while not all(channel.has_sinks() for channel in channels.values()):
                 assert time.monotonic() < end, 'subscriptions do not arrive'
@@ -116,7 +116,7 @@ def doctor_findings(path):
 def slam_lint_findings(path):
     """Return the findings of rosbag-slam-lint for a bag that an EKF is to read."""
     need('rosbag_slam_lint')
-    # It finds bags under 60 s short; those of tests are.
+    # It reports bags shorter than 60 s, which those of tests are.
     rules = path.with_name('slam_lint.yaml')
     rules.write_text('checks: {short_recording_s: 5.0}')
     found = json.loads(_run('rosbag_slam_lint', path, '--profile', 'ekf', '--json', '--config',

@@ -1,4 +1,4 @@
-"""A client of the WebSocket protocol of Foxglove, in what a test needs of it."""
+"""A minimal client of the WebSocket protocol of Foxglove."""
 
 import base64
 import json

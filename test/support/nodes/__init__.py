@@ -1,1 +1,1 @@
-"""Nodes that are not ours: who talks, who records, and the types that they speak."""
+"""Test nodes, recorders, and message types of other packages."""

@@ -1,4 +1,4 @@
-"""Packages of ROS interfaces that PyPI has not, built from their public definitions."""
+"""Build ROS interface packages that are not on PyPI from their public definitions."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A recorded IMU given to the stage or to the node that navigates without truth."""
+"""Feed a recorded IMU to the stage or the node that navigates without truth."""
 
 from dataclasses import dataclass, field
 
@@ -136,6 +136,6 @@ def vehicle(rest_s=20.0, length_s=60.0, rate_hz=50.0, heading=1.2, lat=0.87, noi
 
 
 def as_sent(fixes):
-    """Return PlaceFixes as they are when they have been messages, in degrees."""
+    """Return PlaceFixes as they are after conversion to messages, in degrees."""
     return [f._replace(lat=float(np.radians(np.degrees(f.lat))),
                        lon=float(np.radians(np.degrees(f.lon)))) for f in fixes]

@@ -1,4 +1,4 @@
-"""Nodes of the test process that hear the truth of a racetrack, without DDS."""
+"""Nodes of the test process that receive the truth of a racetrack, without DDS."""
 
 from support.hostile.fed_nodes import FedNodes
 

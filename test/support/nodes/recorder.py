@@ -1,4 +1,4 @@
-"""What the tests of the recorder share: messages sent, and what it said at its end."""
+"""Shared by recorder tests: messages to send, and the summary printed at the end."""
 
 import re
 import signal

@@ -1,4 +1,4 @@
-"""A node of the test process that publishes by hand, for the tests of recorder and player."""
+"""A node of the test process that publishes given messages, for recorder and player."""
 
 import time
 
