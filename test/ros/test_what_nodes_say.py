@@ -40,12 +40,12 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
 
 
 def test_thousands_of_different_texts_are_few_lines(log):
-    """3000 kinds in 5 s: 20 lines at once, two a second, and how many were not said."""
+    """3000 kinds in 5 s: 20 lines at once, two a second, and how many were not logged."""
     for k in range(3000):
         log.said.say(f'a message holds what nobody knows: {"x" * (k % 300)}')
         log.clock.now_s += 5.0 / 3000
     assert len(log.lines) == 29
-    assert log.lines[-1].endswith(' other faults were not said)')
+    assert log.lines[-1].endswith(' other faults were not logged)')
     assert len(log.said._kinds) <= said.KINDS
 
 
