@@ -74,7 +74,7 @@ CASES = {
 
 @pytest.mark.parametrize('name', CASES)
 def test_the_noise_of_a_record_with_faults(name):
-    """Each fault is said once with its count, and the density is that of the readings."""
+    """Each fault is reported once with its count, and the noise density is correct."""
     t_ns, left, says = CASES[name]
     found = regular_record(record(t_ns))
     rate = {'3.6 % off its name': 103.6, 'a clock of milliseconds': 1e9 / 970_000}.get(name, RATE)
@@ -86,7 +86,7 @@ def test_the_noise_of_a_record_with_faults(name):
 
 
 def test_readings_that_are_no_numbers_count_as_lost():
-    """Their count is said, and the longest part without them is taken."""
+    """NaN samples are counted and reported, and the longest part without them is used."""
     imu = record(EVEN)
     imu.omega[700], imu.f[9000, 1] = np.nan, np.inf
     found = regular_record(imu)
@@ -100,7 +100,7 @@ def test_readings_that_are_no_numbers_count_as_lost():
 
 
 def test_a_message_that_is_there_twice():
-    """Stamp and values are the same: the copy is left out; another reading is not."""
+    """A duplicate with equal stamp and values is removed; other samples are kept."""
     found = regular_record(record(EVEN)[np.insert(NUMBER, 500, 500)])
     assert found.notes == ('1 reading is there twice, with stamp and values: the copies are left '
                            'out',)
@@ -110,7 +110,7 @@ def test_a_message_that_is_there_twice():
 
 
 def test_the_rate_may_be_given():
-    """One stamp in all messages says nothing; the rate of the user goes on."""
+    """With a given rate even a record with one constant stamp is analysed."""
     imu = record(np.full(COUNT, 7))
     with pytest.raises(ValueError, match=r'of 19999 intervals 19999 are not positive; '
                                          r'"-p rate_hz:=HZ" takes all readings in their order'):
@@ -124,7 +124,7 @@ def test_the_rate_may_be_given():
 
 @pytest.mark.parametrize('count', [0, 1, 2, 39])
 def test_too_few(count):
-    """No error but a sentence."""
+    """Too few samples give one sentence."""
     with pytest.raises(ValueError, match=f'has {count} readings, of which {count} are left; '
                                          'expected at least 40'):
         regular_record(record(EVEN[:count]))
@@ -132,7 +132,7 @@ def test_too_few(count):
 
 @pytest.mark.parametrize('lost', [0.01, 0.2])
 def test_many_lost_at_random(lost):
-    """The part that is left has the true rate, or is said to be too short."""
+    """The remaining part has the true rate, or is reported as too short."""
     keep = np.random.default_rng(3).random(COUNT) >= lost
     try:
         found = regular_record(record(EVEN)[keep])

@@ -1,4 +1,4 @@
-"""The charts of a recorded navigation, as data: errors, gaps and the track."""
+"""Charts of the navigation on a recording: errors, gaps and the track."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ def with_gap(length_s):
 
 
 def drawn(result, name='navigation'):
-    """Return the Chart of that name."""
+    """Return the Chart with a name."""
     return next(c for c in navigation_charts('a flight', result, FACTOR) if c.name == name)
 
 
@@ -69,14 +69,14 @@ def test_a_part_that_would_hide_the_other_has_its_own_panel(navigated):
 
 
 def test_an_error_that_is_not_known_has_no_panel(navigated):
-    """No empty panels: without attitude in the reference there is none of attitude."""
+    """A reference without attitude gives no attitude panel."""
     comparison, = navigated.comparisons
     chart = drawn(replace(navigated, comparisons=[replace(comparison, attitude=None)]))
     assert not any('tilt' in p.y_label or 'attitude' in p.y_label for p in chart.panels)
 
 
 def test_two_references_are_told_apart(navigated):
-    """By name and dash, in the colours of the parts."""
+    """Two references are distinguished by name and dash."""
     comparison, = navigated.comparisons
     both = replace(navigated, comparisons=[comparison, replace(comparison, name='odometry')],
                    references=[*navigated.references, navigated.references[0]])
@@ -98,7 +98,7 @@ def test_gaps_are_shaded(navigated):
 
 
 def test_a_curve_is_interrupted_where_nothing_is_known_for_long():
-    """A reference that is silent for 6 s is not drawn through."""
+    """A curve is interrupted where the reference is silent for 6 s."""
     imu, reference = recorded(stamps(100.0))
     heard = (reference.position.t_ns < 5 * SECOND) | (reference.position.t_ns > 11 * SECOND)
     position = SampledTrack(reference.position.t_ns[heard], reference.position.values[heard])
@@ -120,7 +120,7 @@ def test_the_track_has_equal_axes(navigated):
 
 
 def test_a_solution_that_leaves_its_reference_has_a_second_panel(navigated):
-    """The way of the reference would be a dot."""
+    """A diverged solution gets a second panel with the track of the reference."""
     states, = navigated.states
     away = replace(states, lat=states.lat + np.linspace(0.0, 0.01, len(states.lat)))
     far, near = drawn(replace(navigated, states=[away]), 'track').panels

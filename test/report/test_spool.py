@@ -1,4 +1,4 @@
-"""Histories in temporary files: what is read is what was written, and nothing stays behind."""
+"""Histories in temporary files are read back unchanged, and no file remains."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def states(count):
 
 
 def stored(history, store, length=777):
-    """Return what a store makes of the blocks of a history."""
+    """Return the history that a store makes of the blocks."""
     for block in history.blocks(length):
         store.append(block)
     return store.history()
@@ -29,7 +29,7 @@ def stored(history, store, length=777):
 
 @pytest.mark.parametrize('part', PARTS, ids=str)
 def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
-    """Rows and slices, with steps longer than a block too."""
+    """Rows and slices of a column equal those of the array, also for large steps."""
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())
@@ -45,7 +45,7 @@ def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
 
 @pytest.mark.parametrize('length', [1, 4096, 8192, 8193, 50000])
 def test_blocks_join_to_the_history(tmp_path, length):
-    """In memory and in files, however they are cut."""
+    """Blocks of any size join to the history, in memory and in files."""
     history = states(9000)
     with spool.Spool(tmp_path) as spooled:
         for read in (stored(history, Collected()), stored(history, spooled.store())):
@@ -55,7 +55,7 @@ def test_blocks_join_to_the_history(tmp_path, length):
 
 
 def test_a_store_without_blocks_has_no_history(tmp_path):
-    """A run without output is refused by who asked for it."""
+    """A store without blocks returns no history."""
     with spool.Spool(tmp_path) as spooled:
         assert spooled.store().history() is None
     assert Collected().history() is None

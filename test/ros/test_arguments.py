@@ -1,4 +1,4 @@
-"""What stands on the command line of a node beside its ROS arguments."""
+"""Command line of a node outside its ROS arguments."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from ins_sim.ros.process.arguments import answer
 
 @pytest.mark.parametrize('name', ['strapdown', 'recorder', 'player'])
 def test_help(name, capsys):
-    """The usage and the parameters with unit and default; exit code 0."""
+    """--help prints usage and parameters with unit and default; exit code 0."""
     assert answer(name, [name, '--help']) == 0
     said = capsys.readouterr().out
     assert said.startswith(f'usage: {name} [--ros-args')
@@ -16,7 +16,7 @@ def test_help(name, capsys):
 
 
 def test_help_says_what_can_be_set_later(capsys):
-    """Of the generator its pace, and nothing else."""
+    """The help of the generator marks only the pace as settable while it runs."""
     assert answer('motion_generator', ['motion_generator', '-h']) == 0
     said = capsys.readouterr().out
     assert said.count('can be set while it runs') == 1
@@ -27,7 +27,7 @@ def test_help_says_what_can_be_set_later(capsys):
     (['strapdown', '--bogus'], '--bogus'), (['strapdown', '--ros-args', '--', 'more'], 'more'),
     (['strapdown', 'x\x1b[2J'], r'x\x1b[2J')])
 def test_what_is_no_ros_argument(words, bad, capsys):
-    """One sentence, exit code 2."""
+    """An argument outside --ros-args gives one sentence and exit code 2."""
     assert answer('strapdown', words) == 2
     said = capsys.readouterr().err
     assert f'strapdown: unknown argument {bad}; expected ROS arguments behind --ros-args' in said
@@ -46,7 +46,7 @@ def test_ros_arguments_are_left_to_ros():
     (['-p', 'use_sim_time:=3'], "parameter 'use_sim_time' to '3' of type 'INTEGER', expecting"),
     (['--bogus'], "unknown ROS argument ['--bogus']")])
 def test_what_ros_refuses(words, sentence, chain):
-    """One line, exit code 2, no traceback."""
+    """Arguments that ROS refuses give one line, exit code 2 and no traceback."""
     pytest.importorskip('rclpy')
     node = chain.start('strapdown', {}, words)
     assert node.wait(60.0) == 2

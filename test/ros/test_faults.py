@@ -1,4 +1,4 @@
-"""Bad streams: a node says what is wrong on the log and on /diagnostics, and starts anew."""
+"""Bad streams: a node reports the fault on its log and on /diagnostics, and restarts."""
 
 import time
 
@@ -64,7 +64,7 @@ class Source:
         self.listener.poll_until(lambda: t_ns in self.listener.heard['ins/odometry'], 30.0)
 
     def wait_diagnosis(self, node, part):
-        """Wait until /diagnostics says this about a node."""
+        """Wait until /diagnostics reports this about a node."""
         try:
             self.listener.spin_until(lambda: any(
                 node in name and part in message for name, _, message in self.diagnostics))

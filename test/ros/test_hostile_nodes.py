@@ -1,4 +1,4 @@
-"""Hostile messages amid a good flight of all nodes: nothing ends, nothing is lost for good."""
+"""Hostile messages during a flight of all nodes: no node ends, and all recover."""
 
 from collections import Counter
 

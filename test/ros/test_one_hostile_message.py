@@ -1,4 +1,4 @@
-"""One message that nobody should send: what is said of it, and that all nodes go on."""
+"""A single hostile message is reported, and all nodes continue."""
 
 import struct
 
@@ -26,7 +26,7 @@ class Amid(HostileFlight):
         self._drive()
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return what a node has logged."""
         return '\n'.join(self.fed.logs[node].kept)
 
 
@@ -60,7 +60,7 @@ def with_double(data, count, index, value):
     (topics.TRUTH_IMU, IMU_DOUBLES, 13, 1e200, 'imu_sensor', 'holds the angular velocity (1e+200'),
     (topics.INS_ODOMETRY, ODOMETRY_DOUBLES, 44, float('nan'), 'velocity_meter', 'nan')])
 def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, says, flight):
-    """It is dropped by name, and the very next sample is solved as if nothing had been."""
+    """An implausible number is reported and dropped, and the next sample is processed."""
     flight.send(topic, with_double(flight.last(topic), count, index, value))
     # what is taken by hand is taken with the next sample
     flight.good(1)
@@ -72,7 +72,7 @@ def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, s
 @pytest.mark.parametrize('data', [b'\x00\x01\x00', b'\x00\x00\x00\x00' + bytes(8),
                                   b'\x00\x07\x00\x00' + bytes(9), b''])
 def test_a_malformed_answer_is_dropped(data, flight):
-    """On sim/ack of the generator, in one sentence with the topic's name."""
+    """A malformed message on sim/ack is dropped with one sentence naming the topic."""
     flight.send(topics.ACK, data)
     assert 'sim/ack: std_msgs/msg/Header' in flight.said('motion_generator')
     flight.calm(10)
@@ -163,7 +163,7 @@ def test_reset_brings_a_node_back(node, flight):
 
 
 def test_what_nobody_foresaw_is_a_fault(flight):
-    """The last net: an exception in a stage is one sentence, and the node starts anew."""
+    """An unexpected exception in a stage is reported in one sentence, and the node restarts."""
     strapdown, calls = flight.fed.nodes['strapdown'], []
 
     def fails(*sample):

@@ -1,4 +1,4 @@
-"""Arguments that rcl refuses: one sentence, in the words of the offline commands."""
+"""Arguments that rcl refuses are explained in one sentence, as by the offline commands."""
 
 import pytest
 

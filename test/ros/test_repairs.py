@@ -1,4 +1,4 @@
-"""What a transport drops comes: soon while a node runs, and before it has left."""
+"""Messages that the transport drops are resent soon, and before a node has ended."""
 
 from importlib import metadata
 import os

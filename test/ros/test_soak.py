@@ -1,4 +1,4 @@
-"""The soak run in short: it prints what it is to print, and loses nothing at a low rate."""
+"""A short soak run prints its results and loses no message at a low rate."""
 
 import os
 import re

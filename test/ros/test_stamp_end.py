@@ -1,4 +1,4 @@
-"""Where the stamps of ROS end, int32 seconds: 2038-01-19."""
+"""ROS stamps end at 2038-01-19, the range of int32 seconds."""
 
 import pytest
 
@@ -31,7 +31,7 @@ def test_an_endless_run_ends_with_its_stamps():
 
 @pytest.mark.live
 def test_the_generator_says_so(chain):
-    """Exit code 0 and one sentence."""
+    """The generator reports the end of the stamps in one sentence; exit code 0."""
     generator = chain.start('motion_generator', {
         'duration_s': 0.0, 'time.epoch_s': 2147483636, 'motion.kind': 'static'})
     assert generator.wait(60.0) == 0, chain.text(generator)

@@ -1,4 +1,4 @@
-"""What nodes say is bounded, and names what is wrong: kinds, texts, publishers, losses, names."""
+"""Log messages of nodes are limited in number and length, and name the fault."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ pytest.importorskip('rclpy')
 
 @pytest.fixture
 def log(monkeypatch):
-    """Return a list of what is said, and its clock."""
+    """Return a list that collects log messages, and its clock."""
     clock, lines = ToldClock(), []
     monkeypatch.setattr(said, 'time', clock)
     return SimpleNamespace(clock=clock, lines=lines, said=said.Said(lines.append))
@@ -133,7 +133,7 @@ def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
 
 
 def test_the_net_takes_whatever_is_raised():
-    """One sentence with type, cause and place; what ends a process passes."""
+    """An exception is reported with type, cause and place; SystemExit and the like pass."""
     told = []
 
     def divide(a, b):

@@ -1,4 +1,4 @@
-"""The study of the paper: both tables, both stability limits, and the files that hold them."""
+"""Tables and stability limits of Sapegin, Romanov and Bugaiov 2016, and their files."""
 
 import math
 
@@ -52,7 +52,7 @@ def record(figures, tables, name):
 
 
 def test_table_of_frequencies(tables, figures):
-    """Within 0.012 deg of the two-decimal cells and 0.05 deg of the others."""
+    """The table over frequencies is met to 0.012 deg (two-decimal cells) and 0.05 deg."""
     show(tables['frequency'], 'rad/s')
     record(figures, tables, 'frequency')
     assert [c.value for c in tables['frequency']] == [0.5, 1.0, 2.0, 4.0, 8.0]
@@ -62,7 +62,7 @@ def test_table_of_frequencies(tables, figures):
 
 
 def test_table_of_speeds(tables, figures):
-    """Within 0.01 deg in all eight cells."""
+    """All eight cells of the table over rotor speeds are met to 0.01 deg."""
     show(tables['speed'], 'Hz')
     record(figures, tables, 'speed')
     assert len(tables['speed']) == 8
@@ -71,7 +71,7 @@ def test_table_of_speeds(tables, figures):
 
 
 def test_both_algorithms_agree(tables):
-    """1e-11 deg in every cell; and the cells are the reference figures."""
+    """Both algorithms agree to 1e-11 deg in every cell, and give the reference figures."""
     for c in (*tables['frequency'], *tables['speed']):
         assert abs(c.poisson_deg - c.euler_vector_deg) <= 1e-11
         assert c.poisson_deg == pytest.approx(SPECIFIED[c.value], abs=6e-4)
@@ -110,7 +110,7 @@ def test_stability_limits(figures):
 @pytest.mark.parametrize('preset, method', [('sapegin_2016', 'rk4'), ('tactical', 'rk4'),
                                             ('sapegin_2016_damped', 'exact')])
 def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
-    """Bit for bit."""
+    """The compiled simulation equals the plain one bit for bit."""
     pytest.importorskip('numba')
     found = []
     for samples in (10**9, 0):
@@ -121,7 +121,7 @@ def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
 
 
 def test_unstable_speeds_are_refused():
-    """In a table as in the search."""
+    """Unstable rotor speeds are refused in a table and in the search."""
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which this gyro grows'):
         study_curve(read('speed', 'curve_values:=[340.0]'))
     with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
@@ -129,7 +129,7 @@ def test_unstable_speeds_are_refused():
 
 
 def test_progress_is_told_and_the_amplitude_scales():
-    """After each cell; a quarter of the rocking is a quarter of what is recovered."""
+    """Progress is reported per cell; a quarter of the rocking gives a quarter of the result."""
     told = []
     few = ('values:=[400.0]', 'paper_deg:=[]', 'step_ms:=1.0')
     (whole,) = study_table(read('frequency', *few), lambda: told.append(1))
@@ -163,7 +163,7 @@ def test_every_shipped_study_runs(path, tmp_path, capsys):
     ('step_ms:=0.0', 'step_ms is 0 ms; expected 0.001 to 100 ms'),
 ])
 def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
-    """Exit 2, nothing written."""
+    """Bad settings give one sentence and exit code 2, and nothing is written."""
     out = tmp_path / 'study'
     assert main(['dtg-study', '--params-file', 'dtg_study_frequency', '-p', assignment, '-o',
                  str(out)]) == 2

@@ -15,7 +15,7 @@ def panel(*marks, **options):
 
 
 def test_all_values_are_shown():
-    """Curves fill the width; levels count; what is not finite does not."""
+    """Curves fill the width; levels are included; values that are not finite are ignored."""
     one = panel(Curve(X, np.array([1.0, np.nan, 3.0])), Level(y=-5.0))
     low, high = vertical_range(one)
     assert low < -5.0 and high > 3.0 and high - low < 1.1 * 8.0
@@ -24,20 +24,20 @@ def test_all_values_are_shown():
 
 
 def test_given_ranges_are_kept():
-    """Whatever the data are."""
+    """A given range is used whatever the data are."""
     one = panel(Curve(X, X), x_range=(0.5, 1.0), y_range=(2.0, 3.0))
     assert horizontal_range((one,)) == (0.5, 1.0) and vertical_range(one) == (2.0, 3.0)
 
 
 def test_a_logarithmic_axis_shows_positive_values():
-    """Zero and negative values have no place on it."""
+    """On a logarithmic axis zero and negative values are ignored."""
     low, high = vertical_range(panel(Curve(X, np.array([-1.0, 0.1, 10.0])), y_scale=LOG))
     assert 0.0 < low < 0.1 and 10.0 < high < 20.0
 
 
 @pytest.mark.parametrize('shape', [0.3, 1.0, 3.0])
 def test_equal_axes_have_one_scale_and_show_all(shape):
-    """A unit is as long on both axes of a panel of any shape."""
+    """Equal axes have the same scale on panels of any shape, and show all data."""
     (left, right), (bottom, top) = equal_ranges(
         panel(Curve(np.array([0.0, 40.0]), np.array([-5.0, 5.0])), equal=True), shape)
     assert (right - left) / (top - bottom) == pytest.approx(shape)
@@ -45,13 +45,13 @@ def test_equal_axes_have_one_scale_and_show_all(shape):
 
 
 def test_marks_take_colours_in_turn():
-    """A colour of None is the next of the cycle; one that is given stays."""
+    """Marks without a colour get the colours of the cycle in turn; given colours are kept."""
     marks = coloured([Curve(X, X), Curve(X, X, colour='#123456'), Curve(X, X), Level(y=0.0)])
     assert [mark.colour for mark in marks] == [CYCLE[0], '#123456', CYCLE[1], '#000000']
 
 
 def test_maps_of_both_signs_are_white_at_zero():
-    """As much of the scale on either side; of one sign from the least to the largest."""
+    """Maps of both signs have a symmetric scale; others extend from least to largest value."""
     def of(*values):
         return map_colours(Map(X, X[:1], np.array([values]), 'm').values)
 

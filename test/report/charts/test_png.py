@@ -1,4 +1,4 @@
-"""Charts as PNG: of a known size, whatever the texts hold, with the same bytes each time."""
+"""Charts as PNG have a known size, accept any text, and have the same bytes each time."""
 
 from io import BytesIO
 import subprocess
@@ -26,7 +26,7 @@ def test_every_mark_is_drawn(chart, tmp_path):
 
 @pytest.mark.parametrize('words', ['d\udce9sk.csv', 'a$b_\\frac$c', '$x^$', '<b>&', 'x' * 300])
 def test_texts_of_any_kind_are_drawn(words):
-    """Names of files that are no UTF-8, that look like formulas, or that are long."""
+    """Texts with invalid UTF-8, formula characters or great length are drawn."""
     curve = Curve(np.arange(3.0), np.arange(3.0), words)
     chart = Chart('x', words, (Panel((curve,), words, words, title=words, note=words),),
                   caption=words)
@@ -36,7 +36,7 @@ def test_texts_of_any_kind_are_drawn(words):
 @pytest.mark.parametrize('values', [[], [np.nan] * 3, [0.0] * 3, [-1.0, -2.0, -3.0]])
 @pytest.mark.parametrize('axis', ['linear', LOG])
 def test_a_curve_without_values_is_an_empty_panel(values, axis):
-    """Nothing, not a number, a constant, and negative values on a logarithmic axis."""
+    """Empty, NaN, constant and (on a logarithmic axis) negative curves are drawn."""
     curve = Curve(np.arange(len(values)) + 1.0, np.array(values), 'curve')
     chart_png(Chart('x', 'x', (Panel((curve,), 'x', 'y', x_scale=axis, y_scale=axis),)))
 
@@ -45,7 +45,7 @@ def test_a_curve_without_values_is_an_empty_panel(values, axis):
     (LENGTHS, 9999.0, 'm'), (LENGTHS, 1e4, 'km'), (LENGTHS, 0.05, 'mm'), (LENGTHS, 0.0, 'mm'),
     (TIMES, 90.0, 's'), (TIMES, 3600.0, 'min'), (TIMES, 2e4, 'h')])
 def test_units_fit_the_size(units, largest, unit):
-    """Kilometres where metres would have five digits."""
+    """Lengths from 10 km on are shown in kilometres."""
     assert scale(units, largest)[1] == unit
 
 

@@ -1,4 +1,4 @@
-"""What is left out of a curve: nothing that could be seen."""
+"""Thinning of curves removes no visible detail."""
 
 from hypothesis import given, settings, strategies as st
 from ins_sim.report.charts.thinning import kept_points, STRETCHES, thinned_curve
@@ -28,7 +28,7 @@ def test_no_extreme_is_lost(count, seed, gaps):
 
 
 def test_a_spike_of_one_sample_is_drawn():
-    """An hour at 100 Hz with one wrong sample, which every 90th point would miss."""
+    """One wrong sample in an hour at 100 Hz stays in the thinned curve."""
     y = np.zeros(360001)
     y[123457] = 1.0
     x = np.arange(len(y)) * 0.01

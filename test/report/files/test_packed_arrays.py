@@ -1,4 +1,4 @@
-"""Compressed arrays: the same bits come back, and what gains nothing is not compressed."""
+"""Packed arrays are restored bit for bit, and incompressible ones are stored uncompressed."""
 
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 
@@ -31,7 +31,7 @@ def test_arrays_come_back_to_the_bit(tmp_path):
 
 
 def test_only_what_shrinks_is_compressed(tmp_path):
-    """Stamps and constants are; noise, of which every bit is news, is not."""
+    """Stamps and constants are compressed; noise is not."""
     write_arrays(tmp_path / 'run.npz', ARRAYS)
     with ZipFile(tmp_path / 'run.npz') as archive:
         for name, method in (('t_ns', ZIP_DEFLATED), ('constant', ZIP_DEFLATED),

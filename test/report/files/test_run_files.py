@@ -1,4 +1,4 @@
-"""The files of a run: thinned arrays, CSV tables and trajectories hold the arrays to the bit."""
+"""Thinned arrays, CSV tables and trajectories of a run restore the arrays bit for bit."""
 
 import csv
 
@@ -80,7 +80,7 @@ def test_tables_and_trajectories_of_the_verb(run, tmp_path):
 
 @pytest.mark.filterwarnings("ignore:The 'float_precision' argument is deprecated")
 def test_a_dataframe_is_what_pandas_reads_from_the_table(run, tmp_path):
-    """Names, index and bits."""
+    """A DataFrame has the names, index and bits that pandas reads from the table."""
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')
     run.save(tmp_path / 'run', csv=True)
     for name in RECORDS:
@@ -139,7 +139,7 @@ def test_every_nth_instant(run, thin, tmp_path):
 
 
 def test_what_is_left_out_is_said_once(tmp_path, capsys):
-    """With its count; nothing is said where nothing is left out."""
+    """One note gives the number of omitted instants; without thinning there is no note."""
     for thin, sentence in ((1, None), (10, 'the files hold 21 of 201 output instants (thin 10)')):
         assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--thin', str(thin), '--force',
                      '-o', str(tmp_path / 'run')]) == 0
@@ -150,14 +150,14 @@ def test_what_is_left_out_is_said_once(tmp_path, capsys):
 
 @pytest.mark.parametrize('thin', [0, -3, 2.5, '2', True, None])
 def test_thin_is_a_whole_number(run, thin, tmp_path):
-    """One sentence, and nothing is written."""
+    """A bad thin is refused in one sentence, and nothing is written."""
     with pytest.raises(ValueError, match='^thin is .*; expected a whole number of at least 1$'):
         run.save(tmp_path / 'run', thin=thin)
     assert not (tmp_path / 'run').exists()
 
 
 def test_the_verb_refuses_thin_0_before_the_run(tmp_path, capsys):
-    """Exit code 2."""
+    """--thin 0 gives exit code 2 before the run."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '--thin', '0', '-o', str(tmp_path / 'x')]) == 2
     assert 'thin is 0; expected a whole number of at least 1' in capsys.readouterr().err
     assert not (tmp_path / 'x').exists()
@@ -194,7 +194,7 @@ def test_a_navigation(tmp_path):
 
 
 def test_kept_is_the_result_itself_where_nothing_is_left_out(run):
-    """No copy of an hour is made."""
+    """Without thinning the result is not copied."""
     assert WantedFiles().kept(run.result) is run.result
     assert WantedFiles(3).kept(run.result).imu is run.result.imu
 

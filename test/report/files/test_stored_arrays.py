@@ -1,4 +1,4 @@
-"""A run.npz that is something else: one sentence, and no memory that the file cannot fill."""
+"""A run.npz with other content gives one sentence, and allocates no more than it can hold."""
 
 import io
 import zipfile
@@ -37,7 +37,7 @@ def test_the_arrays_of_a_run_come_back(tmp_path):
     (dict(imu_omega=np.array([['x'] * 3] * 50)), 'imu_omega has the type <U1'),
     (dict(imu_omega=np.array([{}], dtype=object)), 'imu_omega.npy says it has (1,) of object')])
 def test_other_arrays_are_named(changed, sentence, tmp_path, capsys):
-    """allan says which one, and what it is."""
+    """ins_sim allan names the wrong array, and its type and shape."""
     saved(tmp_path, **changed)
     (tmp_path / 'parameters.yaml').write_text('/**: {ros__parameters: {rate_hz: 100.0}}\n')
     assert main(['allan', str(tmp_path), '-o', str(tmp_path / 'out')]) == 2

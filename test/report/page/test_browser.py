@@ -21,7 +21,7 @@ def run(tmp_path_factory):
 
 
 def check(found, width, panels):
-    """Every panel is drawn within the window, nothing is loaded, and nothing is complained of."""
+    """Check that every panel is drawn within the window, and nothing is loaded or logged."""
     assert found['heard'] == []
     assert found['loaded'] == []
     assert found['width'] == width and found['scroll'] <= width
@@ -50,7 +50,7 @@ def test_the_report_of_a_run_is_seen(run, width, height, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize('width, height', WINDOWS)
 def test_every_mark_is_seen(width, height, tmp_path):
-    """All that a chart may hold, in one report."""
+    """A report with every kind of mark is drawn."""
     charts = every_mark()
     write_page(tmp_path, Page(
         'Every mark', 'All is seen.', charts,

@@ -1,4 +1,4 @@
-"""The page of a report: whole, escaped, the same bytes each time, and no larger than promised."""
+"""The page of a report is complete, escaped, reproducible and of limited size."""
 
 from html.parser import HTMLParser
 import re
@@ -103,7 +103,7 @@ def test_settings_that_differ_are_those_of_the_file():
 
 
 def test_the_same_page_has_the_same_bytes(tmp_path):
-    """Though Bokeh numbers its objects through the whole process."""
+    """Equal pages have equal bytes, although Bokeh numbers its objects per process."""
     pytest.importorskip('bokeh')
     assert written(tmp_path, EVERY) == written(tmp_path, EVERY)
 
@@ -139,13 +139,13 @@ def test_without_bokeh_the_figures_are_images(tmp_path, without_bokeh):
 
 
 def test_a_page_without_figures_needs_no_script(tmp_path):
-    """Tables and sentences alone."""
+    """A page with tables and sentences only contains no script."""
     text = written(tmp_path, Page('t', 'a'))
     assert '<script' not in text and NO_BOKEH not in text
 
 
 def test_bokeh_is_loaded_by_what_writes_a_page_alone():
-    """Half a second, for which no other verb pays."""
+    """Only commands that write a page import Bokeh, which takes 0.5 s."""
     code = ('import sys, ins_sim, ins_sim.cli.main, ins_sim.report.storage\n'
             'import ins_sim.report.page.html\n'
             'assert not [name for name in sys.modules if name.startswith("bokeh")]\n')

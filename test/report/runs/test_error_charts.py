@@ -1,4 +1,4 @@
-"""The figures of a run: units that fit, a prediction only where it says something."""
+"""Charts of a run have fitting units, and a prediction only where it is significant."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def labels(panel):
 
 
 def test_a_prediction_that_fits_has_a_panel_of_what_it_leaves(motion_2):
-    """Both curves coincide: what is left is drawn by itself, a thousand times larger."""
+    """If both curves coincide, their difference has its own panel, 1000 times larger."""
     run, prediction = motion_2
     chart = error_chart('t', run.errors, prediction)
     position, residual, _, drift = chart.panels
@@ -47,7 +47,7 @@ def test_a_prediction_that_fits_has_a_panel_of_what_it_leaves(motion_2):
 
 
 def test_a_prediction_of_nothing_is_not_drawn(motion_2):
-    """Where it is no larger than what the theory may leave out, and where there is none."""
+    """A prediction below the bound of the neglected terms is not drawn."""
     run, prediction = motion_2
     for given in (None, replace(prediction, largest=np.zeros(3)),
                   replace(prediction, position_bound=1e9)):
@@ -57,7 +57,7 @@ def test_a_prediction_of_nothing_is_not_drawn(motion_2):
 
 
 def test_a_prediction_that_is_wrong_has_no_panel_of_its_own(motion_2):
-    """The difference is seen where both are drawn."""
+    """A difference that is visible in the main panel has no separate panel."""
     run, prediction = motion_2
     doubled = replace(prediction, position=2.0 * prediction.position)
     chart = error_chart('t', run.errors, doubled)
@@ -82,7 +82,7 @@ def test_what_delays_cause_is_the_run_less_its_twin():
 @pytest.mark.parametrize('size, unit, factor', [(2e4, 'km', 1e-3), (500.0, 'm', 1.0),
                                                 (0.01, 'mm', 1e3)])
 def test_positions_are_in_the_unit_of_their_size(size, unit, factor):
-    """Kilometres where metres read badly; up is left out where it is zero."""
+    """Large position errors are in kilometres; up is omitted if it is zero."""
     position = error_chart('t', errors(size)).panels[0]
     assert position.y_label == f'position error [{unit}]'
     assert labels(position) == ['east', 'north']
@@ -103,7 +103,7 @@ def test_a_history_is_read_in_blocks():
 
 
 def test_blocks_are_interpolated_without_a_seam():
-    """As NumPy does it at once, and NaN beyond the ends."""
+    """Block-wise interpolation equals that of NumPy, and is NaN outside."""
     known = np.arange(0.0, 100.0)
     values = np.stack([known ** 2, -known], axis=1)
     t = np.linspace(-1.0, 101.0, 977)

@@ -1,4 +1,4 @@
-"""Tracks as KML: read by a parser, on both sides of the antimeridian."""
+"""Tracks as KML can be parsed, and are correct on both sides of the antimeridian."""
 
 import xml.etree.ElementTree as ElementTree
 
@@ -46,7 +46,7 @@ def test_an_aided_flight_writes_its_tracks(tmp_path):
 
 
 def test_what_stays_at_its_place_has_no_track(tmp_path):
-    """On the bench there is neither a track nor its figure."""
+    """A run at rest has neither a track nor its figure."""
     assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'run')]) == 0
     assert not (tmp_path / 'run' / FILE).exists()
@@ -68,7 +68,7 @@ def test_a_line_over_the_antimeridian_is_cut_there(tmp_path):
 
 @pytest.mark.parametrize('lon', [[180.0, -180.0], [-180.0, 180.0], [179.9, -180.0], [10.0]])
 def test_a_point_on_the_antimeridian_divides_by_nothing(lon):
-    """All numbers are finite, and no place is lost."""
+    """Points on the antimeridian give finite numbers, and no place is lost."""
     lon = np.array(lon)
     pieces = unbroken(lon, np.zeros(len(lon)), np.zeros(len(lon)))
     assert all(np.isfinite(piece).all() for piece in pieces)

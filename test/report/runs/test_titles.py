@@ -1,4 +1,4 @@
-"""Titles in words."""
+"""Titles describe a simulation in words."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.report.titles import length_words, title
@@ -29,5 +29,5 @@ def test_a_title_names_motion_instrument_and_rate(files, assignments, words):
     (3600.0, '1 h'), (5400.0, '1.5 h'), (3000.0, '50 min'), (59.99999999999999, '1 min'),
     (60.00000000000001, '1 min'), (100.0, '100 s'), (0.5, '0.5 s'), (7201.0, '7201 s')])
 def test_lengths(seconds, words):
-    """In the largest unit of which it is a round number."""
+    """A length is given in the largest unit in which it is a round number."""
     assert length_words(seconds) == words

@@ -1,4 +1,4 @@
-"""The chart of an Allan deviation: each line lies where the number in the legend says."""
+"""In the chart of an Allan deviation each line is where the number in the legend says."""
 
 from dataclasses import replace
 
@@ -53,7 +53,7 @@ def test_the_slopes_give_their_coefficient_where_it_is_read():
 
 
 def test_fit_settings_and_what_they_are_off():
-    """The settings beside the fit; below what differs, in percent, about the scatter of one."""
+    """The chart shows the settings, and below it differences from the fit in percent."""
     noise = exact_noise(settings=(5.0, 0.04, 0.5, 0.4))
     top, bottom = allan_chart('a gyro', noise).panels
     fit, expected = labelled(top, 'fit'), labelled(top, 'expected of the settings')
@@ -67,7 +67,7 @@ def test_fit_settings_and_what_they_are_off():
 
 
 def test_what_is_not_known_is_not_drawn():
-    """No settings, settings without noise, and a coefficient that the record does not show."""
+    """Settings that are missing or without noise, and unobservable terms, are not drawn."""
     for noise in (exact_noise(settings=None), exact_noise(settings=(0.0,) * 4)):
         top, _ = allan_chart('a gyro', noise).panels
         assert not [m for m in top.marks if 'expected' in (getattr(m, 'label', '') or '')]

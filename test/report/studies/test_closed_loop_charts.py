@@ -63,7 +63,7 @@ def test_the_map_draws_no_limit_where_there_is_none():
 
 
 def test_what_the_tables_say():
-    """Quiet flights are counted, and the one that swings most is named."""
+    """Quiet flights are counted, and the one that oscillates most is named."""
     quiet, restless = TABLE[0], next(case for case in TABLE if case.k_z == 0.17)
     rows = [loop_row(quiet, flight(0.01)), loop_row(restless, flight(8.0, 31.0), flight(7.9))]
     assert flights_answer(rows[:1]) == (

@@ -15,7 +15,7 @@ CURVE = (CELLS[0], Cell(200.0, 9.9331, 9.9331, None), CELLS[1])
 
 
 def test_the_paper_beside_ours():
-    """Points of the paper on our curve, and below what we are off, which the curve cannot show."""
+    """Published points are drawn on our curve, and the differences below it."""
     chart = study_chart('dtg_study_speed', SETTINGS, CURVE, CELLS, (129.4, 337.4))
     top, bottom = chart.panels
     ours, paper = top.marks[:2]
@@ -34,7 +34,7 @@ def test_the_paper_beside_ours():
 
 
 def test_a_study_without_a_paper_has_no_difference():
-    """One panel; a side without a limit has no line."""
+    """Without published values there is one panel; a missing limit has no line."""
     settings = TunedGyroStudySettings(sweep='rotor_speed', values=(130.0, 337.0))
     cells = tuple(Cell(c.value, c.poisson_deg, c.euler_vector_deg, None) for c in CELLS)
     top, = study_chart('x', settings, cells, cells, (None, 337.4)).panels
@@ -43,7 +43,7 @@ def test_a_study_without_a_paper_has_no_difference():
 
 
 def test_the_report_answers():
-    """The worst amplitude, the distance to the paper, and the limits."""
+    """The answer gives the worst amplitude, the difference from the paper, and the limits."""
     chart = study_chart('dtg_study_speed', SETTINGS, CURVE, CELLS, (129.4, 337.4))
     page = study_page([TunedGyroStudy('dtg_study_speed', SETTINGS, CELLS, (129.4, 337.4), chart)])
     assert page.answer == (

@@ -41,7 +41,7 @@ class Graph(FedNodes):
 
     @property
     def said(self):
-        """What the adapter has said."""
+        """Return what the adapter has logged."""
         return list(self.logs['truth_adapter'].kept)
 
     def send(self, messages, pause_s=0.02):
@@ -69,7 +69,7 @@ def shifted(data, shift_ns):
 
 @pytest.mark.parametrize('pacing', [{}, LOCK_STEP], ids=['real time', 'lock-step'])
 def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
-    """Truth, readings and solutions come of every instant, and what was adapted is said once."""
+    """Every instant has truth, IMU sample and solution; each adaptation is logged once."""
     with Graph(**pacing) as graph:
         graph.send(messages_of())
         assert graph.stamps == sorted(set(graph.stamps)) and len(graph.stamps) > 380
@@ -80,7 +80,7 @@ def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
 
 
 def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
-    """The input's epoch is its own: stamps near 0 and those of 2026 give truth at them."""
+    """Inputs with stamps near 0 and with stamps of 2026 give truth at these stamps."""
     shift_ns = 1_796_000_000 * 10**9
     with Graph() as graph:
         graph.send(messages_of())
@@ -91,7 +91,7 @@ def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
 
 
 def test_a_simulator_that_waits_is_held_by_the_consumers(ros_domain):
-    """Without an answer of strapdown a window of truth goes out and the input is not answered."""
+    """Without answers of strapdown one window of truth is sent and the input not acknowledged."""
     with Graph(others=False, **LOCK_STEP) as graph:
         graph.send(messages_of())
         # The first sample is repeated until it is answered.
@@ -116,7 +116,7 @@ def test_a_consumer_that_never_answers_is_named(ros_domain):
 
 
 def test_a_simulator_that_begins_again_is_followed_in_lock_step(ros_domain):
-    """When the stamps jump back all nodes begin anew, once all was answered; nothing is lost."""
+    """After a jump back all nodes restart once all is acknowledged; nothing is lost."""
     with Graph(**LOCK_STEP) as graph:
         graph.send(messages_of())
         count, first = len(graph.stamps), graph.stamps[0]
@@ -129,7 +129,7 @@ def test_a_simulator_that_begins_again_is_followed_in_lock_step(ros_domain):
 
 
 def test_one_that_does_not_wait_is_told(ros_domain):
-    """In lock-step an input that does not wait fills no memory: it is told and begun anew."""
+    """In lock-step, an input that does not wait is reported and dropped; memory is bounded."""
     with Graph(others=False, **LOCK_STEP, **{'topics.depth': 100}) as graph:
         graph.send(messages_of(8.0))
         assert len(graph.adapter._release) <= 102
@@ -141,14 +141,14 @@ def test_one_that_does_not_wait_is_told(ros_domain):
     (('odom_ned', 'base_link'), "has the frame 'odom_ned'; expected a world with z up"),
     (('world', 'base_link_frd'), "has the frame 'base_link_frd'")])
 def test_a_frame_that_is_not_enu_is_refused(frames, said, ros_domain):
-    """Nothing is made of a world with z down, and that is said."""
+    """Odometry of a world with z down gives no truth and is reported."""
     with Graph(others=False) as graph:
         graph.send(messages_of(frames=frames))
         assert not graph.stamps and any(said in line for line in graph.said)
 
 
 def test_two_vehicles_on_one_topic_are_told_apart(ros_domain):
-    """Messages of other frames than the first ones are dropped with a sentence."""
+    """Messages with other frames than the first ones are dropped and reported."""
     mixed = [data for pair in zip(messages_of(), messages_of(frames=('odom', 'other')))
              for data in pair]
     with Graph() as graph:
@@ -159,7 +159,7 @@ def test_two_vehicles_on_one_topic_are_told_apart(ros_domain):
 
 
 def test_damaged_messages_are_said_and_passed_over(ros_domain):
-    """Bytes that are no Odometry, and values beyond belief, end nothing."""
+    """Malformed or implausible Odometry is reported and dropped; all nodes continue."""
     messages = messages_of(8.0)
     messages[150] = messages[150][:200]
     messages[250] = messages[250][:-8] + struct.pack('<d', float('nan'))
@@ -175,7 +175,7 @@ def test_damaged_messages_are_said_and_passed_over(ros_domain):
 
 
 def test_an_odometry_that_stops_is_missed(ros_domain):
-    """Silence is told, and truth goes on behind it."""
+    """Silence of the input is reported; truth continues when the input does."""
     with Graph() as graph:
         messages = messages_of(8.0)
         graph.send(messages[:200])
@@ -187,7 +187,7 @@ def test_an_odometry_that_stops_is_missed(ros_domain):
 
 
 def test_reset_judges_anew(ros_domain):
-    """The service ~/reset forgets what the input is like."""
+    """The service ~/reset discards what was learned about the input."""
     from types import SimpleNamespace
     with Graph() as graph:
         messages = messages_of(8.0)
@@ -204,7 +204,7 @@ def test_reset_judges_anew(ros_domain):
     ({'pacing.window': 2000, 'topics.depth': 100}, 'expected at most topics.depth, 100'),
     ({'pacing.lock_step': True, 'pacing.required': []}, 'pacing.required is empty')])
 def test_parameters_that_do_not_go_together_are_refused(values, said, ros_domain):
-    """One sentence names key, value and expectation."""
+    """A contradiction of parameters is refused with key, value and expectation."""
     with pytest.raises(ValueError, match=said.replace('(', '[(]')):
         with Graph(others=False, **values):
             pass

@@ -126,7 +126,7 @@ def send_both(stream, first, stop):
 
 
 def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path):
-    """After 5 s the navigator says so and goes on; when records come it waits for them again."""
+    """After 5 s of silence the navigator continues without the meter; later records are used."""
     stream = Stream(ros_domain, tmp_path, (topics.AIDED_ERRORS[1],),
                     {'motion.kind': 'racetrack'}, ALONE)
     values = {'window.cycles': 100, 'limits.height_max_m': 2e4}

@@ -1,4 +1,4 @@
-"""The node gnss by itself: its fixes are those of the core, bit for bit, when they are due."""
+"""The node gnss alone publishes the fixes of the core bit for bit, each when it is due."""
 
 from ins_sim.settings.catalogue import build
 from ins_sim.core.sensors.gnss import Gnss
@@ -30,7 +30,7 @@ def offline(stream, stamps_ns, values):
 
 
 def heard_fixes(stream):
-    """Return what a reader makes of the messages heard."""
+    """Return the fixes that a reader makes of the received messages."""
     pairs, found = GnssPairs(0, 120_000_000), []
     for data in stream.raw['gnss/velocity'].values():
         pairs.push_velocity(data)
@@ -106,7 +106,7 @@ def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
 
 
 def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
-    """A fix that was on its way does not come into the new run; nor does a NaN."""
+    """A pending fix does not appear in the next run, nor does one with NaN."""
     stream = Stream(ros_domain, tmp_path, HEARD)
     try:
         node = stream.chain.start('gnss', {'gnss.latency_ms': 500.0})

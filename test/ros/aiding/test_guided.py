@@ -1,4 +1,4 @@
-"""The closed loop over DDS: six nodes in lock-step fly what the offline run flies."""
+"""Six nodes in lock-step over DDS fly the same closed loop as the offline run."""
 
 import ins_sim
 from ins_sim import graph, resources

@@ -1,4 +1,4 @@
-"""The topic that steers, node objects without DDS: whatever comes on it, the vehicle flies on."""
+"""Steering without DDS: bad messages on the steering topic do not stop the vehicle."""
 
 import math
 import struct
@@ -48,12 +48,12 @@ class Steered(HostileFlight):
 
     @property
     def said(self):
-        """Return what the generator has said."""
+        """Return what the generator has logged."""
         return '\n'.join(self.fed.logs['motion_generator'].kept)
 
     @property
     def why(self):
-        """Return why the autopilot does not steer, '' where it does."""
+        """Return the reason why the autopilot does not steer, or ''."""
         return self.generator._steerer._command.why
 
     def engage(self, on):
@@ -108,7 +108,7 @@ def in_frames(data, *frames):
     ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump',
          'quaternion'))
 def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
-    """One sentence; the last solution is held for a second, then it flies straight and level."""
+    """Each fault is reported once; a solution is held for 1 s, then the vehicle flies straight."""
     before = len(flight.commands)
     flight.change = change
     flight.good(250)
@@ -128,7 +128,7 @@ def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
 
 
 def test_two_publishers_are_named(flight):
-    """By the diagnostics, as for every topic that one node alone should publish."""
+    """A second publisher of the steering topic is reported on /diagnostics."""
     flight.generator.count_publishers = lambda name: 2 if name.endswith(NAME) else 1
     flight.generator.get_publishers_info_by_topic = lambda name: []
     flight.generator.monitor.publish()
@@ -136,7 +136,7 @@ def test_two_publishers_are_named(flight):
 
 
 def test_two_that_alternate_300_km_apart_do_not_steer(flight):
-    """Both are of now: of a stamp the first one counts, and every second one is a jump."""
+    """Of two solutions with one stamp the first is used; every other message is a jump back."""
     turn = [0]
 
     def alternate(data):
@@ -150,7 +150,7 @@ def test_two_that_alternate_300_km_apart_do_not_steer(flight):
 
 
 def test_disengaged_it_flies_straight(flight):
-    """By service; and engaged again it steers."""
+    """The service ~/engage disengages the autopilot, and engages it again."""
     assert flight.engage(False).message == 'disengaged: it flies straight'
     flight.good(50)
     assert flight.why == 'not engaged' and flight.commands[-1][1] == 0.0
@@ -164,7 +164,7 @@ def test_disengaged_it_flies_straight(flight):
 
 
 def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
-    """And says so; the turn is flown as on a route."""
+    """Engaged during a turn, the autopilot reports that it waits, and the turn is completed."""
     route = {'motion.route.points.latitude_deg': [55.0, 55.5, 55.6],
              'motion.route.points.longitude_deg': [37.0, 37.3, 38.2]}
     with Steered({**route, 'start_s': 285.0, 'guidance.engage_after_s': 1e6}) as flight:
@@ -189,7 +189,7 @@ def test_a_loop_that_cannot_be_closed_is_named_once(generator, sentence, ros_dom
 
 
 def test_a_command_beyond_the_limit_is_counted(ros_domain):
-    """From 100 m beside the leg the command is at its limit."""
+    """From 100 m off the leg the command is at its limit, and these instants are counted."""
     with Steered({'motion.guided.offset_m': 100.0}) as flight:
         flight.good(30)
         assert flight.commands[-1][1] == math.radians(8.0)
@@ -197,7 +197,7 @@ def test_a_command_beyond_the_limit_is_counted(ros_domain):
 
 
 def test_a_filter_that_refuses_turns_steers_on(ros_domain):
-    """Filter paper: the loop stays closed (what it refuses the navigator says)."""
+    """Filter paper rejects fixes in turns, but the loop stays closed."""
     with Steered(aided_navigator={'rate_hz': 100.0, 'filter': 'paper', 'window.cycles': 50,
                                   'topics.depth': 500}) as flight:
         flight.good(300)
@@ -205,7 +205,7 @@ def test_a_filter_that_refuses_turns_steers_on(ros_domain):
 
 
 def test_an_autopilot_that_raises_is_named(flight):
-    """The vehicle flies straight, and nothing dies."""
+    """If the autopilot raises an exception, it is reported and the vehicle flies straight."""
     flight.generator._steerer.steering.autopilot.command = lambda *_: 1 / 0
     flight.good(20)
     assert 'the autopilot raises ZeroDivisionError (division by zero) at ' in flight.said
@@ -213,7 +213,7 @@ def test_an_autopilot_that_raises_is_named(flight):
 
 
 def test_after_a_reset_the_flight_is_the_same(flight):
-    """Bit for bit; a solution of the old run that was under way is none of the new one."""
+    """A flight after a reset is bit-identical; pending solutions of the old run are ignored."""
     first = list(flight.commands)
     flight.good(1)
     flight.commands.clear()
@@ -223,14 +223,14 @@ def test_after_a_reset_the_flight_is_the_same(flight):
 
 
 class LockStep:
-    """A Steerer in lock-step whose time is told."""
+    """A Steerer in lock-step with a simulated clock."""
 
     def __init__(self, flight):
         self._flight, self._steerer = flight, flight.generator._steerer
         self._sent = flight.generator._next
 
     def may_send(self, wait_s):
-        """Return whether the next sample may be sent after so long."""
+        """Return whether the next sample may be sent after a time, s."""
         self._flight.fed.clock.now_s += wait_s
         reached = self._steerer.reach(self._sent, self._sent + 200, True)
         sends, self._sent = reached > self._sent, reached
@@ -238,7 +238,7 @@ class LockStep:
 
 
 def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
-    """Every tenth one: their interval is learnt, and the newest one up to the instant serves."""
+    """With a solution at every tenth instant, the interval is learned and the last one used."""
     turn = [0]
 
     def tenth(data):
@@ -258,7 +258,7 @@ def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
 
 
 def test_solutions_that_are_always_late_are_said_once(flight):
-    """In real time the last one serves; a second of it is mentioned."""
+    """In real time the last solution is used; after 1 s of lateness one warning is logged."""
     held = []
 
     def late(data):
@@ -272,7 +272,7 @@ def test_solutions_that_are_always_late_are_said_once(flight):
 
 
 def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
-    """5 s, 2.5 s, ...: a lost sample costs as much, an estimator that has ended 10 s in all."""
+    """The waits are 5 s, 2.5 s, ...: 10 s in total for an estimator that has ended."""
     flight.change = lambda data: None
     flight.good(1)
     lock = LockStep(flight)

@@ -1,4 +1,4 @@
-"""The node velocity_meter by itself: its records are the fixes of the core, bit for bit."""
+"""The node velocity_meter alone records the fixes of the core bit for bit."""
 
 from dataclasses import replace
 
@@ -78,7 +78,7 @@ def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, t
 
 
 def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
-    """After 5 s a warning; the windows come invalid, with a record each, until it delivers."""
+    """After 5 s without INS a warning is logged, and windows are invalid until it returns."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)
@@ -105,7 +105,7 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
 
 
 def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path):
-    """In lock-step the generator waits for the answer, and /clock with it."""
+    """With use_sim_time in lock-step, a wait for the INS ends although /clock does not advance."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'use_sim_time': True})
@@ -151,7 +151,7 @@ def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
 
 
 def test_a_gap_starts_anew(ros_domain, tmp_path):
-    """A window with a gap in it has no record: the instrument starts anew."""
+    """A window with a gap has no record, and the meter restarts."""
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'attack_angle': 'none'})
@@ -166,7 +166,7 @@ def test_a_gap_starts_anew(ros_domain, tmp_path):
 
 
 def test_a_jump_back_begins_anew(ros_domain, tmp_path):
-    """The second run has every window of the first, whatever of the INS was under way."""
+    """A second run has every window of the first, whatever INS messages were pending."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)

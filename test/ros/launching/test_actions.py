@@ -20,7 +20,7 @@ MODULES = {
 
 
 class Call:
-    """A constructor of launch: it keeps what it was called with."""
+    """Stand-in for a class of launch that stores its arguments."""
 
     def __init__(self, *words, **named):
         self.what, self.words = type(self).__name__, words
@@ -34,23 +34,23 @@ class Configuration:
         self.name = name
 
     def perform(self, context):
-        """Return it."""
+        """Return the value of the argument."""
         return context.launch_configurations[self.name]
 
 
 class Context(SimpleNamespace):
-    """A context with the values of the launch arguments, and what is being launched."""
+    """Stand-in for a launch context, with the launch arguments and the current event."""
 
     is_shutdown = False
 
     def get_locals_as_dict(self):
-        """Return the event that is being handled, or nothing."""
+        """Return the event being handled, or an empty dict."""
         return {'event': self.event} if self.event else {}
 
 
 @pytest.fixture
 def launch(monkeypatch):
-    """Put stand-ins in the place of launch; return the modules."""
+    """Replace launch by stand-ins; return the modules."""
     for module, names in MODULES.items():
         stub = ModuleType(module)
         for name in names:
@@ -136,14 +136,14 @@ def test_simulation(started):
 
 
 def test_one_process_has_no_name(started):
-    """ROS would give it to all nodes of the process."""
+    """The process of several nodes is started without a name, which would rename all of them."""
     nodes = flat(started('simulation', one_process='true', record='bag'))
     assert set(nodes) == {'simulation', 'recorder'}
     assert nodes['simulation'].name is None and nodes['recorder'].name == 'recorder'
 
 
 def test_what_is_said(started):
-    """The sentences of the plan."""
+    """The launch file logs the sentences of the plan."""
     said = [a.msg for a in started('simulation', record='bag', lock_step='false')
             if a.what == 'LogInfo']
     assert said[-1].startswith('record without lock_step: ')
@@ -153,7 +153,7 @@ def test_what_is_said(started):
     ('simulation', {}, {'motion_generator', 'imu_sensor', 'strapdown'}),
     ('replay', {'bag': 'old'}, {'player', 'strapdown'})])
 def test_ends(file, given, names, started):
-    """A run that has ended ends all or the nodes alone; a node that fails always ends all."""
+    """At the end of a run all or only the nodes end; a failing node always ends all."""
     context = SimpleNamespace(is_shutdown=False)
     for shutdown in ('true', 'false'):
         actions = started(file, **given, shutdown=shutdown)
@@ -175,7 +175,7 @@ def test_ends(file, given, names, started):
 
 
 def test_replay(started):
-    """The nodes behind the source, and the verb that plays into them."""
+    """The nodes that process the recording are started, and the command that plays it."""
     for source, names in (('imu', {'strapdown'}), ('truth', {'strapdown', 'imu_sensor'})):
         nodes = flat(started('replay', bag='old', source=source, namespace='left', loop='true',
                              before={'ros_namespace': '/fleet'}))
@@ -206,7 +206,7 @@ def test_misspelt_arguments_are_refused(started, launch):
 
 
 def test_arguments_of_the_including_file_are_its_own(started, launch):
-    """However near they are: a parent may have an argument motions."""
+    """An argument of the including file is accepted even if it resembles one of ours."""
     assert started('simulation', event=included(launch, '/elsewhere/parent.launch.py',
                                                 ['motions']), before={'motions': 'x'})
     parent = included(launch, '/elsewhere/parent.launch.py', ['motions'])

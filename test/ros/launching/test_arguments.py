@@ -36,7 +36,7 @@ def test_instruments_are_those_shipped():
     (arguments.SIMULATION, 'moton', 'motion'), (arguments.SIMULATION, 'rate', 'rate_hz'),
     (arguments.SIMULATION, 'param_file', 'params_file'), (arguments.REPLAY, 'sorce', 'source')])
 def test_a_misspelt_argument_names_the_nearest(known, name, near):
-    """One sentence."""
+    """A misspelt argument is refused with the nearest valid name."""
     with pytest.raises(ValueError) as refused:
         arguments.check_names([known[0].name, 'launch-prefix', name], known)
     assert str(refused.value) == (f"unknown launch argument '{name}'; the nearest known one is "
@@ -48,7 +48,7 @@ def test_a_misspelt_argument_names_the_nearest(known, name, near):
     ('rate_hz', 'fast', "rate_hz is 'fast'; expected a number"),
     ('tf', 'in', "tf is 'in'; expected one of none, truth, ins, aided (nearest: ins)")])
 def test_bad_values(name, text, says):
-    """Argument, value and expectation."""
+    """A bad value is refused with argument, value and expectation."""
     texts = {one.name: one.default for one in arguments.SIMULATION}
     with pytest.raises(ValueError) as refused:
         arguments.read_values({**texts, name: text}, arguments.SIMULATION)
@@ -56,7 +56,7 @@ def test_bad_values(name, text, says):
 
 
 def test_values():
-    """What is not given is '' or None; ROS writes true with a capital, too."""
+    """Missing values are '' or None; true may be capitalised, as ROS writes it."""
     texts = {one.name: one.default for one in arguments.SIMULATION}
     value = arguments.read_values({**texts, 'use_sim_time': 'True', 'rate_hz': '200'},
                                   arguments.SIMULATION)
@@ -68,13 +68,13 @@ def test_values():
     ('', []), ('motion_2', ['motion_2']), ('motion_2,imu_tactical_fog', None),
     ('motion_2 imu_tactical_fog', None), (' motion_2 ,  imu_tactical_fog', None)])
 def test_several_parameter_files(text, names):
-    """By commas or spaces, in order."""
+    """Parameter files are separated by commas or spaces and applied in order."""
     names = ['motion_2', 'imu_tactical_fog'] if names is None else names
     assert arguments.parameter_files(text) == [str(resources.config(name)) for name in names]
 
 
 def test_a_file_with_a_space_in_its_name(tmp_path):
-    """One path where there is such a file; a missing one is named."""
+    """A name with a space is one path if that file exists; a missing file is named."""
     path = tmp_path / 'my own, really.yaml'
     path.write_text('')
     assert arguments.parameter_files(str(path)) == [str(path)]
@@ -83,7 +83,7 @@ def test_a_file_with_a_space_in_its_name(tmp_path):
 
 
 def test_presets(tmp_path, monkeypatch):
-    """By name or path; what is another kind of file, or misspelt, is refused with the nearest."""
+    """Presets are given by name or path; other files and misspelt names are refused."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'own.yaml').write_text('')
     assert arguments.preset_file('motion', 'racetrack', arguments.MOTIONS) == str(

@@ -24,7 +24,7 @@ print(json.dumps({name: getattr(one.value, 'tolist', lambda: one.value)()
 
 
 def test_wildcards_and_launch_arguments(tmp_path, monkeypatch):
-    """Defaults below files, a user's /** over the presets, launch arguments over all."""
+    """Precedence, rising: defaults, presets, the user's files including /**, launch arguments."""
     monkeypatch.setattr(plan, 'find_spec', lambda name: name)
     own, last = tmp_path / 'own.yaml', tmp_path / 'last.yaml'
     own.write_text(

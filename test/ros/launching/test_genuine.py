@@ -31,7 +31,7 @@ sys.exit(service.run())
 
 
 def launched(*words, after_s=0.0):
-    """Include the launch file in another one; return its exit code and what it said."""
+    """Include the launch file in another one; return its exit code and its output."""
     ended = subprocess.run(
         [sys.executable, '-c', CODE, str(resources.launch('simulation')), str(after_s), *words],
         capture_output=True, text=True, check=False, timeout=120.0,
@@ -55,7 +55,7 @@ def installed():
     ('prefix:=uav1/', "frames.prefix is 'uav1/'; expected no slash at its ends"),
     ('rate_hz:=fast', "rate_hz is 'fast'; expected a number")])
 def test_refusals(word, sentence):
-    """One sentence of ours, exit code 1, no process started."""
+    """A bad argument gives one sentence and exit code 1, and starts no process."""
     code, said = launched(word)
     assert code == 1 and sentence in said
     assert 'process started' not in said and 'Traceback' not in said
@@ -75,7 +75,7 @@ def test_an_included_run_ends_alone(installed, ros_domain, tmp_path):
 
 @pytest.mark.live
 def test_bad_parameters_end_all(installed, ros_domain, tmp_path):
-    """Whatever shutdown says; the exit code is not 0."""
+    """Bad parameters of a node end the launch with an exit code other than 0."""
     bad = tmp_path / 'bad.yaml'
     bad.write_text('/**: {ros__parameters: {sampling.jitter_us: -5.0}}')
     code, said = launched('shutdown:=false', f'params_file:={bad}', after_s=100.0)

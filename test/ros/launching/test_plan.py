@@ -74,7 +74,7 @@ def test_the_launch_line(namespace):
 
 
 def test_no_arguments():
-    """The defaults of the nodes, but for the transforms; nothing else is given."""
+    """Without arguments only transforms differ from the defaults of the nodes."""
     made = simulation()
     assert named(made) == [process.name for process in graph.PROCESSES]
     assert not made.files and not made.overrides_text
@@ -83,7 +83,7 @@ def test_no_arguments():
 
 
 def test_a_users_wildcard_counts(tmp_path):
-    """No file of the launch stands over /**, whole numbers or not; launch arguments do."""
+    """A /** of the user has precedence over presets, but not over launch arguments."""
     own = tmp_path / 'own.yaml'
     own.write_text('/**:\n  ros__parameters:\n    rate_hz: 50\n    tf: {source: none}\n'
                    '    gyro: {errors: {angle_random_walk_deg_sqrt_h: [0.5, 0.5, 0.5]}}\n')
@@ -100,7 +100,7 @@ def test_a_users_wildcard_counts(tmp_path):
 
 @pytest.mark.parametrize('section', ['/**', '/**/imu_sensor', 'imu_sensor', '/*'])
 def test_launch_arguments_win_over_every_section(section, tmp_path):
-    """Over that of a node as well."""
+    """Launch arguments have precedence even over the section of a node in a file."""
     own = tmp_path / 'own.yaml'
     own.write_text(f'{section}: {{ros__parameters: {{rate_hz: 50.0}}}}')
     made = simulation(params_file=str(own), rate_hz='200.0')
@@ -108,7 +108,7 @@ def test_launch_arguments_win_over_every_section(section, tmp_path):
 
 
 def test_files_in_their_order(tmp_path):
-    """The later one wins; both win over the presets."""
+    """A later file has precedence over an earlier one, and both over presets."""
     for name, rate in (('a', 50.0), ('b', 60.0)):
         (tmp_path / f'{name}.yaml').write_text(
             f'/**: {{ros__parameters: {{rate_hz: {rate}, motion.kind: static, seed: 3}}}}')
@@ -133,7 +133,7 @@ def test_one_process():
 @pytest.mark.parametrize('lock_step, waits, said', [
     ('', True, False), ('true', True, False), ('false', False, True)])
 def test_a_recorder_is_waited_for(lock_step, waits, said):
-    """Unless that is not wanted: then what may be lost is said."""
+    """Lock-step waits for the recorder; if that is disabled, a note says what may be lost."""
     made = simulation(record='bag', lock_step=lock_step)
     assert parameters(made, 'motion_generator')['pacing.lock_step'] is waits
     assert (made.said == (plan.LOSSES,)) is said
@@ -141,7 +141,7 @@ def test_a_recorder_is_waited_for(lock_step, waits, said):
 
 
 def test_only_what_is_published_is_recorded(transforms):
-    """Lock-step waits for every topic: none of a steered motion without one."""
+    """Topics that are not published are not recorded, since lock-step would wait for them."""
     def recorded(**given):
         return parameters(simulation(record='bag', **given), 'recorder')['record.topics']
 
@@ -154,7 +154,7 @@ def test_only_what_is_published_is_recorded(transforms):
 
 
 def test_without_tf2_msgs(transforms):
-    """One sentence in place of one of each node; asked for, the nodes say it."""
+    """Without tf2_msgs one sentence replaces those of the nodes, unless TF was requested."""
     transforms.clear()
     made = simulation()
     assert made.said == (plan.NO_TRANSFORMS,) and not made.defaults
@@ -170,14 +170,14 @@ def test_without_tf2_msgs(transforms):
     ({'tf': 'aided'}, 'tf is aided; expected aided:=true with it'),
     ({'motion': 'moton_1'}, "motion is 'moton_1'; expected a path or one of aggressive, ")])
 def test_what_a_node_would_refuse_is_refused_before(given, says):
-    """Nothing is started then."""
+    """Parameters that a node would refuse are refused before anything is started."""
     with pytest.raises(ValueError) as refused:
         simulation(**given)
     assert str(refused.value).startswith(says)
 
 
 def test_a_file_that_is_none(tmp_path):
-    """It is refused in the words of the offline commands."""
+    """An invalid parameter file is refused in the words of the offline commands."""
     path = tmp_path / 'a.yaml'
     path.write_text('/**: {ros__parameters: {')
     with pytest.raises(ValueError, match='a.yaml is not YAML: line 2'):
@@ -206,7 +206,7 @@ def test_replay():
     ({}, ['--lock-step', 'strapdown']), ({'lock_step': 'false', 'rate': '2'}, ['--rate', '2.0']),
     ({'loop': 'true', 'use_sim_time': 'true'}, ['--lock-step', 'strapdown', '--loop', '--clock'])])
 def test_options_of_the_player(given, words):
-    """As the verb play takes them."""
+    """The options of the player are those of ins_sim play."""
     texts = {one.name: one.default for one in arguments.REPLAY}
     value = plan.replay({**texts, 'bag': 'old', **given})[2]
     assert plan.play_options(value) == words

@@ -109,7 +109,7 @@ def test_what_is_wrong_is_one_sentence(parameters, code, sentence, chain):
 
 
 def test_a_signal_at_any_time(chain):
-    """While it imports, while it starts, while it runs."""
+    """Signals during import, start and run end the process with code 0."""
     started = [chain.start('simulation', {'aided': True, 'rate_hz': 200.0}) for _ in range(3)]
     for process in started:
         wait_handlers(process)

@@ -1,4 +1,4 @@
-"""Simulations for the tests of other filters."""
+"""`running_simulation` lets tests of other filters step a simulation."""
 
 import os
 import subprocess
@@ -57,7 +57,7 @@ def test_readings_and_truth_are_those_of_the_offline_run(start_simulation):  # n
 
 
 def test_two_at_once_do_not_hear_each_other():
-    """Each has a domain; what is called by a service changes one of them."""
+    """Two simulations have separate domains; a service call changes only one of them."""
     from std_srvs.srv import SetBool
     values = {'rate_hz': 100.0, 'motion.kind': 'racetrack'}
     options = {'topics': ['gnss/fix'], 'aided': True}
@@ -74,7 +74,7 @@ def test_two_at_once_do_not_hear_each_other():
 
 @pytest.mark.live
 def test_a_filter_that_is_a_process():
-    """It joins when it likes; every step waits for its answer."""
+    """A filter process may join at any time; every step then waits for its answer."""
     from geometry_msgs.msg import Vector3Stamped
     with RunningSimulation((), VALUES, answers={'filter/rate': Vector3Stamped}) as sim:
         with subprocess.Popen([sys.executable, '-c', FILTER], env=sim.environment,

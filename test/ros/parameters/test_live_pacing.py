@@ -15,7 +15,7 @@ TICK_S = 1e-3
 
 
 class Generator(FedNodes):
-    """A generator whose clock is told; ``sent(ticks)`` lets time pass in ms."""
+    """A generator with a simulated clock; ``sent(ticks)`` lets ticks of 1 ms pass."""
 
     def __init__(self, **parameters):
         super().__init__({'motion_generator': {**RUN, **parameters}})
@@ -68,7 +68,7 @@ def test_time_goes_on_without_a_burst(factor, ticks, ros_domain):
 
 
 def test_a_generator_that_was_late_does_not_catch_up_at_once(ros_domain):
-    """What was due before the change is due at the new pace."""
+    """Samples that were overdue before the change become due at the new pace."""
     with Generator() as generator:
         generator.sent(100)
         generator.clock.pass_by(5.0)
@@ -98,7 +98,7 @@ def test_a_factor_of_zero_needs_lock_step(ros_domain):
 
 @pytest.mark.parametrize('value', ['fast', -1.0, float('nan'), float('inf'), [1.0], True, 1e7])
 def test_nonsense_is_refused(value, ros_domain):
-    """One sentence with the name; the pace stays."""
+    """A bad factor is refused with the name of the parameter, and the pace stays."""
     with Generator() as generator:
         assert sum(generator.sent(100)) == 10
         reason = generator.set(value)
@@ -107,7 +107,7 @@ def test_nonsense_is_refused(value, ros_domain):
 
 
 def test_before_the_run_and_after_a_pause(ros_domain):
-    """It counts from the first sample on, and in a pause nothing is sent."""
+    """A change before the run counts from the first sample; in a pause nothing is sent."""
     with Generator() as generator:
         assert generator.set(4) == ''
         assert 'from the first sample on' in generator.logs['motion_generator'].kept[-1]
@@ -119,7 +119,7 @@ def test_before_the_run_and_after_a_pause(ros_domain):
 
 
 def test_the_pace_of_a_clock(monkeypatch):
-    """What is left of a period is stretched: 0.3 of one at 1 is 0.3 of one at 10."""
+    """The rest of a period is scaled: 0.3 of a period at factor 1 is 0.3 of one at factor 10."""
     now = [0.0]
     monkeypatch.setattr(pacing, 'time', type('Clock', (), {'monotonic': lambda: now[0]}))
     pace = pacing.Pace(1.0, DT_S)

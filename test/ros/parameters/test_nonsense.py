@@ -1,4 +1,4 @@
-"""Nonsense asked of running nodes: one sentence each, and nothing ends or changes."""
+"""Bad parameter requests to running nodes are refused in one sentence and change nothing."""
 
 import math
 
@@ -65,7 +65,7 @@ def test_nonsense_is_one_sentence(node, name, value, sentence, running):
 
 
 def test_of_several_at_once_one_bad_one_refuses_all(running):
-    """And of several in turn the good ones are taken."""
+    """One bad parameter refuses an atomic request; other requests apply the good ones."""
     node = running.nodes['imu_sensor']
     assert ask_at_once(node, {BIAS: 5.0, FORCE_BIAS: 'x'}).startswith(f"{FORCE_BIAS} is 'x'")
     assert value_of(node, BIAS) == [0.0] * 3

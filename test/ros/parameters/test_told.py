@@ -1,4 +1,4 @@
-"""The line that a node says at its start: what it simulates, or that it is ideal."""
+"""The line that a node logs at its start says what it simulates."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.ros.process.told import told
@@ -53,7 +53,7 @@ def test_an_instrument_with_delays():
     (['gnss_model.use:=true', 'meter_model.use:=false'], 'aided_navigator', 'aided by GNSS'),
     (['outages.start_s:=[1.0]', 'outages.end_s:=[2.0]'], 'gnss', 'up), outages: 1')])
 def test_what_is_not_the_default(assignments, node, part):
-    """Each of them is told."""
+    """Every setting that differs from its default is named or counted."""
     assert part in lines((), *assignments)[node]
 
 

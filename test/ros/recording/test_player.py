@@ -1,4 +1,4 @@
-"""Playing a bag: byte for byte, by its own time or in lock-step with the nodes."""
+"""A bag is played byte for byte, by its log times or in lock-step with the nodes."""
 
 import re
 import signal
@@ -126,7 +126,7 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_signals(number, chain, tmp_path):
-    """Exit code 0 in the middle of a loop without end."""
+    """A signal during an endless loop ends the player with exit code 0."""
     path = mixed_bag(tmp_path / 'bag', 20)
     player = chain.start_verb('play', path, '--loop', '--wait', '0', '--topics', 'imu')
     chain.wait_text(player, 'begins again')
@@ -174,7 +174,7 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
 
 
 def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
-    """In lock-step each time round is a run: the strapdown reports the jump and starts anew."""
+    """In lock-step each loop is a new run: the strapdown reports the jump and restarts."""
     path = original(chain, tmp_path)
     listener = Listener(ros_domain, (topics.INS_ODOMETRY,))
     strapdown = chain.start('strapdown', PARAMETERS)
@@ -212,7 +212,7 @@ def test_on_fault_stop_ends_the_loop(chain, tmp_path):
 
 
 def test_what_is_refused(chain, tmp_path):
-    """Code 2 and a sentence."""
+    """Bad options are refused with one sentence and exit code 2."""
     path = mixed_bag(tmp_path / 'bag', 5)
     for words, sentence in (
             ((tmp_path / 'none',), 'none does not exist; expected a bag'),
@@ -225,7 +225,7 @@ def test_what_is_refused(chain, tmp_path):
 
 
 def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
-    """The first messages logged at 0, the others since 1970: not waited for in silence."""
+    """A gap of 1.7e9 s in the log times is reported with the option that skips it."""
     path, pack = tmp_path / 'bag', topics.IMU_RAW.writer().pack
     with BagWriter(path) as bag:
         bag.add_topic('imu', topics.IMU)

@@ -17,7 +17,7 @@ KINDS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none')]
     ('mcap', ('--max-duration', '1.0')), ('sqlite3', ('--max-duration', '1.0')),
     ('mcap', ('--max-size', '0.05')), ('sqlite3', ('--max-size', '0.05'))])
 def test_splits(storage, options, talker, chain, tmp_path):
-    """By time or by size, whole together and each alone."""
+    """Bags are split by time and by size; the parts are complete together and each alone."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 *options)
@@ -40,7 +40,7 @@ def test_splits(storage, options, talker, chain, tmp_path):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, tmp_path):
-    """While messages come: exit code 0, all that was said to be in it is."""
+    """A signal amid messages gives code 0 and a bag with all messages that were reported."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 '--compression', compression)

@@ -1,4 +1,4 @@
-"""What the recorder refuses, and what a full disk leaves."""
+"""What the recorder refuses, and the bag that a full disk leaves."""
 
 from pathlib import Path
 import subprocess
@@ -64,7 +64,7 @@ def refused(chain, *words):
 
 
 def test_what_is_refused(ros_domain, tmp_path):
-    """Code 2 and a sentence; what was there is as it was."""
+    """Bad options give exit code 2 and one sentence; existing files stay unchanged."""
     chain = Chain(ros_domain, tmp_path)
     old = tmp_path / 'old'
     old.mkdir()
@@ -88,7 +88,7 @@ def test_what_is_refused(ros_domain, tmp_path):
 
 
 def test_force_replaces_a_bag(ros_domain, tmp_path):
-    """The old bag stays until the new one is whole."""
+    """With --force the old bag stays until the new one is complete."""
     chain, talker = Chain(ros_domain, tmp_path), Talker(ros_domain)
     path = tmp_path / 'bag'
     try:

@@ -29,7 +29,7 @@ def imu(stamp_ns):
     # of a topic that is late by one: what was counted as lost and still comes stays counted
     ([1, 3, 2, 4], 1, 1, 0)])
 def test_gaps(numbers, publishers, lost, before):
-    """Without loss nothing is counted, whatever the interleaving."""
+    """Without loss nothing is counted as lost, however publishers are interleaved."""
     gaps = Gaps()
     gaps.publishers = publishers
     for number in numbers:
@@ -38,7 +38,7 @@ def test_gaps(numbers, publishers, lost, before):
 
 
 def test_without_numbers_losses_are_unknown():
-    """Some middleware numbers nothing."""
+    """Losses are unknown if the middleware does not number messages."""
     gaps = Gaps()
     gaps.take(None)
     assert not gaps.known and gaps.lost == 0
@@ -59,7 +59,7 @@ def test_the_time_of_a_run():
 @pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x00\x00', b'\x00\x00' + imu(5)[2:],
                                   imu(-SECOND)])
 def test_stamps_that_no_bag_can_hold(data):
-    """Too short, of the other byte order, before 1970: they do not touch the clock."""
+    """Truncated, big-endian and negative stamps do not change the clock."""
     clock = RunClock()
     assert clock.hear(data, 1) is None and clock.now(2) is None
 
@@ -111,7 +111,7 @@ def test_the_first_sample_of_lock_step(bag):
     ({'topics': ('sim/ack',), 'required': ('strapdown',)}, 'has no message on a topic'),
     ({'required': ('strapdown',), 'window': 0}, '--window is 0; expected 1 to 2000')])
 def test_options_that_are_refused(options, sentence, bag):
-    """One sentence that names option, value and expectation."""
+    """A bad option is refused with option, value and expectation."""
     with pytest.raises(ValueError) as error:
         Playing(bag, Options(**options))
     assert sentence in str(error.value) and '\n' not in str(error.value)
@@ -157,7 +157,7 @@ def stamps_with_losses(count, lost):
     # stamps that jitter by a tenth of the period, one of ten lost
     ([k * 10**7 + (k * 7919 % 1000 - 500) * 1000 for k in range(2000) if k % 10], 199, None)])
 def test_holes(stamps, missing, step_ns):
-    """Counted against the usual step of the stream itself."""
+    """Missing samples are counted, given the usual step of the stream."""
     holes = Holes()
     for stamp_ns in stamps:
         holes.take(stamp_ns)
@@ -166,7 +166,7 @@ def test_holes(stamps, missing, step_ns):
 
 
 def test_holes_of_what_is_not_steady():
-    """Events, a few messages, and stamps of two clocks in turns have no rate."""
+    """Events, a few messages and alternating stamps of two clocks have no usual step."""
     events, turns, few = Holes(), Holes(), Holes()
     t_ns = 0
     for k in range(1000):

@@ -1,4 +1,4 @@
-"""The announced run: node objects without DDS that learn the epoch before, amid or never."""
+"""Nodes without DDS learn the announced run before, during or never in a flight."""
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -31,7 +31,7 @@ class Announced(HostileFlight):
             node.count_publishers = lambda name: count if name == '/sim/run' else others
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return what a node has logged."""
         return '\n'.join(self.fed.logs[node].kept)
 
     def newest(self, topic):
@@ -87,7 +87,7 @@ def test_motion_time_is_that_of_the_epoch(ros_domain):
 
 
 def test_where_nobody_announces_motion_time_is_the_stamp(flight):
-    """As with a recorded or a real IMU; said once by each node."""
+    """Without an announcement, motion time is the stamp; each node logs this once."""
     flight.know(0)
     flight.good(30)
     assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
@@ -117,7 +117,7 @@ def test_readings_may_come_before_the_generator_is_found(flight):
 
 
 def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
-    """30 s, then one sentence, and the first samples are not lost."""
+    """After 30 s without announcement one sentence is logged; no sample is lost."""
     flight.know(1)
     flight.good(2)
     flight.fed.clock.pass_by(30.0)
@@ -139,7 +139,7 @@ def test_more_than_the_queue_holds_is_counted(ros_domain):
 
 
 def test_another_generator_starts_all_anew(flight):
-    """Its epoch is taken, in one sentence; the same run again is none."""
+    """Another epoch is reported and restarts the nodes; a repeated announcement does not."""
     flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
     flight.good(50)
     flight.announce(RunAnnouncement(0, 0, 100.0, 90 * SECOND))
@@ -159,7 +159,7 @@ def test_another_generator_starts_all_anew(flight):
     (RunAnnouncement(-100 * SECOND, 100 * SECOND, 100.0, 100 * SECOND), 'a message has the stamp '
      '10.010000000 s, 0.010000000 s after the end of the run')], ids=('before', 'after'))
 def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
-    """One sentence of each node that lives by the epoch; the strapdown navigates all the same."""
+    """Stamps outside the announced run are reported and dropped; the strapdown uses them."""
     flight.announce(run)
     if run is not RUN:
         flight.good(1001)

@@ -1,4 +1,4 @@
-"""Every covariance that is published, live and in a bag, is one: none zero, all positive."""
+"""Every published covariance, live and in a bag, is valid: not zero, symmetric, positive."""
 
 from collections import defaultdict
 
@@ -31,7 +31,7 @@ class Covariances:
         self._found = defaultdict(list)
 
     def add(self, name, data):
-        """Take a message, if it has covariances."""
+        """Add a message, if it has covariances."""
         if name not in TYPES:
             return
         reader = self._readers[name]

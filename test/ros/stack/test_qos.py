@@ -1,4 +1,4 @@
-"""Quality of service: overrides by parameters are seen, and best-effort publishers are heard."""
+"""Parameters override the quality of service; best-effort publishers are received."""
 
 import time
 
@@ -95,7 +95,7 @@ def test_a_best_effort_publisher_is_heard(make_node, talker):
 
 
 class Told:
-    """A logger that keeps what it is told."""
+    """A logger that stores its messages."""
 
     def __init__(self, said):
         self.info = self.warning = said.append
@@ -152,7 +152,7 @@ def import_odometry():
     ('imu/data_raw.subscription.reliability', 'best-effort', "is 'best-effort'; expected one of "
      'reliable, best_effort')])
 def test_an_override_that_cannot_be(key, value, sentence, make_node):
-    """One sentence with place, key, value and expectation, before anything is published."""
+    """A bad override is refused with place, key, value and expectation before anything runs."""
     with pytest.raises(ValueError, match=f'^qos_overrides./{key}:? {sentence}$'):
         make_node('strapdown', **{f'qos_overrides./{key}': value})
 

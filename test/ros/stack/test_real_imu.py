@@ -1,4 +1,4 @@
-"""The node strapdown on a real IMU: no truth, what it publishes, what it says, its services."""
+"""The node strapdown on a real IMU without truth: topics, messages and services."""
 
 from dataclasses import replace
 import math
@@ -42,7 +42,7 @@ def test_the_messages_are_those_of_the_stage():
 
 
 def test_a_stage_fed_by_the_node_has_the_bits_of_navigate():
-    """Whatever the node does with the messages, its stage keeps the bits."""
+    """The stage within the node gives the same bits as ins_sim navigate."""
     imu, fixes = vehicle(length_s=40.0)
     other = play(stage_of(), imu, as_sent(fixes))
     with RealImuGraph() as graph:
@@ -112,7 +112,7 @@ def same_bits_within(graph, said):
     ('auto', 'is taken for base_link: set mounting.rpy_deg'),
     ('tf', 'expected a transform from base_link to')])
 def test_a_frame_without_a_transform(source, sentence):
-    """Two seconds of readings wait; then it is said once, and tf goes on waiting."""
+    """After 2 s without a transform one warning is logged, and the samples keep waiting."""
     imu, fixes = vehicle(length_s=12.0)
     with RealImuGraph(**{'mounting.source': source}) as graph:
         graph.send(messages_of(imu, fixes, 'imu_frame'))
@@ -121,7 +121,7 @@ def test_a_frame_without_a_transform(source, sentence):
 
 
 def test_a_frame_that_tf_does_not_know():
-    """The nearest one is named, and nothing is aligned."""
+    """An unknown frame is reported with the nearest name, and no alignment takes place."""
     imu, _ = vehicle(length_s=12.0)
     with RealImuGraph() as graph:
         graph.transforms('base_link', 'imu_link', quaternion.IDENTITY)
@@ -162,7 +162,7 @@ def test_services_answer_in_a_sentence():
 
 
 def test_damaged_messages_on_every_input():
-    """Cut, turned over or filled with noise: faults in words, nothing dies, nothing is NaN."""
+    """Truncated, reversed and random messages are reported; no crash, no NaN."""
     imu, fixes = vehicle(length_s=30.0, rate_hz=25.0)
     rng, messages = np.random.default_rng(5), []
     good = messages_of(imu, fixes)
@@ -235,7 +235,7 @@ def replace_height(fix, t_ns, rise):
 
 
 def test_truth_as_the_vertical_channel_is_replaced_and_said():
-    """There is none: damped, in one sentence."""
+    """vertical.channel truth is replaced by damping, which is logged once."""
     imu, fixes = vehicle(length_s=30.0)
     with RealImuGraph(**{'vertical.channel': 'truth'}) as graph:
         graph.send(messages_of(imu, fixes))
@@ -244,7 +244,7 @@ def test_truth_as_the_vertical_channel_is_replaced_and_said():
 
 
 def test_an_accelerometer_in_g_is_named_and_its_unit_can_be_set():
-    """Nothing is aligned; units.force g reads it."""
+    """Data in g are reported and not aligned; units.force g converts them."""
     imu, fixes = vehicle(length_s=40.0)
     in_g = messages_of(replace(imu, f=imu.f / 9.80665), fixes)
     with RealImuGraph() as graph:

@@ -37,7 +37,7 @@ class Placed(HostileFlight):
                 if name == '/tf' and frames == [f'uav1/{parent}', f'uav1/{child}']}
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return what a node has logged."""
         return '\n'.join(self.fed.logs[node].kept)
 
     def look(self):
@@ -132,7 +132,7 @@ def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
     ('ins', 'strapdown', 'uav1/odom', 'uav1/base_link'),
     ('aided', 'aided_navigator', 'uav1/map', 'uav1/odom')])
 def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domain):
-    """Another tf.source, another localization, or a second vehicle of the same prefix."""
+    """A second source of a frame is reported: other tf.source, localization or vehicle."""
     with Placed(source) as flight:
         flight.good(10)
         flight.fed.bus.put('/tf', TransformWriter((parent, child)).pack(0, POSE))
