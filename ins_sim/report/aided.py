@@ -1,4 +1,4 @@
-"""An aided run in numbers: what the solution was off, whether its filter knew, which fixes."""
+"""Numbers of an aided run: errors, consistency of the filter, and use of the fixes."""
 
 from collections import Counter, namedtuple
 from dataclasses import dataclass
@@ -18,19 +18,24 @@ from .consistency import mean_interval, THREE_SIGMA
 _Column = namedtuple('_Column', 'head value meaning')
 AIDED = 'aided '
 ARCMIN = DEG / 60.0
-# reasons that are named
+# Number of reasons for rejected fixes that are listed.
 REASONS = 3
 
 
 @dataclass(frozen=True)
 class AidedRow:
     """
-    One figure of the aided solution; what does not apply is None.
+    One result of the aided solution; fields that do not apply are None.
 
-    measured: what it is (NIS: the mean over all fixes that were weighed, refused ones too); free:
-    the same figure of the strapdown alone; sigma: standard deviation by the filter; true: what it
-    would be were all perfect; low, high: the interval in which 95 % of consistent filters have it;
-    source: the instrument whose fixes it counts; note: in words.
+    Attributes
+    ----------
+    measured : value (NIS: mean over all fixes that the filter tested, rejected ones included)
+    free : the same for the strapdown solution alone
+    sigma : standard deviation according to the filter
+    true : true value of an estimated quantity
+    low, high : interval that contains the value for 95 % of consistent filters
+    source : sensor whose fixes are counted
+    note : remark in words
     """
 
     name: str
@@ -47,7 +52,7 @@ class AidedRow:
 
 @dataclass(frozen=True)
 class AidedReport:
-    """What ``storage.write_run`` keeps of an aided run; rows: of ``rows``."""
+    """Results of an aided run that ``storage.write_run`` stores; ``rows`` are AidedRows."""
 
     settings: AidedSimulationSettings
     flown: AidedResult
@@ -55,7 +60,7 @@ class AidedReport:
 
     @property
     def title(self):
-        """Return a line that names filter and instruments."""
+        """Return a line that names the filter and the aiding sensors."""
         told = [_described(self.settings, source) for source in aiding_sources(self.settings)]
         if not told:
             return 'not aided by any fix'
@@ -66,14 +71,14 @@ class AidedReport:
         return parameter_files.dump_aided(self.settings)
 
     def show(self, console):
-        """Print the rows, and what went wrong."""
+        """Print the rows and the faults."""
         show_aided(self.title, self.rows, console)
         for line in fault_lines(self.flown):
             console.print(line)
 
 
 def aiding_sources(settings):
-    """Return the instruments that aid, of AidedSimulationSettings."""
+    """Return the aiding sensors of AidedSimulationSettings."""
     return AidedNavigator(settings.aided_navigator).sources
 
 
@@ -128,7 +133,7 @@ def _known(value):
 
 
 def _inside_rows(errors):
-    """Return how much of the time each component is within three sigma of the filter."""
+    """Return the rows with the share of time that each error is within three sigma."""
     table = []
     for kind in ('position', 'velocity', 'attitude'):
         error, sigma = getattr(errors, kind), getattr(errors, f'{kind}_sigma')
@@ -146,7 +151,7 @@ def _fix_rows(source, flown):
     weighed = [r for r in results if r.nis is not None]
     table = []
     if weighed:
-        # the mean of chi-squares that all have the freedom of the instrument
+        # All fixes of a sensor have the same degrees of freedom.
         freedom = weighed[0].freedom
         low, high = mean_interval(len(weighed), freedom)
         mean = float(np.mean([r.nis for r in weighed]))
@@ -161,7 +166,7 @@ def _fix_rows(source, flown):
 
 
 def _reasons(results):
-    """Return why fixes were not taken, the most frequent first."""
+    """Return the reasons for which fixes were rejected, the most frequent first."""
     counts = Counter(r.reason for r in results if not r.taken).most_common()
     texts = [f'{reason} ({count})' for reason, count in counts[:REASONS]]
     rest = sum(count for _, count in counts[REASONS:])
@@ -169,7 +174,7 @@ def _reasons(results):
 
 
 def _estimate_rows(settings, errors):
-    """Return what is estimated of the velocity meter, beside what is true of it."""
+    """Return the rows of the estimated errors of the velocity meter, with the true values."""
     model, meter = settings.aided_navigator.meter_model, settings.velocity_meter
     if np.isnan(errors.estimates_sigma).any():
         return []
@@ -190,11 +195,11 @@ def _estimate_rows(settings, errors):
 
 
 def _by_hand_rows(meter, flown, states):
-    """Return azimuth and mounting by the two manoeuvres, of the free strapdown, if there are."""
+    """Return azimuth and mounting error found from the two calibration manoeuvres, if flown."""
     try:
         found = calibrate_mounting(states, flown.gnss_fixes, flown.velocity_fixes)
     except ValueError:
-        # too few fixes of either instrument, or no turn while GNSS works
+        # There are too few fixes of a sensor, or no turn while GNSS works.
         return []
     mu, sigma = found.least_squares
     true = meter.antennas.mounting_yaw_arcmin
@@ -240,7 +245,7 @@ def filled_columns(rows):
 
 
 def column_meanings(columns):
-    """Return what the heads of columns mean where that is not plain."""
+    """Return explanations of the column heads that need one."""
     return '; '.join(c.meaning for c in columns if c.meaning)
 
 
@@ -261,7 +266,7 @@ COLUMNS = (
 
 
 def fault_lines(flown):
-    """Return the lines about what made the aided solution start anew, or dropped a fix."""
+    """Return the lines about faults that restarted the aided solution or dropped a fix."""
     if not flown.faults:
         return []
     return [f'{len(flown.faults)} faults of the aided navigator; the first: {flown.faults[0]}']

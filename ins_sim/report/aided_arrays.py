@@ -1,4 +1,4 @@
-"""An aided run as arrays."""
+"""Convert an aided run to named arrays."""
 
 import numpy as np
 
@@ -19,9 +19,10 @@ def aided_arrays(flown):
     """
     Return the arrays of an AidedResult by name.
 
-    aided_<record>_<field>: as in ``core.timeseries.histories``; velocity_meter_<field> and
-    gnss_<field>: as in ``core.timeseries.fixes``, one row per fix; judged_<field>: what the
-    filter did with each fix: source, t_ns, nis (NaN: not weighed), freedom, taken, reason.
+    * aided_<record>_<field>: see ``core.timeseries.histories``
+    * velocity_meter_<field>, gnss_<field>: see ``core.timeseries.fixes``, one row per fix
+    * judged_<field>: how the filter used each fix: source, t_ns, nis (NaN: not tested), freedom,
+      taken, reason
     """
     found = {f'{name}_{field}': values for name, record in aided_records(flown).items()
              for field, values in record.arrays().items()}

@@ -21,8 +21,8 @@ PER_DECADE = 8
 # The longest tau leaves this many intervals in the record.
 FEWEST = 4
 LEAST = 10 * FEWEST
-# A coefficient is seen where its part of the Allan variance at some tau is at least SEEN, and so
-# many standard deviations of that variance.
+# A coefficient is observable if, at some tau, its part of the Allan variance is at least SEEN, and
+# at least SIGMAS standard deviations of the estimated variance.
 SEEN, SIGMAS = 0.05, 2.0
 
 
@@ -67,7 +67,7 @@ class Coefficients:
 
     def seen(self, allan):
         """
-        Return which coefficients, in the order above, the Allan they were fitted to shows.
+        Return which coefficients (in the order above) are observable in the fitted data.
 
         The mean variance of several channels has the relative standard deviation of one over the
         root of their number.
@@ -87,7 +87,7 @@ def estimate_deviation(samples, rate_hz):
     """
     Return the Allan deviation of samples (n,) or (n, channels), taken at rate_hz.
 
-    Raises ValueError where the record is too short or not finite.
+    Raises ValueError if the record is too short or not finite.
     """
     samples = np.asarray(samples, dtype=float)
     samples = samples.reshape(len(samples), -1)
@@ -118,7 +118,7 @@ def fit_coefficients(allan, known=0.0):
     weight = np.sqrt(allan.length_s / tau)
     start, _ = nnls(terms * (weight / variance)[:, None],
                     np.maximum(1.0 - known / variance, 0.0) * weight)
-    # a coefficient at zero has no logarithm to start from: begin with a hundredth of the curve
+    # The fit uses logarithms of the coefficients, so start from at least a hundredth of the curve.
     unit = np.maximum(start, 0.01 * np.min(variance[:, None] / terms, axis=0))
 
     def residuals(x):
@@ -134,7 +134,7 @@ def gauss_markov_variance(tau_s, sigma, time_s):
     if sigma == 0.0 or math.isinf(time_s):
         return np.zeros_like(tau_s)
     r = tau_s / time_s
-    # 3 - 4 exp(-r) + exp(-2 r) loses its digits where r is small: 2 r - 2 r^3/3 + r^4/2 there
+    # For small r the bracket 3 - 4 exp(-r) + exp(-2 r) loses digits, so use its expansion.
     bracket = np.where(r < 1e-3, r * r * (1.0 / 3.0 - r / 4.0),
                        1.0 - (4.0 * -np.expm1(-r) + np.expm1(-2.0 * r)) / (2.0 * r))
     return 2.0 * sigma ** 2 / r * bracket

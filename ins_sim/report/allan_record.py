@@ -1,10 +1,10 @@
 """
-The regular part of a recorded IMU, which an Allan deviation needs, and what was done to get it.
+Find the longest evenly sampled part of a recorded IMU, as needed for an Allan deviation.
 
-Readings count as taken at one rate where their stamps keep up with it in the long run. A stamp
-may come late, early or in a burst: it is evened out, as long as the readings before and behind it
-are where an even rate has them to half an interval. Where they are not, readings are lost, or the
-clock has jumped, and the record is cut there.
+Samples count as evenly sampled if their stamps follow one rate in the long run. A single stamp may
+be late, early or part of a burst; it is corrected if the samples before and after it are within
+half an interval of the even rate. Otherwise samples were lost or the clock has jumped, and the
+record is cut there.
 """
 
 from dataclasses import dataclass
@@ -14,22 +14,22 @@ import numpy as np
 from ins_sim.core.timeseries.histories import ImuSamples
 from .allan import LEAST
 
-# An interval is odd where it differs from the usual one by more than this part of it, and readings
-# are lost where those behind are late by more than it.
+# An interval is irregular if it differs from the usual one by more than this part of it. Samples
+# were lost if the samples after it are late by more than that.
 JITTER = 0.5
-# So many readings before and behind an odd interval tell whether some are lost; more in bursts,
-# which are the more odd intervals than this part.
+# Number of samples before and after an irregular interval that decide whether samples were lost;
+# NEAR_IN_BURSTS if more than the part BURSTS of all intervals is irregular.
 NEAR, NEAR_IN_BURSTS, BURSTS = 10, 400, 0.1
-# Odd intervals that follow each other as evenly are those of a coarse clock.
+# Irregular intervals that recur with this evenness are caused by a coarse clock.
 EVENLY = 0.25
-# The mean interval of each of so many parts of a record is that of the others within STEADY.
+# The rate is constant if the mean intervals of PARTS parts of the record agree within STEADY.
 PARTS, STEADY = 100, 0.02
 WAY_OUT = '"-p rate_hz:=HZ" takes all readings in their order as taken at that rate'
 
 
 @dataclass(frozen=True)
 class RegularRecord:
-    """Readings at one rate: imu, rate_hz, and notes, the sentences on what was done."""
+    """Evenly sampled part: ``imu``, ``rate_hz``, and ``notes``, sentences on what was changed."""
 
     imu: ImuSamples
     rate_hz: float
@@ -38,10 +38,20 @@ class RegularRecord:
 
 def regular_record(imu, rate_hz=None):
     """
-    Return the longest regular part of ImuSamples as RegularRecord.
+    Return the longest evenly sampled part of ImuSamples.
 
-    rate_hz: rate to be taken for that of all readings, whatever their stamps.  Raises ValueError,
-    in one sentence with what was found on the way, where fewer than LEAST readings are left.
+    Parameters
+    ----------
+    imu : ImuSamples
+    rate_hz : rate of all samples, Hz, regardless of their stamps; None to use the stamps
+
+    Returns
+    -------
+    RegularRecord
+
+    Raises
+    ------
+    ValueError : fewer than LEAST samples are left; the message says why
     """
     notes, total, given = [], len(imu), rate_hz is not None
     finite = np.isfinite(imu.omega).all(axis=1) & np.isfinite(imu.f).all(axis=1)
@@ -86,7 +96,7 @@ def _longest(imu, cuts, good, notes):
 
 
 def _without_copies(imu, notes):
-    """Leave out readings that are there twice, with stamp and values."""
+    """Remove duplicate samples (same stamp and values)."""
     again = (np.diff(imu.t_ns) == 0) & (imu.omega[1:] == imu.omega[:-1]).all(axis=1) & (
         imu.f[1:] == imu.f[:-1]).all(axis=1)
     if again.any():
@@ -97,7 +107,7 @@ def _without_copies(imu, notes):
 
 
 def _steady(imu, notes):
-    """Return the longest part at one rate, and this rate, Hz."""
+    """Return the longest part at one rate, and that rate, Hz."""
     t_s = (imu.t_ns - imu.t_ns[0]) * 1e-9
     step = _usual_step(t_s)
     if not step > 0.0:
@@ -146,9 +156,10 @@ def _usual_step(t_s):
 
 def _losses(t_s, step):
     """
-    Return the numbers of readings before which others are lost, and how many by their stamps.
+    Return the indices of samples before which others were lost, and how many were lost.
 
-    In bursts, losses so near to an end that they cannot be told from a burst stay unseen.
+    In bursts, losses near an end of the record cannot be distinguished from a burst and are not
+    found.
     """
     steps = np.diff(t_s)
     odd = np.flatnonzero(_odd(steps, step)) + 1
@@ -159,27 +170,27 @@ def _losses(t_s, step):
         lost = np.abs(shift) > JITTER
         gaps = np.diff(odd[lost])
         if len(gaps) >= NEAR and gaps.std() < EVENLY * gaps.mean():
-            # a coarse clock beats with the rate
+            # The irregular intervals are the beat of a coarse clock with the sampling rate.
             return odd[:0], shift[:0]
         return odd[lost], steps[odd[lost] - 1] / step - 1.0
     half = min(NEAR_IN_BURSTS, len(t_s) // 4) // 2
     odd = odd[(odd >= 2 * half) & (odd + 2 * half <= len(t_s))]
     two, one, none, more = (_mean(late, odd + k * half, odd + (k + 1) * half)
                             for k in (-2, -1, 0, 1))
-    # what the rate itself makes of so long a stretch is taken out
+    # Subtract the shift that a slow change of the rate causes.
     shift = (none + more - two - one) / 2.0 - (more - none + one - two)
     seen = np.flatnonzero(np.abs(shift) > JITTER)
     cuts, most = [], []
     for group in np.split(seen, np.flatnonzero(np.diff(odd[seen]) > 2 * half) + 1):
         if len(group):
-            # somewhere between these two
+            # The loss is somewhere between these two samples.
             cuts += [odd[group[0]], odd[group[-1]]]
             most += [shift[group[np.argmax(np.abs(shift[group]))]], 0.0]
     return np.array(cuts, dtype=int), np.array(most)
 
 
 def _mean(sums, first, end):
-    """Return the means between numbers of a record, from the sums before each."""
+    """Return the means between indices of a record, given its cumulative sums."""
     first, end = (np.clip(edge, 0, len(sums) - 1) for edge in (first, end))
     return (sums[end] - sums[first]) / np.maximum(end - first, 1)
 
@@ -187,7 +198,7 @@ def _mean(sums, first, end):
 def _at_one_rate(imu, notes):
     """Return the longest part in which the rate stays within STEADY."""
     steps = np.diff(imu.t_ns) * 1e-9
-    # one late stamp must not change the mean interval of a part
+    # A part must be long enough for its mean not to be changed by one late stamp.
     least = NEAR_IN_BURSTS if _odd(steps, np.median(steps)).any() else 2 * NEAR
     edges = np.linspace(0, len(steps), min(PARTS, len(steps) // least + 1) + 1).astype(int)
     means = np.array([steps[a:b].mean() for a, b in zip(edges, edges[1:])])

@@ -1,4 +1,4 @@
-"""What the prediction covers, and whether it may stand beside what was measured."""
+"""Decide whether the prediction covers all errors of a run, so that both can be compared."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from ins_sim.settings.tuned_gyro import TunedGyroErrors, TunedGyroFault
 
 
 def instrument_errors(settings):
-    """Return the names of the errors of the IMU that are on; settings: SimulationSettings."""
+    """Return the names of the IMU errors that are enabled in SimulationSettings."""
     sensor = settings.imu_sensor
     groups = {'accelerometer.errors': (sensor.accelerometer.errors, AccelerometerErrors()),
               'sampling': (sensor.sampling, Sampling())}
@@ -22,15 +22,15 @@ def instrument_errors(settings):
 
 
 def comparable(settings, prediction):
-    """Return the prediction where it covers all that makes an error in the run, else None."""
+    """Return the prediction if it covers all error sources of the run, else None."""
     return None if instrument_errors(settings) else prediction
 
 
 def comparable_with_twin(settings, prediction):
     """
-    Return the prediction where it is that of the run less its zero-delay twin, else None.
+    Return the prediction if it equals that of the run minus its zero-delay twin, else None.
 
-    The twin has the errors of the instruments too, tuned gyros and initial errors.
+    The twin has the same instrument errors, tuned gyros and initial errors as the run.
     """
     initial = replace(settings.strapdown.initial, after_s=0.0)
     delays_alone = settings.imu_sensor.gyro.model == 'ideal' and initial == Initial()

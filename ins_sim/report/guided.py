@@ -1,4 +1,4 @@
-"""The report of the steering of a guided motion; of other motions it is empty."""
+"""Report of the steering of a guided motion; empty for other motions."""
 
 import math
 
@@ -31,7 +31,7 @@ def guided_rows(result):
 
 
 def guided_lines(result):
-    """Return what is to be said of a GuidedResult: its notes, and how often what was met."""
+    """Return sentences about a GuidedResult: its notes, and how often each condition occurred."""
     if result is None:
         return []
     lines, counts = list(result.notes), dict(result.counts)

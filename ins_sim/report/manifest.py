@@ -1,4 +1,4 @@
-"""The manifest of a run: which noise it has, and on which machines it has the same bits."""
+"""Manifest of a run: its random numbers, and on which machines it is bit-identical."""
 
 import platform
 
@@ -17,8 +17,12 @@ def manifest(settings, aided=None, own_motion=False, thin=1):
     """
     Return the text of manifest.yaml.
 
-    settings: SimulationSettings; aided: AidedSimulationSettings or None; own_motion: whether the
-    motion is not that of the settings; thin: every how many output instants are in the files.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    aided : AidedSimulationSettings or None
+    own_motion : whether the motion was given as an object instead of by the settings
+    thin : the files contain every thin-th output instant
     """
     reasons = []
     if own_motion:

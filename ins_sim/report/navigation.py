@@ -1,4 +1,4 @@
-"""A recorded navigation: notes and tables for a terminal, figures, report and arrays on disk."""
+"""Report of the navigation on a recording: terminal output, figures, page and arrays."""
 
 from dataclasses import asdict
 import json
@@ -60,10 +60,10 @@ def write_navigation(work, settings, title, result, csv=False, tum=False):
     """
     Write a Navigation into a folder.
 
-    nav.npz holds states_<field> and, for reference k, error_<k>_<kind>_t_ns and
-    error_<k>_<kind> (SI); summary.json the figures, the notes and the rows of the tables. csv:
-    also states.csv and error_<k>_<kind>.csv; tum: also ins.tum, in the plane tangent at the first
-    position.
+    nav.npz contains states_<field> and, for reference k, error_<k>_<kind>_t_ns and
+    error_<k>_<kind> (SI units); summary.json contains the results, the notes and the rows of the
+    tables. With ``csv`` also states.csv and error_<k>_<kind>.csv are written; with ``tum`` also
+    ins.tum, in the plane tangent at the first position.
     """
     start_ns, end_ns = _span(result)
     states = NavStates.concatenate(result.states)
@@ -99,7 +99,7 @@ def write_navigation(work, settings, title, result, csv=False, tum=False):
 
 
 def _page(title, settings, result, charts, files):
-    """Return the Page of a navigation; files: those that were written on request."""
+    """Return the Page of a navigation; ``files`` are those written on request."""
     start_ns, end_ns = _span(result)
     tables = tuple(
         PageTable(f'Solution less {c.name}', tuple(head for _, head in COLUMNS),
@@ -117,7 +117,7 @@ def _page(title, settings, result, charts, files):
 
 
 def _answer(result):
-    """Return the sentence about a Navigation: what it is off at its end."""
+    """Return a sentence about the error at the end of a Navigation."""
     start_ns, end_ns = _span(result)
     length = amount(TIMES, (end_ns - start_ns) * 1e-9)
     if not result.comparisons:

@@ -1,4 +1,4 @@
-"""The charts of a recorded navigation: the track, and the errors against a reference over time."""
+"""Charts of the navigation on a recording: the track, and errors against the references."""
 
 import numpy as np
 
@@ -14,17 +14,17 @@ from .runs.track import Track
 
 DASHES = (SOLID, DASHED, DOTTED)
 REFERENCES = (palette.ORANGE, palette.PURPLE)
-# A step of a reference by this factor longer than its median one is a gap, if it is long at all.
+# A step of a reference longer than its median step by this factor is a gap, if it is long at all.
 SPARSE = 10.0
-# What is compared: the units, and what the horizontal part and the other one are called.
+# Compared quantities: name, units, names of the horizontal and of the vertical part.
 ERRORS = (('position', LENGTHS, 'horizontal position', 'height'),
           ('velocity', SPEEDS, 'horizontal velocity', 'vertical velocity'),
           ('attitude', ANGLES, 'tilt', 'heading'))
 PARTS = (palette.RED, palette.GREEN)
-# Two parts of an error have a panel each where one is larger than the other by this factor.
+# The two parts of an error get separate panels if they differ by more than this factor.
 APART = 10.0
-# Where the way of the solution is longer than those of the references by this factor, a second
-# panel shows theirs, with this room about them.
+# If the track of the solution extends farther than the references by the factor DIVERGED, a
+# second panel shows the surroundings of the references, enlarged by the factor NEAR.
 DIVERGED, NEAR = 4.0, 1.2
 
 
@@ -32,7 +32,7 @@ def navigation_charts(title, result, gap_factor):
     """
     Return the Charts of a NavigationResult: over time, and the track.
 
-    title: of the recording; gap_factor: a step of so many median ones is a gap.
+    ``title`` names the recording; a step of more than ``gap_factor`` median steps is a gap.
     """
     step_ns = np.median(np.diff(result.states[0].t_ns))
     title = f'{title} at {1e9 / step_ns:.4g} Hz'
@@ -54,7 +54,7 @@ class _Clock:
 
 
 def _errors(title, result, gap_factor):
-    """Return the Chart of the solution less its references."""
+    """Return the Chart of the solution minus its references."""
     clock, panels = _Clock(result.states), []
     several = len(result.comparisons) > 1
     for kind, units, *names in ERRORS:
@@ -63,7 +63,7 @@ def _errors(title, result, gap_factor):
             track = getattr(comparison, kind)
             if track is not None:
                 east, north, up = track.values.T
-                # Rotation about up is counter-clockwise, a heading clockwise.
+                # A rotation about up is counter-clockwise, a heading is clockwise.
                 both = np.hypot(east, north), -up if kind == 'attitude' else up
                 for part, colour, values in zip(parts, PARTS, both):
                     part.append((comparison.name, track.t_ns, values, colour, dash))
@@ -122,7 +122,7 @@ def _solution(title, result, gap_factor):
 
 
 def _broken(t_ns, values, clock):
-    """Return times and values, interrupted where nothing is known for long."""
+    """Return times and values with NaN in long gaps, so that the curve is interrupted."""
     if len(t_ns) > 1:
         steps = np.diff(t_ns)
         breaks = 1 + np.flatnonzero(steps > max(LONGEST_STEP_S * 1e9, SPARSE * np.median(steps)))
@@ -131,7 +131,7 @@ def _broken(t_ns, values, clock):
 
 
 def _gaps(states, factor, clock):
-    """Return the Stretches between the segments, and those that were bridged within one."""
+    """Return the Stretches of the gaps between segments and of those bridged within one."""
     between = [(a.t_ns[-1], b.t_ns[0]) for a, b in zip(states, states[1:])]
     bridged = [(s.t_ns[k], s.t_ns[k + 1]) for s in states for k in find_gaps(s.t_ns, factor)]
     return [Stretch(*clock(np.array(spans)).T, label, colour) for spans, label, colour in (
@@ -157,7 +157,7 @@ def _track(name, lat, lon, height):
 
 
 def _track_chart(title, result):
-    """Return the Chart of the ways of the solution and of the references."""
+    """Return the Chart of the tracks of the solution and of the references."""
     tracks, count = navigation_tracks(result), len(result.states)
     start = tracks[0].start
     looks = [(None if k else 'solution', palette.BLUE, SOLID) for k in range(count)]
@@ -168,9 +168,9 @@ def _track_chart(title, result):
     shown = [_track_panel(ways)]
     near = _size(ways[count:])
     if 0.0 < DIVERGED * near < _size(ways):
-        # As far as the references go, all else cut off.
+        # Show only the surroundings of the references.
         shown.append(_track_panel(ways, near))
-    return Chart('track', f'Way of the solution on {title}, from its start', tuple(shown),
+    return Chart('track', f'Track of the solution on {title}, from its start', tuple(shown),
                  shared=False, columns=len(shown))
 
 
@@ -185,7 +185,7 @@ def _track_panel(ways, near=None):
     marks = []
     for label, colour, dash, way in ways:
         if not whole:
-            # Cut off, as a range would be: the page finds that of equal axes from the data.
+            # Remove the data outside, because the page derives the range of equal axes from data.
             way = np.where(np.abs(way).max(axis=0) <= NEAR * near, way, np.nan)
         marks.append(Curve(*(way * factor), label if whole else None, colour, dash))
     marks.append(Markers(np.zeros(1), np.zeros(1), 'start' if whole else None, palette.BLACK,

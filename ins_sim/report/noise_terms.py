@@ -1,4 +1,4 @@
-"""The noise of a triad in the units of data sheets: the fit beside what the settings say."""
+"""Noise coefficients of a triad in data-sheet units: fitted values and those of the settings."""
 
 from dataclasses import dataclass, fields
 import math
@@ -11,7 +11,7 @@ from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 from . import allan
 
 AXES = ('x', 'y', 'z')
-# A channel that scatters by less than this part of its size holds rounding, not noise.
+# A channel whose scatter is below this part of its magnitude contains rounding, not noise.
 ROUNDING = 1e-9
 
 
@@ -20,8 +20,12 @@ class Term:
     """
     One noise coefficient of a triad.
 
-    symbol: Q, N, B or K; name, unit: as in data sheets; si: one unit in SI; slope: of its Allan
-    deviation over tau in a double logarithmic plot.
+    Attributes
+    ----------
+    symbol : Q, N, B or K
+    name, unit : as in data sheets
+    si : one unit in SI
+    slope : slope of its Allan deviation over tau in a log-log plot
     """
 
     symbol: str
@@ -32,7 +36,7 @@ class Term:
 
 
 def _terms(cls, names):
-    """Return the Terms of a triad; units stand in the settings and in triad_model alone."""
+    """Return the Terms of a triad, with the units of the settings."""
     keys = {coefficient: (key, si) for key, (coefficient, si) in KEYS[cls].items()}
     units = {f.name: f.metadata['unit'] for f in fields(cls)}
     made = []
@@ -56,10 +60,15 @@ class Noise:
     """
     The noise found in one triad.
 
-    triad: 'gyro' or 'accelerometer'; axes: those that are not constant; allan: of these, SI;
-    known: mean Allan variance (m,) that was taken for known; by_axis: their Coefficients;
-    together: those of their mean variance; settings: what is to be expected, Q, N, B, K by axis
-    (4, 3) in SI, or None.
+    Attributes
+    ----------
+    triad : 'gyro' or 'accelerometer'
+    axes : axes whose samples are not constant
+    allan : Allan of these axes, SI
+    known : mean Allan variance (m,) of known processes that were not fitted
+    by_axis : Coefficients of each axis
+    together : Coefficients of the mean variance
+    settings : expected Q, N, B, K by axis (4, 3), SI, or None
     """
 
     triad: str
@@ -76,10 +85,10 @@ class Noise:
 
     def expected(self):
         """
-        Return the Allan deviation that the settings ask for at each tau (m,), SI.
+        Return the Allan deviation expected from the settings at each tau (m,), SI.
 
-        The root of the mean variance of the axes; None where no settings are known, or where they
-        ask for no noise.
+        It is the root of the mean variance of the axes, or None if no settings are known or they
+        contain no noise.
         """
         if self.settings is None:
             return None
@@ -92,8 +101,8 @@ class Noise:
         """
         Return for each Term a dict of texts and numbers in its unit.
 
-        None stands for what the record does not show: a constant axis, or a coefficient whose
-        part of the Allan variance is small, or in doubt, at every tau.
+        None marks values that are not observable: a constant axis, or a coefficient whose part of
+        the Allan variance is small or uncertain at every tau.
         """
         found = {**dict(zip(self.axes, self.by_axis)), 'all': self.together}
         seen = {axis: c.seen(self.allan.channels([k]))
@@ -118,11 +127,11 @@ def _values(coefficients):
 
 def expected_coefficients(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
     """
-    Return Q, N, B, K by axis (4, 3), SI, that GyroErrors or AccelerometerErrors ask for.
+    Return Q, N, B, K by axis (4, 3), SI, expected from GyroErrors or AccelerometerErrors.
 
-    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5); a Gauss-Markov process with
-    an infinite correlation time counts as the random walk that it is.  factors: variance of an
-    axis over that of a channel.
+    Q is the weight of a pulse over sqrt(12) (IEEE Std 952, C.1.1.5). A Gauss-Markov process with
+    an infinite correlation time is counted as a random walk. ``factors`` are the variances of the
+    axes relative to that of a channel.
     """
     model = triad_model(errors, dt_s, name)
     endless = [s / 60.0 if math.isinf(t) else 0.0
@@ -133,14 +142,14 @@ def expected_coefficients(errors, dt_s, name, factors=(1.0, 1.0, 1.0)):
 
 def analyse_noise(triad, samples, rate_hz, errors=None, factors=(1.0, 1.0, 1.0)):
     """
-    Return the Noise of samples (n, 3) of a triad, SI; None where they are constant.
+    Return the Noise of samples (n, 3) of a triad, SI, or None if they are constant.
 
-    errors: GyroErrors or AccelerometerErrors of the settings, where they are known: a Gauss-Markov
-    bias in them is taken for known, as no Allan deviation tells it from B and K.  factors: as in
-    ``expected_coefficients``.
+    ``errors`` are the GyroErrors or AccelerometerErrors of the settings, if known. A Gauss-Markov
+    bias in them is not fitted, because an Allan deviation cannot distinguish it from B and K.
+    ``factors``: see ``expected_coefficients``.
     """
     size = np.abs(samples).max()
-    # what is no number is not constant either
+    # Written as "not <=" so that an axis with NaN does not count as constant.
     noisy = [k for k in range(3) if not np.ptp(samples[:, k]) <= ROUNDING * size]
     if not noisy:
         return None

@@ -1,7 +1,7 @@
 """
-Histories that are longer than memory: their columns lie in temporary files.
+Store histories that do not fit into memory in temporary files.
 
-The files have no name in the folder and vanish with the process, whatever ends it.
+The files have no name in the folder and are deleted when the process ends, however it ends.
 """
 
 import tempfile
@@ -13,10 +13,10 @@ from ins_sim.core.timeseries.histories import BLOCK
 
 class Spool:
     """
-    Context manager that gives stores for ``core.simulation.inertial.simulate`` and ``predict``.
+    Context manager that provides stores for ``core.simulation.inertial.simulate`` and ``predict``.
 
-    folder: where the temporary files are to be, on a disk with room for the run.  A history of
-    these stores can be sliced into blocks until the context ends.
+    ``folder`` is the directory of the temporary files, on a disk with room for the run. The
+    histories of these stores can be sliced into blocks until the context ends.
     """
 
     def __init__(self, folder):
@@ -40,13 +40,13 @@ class Spool:
 
 
 class _SpooledHistory:
-    """Takes the blocks of one history, see ``core.timeseries.collecting.Collected``."""
+    """Collects the blocks of one history, see ``core.timeseries.collecting.Collected``."""
 
     def __init__(self, new_column):
         self._new_column, self._kind, self._columns = new_column, None, {}
 
     def append(self, block):
-        """Take the next block, a History."""
+        """Append the next block, a History."""
         arrays = block.arrays()
         if self._kind is None:
             self._kind = type(block)
@@ -98,7 +98,7 @@ class SpooledColumn:
             raise ValueError(f'the step of the slice is {step}; expected at least 1')
         if step == 1:
             return self._read(start, max(start, stop))
-        # Picked out block by block, as the rows in between need not fit into memory.
+        # Select block by block, because the rows in between may not fit into memory.
         length = step * max(1, BLOCK // step)
         parts = [self._read(first, min(first + length, stop))[::step].copy()
                  for first in range(start, stop, length)]

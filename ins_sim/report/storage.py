@@ -1,4 +1,4 @@
-"""A run on disk: arrays, parameters, summary and figure in one folder, whole or not at all."""
+"""Write a run into a folder: arrays, parameters, summary, figures; complete or not at all."""
 
 from dataclasses import asdict
 import json
@@ -30,13 +30,21 @@ _IMU = {'imu_t_ns': ('i', (None,)), 'imu_omega': ('f', (None, 3)), 'imu_f': ('f'
 def write_run(work, settings, run, rows, prediction, title, aided=None, own_motion=False,
               steered=None, notes=(), wanted=WantedFiles()):
     """
-    Write a SimulationResult, and what was predicted of it or None, into a folder.
+    Write a SimulationResult into a folder.
 
-    run.npz holds every array as <record>_<field> (SI, shapes as in ``core.timeseries.histories``).
-    aided: the ``aided.AidedReport`` on this run, which goes into the same files, or None;
-    own_motion: whether the motion is not that of the settings; steered: GuidedResult of a guided
-    motion, or None; notes: sentences for the page (``runs.page.run_notes``); wanted: the files,
-    and of how many instants.
+    run.npz contains every array as <record>_<field> (SI units, shapes as in
+    ``core.timeseries.histories``).
+
+    Parameters
+    ----------
+    work : folder
+    settings, run, rows, prediction, title : SimulationSettings, SimulationResult, SummaryRows,
+        Prediction or None, and a title of the run
+    aided : ``aided.AidedReport`` of this run, written into the same files, or None
+    own_motion : whether the motion was given as an object instead of by the settings
+    steered : GuidedResult of a guided motion, or None
+    notes : sentences for the page (``runs.page.run_notes``)
+    wanted : WantedFiles, optional files and thinning
     """
     records = run_records(wanted.kept(run))
     arrays = {**_arrays_of(records), **guided_arrays(steered)}
@@ -86,11 +94,11 @@ def read_imu(folder):
     """
     Return the ImuSamples of a run in a folder.
 
-    Raises ValueError where run.npz is none that ``write`` made.
+    Raises ValueError if run.npz was not written by ``write_run``.
     """
     path = Path(folder) / ARRAYS
     try:
-        # the parity is there of tuned gyros alone
+        # Only runs with tuned gyros contain the parity.
         arrays = read_arrays(path, _IMU, optional=('imu_parity',))
     except ValueError as error:
         raise ValueError(f'{path} holds no IMU record ({error}); expected the arrays of '

@@ -1,4 +1,4 @@
-"""A run in numbers: predicted, measured and published, side by side."""
+"""Numbers of a run: predicted, measured and published values side by side."""
 
 from dataclasses import dataclass
 import math
@@ -10,9 +10,9 @@ from . import coverage
 
 DEG_PER_HOUR = 180.0 / math.pi * 3600.0
 
-# Largest |dN|, |dE| in metres after one hour at 100 Hz: the tables of the paper's two motions and
-# of the closed-form flights, re-derived (docs/explanation/validation.md).  Key: kind, theta,
-# detuning.
+# Largest |dN|, |dE| in metres during one hour at 100 Hz: the tables for the two motions of
+# Bogdanov and Fomichev (2018) and for the closed-form flights, re-derived
+# (docs/explanation/validation.md). Key: kind, theta, detuning.
 PUBLISHED_POSITION = {
     ('rocking', 0.0, 0.0): (111.98, 15.03),
     ('two_axis', -30.0, 0.0): (4472.1, 623.94),
@@ -25,7 +25,7 @@ PUBLISHED_POSITION = {
     ('two_axis', 0.0, 0.1): (3.501, 21.31),
     ('cruise', None, None): (3.591, 3.327),
     ('aggressive', None, None): (5.997, 10.741)}
-# Mean drift, deg/h, of the paper's closed forms (9) exact and (19)
+# Mean drift, deg/h, by the closed forms (9), exact, and (19) of Bogdanov and Fomichev (2018).
 PUBLISHED_DRIFT = {
     ('rocking', 0.0, 0.0): (0.0, 0.0, 0.0154884),
     ('two_axis', -30.0, 0.0): (0.0334932, 0.0, 0.0),
@@ -34,7 +34,7 @@ PUBLISHED_DRIFT = {
 
 @dataclass(frozen=True)
 class SummaryRow:
-    """One figure: name, unit, predicted, measured, zero-delay twin and published (or None)."""
+    """One result: name, unit, and predicted, measured, zero-delay and published value or None."""
 
     name: str
     unit: str
@@ -45,7 +45,7 @@ class SummaryRow:
 
 
 def study_key(settings):
-    """Return the key of the published tables if the settings are theirs, else None."""
+    """Return the key in the published tables if they contain these settings, else None."""
     generator, sensor = settings.motion_generator, settings.imu_sensor
     motion, delay = generator.motion, sensor.gyro.delay_us
     taus = (delay.y, delay.x, delay.z)
@@ -71,9 +71,10 @@ def study_key(settings):
 
 def summary_rows(settings, errors, twin=None, prediction=None):
     """
-    Return the rows of a run: settings, NavErrors, those of the twin, and its Prediction.
+    Return the SummaryRows of a run, given its settings, its NavErrors, those of the zero-delay
+    twin, and its Prediction.
 
-    The prediction is in the rows that it covers alone (``coverage``).
+    Rows that the prediction does not cover (see ``coverage``) are without it.
     """
     of_twin = coverage.comparable_with_twin(settings, prediction)
     prediction = coverage.comparable(settings, prediction)
@@ -115,7 +116,7 @@ def _largest(blocks):
 
 
 def gap_lines(faults):
-    """Return the lines about the gaps at which the strapdown started anew."""
+    """Return the lines about gaps at which the strapdown was restarted."""
     if not faults:
         return []
     return [f'{len(faults)} gaps, at each of which the strapdown started anew; the first: '
@@ -123,7 +124,7 @@ def gap_lines(faults):
 
 
 def withheld_lines(settings):
-    """Return the lines about readings that a negative delay withholds; SimulationSettings."""
+    """Return the lines about samples at the end that a negative delay makes unavailable."""
     count = withheld_readings(settings)
     if not count:
         return []
@@ -133,7 +134,7 @@ def withheld_lines(settings):
 
 
 def parity_lines(sensor, imu):
-    """Return the lines about the parity of tuned gyros; sensor: ImuSensorSettings."""
+    """Return the lines about the parity of tuned gyros of ImuSensorSettings."""
     if imu.parity is None:
         return []
     from ins_sim.core.sensors.tuned_gyro.instrument import PairInstrument

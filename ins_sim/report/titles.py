@@ -1,4 +1,4 @@
-"""What was simulated in words: 'Racetrack flight, tactical FOG, 100 Hz, 1 h'."""
+"""Titles that describe a simulation, such as 'Racetrack flight, tactical FOG, 100 Hz, 1 h'."""
 
 from dataclasses import fields
 from pathlib import Path
@@ -15,7 +15,7 @@ MOTIONS = {'static': 'At rest', 'two_axis': 'Two-axis rotation (motion 2)', 'con
 INSTRUMENTS = {'tactical_mems': 'tactical MEMS', 'tactical_fog': 'tactical FOG',
                'navigation_rlg': 'navigation RLG', 'tactical_dtg': 'tactical DTG'}
 ERRORS = (GYRO, ACCELEROMETER, ROTORS, 'gyro.dtg.fault.', 'gyro.model', 'sampling.')
-# Of an IMU whose errors differ from a preset in no more than these, the preset is still named.
+# An IMU is named after a preset if at most this number of its errors differ from it.
 FEW = 3
 
 
@@ -37,7 +37,7 @@ def motion_words(motion):
         axis = motion.rocking.axis
         about = f'body axis {axis}' if axis in 'xyz' else axis
         return f'Rocking about {about}' + (' (motion 1)' if axis == 'north' else '')
-    # a kind of the user's own has its own name
+    # A motion defined by the user has the name of its kind.
     return MOTIONS.get(motion.kind, motion.kind)
 
 
@@ -71,7 +71,7 @@ def _short(key):
 
 
 def delay_words(sensor):
-    """Return what is to be said of the delays of ImuSensorSettings: nothing, or one or two."""
+    """Return words about the delays of ImuSensorSettings: a list of zero to two entries."""
     found = []
     for name in ('gyro', 'accelerometer'):
         delays = getattr(sensor, name).delay_us
@@ -84,7 +84,7 @@ def delay_words(sensor):
 
 
 def length_words(seconds):
-    """Return a duration as it is said: 1 h, 50 min, 90 s."""
+    """Return a duration in a convenient unit: 1 h, 50 min, 90 s."""
     for unit, size in (('h', 3600.0), ('min', 60.0)):
         amount = round(seconds / size, 2)
         if amount >= 1.0 and abs(amount * size - seconds) < 1e-6 * seconds:

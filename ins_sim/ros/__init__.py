@@ -1,8 +1,7 @@
 """
-ROS 2 nodes. This is the only room that imports rclpy.
+ROS 2 nodes. This is the only package of ins_sim that imports rclpy.
 
-``main`` is the table of executables; ``nodes`` holds one node a file, ``process`` what a node
-process
-needs to start and end, ``transport`` queues and quality of service, ``lock_step`` pacing by
-acknowledgements, ``recording`` recorder and player.
+``main`` is the table of executables; ``nodes`` has one module per node; ``process`` starts,
+monitors and ends node processes; ``transport`` has queues and quality of service; ``lock_step``
+paces a run by acknowledgements; ``recording`` supports the recorder and the player.
 """

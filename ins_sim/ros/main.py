@@ -1,5 +1,5 @@
 """
-The executables of the package: one table of nodes.
+Entry points of the node executables.
 
 The class of a node is imported only after the signal handlers are installed (``process.runtime``).
 """
@@ -27,10 +27,13 @@ NODES = {
 
 def run_node(name, args=None, **options):
     """
-    Run a node of the table as a process and return its exit code.
+    Run a node of NODES as this process and return its exit code.
 
-    args: command line with ROS arguments, by default that of the process; options: further
-    arguments of the class.
+    Parameters
+    ----------
+    name : key of NODES
+    args : command line with ROS arguments, by default ``sys.argv``
+    options : further keyword arguments of the node class
     """
     end_at_once()
     from .process.arguments import answer, with_paths
@@ -47,7 +50,7 @@ def _load(name):
     return getattr(import_module(f'ins_sim.ros.nodes.{module}'), cls)
 
 
-# The entry points of the console scripts. The player needs a bag and is started by "ins_sim play".
+# Entry points of the console scripts. The player needs a bag and is started by "ins_sim play".
 motion_generator = partial(run_node, 'motion_generator')
 imu_sensor = partial(run_node, 'imu_sensor')
 strapdown = partial(run_node, 'strapdown')
@@ -60,7 +63,7 @@ recorder = partial(run_node, 'recorder')
 
 
 def main(words):
-    """Run the node that the first word names; return its exit code, 2 where there is none."""
+    """Run the node named by the first word; return its exit code, 2 for an unknown node."""
     if not words or words[0] not in NODES:
         given = f'unknown node {words[0]!r}; ' if words and words[0] != '--help' else ''
         print(f'{given}usage: python -m ins_sim.ros.main NODE [--ros-args ...]; NODE is one of '

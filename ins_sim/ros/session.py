@@ -1,4 +1,4 @@
-"""One simulation as processes: start the nodes, record their topics, end them all."""
+"""Run one simulation as processes: start the nodes, record their topics, end all processes."""
 
 import os
 import signal
@@ -20,12 +20,17 @@ LOOK_S = 0.1
 
 class Session:
     """
-    The processes of ``graph.PROCESSES`` in a namespace of their own, and a recorder here.
+    The processes of ``graph.PROCESSES`` in their own namespace, with a recorder in this process.
 
-    settings: SimulationSettings, whose pacing must require the recorder; folder: where parameters
-    and logs go; bag: path of the bag.  Use as a context manager: leaving it ends every process,
-    and drops the bag unless ``run`` came to its end.  The processes end with this one, even
-    where it is killed.
+    Use it as a context manager: leaving it ends every process, and discards the bag unless
+    ``run`` has returned. The processes end with this one, even if it is killed.
+
+    Parameters
+    ----------
+    settings : SimulationSettings, whose pacing must require the recorder
+    folder : directory for the parameter file and the logs
+    bag : path of the bag
+    namespace : ROS namespace of the nodes
     """
 
     def __init__(self, settings, folder, bag, namespace):
@@ -35,7 +40,8 @@ class Session:
         self._writer = self._node = self._context = None
 
     def __enter__(self):
-        # a flag: an exception raised wherever the main thread is may be swallowed there
+        # The signal handler sets this flag; an exception raised in it could be swallowed by
+        # whatever code the main thread is executing.
         self._interrupted = False
         self._before = {number: signal.signal(number, self._on_signal) for number in SIGNALS}
         try:
@@ -54,7 +60,7 @@ class Session:
         use_profile()
         os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         self._context = rclpy.Context()
-        # Ctrl-C belongs to the caller, as KeyboardInterrupt
+        # The caller receives Ctrl-C as KeyboardInterrupt, so rclpy must not handle it.
         rclpy.init(context=self._context, signal_handler_options=rclpy.SignalHandlerOptions.NO)
         self._writer = BagWriter(self._bag, 'sqlite3')
         self._node = rclpy.create_node(graph.RECORDER.name, namespace=self.namespace,
@@ -77,10 +83,20 @@ class Session:
 
     def run(self, progress):
         """
-        Record until the generator has ended; progress is called with the recorded time, s.
+        Record until the generator has ended.
 
-        Return the number of messages by topic.  Raises RuntimeError with what a node said last
-        if one ends with an exit code, KeyboardInterrupt after SIGINT or SIGTERM.
+        Parameters
+        ----------
+        progress : callable, called repeatedly with the length of the recording, s
+
+        Returns
+        -------
+        dict : number of recorded messages by topic
+
+        Raises
+        ------
+        RuntimeError : a node failed; the message contains its exit code and its last log line
+        KeyboardInterrupt : after SIGINT or SIGTERM
         """
         master = self._processes[graph.MASTER]
         looked = 0.0
@@ -107,7 +123,8 @@ class Session:
         return f'{name} ended with exit code {code}: {lines[-1] if lines else "it said nothing"}'
 
     def __exit__(self, *exception):
-        # first, for the reason of last_resort: others that vanish meanwhile could hold it up
+        # Destroy our own node first: it could hang if other participants vanish at the same time
+        # (see process.last_resort).
         if self._node is not None:
             self._node.destroy_node()
         if self._context is not None:

@@ -131,7 +131,7 @@ def test_a_missing_instrument_stays_wrong_until_it_delivers():
     assert health.describe()[0] == ''
     assert health.describe()[0] == 'waiting for a fix of gnss'
     stream.go_on_without(GNSS)
-    told = 'going on without gnss; expected the fixes of all that aid'
+    told = 'continuing without gnss; expected fixes of every aiding sensor'
     assert health.describe()[0] == health.describe()[0] == told
     stream.push_fix(*streams[GNSS][0])
     assert health.describe()[0] == ''

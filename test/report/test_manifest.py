@@ -34,7 +34,7 @@ def test_a_written_run_has_it(tmp_path):
 
 
 def test_what_is_the_same_on_one_machine_only(tmp_path, monkeypatch):
-    """A recorded motion, signals of the velocity meter, another motion, another processor."""
+    """Recorded motions, meter signals, own motions and other processors limit the promise."""
     recording = ('motion.kind:=recording', 'motion.recording.path:=somewhere.csv')
     flight = {'names': ['gnss_outage_flight', 'grade_mid'], 'aided': True}
     assert told(**flight) == {'noise': NOISE, 'bits': 'every x86-64 machine'}

@@ -1,4 +1,4 @@
-"""The charts of a recorded navigation, as data: errors, gaps and the track."""
+"""Charts of the navigation on a recording: errors, gaps and the track."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ def with_gap(length_s):
 
 
 def drawn(result, name='navigation'):
-    """Return the Chart of that name."""
+    """Return the Chart with a name."""
     return next(c for c in navigation_charts('a flight', result, FACTOR) if c.name == name)
 
 

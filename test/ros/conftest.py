@@ -1,4 +1,4 @@
-"""Fixtures of the tests of nodes."""
+"""Fixtures of the node tests."""
 
 import pytest
 from support.live import Chain

@@ -7,7 +7,7 @@ from ins_sim.ros.process.arguments import answer
 
 @pytest.mark.parametrize('name', ['strapdown', 'recorder', 'player'])
 def test_help(name, capsys):
-    """The usage and the parameters with unit and default; exit code 0."""
+    """--help prints usage and parameters with unit and default; exit code 0."""
     assert answer(name, [name, '--help']) == 0
     said = capsys.readouterr().out
     assert said.startswith(f'usage: {name} [--ros-args')
@@ -46,7 +46,7 @@ def test_ros_arguments_are_left_to_ros():
     (['-p', 'use_sim_time:=3'], "parameter 'use_sim_time' to '3' of type 'INTEGER', expecting"),
     (['--bogus'], "unknown ROS argument ['--bogus']")])
 def test_what_ros_refuses(words, sentence, chain):
-    """One line, exit code 2, no traceback."""
+    """Arguments that ROS refuses give one line, exit code 2 and no traceback."""
     pytest.importorskip('rclpy')
     node = chain.start('strapdown', {}, words)
     assert node.wait(60.0) == 2

@@ -45,7 +45,7 @@ def test_thousands_of_different_texts_are_few_lines(log):
         log.said.say(f'a message holds what nobody knows: {"x" * (k % 300)}')
         log.clock.now_s += 5.0 / 3000
     assert len(log.lines) == 29
-    assert log.lines[-1].endswith(' other faults were not said)')
+    assert log.lines[-1].endswith(' other faults were not logged)')
     assert len(log.said._kinds) <= said.KINDS
 
 

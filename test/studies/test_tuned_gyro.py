@@ -52,7 +52,7 @@ def record(figures, tables, name):
 
 
 def test_table_of_frequencies(tables, figures):
-    """Within 0.012 deg of the two-decimal cells and 0.05 deg of the others."""
+    """The table over frequencies is met to 0.012 deg (two-decimal cells) and 0.05 deg."""
     show(tables['frequency'], 'rad/s')
     record(figures, tables, 'frequency')
     assert [c.value for c in tables['frequency']] == [0.5, 1.0, 2.0, 4.0, 8.0]
@@ -62,7 +62,7 @@ def test_table_of_frequencies(tables, figures):
 
 
 def test_table_of_speeds(tables, figures):
-    """Within 0.01 deg in all eight cells."""
+    """All eight cells of the table over rotor speeds are met to 0.01 deg."""
     show(tables['speed'], 'Hz')
     record(figures, tables, 'speed')
     assert len(tables['speed']) == 8

@@ -1,6 +1,6 @@
 """
-Figures as data, and what draws them.
+Charts as data, and the code that draws them.
 
-``chart`` says what is drawn, ``palette`` in which colours, ``scales`` in which units. The same
-chart is drawn as PNG and in the page of a report.
+``chart`` describes the content of a figure, ``palette`` the colours, ``scales`` the units. The
+same chart is drawn as PNG and in the page of a report.
 """

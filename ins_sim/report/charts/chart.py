@@ -1,9 +1,9 @@
 """
-What a figure shows: a Chart of Panels, one below the other, of marks.
+Content of a figure: a Chart consists of Panels, which contain marks such as curves and bands.
 
-A label of None leaves a mark out of the legend. Values that are not finite interrupt a curve, as
-do those that are not positive on a logarithmic axis. Colours are those of ``palette``; a colour of
-None is the next one of its cycle, of a Level or a Stretch black or grey.
+A mark with label None is not in the legend. Values that are not finite interrupt a curve, as do
+values that are not positive on a logarithmic axis. Colours are those of ``palette``; colour None
+selects the next colour of the cycle (black for a Level, grey for a Stretch).
 """
 
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ class Band:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Surfaces on top of each other: parts (n, m) over x (n,), the first at the bottom."""
+    """Stacked areas: parts (n, m) over x (n,), the first at the bottom."""
 
     x: np.ndarray
     parts: np.ndarray
@@ -84,9 +84,9 @@ class Level:
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """
-    The stretch of the horizontal axis from first to last, shaded over the whole height.
+    An interval of the horizontal axis from first to last, shaded over the whole height.
 
-    first, last: numbers, or arrays (n,) of several stretches.
+    ``first`` and ``last`` are numbers, or arrays (n,) for several intervals.
     """
 
     first: Union[float, np.ndarray]
@@ -98,10 +98,9 @@ class Stretch:
 @dataclass(frozen=True, eq=False)
 class Map:
     """
-    Values (rows, columns) over y (rows,) and x (columns,), evenly spaced, as colours.
+    Colour map of values (rows, columns) over evenly spaced y (rows,) and x (columns,).
 
-    unit: of the values, for the scale of colours. Diverging colours about zero where values have
-    both signs.
+    ``unit`` labels the colour scale. Values of both signs get diverging colours about zero.
     """
 
     x: np.ndarray
@@ -116,12 +115,18 @@ Mark = Union[Curve, Markers, Band, Stack, Bars, Level, Stretch, Map]
 @dataclass(frozen=True)
 class Panel:
     """
-    Marks over common axes, in their order, the first lowest.
+    Marks on common axes, drawn in their order.
 
-    x_label, y_label: with units in brackets; title; x_scale, y_scale: LINEAR or LOG; x_range,
-    y_range: what is shown, or None; equal: whether a unit is as long on both axes, for tracks;
-    height: relative to the other panels of the chart; note: a text in the middle of the panel,
-    such as why it is empty.
+    Attributes
+    ----------
+    marks : tuple of marks; later ones cover earlier ones
+    x_label, y_label : labels of the axes with units in brackets
+    title : title of the panel
+    x_scale, y_scale : LINEAR or LOG
+    x_range, y_range : shown ranges, or None to fit the data
+    equal : whether both axes have the same scale, for tracks
+    height : height relative to the other panels of the chart
+    note : text in the middle of the panel, such as the reason why it is empty
     """
 
     marks: tuple[Mark, ...]
@@ -142,9 +147,13 @@ class Chart:
     """
     One figure.
 
-    name: of its file, without extension; title: what it shows, in words; panels: from above, and
-    from the left if there are several columns; they have one horizontal axis if shared; caption: a
-    sentence below it, or ''.
+    Attributes
+    ----------
+    name : name of the file, without extension
+    title : title in words
+    panels : Panels from top to bottom, and from left to right if there are several columns
+    shared : whether all panels have the same horizontal axis
+    caption : sentence below the figure, or ''
     """
 
     name: str

@@ -1,21 +1,21 @@
-"""What part of its axes a panel shows."""
+"""Ranges of the axes of a panel."""
 
 import numpy as np
 
 from .chart import Band, Bars, Curve, Level, LOG, Map, Stack, Stretch
 
-# Of what is shown: left free on either side.
+# Part of the range that is left free on either side.
 MARGIN = 0.04
 
 
 def positive(values, scale):
-    """Return values as floats; on a logarithmic axis those that have no place are NaN."""
+    """Return values as floats; on a logarithmic axis values that are not positive become NaN."""
     values = np.asarray(values, dtype=float)
     return np.where(values > 0.0, values, np.nan) if scale == LOG else values
 
 
 def horizontal_range(panels):
-    """Return (left, right) of panels with one horizontal axis, which the data fill."""
+    """Return (left, right) of the data of panels with a common horizontal axis."""
     given = next((panel.x_range for panel in panels if panel.x_range), None)
     if given:
         return given
@@ -37,9 +37,9 @@ def vertical_range(panel):
 
 def equal_ranges(panel, shape):
     """
-    Return the (left, right) and (bottom, top) of a panel on which a unit is as long on both axes.
+    Return (left, right) and (bottom, top) of a panel whose axes have the same scale.
 
-    shape: width of the panel over its height.
+    ``shape`` is the width of the panel divided by its height.
     """
     x_range, y_range = horizontal_range((panel,)), vertical_range(panel)
     per_height = max((x_range[1] - x_range[0]) * (1.0 + 2.0 * MARGIN) / shape,

@@ -1,4 +1,4 @@
-"""The colours of all figures, which the colour-blind can tell apart."""
+"""Colours of all figures; colour-blind readers can distinguish them."""
 
 from dataclasses import replace
 from itertools import cycle
@@ -10,16 +10,16 @@ from .chart import Level, Map, Stack, Stretch
 # Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is pale on white.
 BLUE, ORANGE, GREEN, RED = '#0072b2', '#e69f00', '#009e73', '#d55e00'
 PURPLE, SKY, BLACK, GREY = '#cc79a7', '#56b4e9', '#000000', '#7f7f7f'
-# In the order in which curves take them.
+# The order in which curves use them.
 CYCLE = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY)
 EAST_NORTH_UP = {'east': RED, 'north': BLUE, 'up': GREEN}
 BODY_AXES = {'x': RED, 'y': BLUE, 'z': GREEN}
-# Matplotlib's names of the colours of maps: from dark to bright, and from both sides of white.
+# Names of Matplotlib colour maps: from dark to bright, and diverging from white.
 SEQUENTIAL, DIVERGING = 'viridis', 'PuOr_r'
 
 
 def coloured(marks):
-    """Return the marks of a panel with a colour of its own for each whose colour is None."""
+    """Return the marks of a panel; marks without a colour get one of the cycle."""
     colours, found = cycle(CYCLE), []
     for mark in marks:
         if isinstance(mark, Stack):
@@ -36,9 +36,9 @@ def coloured(marks):
 
 def map_colours(values):
     """
-    Return (Matplotlib's name of colours, lowest, highest value) of the values of a Map.
+    Return (name of the Matplotlib colour map, lowest, highest value) for the values of a Map.
 
-    Values of both signs have white at zero and as much on either side.
+    For values of both signs, white is at zero and the range is symmetric.
     """
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)

@@ -1,9 +1,8 @@
 """
-A chart as PNG, by Matplotlib.
+Draw a chart as PNG with Matplotlib.
 
-The legend of a panel stands to the right of it, where it hides no curve. All sizes are known
-before anything is drawn, in inches: to let Matplotlib find them takes as long as a third of the
-drawing.
+The legend of a panel is to its right, where it hides no curve. All sizes, in inches, are computed
+before drawing: the automatic layout of Matplotlib would take a third of the time.
 """
 
 from io import BytesIO
@@ -24,7 +23,7 @@ with collector_paused:
 DPI = 110
 WIDTH, PANEL, EQUAL = 10.0, 2.3, 5.0
 LEFT, RIGHT, GAP = 0.95, 0.2, 0.12
-# Of a line of text: its height and the width of a character; and the longest line of a legend.
+# Height of a line of text and width of a character, inches; longest line of a legend, characters.
 LINE, CHARACTER, LONGEST = 0.22, 0.075, 34
 TICKS = 0.55
 
@@ -40,7 +39,7 @@ def chart_png(chart):
     """
     Return the bytes of a Chart as PNG.
 
-    Texts are drawn as they are, with escapes for what is no UTF-8 or cannot be seen.
+    Texts are drawn literally; invisible characters and invalid UTF-8 are escaped.
     """
     figure = _draw(chart)
     for text in figure.findobj(Text):
@@ -59,7 +58,7 @@ def _draw(chart):
     shared = chart.shared and len(panels) > 1
     left, right = _left(panels), _right(panels, columns)
     width = (WIDTH - columns * left - right - (columns - 1) * RIGHT) / columns
-    # What stands above and below the axes of a row, and their height.
+    # Space above and below the axes of each row, and the height of the axes.
     above = [LINE * any(p.title for p in row) + GAP for row in rows]
     heights = [max(EQUAL if p.equal else PANEL * p.height for p in row) for row in rows]
     below = [TICKS if not shared or row is rows[-1] else 0.0 for row in rows]
@@ -116,7 +115,7 @@ def _fill(figure, axes, panel, legend_beside):
         axes.set_axisbelow(True)
     for axis, scale in ((axes.xaxis, panel.x_scale), (axes.yaxis, panel.y_scale)):
         if scale == LOG:
-            # Texts are drawn as they are: no formulas.
+            # Plain number format: texts are not parsed as formulas.
             axis.set_major_formatter(FuncFormatter(lambda value, _: f'{value:g}'))
             axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.0, 0.4)))
         elif not (bars and axis is axes.yaxis):
@@ -132,14 +131,14 @@ def _fill(figure, axes, panel, legend_beside):
 
 
 def _left(panels):
-    """Return the margin left of the axes, in which labels of bars have room, in inches."""
+    """Return the margin left of the axes, inches, with room for the labels of bars."""
     longest = max((len(label) for panel in panels for mark in panel.marks
                    if isinstance(mark, Bars) for label in mark.labels), default=0)
     return max(LEFT, min(0.5 + CHARACTER * longest, 0.45 * WIDTH))
 
 
 def _right(panels, columns):
-    """Return the margin right of the axes, in which the legends have room, in inches."""
+    """Return the margin right of the axes, inches, with room for the legends."""
     if any(_has_map(panel) for panel in panels):
         return RIGHT + 0.85
     if columns > 1:

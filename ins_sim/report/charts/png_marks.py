@@ -1,4 +1,4 @@
-"""The marks of a panel on the axes of Matplotlib."""
+"""Draw the marks of a panel with Matplotlib."""
 
 from functools import singledispatch
 
@@ -19,7 +19,7 @@ PALE = 0.2
 
 @singledispatch
 def draw(mark, axes, panel):
-    """Draw a mark of a Panel, with a colour of its own, on axes; return what has a colour bar."""
+    """Draw a mark, which must have a colour, on axes; return the image of a Map for its scale."""
     raise TypeError(f'{type(mark).__name__} is no mark')
 
 
@@ -50,7 +50,7 @@ def _(mark: Stack, axes, panel):
     x, tops = np.asarray(mark.x)[kept], np.cumsum(np.asarray(mark.parts)[kept], axis=1)
     below = np.zeros(len(kept))
     for top, colour, label in reversed(list(zip(tops.T, mark.colours, mark.labels))):
-        # From the top, as the legend is read; what is lower is drawn over it.
+        # Draw from the top, in the order of the legend; lower areas cover higher ones.
         axes.fill_between(x, below, top, color=colour, lw=0.0, label=label)
 
 

@@ -1,24 +1,24 @@
 """
-The points of a curve that are drawn: so few that it is quick, and so that no extreme is lost.
+Reduce the number of points of a curve for drawing without losing its extremes.
 
-A curve is cut into stretches of equal numbers of points. Of each, the first and the last point
-stay, and those with the least and the largest abscissa and ordinate, in their order. So a spike
-of a single sample stands in the figure, and the curve looks the same as one with all its points
-where a stretch is no wider than a pixel.
+A curve is divided into stretches with equal numbers of points. Of each stretch the first and last
+points and those with the smallest and largest x and y are kept, in their order. A spike of a
+single sample therefore stays visible. If a stretch is not wider than a pixel, the curve looks the
+same as with all points.
 """
 
 import numpy as np
 
-# A figure of this many pixels at most; a stretch has six points at most.
+# Number of stretches, at least the width of a figure in pixels; each keeps at most six points.
 STRETCHES = 1000
 
 
 def kept_points(x, y, stretches=STRETCHES):
     """
-    Return the indices of the points that are drawn of a curve, ascending.
+    Return the indices of the points of a curve that are drawn, ascending.
 
-    x, y: (n,); where one of them is not finite in a stretch, its first such point stays too, so
-    that the curve is interrupted there.
+    If x or y (n,) is not finite somewhere in a stretch, the first such point is kept too, so that
+    the curve is interrupted there.
     """
     count = len(x)
     size = -(-count // stretches)
@@ -48,5 +48,5 @@ def thinned_curve(x, y, stretches=STRETCHES):
 
 
 def band_points(x, low, high):
-    """Return the indices of the points that are drawn of the surface between two curves."""
+    """Return the indices of the points that are drawn of the band between two curves."""
     return np.union1d(kept_points(x, low), kept_points(x, high))

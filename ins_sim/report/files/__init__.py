@@ -1,1 +1,1 @@
-"""The arrays of a run in files: as npz, as CSV tables, and as trajectories for evo."""
+"""Files with the arrays of a run: npz, CSV tables, and trajectories for evo."""

@@ -1,4 +1,4 @@
-"""Arrays written as ``numpy.savez`` does, block by block, compressed where that gains much."""
+"""Write .npz files block by block, and compress the arrays that shrink enough."""
 
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile
 import zlib
@@ -7,10 +7,10 @@ from numpy.lib import format as npy_format
 
 from ins_sim.core.timeseries.histories import BLOCK
 
-# The quickest level of deflate: level 6 takes twice the time and gains 1 % more.
+# The fastest level of deflate; level 6 takes twice the time and saves 1 % more.
 LEVEL = 1
-# An array that would keep more than this part of its size is not compressed: its low bits are as
-# good as random, and deflate takes most time where it gains least.
+# An array that would keep more than this part of its size is not compressed. Its low bits are
+# practically random, and deflate is slowest for such data.
 WORTH = 0.75
 
 
@@ -19,7 +19,7 @@ def write_arrays(path, arrays):
     with ZipFile(path, 'w', compresslevel=LEVEL) as archive:
         for name, array in arrays.items():
             archive.compression = _method(array)
-            # The size is known only afterwards: it may be beyond what a small header can hold.
+            # The size is known only afterwards and may exceed the limit of the short zip header.
             with archive.open(f'{name}.npy', 'w', force_zip64=True) as member:
                 npy_format.write_array_header_1_0(member, {
                     'descr': npy_format.dtype_to_descr(array.dtype), 'fortran_order': False,
@@ -29,7 +29,7 @@ def write_arrays(path, arrays):
 
 
 def _method(array):
-    """Return how an array is stored, by how much the block in its middle shrinks."""
+    """Return the zip method for an array, decided by compressing the block in its middle."""
     middle = max(0, (len(array) - BLOCK) // 2)
     sample = array[middle:middle + BLOCK].tobytes()
     return ZIP_DEFLATED if len(zlib.compress(sample, LEVEL)) < WORTH * len(sample) else ZIP_STORED

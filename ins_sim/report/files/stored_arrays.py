@@ -1,4 +1,4 @@
-"""Arrays in a run.npz that somebody hands over: nothing is allocated that the file cannot hold."""
+"""Read arrays from a run.npz that is not trusted: allocate no more than the file can contain."""
 
 import math
 from zipfile import BadZipFile, ZipFile
@@ -10,8 +10,8 @@ from numpy.lib import format as npy_format
 from ins_sim.regular_file import check_regular
 from ins_sim.settings.shown import shown
 
-# Of a run at least the stamps do not shrink much: what gains more than a hundred times as a whole
-# is made to fill the memory.
+# The arrays of a real run do not shrink a hundredfold; a file that unpacks to more than that is
+# a zip bomb and is refused.
 _FREE, _RATIO = 1 << 26, 100
 
 
@@ -28,8 +28,8 @@ def read_arrays(path, shapes, optional=()):
 
     Raises
     ------
-    ValueError : in one sentence, where the file is no such file, or an array is missing or of
-        another kind
+    ValueError : the file is not an .npz file, or an array is missing or has another type or
+        shape; the message is one sentence
     """
     check_regular(path, 'the arrays of a run')
     arrays, length = {}, None
@@ -53,7 +53,7 @@ def read_arrays(path, shapes, optional=()):
 
 
 def _check_size(archive, names):
-    """Raise ValueError where the arrays of some names unpack to more than those of a run can."""
+    """Raise ValueError if the named arrays unpack to more than those of a run can."""
     there = set(archive.namelist())
     members = [archive.getinfo(f'{name}.npy') for name in names if f'{name}.npy' in there]
     packed, size = (sum(getattr(info, key) for info in members)

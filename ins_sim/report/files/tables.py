@@ -1,4 +1,4 @@
-"""Histories as CSV tables, whose columns have the names that DataFrames have."""
+"""Write histories as CSV tables with the column names of the DataFrames."""
 
 from ins_sim.core.timeseries.named_columns import history_columns
 from ins_sim.io.csv_writer import write_rows
@@ -6,9 +6,9 @@ from ins_sim.io.csv_writer import write_rows
 
 def write_table(path, history):
     """
-    Write a History as CSV: t_ns, whole nanoseconds, and a column for each component.
+    Write a History as CSV: t_ns in integer nanoseconds, and one column per component.
 
-    Each number stands in the shortest text that gives its bits back.
+    Each number is written as the shortest text that restores its bits.
     """
     write_rows(path, ('t_ns', *history_columns(history[:0])),
                ((block.t_ns, *history_columns(block).values()) for block in history.blocks()))

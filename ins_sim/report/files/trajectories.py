@@ -1,4 +1,4 @@
-"""Trajectories as TUM files, which evo reads: time, position and attitude, separated by blanks."""
+"""Write trajectories as TUM files for evo: time, position, attitude, separated by spaces."""
 
 import numpy as np
 
@@ -11,8 +11,7 @@ def write_trajectory(path, frame, history):
     """
     Write positions and attitudes of a PlacedHistory in the axes of a MapFrame.
 
-    Stamps are exact; each other number stands in the shortest text that gives
-    its bits back.
+    Stamps are exact; each other number is written as the shortest text that restores its bits.
     """
     with open(path, 'w', encoding='ascii') as file:
         file.write(f'{HEAD}\n')

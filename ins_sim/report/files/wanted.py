@@ -1,4 +1,4 @@
-"""Which files of a run are written, and how many of its instants they hold."""
+"""Options for the files of a run: which are written, and how many instants they contain."""
 
 from dataclasses import dataclass, replace
 import operator
@@ -9,11 +9,15 @@ import numpy as np
 @dataclass(frozen=True)
 class WantedFiles:
     """
-    What is written of a run beside its tables and figures.
+    Files written for a run in addition to its tables and figures.
 
-    thin: the files hold every thin-th output instant, beginning with the first; csv: whether to
-    write tables too; tum: whether to write trajectories for evo too.  Raises ValueError if thin
-    is not a whole number of at least 1.
+    Raises ValueError if ``thin`` is not a whole number of at least 1.
+
+    Attributes
+    ----------
+    thin : the files contain every thin-th output instant, beginning with the first
+    csv : whether to write CSV tables too
+    tum : whether to write trajectories for evo too
     """
 
     thin: int = 1
@@ -30,14 +34,14 @@ class WantedFiles:
             raise ValueError(f'thin is {self.thin!r}; expected a whole number of at least 1')
 
     def kept(self, result, names=('truth', 'states', 'errors', 'twin')):
-        """Return a result whose records of those names have every thin-th instant."""
+        """Return a result whose named records contain only every thin-th instant."""
         records = {name: getattr(result, name, None) for name in names}
         return result if self.thin == 1 else replace(result, **{
             name: _every(record, self.thin) for name, record in records.items()
             if record is not None})
 
     def lines(self, result):
-        """Return a line on what the files of a thinned result hold, or no line."""
+        """Return a list with a line about the thinning of the files; empty without thinning."""
         count = len(result.errors)
         if self.thin == 1:
             return []

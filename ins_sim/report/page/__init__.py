@@ -1,3 +1,3 @@
 """
-The report of a run or a study as a page: ``content`` says what is in it, ``html`` writes it.
+HTML page with the report of a run or a study: ``content`` describes it, ``html`` writes it.
 """

@@ -1,4 +1,4 @@
-"""The marks of a panel as glyphs of Bokeh."""
+"""Draw the marks of a panel with Bokeh."""
 
 from functools import singledispatch
 
@@ -14,17 +14,17 @@ from ..charts.extent import horizontal_range, map_edges, positive
 from ..charts.palette import map_colours
 from ..charts.thinning import band_points, kept_points, thinned_curve
 
-# Pixels of a screen in a point.
+# Screen pixels per point.
 PIXELS = 4.0 / 3.0
 POINTS = {DOT: 'circle', CROSS: 'x', CIRCLE: 'circle', TRIANGLE: 'triangle'}
 PALE = 0.25
-# Single precision is enough where the values are spread over this part of their largest.
+# Single precision suffices if the values spread over at least this part of the largest one.
 SPREAD = 1e-3
 
 
 @singledispatch
 def draw(mark, drawn, panel):
-    """Draw a mark of a Panel, with a colour of its own, into a figure of Bokeh."""
+    """Draw a mark, which must have a colour, into a Bokeh figure."""
     raise TypeError(f'{type(mark).__name__} is no mark')
 
 
@@ -63,11 +63,11 @@ def _(mark: Stack, drawn, panel):
 @draw.register
 def _(mark: Bars, drawn, panel):
     places = np.arange(len(mark.values))
-    # On a logarithmic axis a bar that begins at zero is not drawn.
+    # Bokeh does not draw bars that begin at zero on a logarithmic axis.
     edge = max(0.0, horizontal_range((panel,))[0])
     drawn.hbar(y=places + 0.18, left=edge, right=np.asarray(mark.values, dtype=float), height=0.42,
                fill_color=mark.colour, line_color=None)
-    # The labels stand above the bars, where they have room at any width.
+    # The labels are above the bars, where they fit at any width of the page.
     drawn.text([edge] * len(places), places - 0.24, [visible(label) for label in mark.labels],
                text_baseline='middle', text_font_size='12px', x_offset=4)
     drawn.yaxis.visible = drawn.ygrid.visible = False
@@ -107,7 +107,7 @@ def _thinned(mark, panel):
 
 
 def _packed(values):
-    """Return numbers in half the bytes, where this loses nothing that can be seen."""
+    """Return the numbers in single precision if no visible detail is lost."""
     finite = values[np.isfinite(values)]
     if finite.size and np.ptp(finite) < SPREAD * np.abs(finite).max():
         return values.astype(np.float64)

@@ -1,8 +1,8 @@
 """
-Charts as panels of Bokeh, which can be zoomed: a script, their data, and what draws them.
+Draw charts as zoomable Bokeh panels: the scripts and data that the page needs.
 
-Each panel stands in an element of the page of its own, so that legends and titles are those of the
-page. The panels of a chart with one horizontal axis are zoomed together.
+Each panel has its own element in the page, so that legends and titles belong to the page. The
+panels of a chart with a common horizontal axis are zoomed together.
 """
 
 import json
@@ -23,7 +23,7 @@ from .bokeh_marks import draw
 TOOLS = 'box_zoom,pan,wheel_zoom,reset,save'
 PANEL, EQUAL = 250, 480
 VERSION, OLDEST = __version__, (3, 4)
-# Room for the numbers at the axes, so that panels stand below each other.
+# Fixed margins for the axis numbers, so that the panels are aligned below each other.
 LEFT, RIGHT = 68, 14
 if tuple(int(part) for part in VERSION.split('.')[:2]) < OLDEST:
     raise ImportError(f'Bokeh is {VERSION}; expected 3.4 or newer', name='bokeh')
@@ -43,7 +43,7 @@ _EMBED = """
 
 
 def panel_ids(charts):
-    """Return for each Chart the ids of the elements in which its panels are drawn."""
+    """Return, for each Chart, the ids of the page elements of its panels."""
     return [[f'figure-{k}-{n}' for n in range(len(chart.panels))]
             for k, chart in enumerate(charts)]
 
@@ -56,7 +56,8 @@ def scripts(charts):
             document.add_root(panel)
             elements[panel.id] = name
     drawn = _compact(document.to_json(deferred=False))
-    # Bokeh counts its objects through the whole process: numbered anew, the bytes are the same.
+    # Bokeh numbers its objects throughout the process; renumber them so that equal reports have
+    # equal bytes.
     fresh = {}
     for found in _ID.findall(drawn):
         fresh.setdefault(found, f'p{len(fresh)}')

@@ -1,4 +1,4 @@
-"""Content of a report: answer, figures, tables, notes, settings and data files."""
+"""Content of a report page: answer, figures, tables, notes, settings and data files."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,9 +9,9 @@ from ..charts.chart import Chart
 @dataclass(frozen=True)
 class PageTable:
     """
-    A table: title, heads of the columns, and rows of cells.
+    A table: title, heads of the columns, rows of cells, and a note below the table.
 
-    A cell is a text, or a number, which is written with four digits; note: a sentence below it.
+    A cell is a text or a number; numbers are written with four digits.
     """
 
     title: str
@@ -25,11 +25,16 @@ class Page:
     """
     A report.
 
-    title: what was simulated, in words; answer: the result in a few sentences; charts
-    and tables, in their order; notes: sentences on what was dropped, assumed or left out;
-    settings: SimulationSettings, AidedSimulationSettings or NavigateSettings, of which those that
-    differ from the defaults are shown, or None; digest: of the numbers, by name; files: names of
-    the files beside the page, with what is in them.
+    Attributes
+    ----------
+    title : what was simulated, in words
+    answer : the result in a few sentences
+    charts, tables : Charts and PageTables in their order
+    notes : sentences on what was dropped, assumed or left out
+    settings : SimulationSettings, AidedSimulationSettings, NavigateSettings or None; the page
+        shows those that differ from the defaults
+    digest : {name: digest of numbers}
+    files : {name of a file next to the page: its content in words}
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""The settings of a run that differ from the defaults."""
+"""List the settings of a run that differ from the defaults."""
 
 from collections import Counter
 from dataclasses import fields, is_dataclass
@@ -9,10 +9,11 @@ from ins_sim.settings.field import SettingsGroup
 
 def changed_settings(settings):
     """
-    Return rows (name, value, default, unit, nodes) of the settings that are not the default.
+    Return rows (name, value, default, unit, nodes) of the settings that differ from the defaults.
 
-    settings: of one node, or of several nodes as their fields. A setting that has the same value
-    in several nodes is one row; nodes: those that have it so, or 'all' that know it.
+    ``settings`` belong to one node, or contain those of several nodes as fields. A setting with
+    the same value in several nodes is one row; ``nodes`` lists them, or is 'all' if every node
+    that has the setting has this value.
     """
     rows, known = {}, Counter()
     for node, given in settings_by_node(settings).items():
@@ -28,7 +29,7 @@ def changed_settings(settings):
 
 
 def settings_by_node(settings, name=''):
-    """Return {node: its settings} of settings of any depth of nodes."""
+    """Return {node: its settings} for settings that may contain nodes at any depth."""
     if isinstance(settings, SettingsGroup):
         return {name: settings}
     found = {}
@@ -40,7 +41,7 @@ def settings_by_node(settings, name=''):
 
 
 def _shown(value):
-    """Return a value as a parameter file has it; equal numbers of all axes once: 3 × 0.1."""
+    """Return a value as in a parameter file; equal numbers of all axes are shown as 3 × 0.1."""
     if isinstance(value, tuple):
         if len(value) > 1 and len(set(value)) == 1:
             return f'{len(value)} × {_shown(value[0])}'

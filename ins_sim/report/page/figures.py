@@ -1,4 +1,4 @@
-"""The figures of a report: zoomable ones by Bokeh, or images where it is not installed."""
+"""Figures of a report: zoomable Bokeh figures, or images if Bokeh is not installed."""
 
 from base64 import b64encode
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ COLUMNS = {1: '', 2: ' two', 3: ' three'}
 
 @dataclass(frozen=True)
 class DrawnFigures:
-    """parts: the HTML of the figures; scripts: what draws them; version: of Bokeh, or ''."""
+    """HTML of the figures (``parts``), ``scripts`` that draw them, ``version`` of Bokeh or ''."""
 
     parts: list
     scripts: str = ''
@@ -26,7 +26,7 @@ def zoomable(page):
     if not charts:
         return DrawnFigures([])
     try:
-        # Takes half a second, which only what writes a report pays for.
+        # Imported lazily: the import takes half a second and only reports need it.
         from . import bokeh_panels
     except ImportError as error:
         if (error.name or '').partition('.')[0] != 'bokeh':
@@ -44,7 +44,7 @@ def zoomable(page):
 
 
 def images(folder, page):
-    """Return the DrawnFigures of a Page as images; those in the folder are not drawn again."""
+    """Return the DrawnFigures of a Page as images; existing ones in the folder are reused."""
     parts = []
     for chart in page.charts:
         path = folder / f'{chart.name}.png'
@@ -55,7 +55,7 @@ def images(folder, page):
 
 
 def _figure(page, chart, content):
-    # A title that begins with that of the page is not repeated as a whole.
+    # Do not repeat the title of the page in that of the figure.
     title = chart.title.removeprefix(f'{page.title}: ')
     title = title[:1].upper() + title[1:]
     caption = f'<figcaption>{text(chart.caption)}</figcaption>' if chart.caption else ''

@@ -1,8 +1,8 @@
 """
-A report as one HTML file, which holds everything that it shows.
+Write a report as one self-contained HTML file.
 
-Figures can be zoomed where Bokeh is installed (extra ``report``); elsewhere they are images, and
-the report says so. The same report gives the same bytes.
+Figures can be zoomed if Bokeh is installed (extra ``report``); otherwise they are images, and the
+report says so. Equal reports have equal bytes.
 """
 
 from ins_sim.core.numerics.garbage_collection import collector_paused
@@ -20,8 +20,8 @@ def write_page(folder, page):
     """
     Write a Page as report.html into a folder (pathlib.Path).
 
-    Where Bokeh is missing the figures are images: those that ``save_chart`` has put into the
-    folder, or drawn anew.
+    Without Bokeh the figures are images: those that ``save_chart`` has written into the folder, or
+    new ones.
     """
     with collector_paused:
         drawn = figures.zoomable(page) or figures.images(folder, page)

@@ -1,4 +1,4 @@
-"""The legend of a panel as HTML, which takes as many lines as the width needs."""
+"""Legend of a panel as HTML, which wraps to the width of the page."""
 
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
@@ -16,7 +16,7 @@ POINTS = {DOT: '<circle cx="14" cy="6" r="3.5" fill="{0}"/>',
 
 
 def legend(marks):
-    """Return the legend of marks that have a colour each, or ''."""
+    """Return the legend of marks, which must have colours, or ''."""
     items = [f'<li><svg viewBox="0 0 28 12" aria-hidden="true">{swatch}</svg>{text(label)}</li>'
              for mark in marks for swatch, label in _entries(mark) if label]
     return f'<ul class="legend">{"".join(items)}</ul>' if items else ''
@@ -25,7 +25,7 @@ def legend(marks):
 def _entries(mark):
     """Yield (swatch, label) of a mark."""
     if isinstance(mark, Stack):
-        # From the top, as the surfaces stand.
+        # List from the top, in the order of the stacked areas.
         for colour, label in reversed(list(zip(mark.colours, mark.labels))):
             yield _surface(colour, 1.0), label
     elif isinstance(mark, (Curve, Level)):

@@ -1,4 +1,4 @@
-"""The tables of a report, what was simulated, and the list of its files, as HTML."""
+"""Tables, settings and list of files of a report as HTML."""
 
 import numbers
 import os
@@ -19,7 +19,7 @@ def table_section(table):
 
 
 def _table(heads, rows, kind=''):
-    # A column of numbers stands at the right.
+    # Columns of numbers are right-aligned.
     numeric = [any(isinstance(row[k], numbers.Real) for row in rows) for k in range(len(heads))]
     marks = [' class="number"' if right else '' for right in numeric]
     head = ''.join(f'<th scope="col"{mark}>{text(name)}</th>'
@@ -32,7 +32,7 @@ def _table(heads, rows, kind=''):
 
 
 def settings_section(page, bokeh):
-    """Return what was simulated; bokeh: the version that draws the figures, or ''."""
+    """Return the section about the simulation; ``bokeh`` is the version of Bokeh, or ''."""
     parts = []
     if page.settings is not None:
         changed = changed_settings(page.settings)
@@ -49,14 +49,14 @@ def settings_section(page, bokeh):
 
 
 def _seeds(settings):
-    """Return (name, value) of the seeds, and of the number of the run."""
+    """Return (name, value) of the seeds and of the run number."""
     nodes = {} if settings is None else settings_by_node(settings)
     return [(f'{name} of {node}' if node else name, getattr(given, name))
             for name in ('seed', 'run') for node, given in nodes.items() if hasattr(given, name)]
 
 
 def _versions(bokeh):
-    """Return (name, version) of what computed the run, and of what draws the figures."""
+    """Return (name, version) of the software that computed the run and draws the figures."""
     from ins_sim import __version__
     try:
         from importlib.metadata import PackageNotFoundError, version
@@ -69,7 +69,7 @@ def _versions(bokeh):
 
 
 def files_list(files):
-    """Return the list of the files beside the report, each with what is in it."""
+    """Return the list of the files next to the report, each with its content in words."""
     return '<ul>' + ''.join(
         f'<li><a href="{quote(os.fsencode(name))}">{text(name)}</a>: {text(what)}</li>'
         for name, what in files.items()) + '</ul>'

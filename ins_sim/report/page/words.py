@@ -1,4 +1,4 @@
-"""Texts and numbers as they stand in HTML."""
+"""Convert texts and numbers to HTML."""
 
 from html import escape
 import math
@@ -7,22 +7,22 @@ import re
 
 from ins_sim.visible_text import visible
 
-# Between the words of the name of a setting.
+# Matches the separators in the name of a setting.
 _JOINT = re.compile(r'(?<=[a-z])([._])(?=[a-z])')
 
 
 def text(words):
-    """Return a text as it stands in HTML: escaped, and what cannot be seen as escapes."""
+    """Return a text escaped for HTML, with invisible characters shown as escapes."""
     return escape(visible(str(words)))
 
 
 def breakable(escaped):
-    """Return a text in HTML that may be broken within names such as gyro.errors.bias_deg_h."""
+    """Return HTML text with line-break opportunities in names such as gyro.errors.bias_deg_h."""
     return _JOINT.sub(r'\1<wbr>', escaped)
 
 
 def cell_text(value):
-    """Return a cell of a table as text: a number with four digits, a dash for what is missing."""
+    """Return a table cell as text: numbers with four digits, a dash for a missing value."""
     if value is None or isinstance(value, numbers.Real) and math.isnan(value):
         return '–'
     if isinstance(value, bool):

@@ -1,3 +1,3 @@
 """
-The report of one run: figures as Charts, its track as KML, and its page.
+Report of one run: figures as Charts, the track as KML, and the page.
 """

@@ -1,4 +1,4 @@
-"""The errors of an aided solution as a Chart: within three sigma of the filter, outages, NIS."""
+"""Chart of an aided solution: errors with three-sigma bounds of the filter, outages, NIS."""
 
 import numpy as np
 
@@ -8,18 +8,18 @@ from ..charts.palette import BLACK, EAST_NORTH_UP, GREY, ORANGE, PURPLE, RED
 from ..charts.scales import ANGLES, LENGTHS, scale, SPEEDS, TIMES
 from ..consistency import chi_square_limit
 
-# A source has a colour; where it was silent is shaded in another one.
+# Sensor: (colour of its marks, name, colour of the shaded outages).
 SOURCES = {METER: (PURPLE, 'velocity meter', ORANGE), GNSS: ('#0099aa', 'GNSS', GREY)}
 # (field, label, components, units)
 PANELS = (('position', 'position error', (0, 1, 2), LENGTHS),
           ('velocity', 'velocity error', (0, 1, 2), SPEEDS),
           ('attitude', 'tilt', (0, 1), ANGLES), ('attitude', 'azimuth error', (2,), ANGLES))
 NAMES = tuple(EAST_NORTH_UP)
-# The line through the NIS is a mean of so many fixes at least, and has so many such spans at most,
+# The line through the NIS is a mean over at least MEAN_OF fixes, and has at most SPANS points.
 MEAN_OF, SPANS = 20, 60
-# and is broken where fixes are missing: at so many times their usual distance.
+# It is interrupted at intervals longer than GAP times the usual interval of the fixes.
 GAP = 5.0
-# Silences of a source that are closer than this part of the run are one.
+# Outages of a sensor that are closer than this part of the run are merged.
 APART = 1.0 / 500.0
 
 
@@ -27,8 +27,12 @@ def aided_chart(title, flown, sources, gate_probability):
     """
     Return the Chart of an aided run.
 
-    flown: AidedResult with the fixes of the instruments; sources: those that aid;
-    gate_probability: of the navigator, 0: none.
+    Parameters
+    ----------
+    title : title of the run
+    flown : AidedResult with the fixes of the sensors
+    sources : aiding sensors
+    gate_probability : setting of the navigator; 0 for no gate
     """
     errors = flown.errors
     start_ns, end_ns = int(errors.t_ns[0]), int(errors.t_ns[-1])
@@ -50,7 +54,7 @@ def aided_chart(title, flown, sources, gate_probability):
 def _errors(t, errors, silent, x_label, span, field, label, components, units):
     """Return the panel of errors, and of the bands in which the filter believes them."""
     values, sigmas = getattr(errors, field), getattr(errors, f'{field}_sigma')
-    # Up is held by the altimeter in many a run: nothing to see.
+    # The vertical channel is often held by the altimeter; its errors are then not shown.
     shown = [axis for axis in components if axis < 2 or len(components) == 1
              or np.any(values[:, axis])]
     factor, unit = scale(units, float(np.abs(values[:, shown]).max()))
@@ -66,7 +70,7 @@ def _errors(t, errors, silent, x_label, span, field, label, components, units):
 
 
 def _nis(judged, sources, gate_probability, time):
-    """Return the marks of the NIS of each fix, the running mean of those taken, and the gate."""
+    """Return the marks of the NIS of each fix, the mean over accepted fixes, and the gate."""
     marks = []
     for source in sources:
         colour, name, _ = SOURCES[source]
@@ -94,7 +98,7 @@ def _nis(judged, sources, gate_probability, time):
 
 
 def _unbroken(t):
-    """Return the slices of sorted times between which fixes are missing."""
+    """Return slices of sorted times without missing fixes."""
     steps = np.diff(t)
     ends = np.flatnonzero(steps > GAP * np.median(steps)) + 1 if len(steps) else []
     bounds = [0, *ends, len(t)]
@@ -102,7 +106,7 @@ def _unbroken(t):
 
 
 def _silences(flown, sources, time, span):
-    """Return a Stretch for each source that was silent at times."""
+    """Return a Stretch with the outages of each sensor that had any."""
     found = []
     for source, fixes in ((GNSS, flown.gnss_fixes), (METER, flown.velocity_fixes)):
         if source not in sources:
@@ -121,7 +125,7 @@ def _silences(flown, sources, time, span):
 
 
 def silent_spans(fixes, start_ns, end_ns):
-    """Return the spans (first, last), ns, from a fix that failed to the next valid one."""
+    """Return the spans (first, last), ns, from an invalid fix to the next valid one."""
     spans, since_ns = [], None
     for fix in fixes:
         if not fix.valid and since_ns is None:

@@ -1,4 +1,4 @@
-"""What the page of a run says of its aided solution."""
+"""Part of the page of a run that describes the aided solution."""
 
 from ..aided import AIDED, aiding_sources, column_meanings, fault_lines, filled_columns, fix_lines
 from ..charts.scales import distance
@@ -7,7 +7,7 @@ from .aided_charts import aided_chart
 
 
 def report_chart(title, report):
-    """Return the Chart of an AidedReport on a run of a title."""
+    """Return the Chart of an AidedReport; ``title`` is that of the run."""
     return aided_chart(f'{title}: {report.title}', report.flown, aiding_sources(report.settings),
                        report.settings.aided_navigator.gate_probability)
 
@@ -22,12 +22,12 @@ def report_table(report):
 
 
 def report_notes(report):
-    """Return the sentences on the fixes, and on what went wrong."""
+    """Return sentences about the fixes and about faults."""
     return [*fix_lines(report.rows), *fault_lines(report.flown)]
 
 
 def report_answer(report):
-    """Return how far off the aided solution is, and whether its filter knows, in sentences."""
+    """Return sentences about the error of the aided solution and the consistency of its filter."""
     rows = {row.name.removeprefix(AIDED): row for row in report.rows}
     rms, end = rows['rms horizontal'], rows['horizontal at the end']
     inside = rows.get('position in 3 sigma')

@@ -1,15 +1,15 @@
-"""The curves of a history that may be longer than memory."""
+"""Extract curves from a history that may not fit into memory."""
 
 import numpy as np
 
 from ..charts.thinning import kept_points, STRETCHES
 
-# Rows that are read at once.
+# Number of rows read at once.
 BLOCK = 65536
 
 
 class HistoryDifference:
-    """One History less another at the same instants, block by block."""
+    """Difference of two Histories with the same instants, computed block by block."""
 
     def __init__(self, one, other):
         self._one, self._other, self.t_ns = one, other, one.t_ns
@@ -35,10 +35,10 @@ def history_curves(history, columns):
     """
     found, count = {}, len(history)
     for block in history.blocks(BLOCK):
-        # Twice as many as are drawn, whose borders lie elsewhere.
+        # Use twice as many stretches as are drawn, because theirs have other borders.
         stretches = max(1, -(-2 * STRETCHES * len(block) // count))
         t_ns = block.t_ns[:]
-        # Times as floats only choose the points.
+        # The times as floats serve only to select the points.
         t = (t_ns - t_ns[0]).astype(float)
         for name, values in columns.items():
             for k, column in enumerate(values(block).T):
@@ -53,14 +53,14 @@ def history_curves(history, columns):
 
 def interpolated(t_s, t_known, values, column, block=BLOCK):
     """
-    Return a column of values (n, k) at times t_s (m,), linearly between those at t_known (n,).
+    Interpolate a column of values (n, k), given at times t_known (n,), linearly at times t_s (m,).
 
     Both times ascend. t_known and values may be columns in a file, which are read block by block.
-    Beyond the ends the result is NaN.
+    Outside the range of t_known the result is NaN.
     """
     result = np.full(len(t_s), np.nan)
     for first in range(0, len(t_known), block):
-        # One row more, so that no interval is left out between two blocks.
+        # Read one row more, so that the interval between two blocks is included.
         known = t_known[first:first + block + 1]
         low, high = np.searchsorted(t_s, known[0]), np.searchsorted(t_s, known[-1], 'right')
         result[low:high] = np.interp(t_s[low:high], known,

@@ -1,4 +1,4 @@
-"""The errors of a strapdown over time, as a Chart: position, attitude, drift."""
+"""Charts of the errors of a strapdown over time: position, attitude, drift."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ..summary import DEG_PER_HOUR
 from .curves import history_curves, HistoryDifference, interpolated
 
 NAMES = tuple(EAST_NORTH_UP)
-# Measured and predicted coincide where they differ by less than this part of the largest error.
+# Measured and predicted curves that differ by less than this part of the largest error look equal.
 CLOSE = 0.05
 
 
@@ -17,8 +17,8 @@ def error_chart(title, errors, prediction=None):
     """
     Return the Chart of NavErrors.
 
-    prediction: Prediction that covers all that makes an error in the run, or None. It is drawn
-    where it is larger than what the linear theory may leave out.
+    ``prediction`` is a Prediction that covers all error sources of the run, or None. It is drawn
+    if it is larger than the bound of the neglected second-order terms.
     """
     curves = history_curves(errors, {
         'position': lambda block: block.position, 'attitude': lambda block: block.attitude,
@@ -32,34 +32,34 @@ def error_chart(title, errors, prediction=None):
 
 def delay_chart(title, errors, twin, prediction=None):
     """
-    Return the Chart of what the delays cause: NavErrors less those of the zero-delay twin.
+    Return the Chart of the effect of the delays: NavErrors minus those of the zero-delay twin.
 
-    prediction: Prediction of the difference, or None.
+    ``prediction`` is the Prediction of this difference, or None.
     """
     curves = history_curves(HistoryDifference(errors, twin), {
         'position': lambda block: block.position, 'attitude': lambda block: block.attitude})
     clock = _clock(errors.t_ns)
-    return Chart('delays', f'{title}: what the delays cause, run less zero-delay twin', (
+    return Chart('delays', f'{title}: effect of the delays, run minus zero-delay twin', (
         *_positions(curves['position'], clock, _telling(prediction)),
         _attitude(curves['attitude'], clock)))
 
 
 def _clock(t_ns):
-    """Return seconds since the start as a function of ns, a factor from s, and a label."""
+    """Return a function from ns to seconds since the start, a factor from s, and a label."""
     start_ns, last_ns = int(t_ns[0]), int(t_ns[len(t_ns) - 1])
     factor, unit = scale(TIMES, (last_ns - start_ns) * 1e-9)
     return lambda t_ns: (t_ns - start_ns) * 1e-9, factor, f'time [{unit}]'
 
 
 def _telling(prediction):
-    """Return a Prediction, or None where it is no larger than what the theory may leave out."""
+    """Return a Prediction, or None if it is below the bound of the neglected terms."""
     if prediction is None or not prediction.largest.max() > prediction.position_bound:
         return None
     return prediction
 
 
 def _positions(curves, clock, prediction):
-    """Return the panels of a position error: it and its prediction, and what this leaves."""
+    """Return the panels of a position error: measured and predicted, and their difference."""
     predicted = [] if prediction is None else [
         interpolated(clock[0](t), prediction.t_s, prediction.position, axis)
         for axis, (t, _) in enumerate(curves[:2])]
@@ -67,7 +67,7 @@ def _positions(curves, clock, prediction):
 
 
 def _shown(curves):
-    """Return the axes of a position error that are drawn: up is zero where a height is given."""
+    """Return the axes of a position error to draw; up is omitted if it is always zero."""
     return [axis for axis, (_, values) in enumerate(curves) if axis < 2 or np.any(values)]
 
 
@@ -89,7 +89,7 @@ def _position(curves, clock, predicted):
 
 
 def _residual(curves, clock, predicted):
-    """Return the panel of what the prediction leaves, unless this can be seen above."""
+    """Return the panel of measured minus predicted, unless the difference is visible above."""
     seconds, per, label = clock
     left = [(t[np.isfinite(expected)], (values - expected)[np.isfinite(expected)])
             for (t, values), expected in zip(curves, predicted)]
@@ -117,7 +117,7 @@ def _drift(curves, clock, prediction):
     for name, (t, values) in zip(NAMES, curves):
         values = values * DEG_PER_HOUR
         marks.append(Curve(seconds(t) * per, values, name, EAST_NORTH_UP[name]))
-        # The slope of the first seconds is no drift yet: the scale is that of what follows.
+        # The slope of the first seconds is not a drift yet; do not scale the axis to it.
         settled.append(values[seconds(t) >= 0.05 * seconds(t[-1])])
     if prediction is not None:
         for axis, value in enumerate(prediction.drift * DEG_PER_HOUR):

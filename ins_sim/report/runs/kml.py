@@ -1,8 +1,8 @@
 """
-Tracks as KML 2.2 (OGC 07-147r2), which programs of maps and globes show.
+Write tracks as KML 2.2 (OGC 07-147r2) for map and globe programs.
 
-Heights are those above the ellipsoid. KML's are above the mean sea level, from which the ellipsoid
-is up to about 100 m off (the undulation of the geoid); the file says so.
+The heights are above the ellipsoid, although KML defines them above mean sea level. The difference
+(the geoid undulation) is up to about 100 m; the file contains a note about it.
 """
 
 from xml.sax.saxutils import escape
@@ -12,7 +12,7 @@ import numpy as np
 from ins_sim.visible_text import visible
 
 FILE = 'track.kml'
-# aabbggrr, as KML has it: the colours of the figures.
+# The colours of the figures in the notation of KML, aabbggrr.
 COLOURS = {'truth': 'ff000000', 'solution': 'ffb27200', 'aided solution': 'ffb27200',
            'strapdown alone': 'ff005ed5', 'GNSS fixes': 'ff009fe6'}
 OTHER = 'ff009fe6'
@@ -53,11 +53,11 @@ def _degrees(track):
 
 def unbroken(lon, lat, height):
     """
-    Return a line as pieces (lon, lat, height) that do not cross the meridian of 180 deg.
+    Split a line into pieces (lon, lat, height) that do not cross the 180 deg meridian.
 
-    lon, lat: deg; height: m.
-    A piece that ends there has a point on it, where the straight line through the two neighbours
-    crosses, and the next one begins with the same point on the other side.
+    ``lon`` and ``lat`` are in deg, ``height`` in m. At a crossing, a piece ends with the
+    interpolated point on the meridian, and the next one begins with the same point on the other
+    side.
     """
     crossings = np.flatnonzero(np.abs(np.diff(lon)) > 180.0)
     pieces, begin, first = [], [], 0

@@ -1,4 +1,4 @@
-"""The report of a run: its figures, its track and its page, written beside its data."""
+"""Write the report of a run next to its data: figures, track and page."""
 
 import math
 
@@ -18,7 +18,7 @@ from .error_charts import delay_chart, error_chart
 from .kml import FILE, write_tracks
 from .track import run_tracks, track_chart
 
-# What is in the files of a run.
+# Descriptions of the files of a run.
 FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'parameters.yaml': 'every parameter; with it simulate repeats the run',
          'manifest.yaml': 'on which machines the numbers are the same to the last bit',
@@ -26,17 +26,21 @@ FILES = {'run.npz': 'all arrays', 'summary.json': 'the table of this page',
          'delays.png': 'the errors less those of the zero-delay twin',
          'aided.png': 'the aided solution', 'track.png': 'the track from above',
          FILE: 'the track for map programs', 'bag': 'the topics of the nodes'}
-# And of those that are written on request.
+# Descriptions of the files that are written on request, by extension.
 KINDS = {'.csv': 'a table with named columns', '.tum': 'a trajectory for evo'}
 OBJECT = 'the motion was given as an object, which the settings do not describe'
 
 
 def run_notes(settings, run, prediction, steered=None):
     """
-    Return the sentences on what was left out, met or assumed in a run.
+    Return sentences on omissions, faults and assumptions of a run.
 
-    run: SimulationResult of SimulationSettings; prediction: Prediction or None; steered:
-    GuidedResult of a guided motion, or None.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    run : SimulationResult
+    prediction : Prediction or None
+    steered : GuidedResult of a guided motion, or None
     """
     return [*coverage.coverage_lines(settings, prediction), *guided_lines(steered),
             *gap_lines(run.faults), *withheld_lines(settings),
@@ -46,21 +50,26 @@ def run_notes(settings, run, prediction, steered=None):
 def write_report(work, settings, run, rows, prediction, title, aided=None, notes=(),
                  own_motion=False):
     """
-    Write the figures as PNG, the track as KML where the vehicle moves, and report.html.
+    Write the figures as PNG, the track as KML if the vehicle moves, and report.html.
 
-    work: folder (pathlib.Path) with the other files of the run; rows: SummaryRows of the
-    strapdown; aided: ``aided.AidedReport`` or None; notes: of ``run_notes``; the rest as in
-    ``storage.write_run``.
+    Parameters
+    ----------
+    work : folder (pathlib.Path) with the other files of the run
+    rows : SummaryRows of the strapdown
+    aided : ``aided.AidedReport`` or None
+    notes : result of ``run_notes``
+
+    The other parameters are those of ``storage.write_run``.
     """
     charts = [error_chart(title, run.errors, coverage.comparable(settings, prediction))]
     if run.twin is not None and coverage.instrument_errors(settings):
-        # Without errors of the instruments that of the run is what its delays cause.
+        # Without instrument errors the prediction of the run is that of the effect of the delays.
         charts.append(delay_chart(title, run.errors, run.twin,
                                   coverage.comparable_with_twin(settings, prediction)))
     tables = [_table(rows)]
     answer = _answer(run.errors)
     if aided is not None:
-        # Imports the statistics of SciPy, which takes as long as a short run.
+        # Imported lazily: the statistics of SciPy take as long to import as a short run.
         from .aided_page import report_answer, report_chart, report_notes, report_table
         answer = report_answer(aided)
         charts.insert(0, report_chart(title, aided))
@@ -82,16 +91,17 @@ def write_report(work, settings, run, rows, prediction, title, aided=None, notes
 
 
 def requested(work):
-    """Return {name: what it is} of the files in a folder that are written on request."""
+    """Return {name: description} of the files in a folder that were written on request."""
     return {path.name: KINDS[path.suffix] for path in sorted(work.iterdir())
             if path.suffix in KINDS}
 
 
 def write_error_report(work, settings, errors, rows, prediction, title):
     """
-    Write errors.png and report.html of a run of which the errors alone are known.
+    Write errors.png and report.html of a run if only its errors are known.
 
-    work: folder (pathlib.Path); errors: NavErrors; the rest as in ``write_report``.
+    ``work`` is a folder (pathlib.Path), ``errors`` are NavErrors; for the other parameters see
+    ``write_report``.
     """
     chart = error_chart(title, errors, coverage.comparable(settings, prediction))
     save_chart(work, chart)

@@ -1,4 +1,4 @@
-"""Where a vehicle was and where its solutions put it: the tracks of a run."""
+"""Tracks of a run: the true places of the vehicle and those of its solutions."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,15 @@ STAYS = 100.0
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Places: name; lat, lon (n,), rad; height (n,), m; points: no line goes through them."""
+    """
+    Places of a vehicle.
+
+    Attributes
+    ----------
+    name : name of the track
+    lat, lon, height : (n,), rad, rad, m
+    points : whether to draw single points instead of a line
+    """
 
     name: str
     lat: np.ndarray
@@ -35,7 +43,7 @@ def run_tracks(result, flown=None):
     """
     Return the Tracks of a SimulationResult, and of its AidedResult or None, the truth first.
 
-    The list is empty where the vehicle stays at its place.
+    The list is empty if the vehicle does not move.
     """
     tracks = [_thinned('truth', result.truth)]
     start = tracks[0].start
@@ -55,7 +63,7 @@ def run_tracks(result, flown=None):
 
 
 def _thinned(name, history):
-    """Return the Track of a history of places, which may be longer than memory."""
+    """Return the thinned Track of a history, which may not fit into memory."""
     parts = []
     for block in history.blocks(BLOCK):
         places = [block.lat[:], block.lon[:], block.height[:]]
@@ -76,7 +84,7 @@ STYLES = {'truth': {'colour': BLACK}, 'solution': {'colour': BLUE, 'dash': DASHE
 
 
 def track_chart(title, tracks):
-    """Return the Chart of Tracks from above, the first of which is the truth."""
+    """Return the Chart of Tracks seen from above; the first one is the truth."""
     start = tracks[0].start
     places = [_from(start, track) for track in tracks]
     factor, unit = scale(LENGTHS, max(np.abs(place).max() for place in places))

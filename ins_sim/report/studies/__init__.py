@@ -1,1 +1,1 @@
-"""What a study says: its rows, its tables for the terminal and its figures, one module a study."""
+"""Reports of the studies: rows, tables for the terminal and figures."""

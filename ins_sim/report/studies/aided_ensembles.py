@@ -1,4 +1,4 @@
-"""What an ensemble of the aided chain says of its filter: NEES and NIS in figures and tables."""
+"""Consistency of the filter over an ensemble of aided runs: NEES and NIS in figures and tables."""
 
 import numpy as np
 
@@ -30,9 +30,9 @@ def quantities(consistency):
 
 def consistency_rows(consistency):
     """
-    Return the rows of the table of a Consistency, as HEADS says.
+    Return the rows of the table of a Consistency, with the columns HEADS.
 
-    Mean and interval are those of the last instant, the part of the instants inside of all.
+    Mean and interval refer to the last instant; the share of instants inside refers to all.
     """
     rows = []
     for words, sums in quantities(consistency).items():
@@ -46,7 +46,7 @@ def consistency_rows(consistency):
 
 
 def consistency_table(consistency):
-    """Return the PageTable of a Consistency, or None where the filter has no covariance."""
+    """Return the PageTable of a Consistency, or None if the filter has no covariance."""
     rows = consistency_rows(consistency)
     if not rows:
         return None
@@ -56,7 +56,7 @@ def consistency_table(consistency):
 
 
 def consistency_chart(t_ns, consistency):
-    """Return the Chart of NEES and NIS over time, or None where there are none; t_ns (m,)."""
+    """Return the Chart of NEES and NIS over t_ns (m,), or None if there are none."""
     nees, fixes = consistency
     last_ns = max([int(t_ns[-1]), *(int(one.t_ns[-1]) for one in fixes.values() if len(one.t_ns))])
     factor, unit = scale(TIMES, last_ns * 1e-9)
@@ -83,7 +83,7 @@ def consistency_chart(t_ns, consistency):
 
 
 def consistency_answer(consistency):
-    """Return in a sentence whether the filter is consistent."""
+    """Return a sentence saying whether the filter is consistent."""
     rows = consistency_rows(consistency)
     if not rows:
         return 'The filter has no covariance, hence neither NEES nor NIS.'
@@ -97,7 +97,7 @@ def consistency_answer(consistency):
 
 
 def consistency_notes(result, filter_name):
-    """Return sentences on what does not count; result: AidedEnsembleResult."""
+    """Return sentences on missing covariances and rejected fixes of an AidedEnsembleResult."""
     notes = []
     if result.errors.statistics.count.any() and not result.consistency.nees.count.any():
         notes.append(f'filter {filter_name} has no covariance, hence no NEES')

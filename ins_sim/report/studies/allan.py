@@ -1,4 +1,4 @@
-"""The study of the Allan deviation: a chart of each triad, and the report."""
+"""Report of the Allan deviation: a chart of each triad, and the page."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..charts.scales import amount, TIMES
 from ..noise_terms import AXES, TRIADS
 from ..page.content import Page, PageTable
 
-# What each coefficient alone gives, and how it is drawn.
+# For each coefficient: formula of its Allan deviation, colour and dash of its line.
 GUIDES = {'Q': ('sqrt(3) Q/tau', palette.GREY, DOTTED),
           'N': ('N/sqrt(tau)', palette.PURPLE, DASHED),
           'B': ('{floor:.3f} B = {level:.3g} {unit}', palette.ORANGE, DASH_DOT),
@@ -19,13 +19,13 @@ PERCENT = 100.0
 
 
 def record_words(name, noise):
-    """Return what a Noise was found in: name, rate and length of the record."""
+    """Return a description of the analysed record: name, rate and length."""
     return (f'{name}, {1.0 / noise.allan.tau_s[0]:.4g} Hz, '
             f'{amount(TIMES, noise.allan.length_s)}')
 
 
 def allan_chart(name, noise):
-    """Return the Chart of a Noise; name: of the record or of the parameters."""
+    """Return the Chart of a Noise; ``name`` is that of the record or of the parameters."""
     return Chart(
         noise.triad, f'Allan deviation of the {noise.triad}: {record_words(name, noise)}',
         (_deviations(noise), _differences(noise)),
@@ -54,7 +54,7 @@ def _deviations(noise):
 
 
 def _guide(term, row, tau, part):
-    """Return the mark of one coefficient alone: that of B lies where its label says."""
+    """Return the line of one coefficient alone; that of B is at the level in its label."""
     words, colour, dash = GUIDES[term.symbol]
     label = (words.format(floor=FLICKER_FLOOR, level=part[0], unit=term.unit)
              + f', {term.symbol} = {row["all"]:.3g} {term.unit}')
@@ -66,7 +66,7 @@ def _guide(term, row, tau, part):
 
 
 def _differences(noise):
-    """Return the panel of what axes and settings are off the fit, in percent."""
+    """Return the panel of the differences of axes and settings from the fit, percent."""
     tau, fitted = noise.allan.tau_s, noise.fitted()
     one_sigma = 0.5 * PERCENT * noise.allan.relative_sigma()
     marks = [Band(tau, -one_sigma, one_sigma, 'one sigma of an axis', palette.GREY),
@@ -82,10 +82,15 @@ def _differences(noise):
 
 def allan_page(name, found, notes, settings, charts):
     """
-    Return the Page of what was found in a record.
+    Return the Page of the noise found in a record.
 
-    found: list of Noise; notes: sentences; settings: SimulationSettings of the instrument, or
-    None; charts: those of found.
+    Parameters
+    ----------
+    name : name of the record
+    found : list of Noise
+    notes : sentences
+    settings : SimulationSettings of the instrument, or None
+    charts : Charts of ``found``
     """
     files = {f'{noise.triad}.png': f'Allan deviation of the {noise.triad}' for noise in found}
     return Page(f'Allan deviation: {record_words(name, found[0])}',
@@ -126,5 +131,5 @@ def _table(noise):
 
 
 def _together(by_axis):
-    """Return the rms over the axes, which the mean variance shows."""
+    """Return the rms over the axes, comparable with the fit to the mean variance."""
     return float(np.sqrt(np.mean(np.square(by_axis))))

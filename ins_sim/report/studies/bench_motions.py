@@ -1,4 +1,4 @@
-"""Which motion of a bench shows delays best: bars, a map of axes, amplitude and frequency."""
+"""Compare bench motions by how accurately they determine delays: table, charts, page."""
 
 from dataclasses import asdict, dataclass
 import math
@@ -12,16 +12,16 @@ from ..charts.palette import BLACK
 from ..page.content import Page, PageTable
 
 MARK = 'motions.json'
-# Directions with a larger sigma than so many times the best are drawn as that.
+# In the map, sigmas are limited to this multiple of the best one.
 CAP = 5.0
 
 
 @dataclass(frozen=True)
 class ForeseenRow:
     """
-    A motion of a bench, what sigma it gives the delay of each channel, us, and which do not show.
+    A bench motion with the predicted sigma of the delay of each channel, us.
 
-    refused: why, by axis, or ''.
+    ``refused`` contains, by axis, the reason why a delay is not observable, or ''.
     """
 
     motion: str
@@ -30,12 +30,12 @@ class ForeseenRow:
 
     @property
     def shown(self):
-        """Names of the channels whose delays show."""
+        """Names of the channels whose delays are observable."""
         return [axis for axis, why in zip('xyz', self.refused) if not why]
 
     @property
     def worst_us(self):
-        """Largest sigma of the channels that show, or the least of all where none does."""
+        """Largest sigma of the observable channels, or the smallest of all if there are none."""
         shown = [s for s, why in zip(self.sigma_us, self.refused) if not why]
         return max(shown) if shown else min(self.sigma_us)
 
@@ -46,12 +46,12 @@ def foreseen_row(case, foreseen):
 
 
 def order(rows):
-    """Return ForeseenRows, those that show most channels first, then by their sigma."""
+    """Return ForeseenRows sorted by the number of observable channels, then by sigma."""
     return sorted(rows, key=lambda row: (-len(row.shown), row.worst_us))
 
 
 def answer(rows, duration_s, rate_hz):
-    """Return which motion is best, in two sentences."""
+    """Return two sentences saying which motion is best."""
     best = order(rows)[0]
     return (f'Of the motions compared {best.motion} shows delays best: '
             f'{best.worst_us:.3g} us a channel ({", ".join(best.shown)}) and '
@@ -64,8 +64,8 @@ def motion_charts(rows, sweep, single_sigma, noise):
     """
     Return the Charts of ForeseenRows and of a RockingSweep.
 
-    single_sigma: sigma of a channel that is rocked about its own axis, s; noise: of the instrument
-    and the length, in words.
+    ``single_sigma`` is the sigma of a channel that is rocked about its own axis, s; ``noise``
+    describes the noise of the instrument and the length of the record.
     """
     return _bars(rows, noise), _directions(single_sigma, noise), _speed(sweep, noise)
 
@@ -113,7 +113,7 @@ def _speed(sweep, noise):
 
 
 def motions_table(rows):
-    """Return heads and rows of the table of motions, texts."""
+    """Return the heads and rows of the table of motions, as texts."""
     heads = ('motion', 'x [us]', 'y [us]', 'z [us]')
     return heads, tuple((row.motion, *(f'({s:.3g})' if why else f'{s:.3f}' for s, why in zip(
         row.sigma_us, row.refused))) for row in order(rows))
@@ -135,7 +135,7 @@ def show_motions(title, rows, console):
 
 
 def motions_page(title, rows, said, charts, settings):
-    """Return the Page; said: the answer; settings: SimulationSettings of the instrument."""
+    """Return the Page; ``said`` is the answer, ``settings`` those of the instrument."""
     table = PageTable('Standard deviation of a delay by channel', *motions_table(rows), note=NOTE)
     return Page(f'Motions of a bench for delays: {title}', said, charts, (table,), (
         'Predicted from the linear model with the angle random walk of the instrument and priors '

@@ -1,4 +1,4 @@
-"""The report of an error budget: sentences, tables, figures, numbers and page."""
+"""Report of an error budget: sentences, tables, figures, numbers and page."""
 
 import json
 
@@ -23,11 +23,11 @@ from .budget_charts import charts, SCALES
 MARK = 'budget.json'
 ARRAYS, SETTINGS = 'budget.npz', 'parameters.yaml'
 ARCSEC = 3600.0 * np.degrees(1.0)
-# Parts of the run at which tables have their columns.
+# The columns of tables refer to these parts of the run.
 PARTS = (1.0 / 6.0, 0.5, 1.0)
 # A source is listed in the answer to a requirement if the error without it is below this part.
 LITTLE = 0.999
-# Most runs that are listed by number.
+# Maximum number of diverged runs that are listed.
 MOST_NAMED = 20
 LEFT_OUT = ('Not covered: range and quantisation of the instruments, jitter, latency and loss of '
             'samples, errors of the algorithms, and effects of second order.')
@@ -37,7 +37,8 @@ def write_budget(folder, settings, linear, answers, compared, beside):
     """
     Write report, figures, tables and arrays of a LinearBudget into a folder (pathlib.Path).
 
-    answers: RequirementAnswers; compared: ComparedQuantities of beside: BesideRuns, or None.
+    ``answers`` are RequirementAnswers, ``compared`` are the ComparedQuantities of the BesideRuns
+    ``beside``, or None.
     """
     words = title(settings)
     drawn = charts(linear, words, compared, [a.requirement for a in answers])
@@ -77,7 +78,7 @@ def show_budget(settings, linear, answers, compared, beside, console):
 
 
 def answer_sentence(linear):
-    """Return the horizontal error at the end, and its largest source, in a sentence."""
+    """Return a sentence with the horizontal error at the end and its largest source."""
     made = shares(linear, QUANTITIES['horizontal'])
     end, rms = linear.t_s[-1], float(made.rms[-1])
     if not rms > 0.0:
@@ -92,7 +93,7 @@ def answer_sentence(linear):
 
 
 def requirement_sentence(answer):
-    """Return what would have to improve to meet a requirement, in one sentence."""
+    """Return a sentence saying which improvements meet a requirement."""
     r, unit = answer.requirement, QUANTITIES[answer.requirement.quantity].unit
     found = f'{r.text}: the budget gives {_text(unit, answer.found)}'
     if answer.met:
@@ -173,7 +174,7 @@ def _source_table(linear, sources, part, numbers, words):
 
 
 def _silent(sources, shown):
-    """Return a sentence on the sources that make no error here, or ''."""
+    """Return a sentence on the sources that cause no error in this run, or ''."""
     silent = [source.label for k, source in enumerate(sources) if k not in shown]
     return f' No effect on the position here: {", ".join(silent)}.' if silent else ''
 
@@ -231,7 +232,7 @@ def _beside_table(compared):
 
 
 def budget_notes(linear, compared, beside):
-    """Return sentences on what was left out, and on how far the budget holds."""
+    """Return sentences on omitted effects and on the validity of the budget."""
     notes = [LEFT_OUT]
     until = linear_until(linear)
     if until is not None:
@@ -275,14 +276,14 @@ def _cep(linear, part):
 
 
 def _text(unit, value):
-    """Return a value, in SI, as a text in the unit in which it is read."""
+    """Return a value in SI as text in a convenient unit."""
     factor, name = scales.scale(((1000.0, 1e-3, 'km'), *scales.LENGTHS[1:]) if unit == LENGTH
                                 else SCALES[unit], value)
     return f'{factor * value:.4g} {name}'
 
 
 def _numbers(linear, answers, tables, notes):
-    """Return what is written into MARK."""
+    """Return the document that is written into the file MARK."""
     return {'answer': answer_sentence(linear),
             'requirements': [{'text': a.requirement.text, 'found': a.found, 'met': a.met,
                               'random': a.random, 'everything': a.everything,

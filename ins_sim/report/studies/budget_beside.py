@@ -49,6 +49,6 @@ def read_study(folder, settings):
 
 
 def _drawn_alike(settings):
-    """Return settings with the random numbers of one seed and run."""
+    """Return settings with seed and run set to fixed values, for comparison."""
     settings = settings.with_run(0)
     return replace(settings, imu_sensor=replace(settings.imu_sensor, seed=0))

@@ -1,4 +1,4 @@
-"""The figures of an error budget."""
+"""Charts of an error budget."""
 
 import numpy as np
 
@@ -11,10 +11,10 @@ from ..charts.chart import (Band, Bars, Chart, Curve, DASHED, Level, LOG, Marker
 from ..charts.palette import BLACK, BLUE, CYCLE, EAST_NORTH_UP, GREEN, GREY, ORANGE, RED
 
 SCALES = {LENGTH: scales.LENGTHS, SPEED: scales.SPEEDS, ANGLE: scales.ANGLES}
-# Sources that have a surface or a curve of their own; the smaller ones have one together.
+# Number of sources drawn separately; the smaller ones are combined.
 SHOWN = 7
 SURFACES = tuple(colour for colour in CYCLE if colour not in (BLACK, GREY))
-# Of surfaces without a colour of their own.
+# Colours of the areas of combined sources.
 PALE = '#d8d8d8', '#b0b0b0'
 # Bars shorter than this part of the longest one are left out.
 SHORTEST = 1e-3
@@ -23,7 +23,7 @@ DASHED_NOTE = ('Dashed: the axes have turned so far ({:g} rad) that errors of se
                'and the budget is a guide only.')
 
 
-# Quantities that share a figure, in which requirements on them are marked.
+# Quantities in one figure, in which the requirements on them are marked.
 PLACES = ('horizontal', 'north', 'east')
 
 
@@ -31,16 +31,16 @@ def charts(linear, title, compared, required=()):
     """
     Return the Charts of a LinearBudget.
 
-    compared: ComparedQuantities of an ensemble; required: Requirements.
+    ``compared`` are the ComparedQuantities of an ensemble, ``required`` are Requirements.
     """
-    found = [_stacked(linear, 'budget_position', f'Who makes the position error: {title}',
+    found = [_stacked(linear, 'budget_position', f'Sources of the position error: {title}',
                       ('horizontal',)),
              _total(linear, f'Position error of the budget: {title}', required),
              _sources(linear, f'Each source alone: {title}'),
              _ranking(linear, f'Ranking at {linear.t_s[-1]:g} s: {title}'),
-             _stacked(linear, 'budget_velocity', f'Who makes the velocity error: {title}',
+             _stacked(linear, 'budget_velocity', f'Sources of the velocity error: {title}',
                       ('velocity',)),
-             _stacked(linear, 'budget_attitude', f'Who makes the attitude error: {title}',
+             _stacked(linear, 'budget_attitude', f'Sources of the attitude error: {title}',
                       ('tilt', 'azimuth'))]
     if compared:
         found.append(_beside(linear, compared, f'Budget and ensemble: {title}'))
@@ -59,7 +59,7 @@ def _caption(linear, text=''):
 
 
 def parted(linear, t, values, label, colour, width=2.0):
-    """Return curves of values: solid as far as linear theory holds, and dashed from there on."""
+    """Return curves of values: solid while linear theory holds, dashed afterwards."""
     over = second_order(linear) > LINEAR_UP_TO
     if not over.any():
         return (Curve(t, values, label, colour, width=width),)
@@ -80,12 +80,12 @@ def _stacked(linear, name, title, names):
              *parted(linear, t, factor * made.rms, 'all together (rms)', BLACK)),
             x_label, f'{quantity.words} [{unit}]'))
     return Chart(name, title, tuple(panels), caption=_caption(
-        linear, 'Heights are shares of the square of the error: the part of the whole that would '
-        'go, by squares, with the source.'))
+        linear, 'The height of an area is its share of the squared error: removing the source '
+        'reduces the squared error by this share.'))
 
 
 def _surfaces(linear, made):
-    """Return the surfaces of a stack, the largest at the bottom, and their labels and colours."""
+    """Return the areas of a stack, the largest at the bottom, with labels and colours."""
     whole = np.where(made.rms > 0.0, made.rms, 1.0)[:, None]
     random = (made.random.T / whole)
     order = np.argsort(-made.random[:, -1], kind='stable')
@@ -105,7 +105,7 @@ def _surfaces(linear, made):
 
 
 def _colours(linear, shown):
-    """Return colours of sources, which have the same one in every figure where that can be."""
+    """Return the colours of sources, the same in every figure if possible."""
     ranked = np.argsort(-shares(linear, QUANTITIES['horizontal']).random[:, -1], kind='stable')
     own = dict(zip(ranked.tolist(), SURFACES))
     free = [c for c in SURFACES if c not in [own.get(k) for k in shown]]
@@ -172,7 +172,7 @@ def _ranking(linear, title):
 
 
 def _beside(linear, compared, title):
-    """Return rms, and its ratio to that of the budget, of the ensemble: horizontal and azimuth."""
+    """Return the Chart of the ensemble's rms and its ratio to the budget (horizontal, azimuth)."""
     t, x_label = _time(linear)
     panels = []
     for found in compared:

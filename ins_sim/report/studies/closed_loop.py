@@ -1,4 +1,4 @@
-"""The study of the closed loop: its tables, what they say, and its report."""
+"""Report of the closed-loop study: tables, sentences and page."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ins_sim.studies.closed_loop import QUIET_DEG
 from ..charts.chart import Chart
 from ..page.content import Page, PageTable
 
-# Columns of words.
+# Columns that contain text.
 TEXTS = ('with', 'filter')
 
 
@@ -18,8 +18,8 @@ class LoopRow:
     """
     One flight: half the range of beta, deg, and of z, m, over the last 30 %, and z at the end, m.
 
-    frequency: rad/s, None where nothing oscillates; lateral: the same figures of the lateral
-    channel alone, published: what is published of them, both by their names.
+    ``frequency`` is in rad/s, or None without oscillation. ``lateral`` contains the same results
+    for the lateral channel alone and ``published`` those that are published, both by name.
     """
 
     condition: str
@@ -38,7 +38,7 @@ class LoopRow:
 
 @dataclass(frozen=True)
 class LimitRow:
-    """Limit of k_z of a case: by the linear theory, its frequency, rad/s, and by flights."""
+    """Stability limit of k_z: by linear theory, with its frequency (rad/s), and by flights."""
 
     case: str
     linear: float
@@ -49,9 +49,13 @@ class LimitRow:
 @dataclass(frozen=True)
 class LoopPart:
     """
-    What one part of the study has found.
+    Results of one part of the study.
 
-    numbers: for the file of JSON; answer: in a sentence; charts; tables.
+    Attributes
+    ----------
+    numbers : content of the JSON file
+    answer : the result in a sentence
+    charts, tables : Charts and PageTables
     """
 
     numbers: list
@@ -61,7 +65,7 @@ class LoopPart:
 
 
 def loop_row(case, flight, lateral=None, condition=''):
-    """Return the LoopRow of a LoopCase and its LoopFlight; lateral: that of the channel alone."""
+    """Return the LoopRow of a LoopCase, its LoopFlight, and the lateral channel flown alone."""
     published = {} if case.published is None else {
         name: value for name, value in vars(case.published).items() if value is not None}
     return LoopRow(condition, case.label, case.k_z, case.offset_m, case.engage_s, case.duration_s,
@@ -108,7 +112,7 @@ def limits_table(rows):
 
 
 def show_table(table, console):
-    """Print a PageTable of the study, all but its first texts to the right."""
+    """Print a PageTable of the study; all columns except the first texts are right-aligned."""
     shown = Table(title=table.title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
                   caption=table.note or None)
     for head in table.heads:
@@ -119,7 +123,7 @@ def show_table(table, console):
 
 
 def flights_answer(rows):
-    """Return the sentence about LoopRows: how many end quiet, and which swings most."""
+    """Return a sentence about LoopRows: how many end quiet, and which oscillates most."""
     quiet = [r for r in rows if r.beta_deg < QUIET_DEG]
     text = (f'{len(quiet)} of {len(rows)} flights end quiet (the sideslip swings by less than '
             f'{QUIET_DEG} deg)')
@@ -132,7 +136,7 @@ def flights_answer(rows):
 
 
 def limits_answer(rows):
-    """Return the sentence about LimitRows."""
+    """Return a sentence about LimitRows."""
     off = max(abs(r.flown / r.linear - 1.0) for r in rows)
     return (f'Flights of the whole chain lose stability within {100.0 * off:.2g} % of the k_z of '
             'the linear theory.')
@@ -142,7 +146,7 @@ def loop_page(title, settings, parts):
     """
     Return the Page of the study.
 
-    title: of the motion, in words; settings: AidedSimulationSettings; parts: LoopParts.
+    ``title`` describes the motion; ``settings`` are AidedSimulationSettings, ``parts`` LoopParts.
     """
     charts = tuple(chart for part in parts for chart in part.charts)
     return Page(title, ' '.join(part.answer for part in parts), charts,

@@ -1,4 +1,4 @@
-"""The charts of the closed loop: the flights over time, and the map of stability."""
+"""Charts of the closed-loop study: flights over time, and the stability map."""
 
 from itertools import cycle, islice, product
 
@@ -16,7 +16,7 @@ GAINS = {('conventional', True): 'K_v [1/s]', ('conventional', False): 'gain of 
 
 
 def histories_chart(name, title, labels, flights):
-    """Return the Chart of LoopFlights with these labels: sideslip, offset, and its estimate."""
+    """Return the Chart of LoopFlights: sideslip, offset, and error of the estimated offset."""
     per_s, time_unit = scale(TIMES, max(float(f.t_s[-1]) for f in flights))
     per_m, unit = scale(LENGTHS, max(float(np.abs(f.z).max()) for f in flights))
     off_per_m, off_unit = scale(LENGTHS, max(float(np.abs(f.z_estimated - f.z).max())
@@ -36,7 +36,7 @@ def histories_chart(name, title, labels, flights):
 
 
 def styles(count):
-    """Return (dash, colour) of so many curves, which differ while there are such left."""
+    """Return (dash, colour) for ``count`` curves, distinct as long as there are enough."""
     return list(islice(cycle(product(DASHES, palette.CYCLE)), count))
 
 
@@ -52,7 +52,7 @@ def map_chart(panels, curves):
 
 
 def _map_panel(group, members):
-    """Return the Panel of the filters of a group: linear limits, and those of flights."""
+    """Return the Panel of a group of filters: limits by linear theory and by flights."""
     kind, slides = group
     marks = []
     for (panel, found), colour in zip(members, cycle(palette.CYCLE)):
@@ -68,12 +68,12 @@ def _map_panel(group, members):
 
 
 def _inside(limits):
-    """Return limits of k_z, NaN where there is none up to MOST_K_Z."""
+    """Return limits of k_z, NaN if the loop is stable up to MOST_K_Z."""
     return np.where(limits < MOST_K_Z, limits, np.nan)
 
 
 def map_answer(curves):
-    """Return the sentence about MapCurves: how far flights are from the linear limits."""
+    """Return a sentence about MapCurves: differences of flown and linear limits."""
     words = []
     for start in curves[0].flown:
         off = np.concatenate([_inside(c.flown[start]) - _inside(c.linear) for c in curves])

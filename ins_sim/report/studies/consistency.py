@@ -1,4 +1,4 @@
-"""NEES and NIS over runs against time, and where they lie in their intervals."""
+"""Panels of NEES and NIS of several runs over time, with their intervals."""
 
 from typing import NamedTuple
 
@@ -9,12 +9,12 @@ from ..charts.chart import Band, Curve, DASHED, Level, Markers, Panel, SOLID
 from ..charts.palette import BLACK, GREY
 from ..consistency import sum_intervals
 
-# What the blocks of states are called in tables and legends.
+# Names of the blocks of states in tables and legends.
 WORDS = {'position': 'position', 'velocity': 'velocity', 'attitude': 'attitude',
          'state': 'all states that are estimated'}
 
 WITHIN = '95 % of consistent filters'
-# In parts of what is expected.
+# Upper end of the axis, relative to the expected value.
 MOST_SHOWN = 30.0
 
 
@@ -25,7 +25,7 @@ def per_state(sums):
 
 
 class Entry(NamedTuple):
-    """A filter or an instrument in a panel: ChiSquareSums (n,) at instants x (n,), and style."""
+    """Curve of a filter or sensor: ChiSquareSums (n,) at instants x (n,), label and style."""
 
     label: str
     x: np.ndarray
@@ -38,8 +38,8 @@ def consistency_panel(entries, x_label, title, y_label, fixes=False):
     """
     Return the Panel of NEES or NIS over time, each over its degrees of freedom.
 
-    entries: list of Entry, those with the same freedom having one band; fixes: whether instants
-    are those of fixes, drawn as points, since each is independent of the one before.
+    ``entries`` is a list of Entry; those with equal degrees of freedom share a band. If ``fixes``
+    is true, the instants are those of fixes, which are independent and drawn as points.
     """
     marks, banded, tops = [], set(), [2.0]
     for label, x, sums, colour, dash in entries:
@@ -56,13 +56,13 @@ def consistency_panel(entries, x_label, title, y_label, fixes=False):
             marks.append(Curve(x, mean, label, colour, dash))
         tops += [np.percentile(mean, 95.0), high.max()]
     marks.append(Level(y=1.0, label='expected', colour=BLACK, dash=DASHED))
-    # An outlier does not flatten the rest.
+    # Limit the axis, so that an outlier does not compress the rest.
     return Panel(tuple(marks), x_label, y_label, title,
                  y_range=(0.0, float(min(1.3 * max(tops), MOST_SHOWN))))
 
 
 def judged(mean, low, high):
-    """Return in words where a mean lies, or '' where there is none."""
+    """Return in words whether a mean is inside its interval, or '' if there is no mean."""
     if mean is None or not np.isfinite(mean):
         return ''
     if mean > high:
@@ -71,7 +71,7 @@ def judged(mean, low, high):
 
 
 def inside_share(sums):
-    """Return which part of the instants lies inside the 95 % interval, and of how many."""
+    """Return the share of instants inside the 95 % interval, and the number of instants."""
     there = sums.count > 0
     low, high = sum_intervals(sums)
     with np.errstate(invalid='ignore'):

@@ -1,4 +1,4 @@
-"""The figures of the study of delays as Charts."""
+"""Charts of the study of delays."""
 
 import numpy as np
 
@@ -11,9 +11,9 @@ from ..charts.palette import BLACK, BLUE, BODY_AXES, CYCLE, EAST_NORTH_UP, GREY
 from . import delay_names as names
 
 ARCMIN, ARCSEC = 60.0 * np.degrees(1.0), 3600.0 * np.degrees(1.0)
-# Curves smaller than this part of the largest are drawn once more by themselves.
+# Curves smaller than this part of the largest are repeated in a separate panel.
 SMALL = 0.05
-# Below so many arcseconds differences are read in milliarcseconds.
+# Differences below this, arcsec, are shown in milliarcseconds.
 FINE = 0.1
 NAMES = ('latitude', 'longitude')
 LINEAR = 'Linear theory without the rotation of the Earth.'
@@ -25,12 +25,12 @@ def figure_charts(result):
 
 
 def _errors(result):
-    """Latitude and longitude error of motion 2: all runs, the small ones, less the prediction."""
+    """Latitude and longitude error of motion 2: all runs, small ones, minus the prediction."""
     figure, shown = result.figure, result.figure.shows.shown
     picked = [k for k, name in enumerate(NAMES) if shown in ('both', name)]
     rows = []
     for make in (_whole, _small, _residual):
-        # the legend of the first stands for all
+        # The legend of the first panel applies to all.
         row = [make(result.runs, k, k == picked[0]) for k in picked]
         if any(row):
             rows += [panel or Panel((), '', '', note='no small ones') for panel in row]

@@ -1,4 +1,4 @@
-"""The numbers of the study of delays: columns of each figure, and figures for summary files."""
+"""Numbers of the study of delays: columns of each figure, and values for summary files."""
 
 import numpy as np
 
@@ -79,13 +79,13 @@ def all_runs(results):
 
 
 def published(run):
-    """Return drift (3,), deg/h, and max |dN|, |dE|, m, as published of a run, or None."""
+    """Return the published drift (3,), deg/h, and max |dN|, |dE|, m, of a run, or None."""
     key = summary.study_key(run.settings)
     return summary.PUBLISHED_DRIFT.get(key), summary.PUBLISHED_POSITION.get(key)
 
 
 def run_numbers(run):
-    """Return the figures of a run for a summary file."""
+    """Return the results of a run for a summary file."""
     drift, place = published(run)
     numbers = {'run': names.run_name(run.settings), 'delays': names.late_gyros(run.settings),
                'duration_s': run.settings.motion_generator.duration_s}
@@ -106,7 +106,7 @@ def run_numbers(run):
 
 
 def figure_numbers(result):
-    """Return the figures of a FigureResult for a summary file."""
+    """Return the results of a FigureResult for a summary file."""
     numbers = {'figure': result.figure.name,
                'runs': [names.run_name(run.settings) for run in result.runs]}
     if result.figure.shows.figure == 'rates':

@@ -1,4 +1,4 @@
-"""The estimate of delays: what was found of each channel, in tables, charts and a page."""
+"""Report of estimated delays: values of each channel in sentences and tables."""
 
 from dataclasses import asdict, dataclass
 import math
@@ -21,8 +21,8 @@ class FoundValue:
     """
     One value of one channel with its standard deviation, in a unit.
 
-    known: the value in the settings of a simulated run, or None; told: whether the record
-    determines the value better than the a-priori standard deviation.
+    ``known`` is the value in the settings of a simulated run, or None. ``told`` is true if the
+    record determines the value better than the a-priori standard deviation.
     """
 
     axis: str
@@ -35,7 +35,7 @@ class FoundValue:
 
 
 def read_bench_run(folder):
-    """Return the ImuSamples of a run; ValueError where its motion is not in its parameters."""
+    """Return the ImuSamples of a run; ValueError if its motion is not in its parameters."""
     path = folder / storage.MANIFEST
     if path.is_file() and manifest.OBJECT in path.read_text(encoding='utf-8', errors='replace'):
         raise ValueError(f'{folder} {OWN_MOTION}')
@@ -58,7 +58,7 @@ def found_values(triad, known_us=None):
     """
     Return the FoundValues of a TriadEstimate.
 
-    known_us (3,): delays of the settings of a run, us, or None.
+    ``known_us`` (3,) are the delays in the settings of a run, us, or None.
     """
     rows = []
     for i, channel in enumerate(triad.channels):
@@ -76,9 +76,9 @@ def found_values(triad, known_us=None):
 
 def differences(triad):
     """
-    Return the differences of the delays that show as (name, difference, sigma), us.
+    Return the differences of the observable delays as (name, difference, sigma), us.
 
-    The channels have their own noise, and nothing in common but the time of the stamps.
+    The noise of the channels is independent, so the variances add.
     """
     shown = [c for c in triad.channels if not c.refused]
     return [(f'{b.axis} - {a.axis}', 1e6 * (b.delay - a.delay),
@@ -107,11 +107,11 @@ def sentences(triad):
 
 
 def _alike(channel):
-    """Yield sentences on the combinations of values that the readings do not determine."""
+    """Yield sentences on combinations of values that the record does not determine."""
     names = value_names(channel)
     for direction in channel.weak:
         parts = [(k, float(v)) for k, v in enumerate(direction) if v]
-        # The first part by a round amount: 1 us, or 100 of ppm, urad; 1 deg/h of a bias alone.
+        # Scale the first value to a round amount: 1 us, 100 ppm or urad, or 1 deg/h of a bias.
         first, value = parts[0]
         amount = {DELAY: 1.0}.get(first, 1.0 if first >= BIAS else 100.0)
         factor = amount / abs(value * names[first][1])
@@ -143,7 +143,7 @@ def answer(triad, known_us=None):
 
 
 def number(value, sigma):
-    """Return a value with its standard deviation, of which two digits count."""
+    """Return a value with its standard deviation, rounded to two digits of the latter."""
     places = min(12, max(0, 1 - math.floor(math.log10(sigma)))) if sigma > 0.0 else 6
     return f'{round(value, places) + 0.0:.{places}f} +- {sigma:.{places}f}'
 

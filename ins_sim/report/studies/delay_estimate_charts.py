@@ -1,4 +1,4 @@
-"""The charts of an estimate of delays: the fit, its residuals over time, and the sigmas."""
+"""Charts of estimated delays: the fit, its residuals over time, and the standard deviations."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from . import delay_estimate
 
 
 def estimate_charts(title, triad):
-    """Return the Charts of a TriadEstimate; title: of the records, in words."""
+    """Return the Charts of a TriadEstimate; ``title`` describes the records."""
     return _fit(title, triad), _residuals(title, triad), _sigmas(title, triad)
 
 
@@ -19,9 +19,9 @@ def _shown(triad):
 
 
 def _fit(title, triad):
-    """Reading less all but the delay against the derivative of the rate, and the residual."""
+    """Rate without other errors over the angular acceleration, and the residual."""
     shown = _shown(triad)
-    # Lags are alike and large beside what the delays differ by.
+    # The lags are nearly equal and much larger than the differences of the delays.
     common = sum(c.delay for c in shown) / len(shown) if len(shown) > 1 else 0.0
     top, bottom, widest = [], [], max(shown, key=lambda c: float(c.bins[3].max()))
     x, sigma = widest.bins[0] / DEG, 2.0 * widest.bins[3] * DEG_PER_HOUR
@@ -34,9 +34,9 @@ def _fit(title, triad):
         top.append(Markers(x, (late + common * change) * DEG_PER_HOUR, None, colour, CIRCLE))
         bottom.append(Markers(x, left * DEG_PER_HOUR, channel.axis, colour, CIRCLE))
     label = 'angular acceleration of the axis [deg/s^2]'
-    less = f', {1e6 * common:.2f} us of all taken off' if common else ''
-    return Chart('delay_fit', f'What the delay does: {title}', (
-        Panel(tuple(top), label, 'reading less all else [deg/h]',
+    less = f'; a common {1e6 * common:.2f} us is subtracted' if common else ''
+    return Chart('delay_fit', f'Effect of the delay: {title}', (
+        Panel(tuple(top), label, 'rate without other errors [deg/h]',
               f'A delay is the slope against the angular acceleration{less}'),
         Panel(tuple(bottom), label, 'residual [deg/h]', 'What the fit leaves', height=0.7)),
         caption='Lines: the delay of the legend. Points: means of the readings over intervals of '
@@ -68,7 +68,7 @@ def _sigmas(title, triad):
     """Standard deviations of the delays and of their differences."""
     found = [(c.axis, 1e6 * c.delay_sigma) for c in _shown(triad)]
     found += [(name, sigma) for name, _, sigma in delay_estimate.differences(triad)]
-    return Chart('delay_sigma', f'How sure the delays are: {title}', (
+    return Chart('delay_sigma', f'Standard deviations of the delays: {title}', (
         Panel((Bars(np.array([s for _, s in found]), tuple(
             f'{"delay of " if len(name) == 1 else "difference "}{name}' for name, _ in found)),),
             'standard deviation [us]', ''),))
@@ -78,7 +78,8 @@ def estimate_page(title, triad, known_us, charts, settings, notes):
     """
     Return the Page of a TriadEstimate.
 
-    settings: SimulationSettings of the first record; notes: sentences on how records were read.
+    ``settings`` are the SimulationSettings of the first record; ``notes`` are sentences on how the
+    records were read.
     """
     delays = PageTable('Delays', *delay_estimate.delay_rows(triad, known_us))
     errors = PageTable('Other errors', *delay_estimate.error_rows(triad))

@@ -1,4 +1,4 @@
-"""The study of delays as a folder: figures, tables of their curves, numbers, and the page."""
+"""Write the study of delays: figures, tables of their curves, numbers and page."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""How the runs and figures of the study of delays are named in words."""
+"""Names of the runs and figures of the study of delays in words."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def psi_rate(settings):
 
 
 def motion_name(settings):
-    """Return the motion of SimulationSettings in words, without what differs between its runs."""
+    """Return the motion in words, without the settings that differ between the runs."""
     motion = settings.motion_generator.motion
     if motion.kind == 'two_axis':
         return f'motion 2 at theta {motion.theta_deg:g} deg'
@@ -33,7 +33,7 @@ def motion_name(settings):
 
 
 def short_run_name(settings):
-    """Return what tells a run from the others of its figure."""
+    """Return the name of a run within its figure."""
     motion = settings.motion_generator.motion
     if motion.kind == 'two_axis':
         rate = psi_rate(settings)
@@ -45,7 +45,7 @@ def short_run_name(settings):
 
 
 def run_name(settings):
-    """Return the name of a run among all of the study."""
+    """Return the name of a run within the study."""
     motion = settings.motion_generator.motion
     if motion.kind == 'two_axis':
         return f'motion 2, theta {motion.theta_deg:g} deg, {short_run_name(settings)}'
@@ -55,7 +55,7 @@ def run_name(settings):
 
 
 def conditions(settings):
-    """Return in a sentence what is the same in the runs of a figure and not in its title."""
+    """Return a sentence with the conditions common to the runs of a figure."""
     motion = settings.motion_generator.motion
     told = {'two_axis': f", gamma' = {motion.two_axis.gamma_rate_rad_s:g} rad/s",
             'rocking': f', rocking about the {motion.rocking.axis} axis'}.get(motion.kind, '')

@@ -14,7 +14,7 @@ from .delay_data import all_runs, ARCMIN, published
 
 ENU = ('east', 'north', 'up')
 ROUNDING = 1e-9
-# What a run without delays may err by where the IMU samples the motion often enough, m.
+# Largest error of a run without delays if the IMU samples the motion often enough, m.
 CLOSED = 0.01
 TITLE = 'Delays of gyro channels: the study of Bogdanov and Fomichev (2018)'
 NO_CURVES = ('The paper gives no data for its curves, so they are not drawn; '
@@ -54,7 +54,7 @@ def _drifts(runs):
 
 
 def _drift_text(drift):
-    """Return a drift, rad/s, in deg/h: a millionth of what the delays make is rounding."""
+    """Return a drift (rad/s) as text in deg/h; values at the level of rounding become 0."""
     return number_text(DEG_PER_HOUR * drift if abs(drift) * DEG_PER_HOUR >= ROUNDING else 0.0)
 
 

@@ -1,4 +1,4 @@
-"""An ensemble in words and files: rows, tables, page, arrays, parameters and manifest."""
+"""Report of an ensemble: sentences, tables, page, arrays, parameters and manifest."""
 
 from dataclasses import dataclass
 import json
@@ -27,21 +27,25 @@ from .ensemble_charts import AXES, ensemble_charts
 
 ARRAYS, SUMMARY = 'ensemble.npz', 'summary.json'
 ARCSEC = math.degrees(1.0) * 3600.0
-# How a quantity is told: its unit and the factor from SI.
+# Unit in which a quantity is shown, and one unit in SI.
 TOLD = {'attitude': ('arcsec', ARCSEC), 'velocity': ('m/s', 1.0), 'position': ('m', 1.0)}
-# So many instants stand in the tables, and so many runs in a sentence.
+# Maximum number of instants in a table, and of runs in a sentence.
 MOST_ROWS, MOST_NAMED = 7, 10
 
 
 @dataclass(frozen=True, eq=False)
 class EnsembleReport:
     """
-    What is said of an ensemble.
+    Content of the report of an ensemble.
 
-    title: what was simulated, in words; settings: SimulationSettings of the first run, or
-    AidedSimulationSettings; result; errors: EnsembleErrors; worst: number and horizontal error, m,
-    of the run that ends farthest off, or None; digest: of the result, the same whatever computed
-    it; aided: AidedEnsembleResult of runs of the aided chain, or None.
+    Attributes
+    ----------
+    title : what was simulated, in words
+    settings : SimulationSettings of the first run, or AidedSimulationSettings
+    result, errors : EnsembleResult and EnsembleErrors
+    worst : number and horizontal error (m) of the run with the largest error at the end, or None
+    digest : digest of the result, independent of how the runs were distributed
+    aided : AidedEnsembleResult of aided runs, or None
     """
 
     title: str
@@ -82,7 +86,7 @@ def flight_command(report, parameters=PARAMETERS):
 
 
 def notes(report):
-    """Return sentences on the runs that were excluded, and on those that were restarted."""
+    """Return sentences on excluded and on restarted runs."""
     result, said = report.result, []
     if result.diverged:
         words, why = 'diverged and are excluded from then on', ''
@@ -126,7 +130,7 @@ def answer(report):
 
 
 def tables(report):
-    """Return the PageTables: the end by axis, position against time, and the filter's."""
+    """Return the PageTables: errors at the end by axis, position over time, consistency."""
     errors, heads = report.errors, ('mean', 'sigma', 'rms', *(f'{p} %' for p in PERCENTS))
     rows = []
     for name in COLUMNS:
@@ -174,7 +178,7 @@ def show(report, console):
 
 
 def report_arrays(report):
-    """Return {name: array} of ensemble.npz: what was found, and the end of every run."""
+    """Return {name: array} of ensemble.npz: statistics, and the end of every run."""
     errors, result = report.errors, report.result
     arrays = {'t_ns': errors.t_ns, 'count': errors.count, 'percents': np.array(PERCENTS)}
     for name in COLUMNS:

@@ -1,4 +1,4 @@
-"""The charts of an ensemble: errors against time with their bands, where the runs end, how far."""
+"""Charts of an ensemble: errors over time with percentile bands, and errors at the end."""
 
 import numpy as np
 
@@ -11,13 +11,13 @@ from ..charts.scales import ANGLES, LENGTHS, scale, SPEEDS, TIMES
 
 AXES = ('east', 'north', 'up')
 UNITS = {'attitude': ANGLES, 'velocity': SPEEDS, 'position': LENGTHS}
-# Of more runs than this the ends are drawn one in so many.
+# Maximum number of runs whose ends are drawn; number of bars of the histogram.
 MOST_POINTS, BARS = 4000, 40
 TURN = np.linspace(0.0, 2.0 * np.pi, 181)
 
 
 def ensemble_charts(title, errors, result, worst):
-    """Return the charts of EnsembleErrors and EnsembleResult; worst: number and error, or None."""
+    """Return the Charts of an ensemble; ``worst`` is (number, error) of the worst run, or None."""
     charts = [_horizontal(title, errors), *(_by_axis(title, errors, name) for name in COLUMNS)]
     charts = [chart for chart in charts if chart.panels]
     ends = result.final_errors[np.isfinite(result.final_errors).all(axis=1)]
@@ -68,7 +68,7 @@ def _by_axis(title, errors, name):
     panels = []
     for k, axis in enumerate(AXES):
         if not _largest(found[:, :, k]):
-            # held by the truth: nothing to see
+            # This component is held by the truth and has no error.
             continue
         colour = palette.EAST_NORTH_UP[axis]
         marks = _bands(x, factor * found[:, :, k], colour)
@@ -99,7 +99,8 @@ def _scatter(title, errors, result, worst):
     covariance = statistics.covariance[-1, plane, plane]
     if np.isfinite(covariance).all():
         sizes, axes = np.linalg.eigh(covariance)
-        # 95 % of two normals are within sqrt(-2 ln 0.05) sigma of their mean
+        # The 95 % ellipse of a two-dimensional normal distribution has semi-axes of
+        # sqrt(-2 ln 0.05) sigma.
         reach = np.sqrt(-2.0 * np.log(0.05) * np.maximum(sizes, 0.0))
         east, north = factor * (statistics.mean[-1, plane][:, None] + axes @ (
             reach[:, None] * np.array([np.cos(TURN), np.sin(TURN)])))

@@ -1,4 +1,4 @@
-"""The comparison of filters as figures, as a page, and on disk."""
+"""Report of the comparison of filters: charts, sentences, page and files."""
 
 from dataclasses import asdict
 import json
@@ -20,9 +20,9 @@ COLOURS = {'free': GREY, 'conventional': PURPLE, 'paper': BLACK, 'paper_correcte
            'window_kf': BLUE, 'eskf': GREEN}
 DASHES = (SOLID, DASHED, DOTTED, DASH_DOT)
 MARK = 'comparison.json'
-# Curves of several cases that differ by less are drawn as one, with all names.
+# Cases whose errors differ by less than this are drawn as one curve with all names.
 SAME = 1e-9
-# Where the rms error begins on the logarithmic axis, m: it is 0 at a start without error.
+# Smallest rms error on the logarithmic axis, m; a run may start without error.
 LEAST_M = 0.1
 
 
@@ -30,7 +30,7 @@ def charts_of(rows, flown):
     """
     Return the Charts of a comparison.
 
-    rows: of each case its FilterRow; flown: of each the list of FilterFlight.
+    ``rows`` contains the FilterRow and ``flown`` the list of FilterFlights of each case.
     """
     styles = _styles(rows)
     charts = [_errors_chart(rows, flown, styles)]
@@ -51,7 +51,7 @@ def _rms(flights):
 
 
 def _styles(rows):
-    """Return colour and dash of each case: of a filter one colour, of its windows dashes."""
+    """Return colour and dash of each case: one colour per filter, one dash per window."""
     seen, found = {}, []
     for row in rows:
         count = seen[row.filter] = seen.get(row.filter, -1) + 1
@@ -60,7 +60,7 @@ def _styles(rows):
 
 
 def _errors_chart(rows, flown, styles):
-    """Return the rms errors over time, and beneath them in parts of the best filter's."""
+    """Return the Chart of rms errors over time, also relative to the best filter."""
     time, x_label, _ = _time(flown[0][0])
     errors = [_rms(flights) for flights in flown]
     best = min(range(len(rows)), key=lambda k: rows[k].end_m)
@@ -81,7 +81,7 @@ def _errors_chart(rows, flown, styles):
 
 
 def _together(rows, errors):
-    """Return (names, number of the first) of the cases whose curves are the same."""
+    """Return (names, index of the first) of the groups of cases with equal curves."""
     left, found = list(range(len(rows))), []
     while left:
         first, *others = left
@@ -93,7 +93,7 @@ def _together(rows, errors):
 
 
 def _consistency_chart(rows, flown, known, styles):
-    """Return NEES of each block of states and NIS, of the filters with a covariance."""
+    """Return the Chart of NEES by block of states and of NIS, for filters with a covariance."""
     time, x_label, factor = _time(flown[known[0]][0])
     nees = {k: nees_sums(flown[k]) for k in known}
     panels = []
@@ -109,7 +109,7 @@ def _consistency_chart(rows, flown, known, styles):
             [Entry(rows[k].name, *_nis(flown[k], factor), *styles[k]) for k in weighed], x_label,
             'fixes of the velocity meter: NIS over its degrees of freedom', 'NIS / components',
             fixes=True))
-    return Chart('consistency', f'Does the filter know how far it is off? Mean of '
+    return Chart('consistency', f'Consistency of the filters: mean NEES and NIS of '
                  f'{rows[0].flights} flights', tuple(panels),
                  caption='At one instant a consistent filter lies in the band in 95 of 100 '
                  'studies; errors of one flight at several instants are not independent.')
@@ -145,14 +145,14 @@ def _flights_chart(rows, flown, shown):
 
 
 def answer(rows, duration_s):
-    """Return which filter was best, by how much, and who is consistent, in sentences."""
+    """Return sentences saying which filter is best, by how much, and which are consistent."""
     order = sorted(rows, key=lambda r: r.end_m)
     best = order[0]
     factor, unit = scale(TIMES, duration_s)
     found = [f'Of {_count(len(rows), "filter")} over {_count(best.flights, "flight")} of '
              f'{duration_s * factor:.3g} {unit}, {best.name}, was best: rms horizontal error at '
              f'the end {_length(best.end_m)}']
-    # A filter with another window is no rival of itself.
+    # Compare the best filter with another filter, not with itself using another window.
     rivals = [r for r in order if r.filter != best.filter] or order[1:]
     if rivals and best.end_m > 0.0:
         found[0] += (f', {rivals[0].end_m / best.end_m:.3g} times less than {rivals[0].name} '
@@ -166,7 +166,7 @@ def answer(rows, duration_s):
               f'{"; ".join(names)}.' for words, names in by.items()]
     silent = [row.name for row in rows if not row.consistency]
     if silent:
-        found.append(f'Without a covariance, so that nothing can be said: {"; ".join(silent)}.')
+        found.append(f'No statement is possible without a covariance: {"; ".join(silent)}.')
     return ' '.join(found)
 
 
@@ -211,7 +211,7 @@ def page_of(title, settings, rows, flown, digest):
     if cells:
         tables.append(PageTable('Consistency', ('filter', 'quantity', 'mean', 'expected',
                                                 'in 95 % of consistent filters'), tuple(cells)))
-    notes = [f'{r.name}: {r.refused} fixes were not taken; the last: {r.reason}.'
+    notes = [f'{r.name}: {r.refused} fixes were rejected; the last: {r.reason}.'
              for r in rows if r.refused]
     notes.append('Every filter has the same flights: gusts, instruments and initial errors of '
                  'flight k are drawn from the seeds plus k.')

@@ -1,4 +1,4 @@
-"""The comparison of filters: what each was off over all flights, in a table and JSON."""
+"""Comparison of filters: errors of each over all flights, as a table and as JSON."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,16 @@ class FilterRow:
     """
     One case over all flights: horizontal errors, m, and the consistency of its filter.
 
-    end_m: rms over the flights at their end; flight_m: rms over flights and time; worst_m: the
-    largest at the end; sigma_m: rms of the filter's own standard deviation at the end (None:
-    none); nis, nis_low, nis_high: mean NIS of the velocity meter and its 95 % chi-square interval
-    (None: not weighed); nees: at the end, {one of core.aiding.consistency.BLOCKS: mean NEES of the
-    flights, its 95 % interval, and the degrees of freedom}; refused: fixes not taken, of all
-    flights; reason: why the last one.
+    Attributes
+    ----------
+    end_m, flight_m, worst_m : rms over the flights at their end; rms over flights and time;
+        largest error at the end
+    sigma_m : rms of the filter's own standard deviation at the end, or None without covariance
+    nis, nis_low, nis_high : mean NIS of the velocity meter and its 95 % chi-square interval, None
+        if the filter does not compute it
+    nees : {one of core.aiding.consistency.BLOCKS: (mean NEES of the flights at the end, bounds of
+        its 95 % interval, degrees of freedom)}
+    refused, reason : number of rejected fixes of all flights, and the reason for the last one
     """
 
     filter: str
@@ -46,7 +50,7 @@ class FilterRow:
 
     @property
     def consistency(self):
-        """Return in words whether it knows how far it is off; '' where it says nothing."""
+        """Return in words whether the filter is consistent; '' without a covariance."""
         by = [judged(self.nis, self.nis_low, self.nis_high)] if self.nis is not None else []
         by += [judged(*self.nees['position'][:3])] if 'position' in self.nees else []
         if 'too optimistic' in by:
@@ -95,12 +99,12 @@ def _with_interval(mean, low, high):
 
 
 def show_filter_study(title, rows, console):
-    """Print the table, and below it why fixes were not taken."""
-    # as wide as a terminal, with every figure whole
+    """Print the table, and below it why fixes were rejected."""
+    # Fit the table into the width of a terminal without cutting numbers.
     table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False, collapse_padding=True,
-                  caption='horizontal error, m: rms of the flights at their end and over their '
-                  'time, the worst end, and the end as the filter thinks; NIS, and NEES of the '
-                  'position at the end, and where they are in 95 % of consistent filters')
+                  caption='horizontal error, m: rms of the flights at their end and over time, '
+                  'the worst end, and the rms at the end according to the filter; NIS, and NEES '
+                  'of the position at the end, with the intervals of 95 % of consistent filters')
     table.add_column('filter', no_wrap=True)
     for head in ('N', 'end', 'flight', 'worst', 'sigma', 'NIS', 'in 95 %', 'NEES', 'in 95 %',
                  'refused'):
@@ -115,5 +119,5 @@ def show_filter_study(title, rows, console):
     console.print(table)
     for r in rows:
         if r.refused:
-            console.print(f'{r.filter}, N {r.cycles}: {r.refused} fixes not taken; the last: '
+            console.print(f'{r.filter}, N {r.cycles}: {r.refused} fixes rejected; the last: '
                           f'{r.reason}')

@@ -1,4 +1,4 @@
-"""The study of the tuned-gyro paper: its tables, its charts and its report."""
+"""Report of the tuned-gyro study after Sapegin, Romanov and Bugaiov (2016)."""
 
 from dataclasses import dataclass
 
@@ -11,17 +11,23 @@ from ..charts.chart import (Chart, CIRCLE, Curve, DASHED, DOT, DOTTED, Level, Ma
 from ..page.content import Page, PageTable
 
 METHODS = {'rk4': 'RK4', 'exact': 'matrix exponentials'}
-# Of the values, left free on either side.
+# Part of the range of values that is left free on either side of a chart.
 ROOM = 0.03
 
 
 @dataclass(frozen=True)
 class TunedGyroStudy:
     """
-    One table, computed.
+    One computed table of the study.
 
-    name: of the parameter file; settings; cells: of the table; limits: speeds, Hz, between which
-    RK4 is stable (None: no limit on that side), or () where they were not looked for; chart.
+    Attributes
+    ----------
+    name : name of the parameter file
+    settings : TunedGyroStudySettings
+    cells : Cells of the table
+    limits : rotor speeds, Hz, between which RK4 is stable (None: no limit on that side), or ()
+        if they were not determined
+    chart : Chart of the table
     """
 
     name: str
@@ -32,7 +38,7 @@ class TunedGyroStudy:
 
 
 def study_title(settings):
-    """Return a line that says what is constant in the study of TunedGyroStudySettings."""
+    """Return a line with the constant conditions of TunedGyroStudySettings."""
     held = (f'rotors at {settings.rotor_speed_hz:g} Hz' if settings.sweep == 'base_rate' else
             f'base at {settings.base_rate_rad_s:g} rad/s')
     return (f'{settings.amplitude_deg:g} deg of roll, {held}, preset {settings.preset}, '
@@ -40,7 +46,7 @@ def study_title(settings):
 
 
 def show_study(settings, cells, console):
-    """Print the Cells of a table beside what the paper prints, where it does."""
+    """Print the Cells of a table with the published values, if there are any."""
     compared = any(cell.paper_deg is not None for cell in cells)
     table = Table(title=study_title(settings))
     for head in (SWEEPS[settings.sweep], 'Poisson [deg]', 'Euler vector [deg]',
@@ -55,7 +61,7 @@ def show_study(settings, cells, console):
 
 
 def limits_sentence(settings, limits):
-    """Return between which speeds RK4 is stable; None is a side without a limit."""
+    """Return a sentence with the rotor speeds between which RK4 is stable (None: no limit)."""
     low, high = ('no limit' if limit is None else f'{limit:.1f}' for limit in limits)
     paper = settings.paper_limits_hz
     return (f'RK4 at {settings.step_ms:g} ms is stable from {low} to {high} Hz'
@@ -64,11 +70,15 @@ def limits_sentence(settings, limits):
 
 def study_chart(name, settings, curve, cells, limits=()):
     """
-    Return the Chart of the error of the amplitude over its cause; name: of its file.
+    Return the Chart of the error of the amplitude over its cause.
 
-    curve: Cells of a dense sweep; cells: those of the table, the paper's values drawn in as
-    points, and below how far ours are from them; limits: speeds, Hz, at which the program of the
-    paper becomes unstable.
+    Parameters
+    ----------
+    name : name of the file
+    settings : TunedGyroStudySettings
+    curve : Cells of a dense sweep
+    cells : Cells of the table; published values are drawn as points, differences in a lower panel
+    limits : rotor speeds, Hz, at which the published algorithm becomes unstable
     """
     true_deg, cause = settings.amplitude_deg, SWEEPS[settings.sweep]
     values = np.array([c.value for c in curve])
@@ -112,7 +122,7 @@ def study_page(studies):
 
 
 def _answer(study):
-    """Return the sentence about a table, and its limits."""
+    """Return a sentence about a table, and about the stability limits."""
     settings, cells = study.settings, study.cells
     worst = max(cells, key=lambda c: abs(c.poisson_deg - settings.amplitude_deg))
     what = SWEEPS[settings.sweep].partition(' [')[0]

@@ -1,1 +1,1 @@
-"""Lock-step: the generator goes on only when its consumers have acknowledged."""
+"""Lock-step: the generator sends more samples only when its consumers have acknowledged."""

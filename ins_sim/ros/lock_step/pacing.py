@@ -1,4 +1,8 @@
-"""How far the generator may go: the clock, and in lock-step the consumers.  No ROS is imported."""
+"""
+Pace of the generator, set by the wall clock and, in lock-step, by the consumers.
+
+This module does not import ROS.
+"""
 
 import math
 import time
@@ -7,18 +11,24 @@ from ins_sim.messages import topics
 from ..process.said import short
 
 REPEAT_S = 0.1
-# longer than a busy machine keeps a consumer from its core
+# Longer than a busy machine delays a consumer that is still running, s.
 SILENCE_S = 2.0
 STARTING = -1
-# names on sim/ack that nobody waits for: so many are kept, of so many characters
+# Other names heard on sim/ack: how many are kept for the error message, and their length.
 STRANGERS, STRANGER = 10, 60
 
 
 class Pace:
     """
-    Real time: sample k is due k dt / factor after the start.
+    Real-time pace: sample k is due k dt / factor after the start.
 
-    The clock counts samples, never ticks, so that nothing drifts and nothing is skipped.
+    Due times are computed from the sample number, not accumulated, so the pace does not drift and
+    no sample is skipped.
+
+    Parameters
+    ----------
+    factor : simulated time per wall time; 0 for as fast as possible
+    dt_s : sampling period, s
     """
 
     def __init__(self, factor, dt_s):
@@ -27,10 +37,10 @@ class Pace:
 
     def set_factor(self, factor, k):
         """
-        Go at another factor from now on, the next sample being k.
+        Change the factor from now on; k is the next sample.
 
-        What is left of the wait for it is stretched, so that time goes on without a jump; what
-        was due and has not been sent is due from now on at the new pace.
+        The remaining wait for sample k is scaled, so that simulated time does not jump. Samples
+        that are already overdue become due from now on at the new pace.
         """
         now, left = time.monotonic(), 0.0
         if self._step_s:
@@ -39,26 +49,30 @@ class Pace:
         self._start = now + (left - k) * self._step_s
 
     def anchor(self, k):
-        """Let sample k be due now."""
+        """Restart the pace: sample k is due now."""
         self._start = time.monotonic() - k * self._step_s
 
     def allowed(self):
-        """Return how many samples may have been sent by now."""
+        """Return the number of samples that are due by now."""
         if not self._step_s:
             return math.inf
         return int((time.monotonic() - self._start) / self._step_s) + 1
 
     def wait_s(self, k):
-        """Return how long it is until sample k is due."""
+        """Return the time until sample k is due, s."""
         return self._start + k * self._step_s - time.monotonic()
 
 
 class LivePace(Pace):
     """
-    The pace of a generator, whose real_time_factor may be set while it runs.
+    Pace of a generator whose real_time_factor can be set while it runs.
 
-    pacing: settings; source: TruthSource; sent: function that returns how many samples were sent;
-    tell: called when stamps may follow the wall clock no longer.
+    Parameters
+    ----------
+    pacing : settings ``pacing``
+    source : TruthSource
+    sent : function that returns the number of samples sent
+    tell : function that logs that the stamps may no longer follow the wall clock
     """
 
     def __init__(self, pacing, source, sent, tell):
@@ -66,30 +80,36 @@ class LivePace(Pace):
         self._waits, self._source, self._sent, self._tell = pacing.waits, source, sent, tell
 
     def check_change(self, settings):
-        """Refuse a factor of 0 where the run has no lock-step."""
+        """Refuse a factor of 0 in a run without lock-step."""
         if settings.pacing.waits and not self._waits:
             raise ValueError('pacing.real_time_factor is 0 without pacing.lock_step; expected '
                              'more than 0: lock-step begins with the run or not at all')
 
     def effective_ns(self, name):
-        """Return the motion time of the next sample, None before the first."""
+        """Return the motion time of the next sample, ns, or None before the first one."""
         sent, source = self._sent(), self._source
         return source.first_ns + sent * source.dt_ns if sent else None
 
     def change(self, settings):
-        """Go at the real_time_factor of other settings."""
+        """Apply the real_time_factor of new settings."""
         self.set_factor(settings.pacing.real_time_factor, self._sent())
         if not self._waits:
-            # with lock-step that was said at the start
+            # In lock-step this was logged at the start.
             self._tell()
 
 
 class LockStep:
     """
-    Lock-step: at most ``window`` samples ahead of the slowest required consumer.
+    Lock-step: send at most ``window`` samples ahead of the slowest required consumer.
 
     Sample 0 is repeated until every consumer has acknowledged it, so that neither the order of
     start nor the time of discovery matters.
+
+    Parameters
+    ----------
+    required : names of the consumers that must acknowledge
+    window : maximum number of unacknowledged samples
+    timeout_s : time after which a silent consumer is overdue, s
     """
 
     def __init__(self, required, window, timeout_s):
@@ -103,11 +123,11 @@ class LockStep:
         self._repeated = self.moved = time.monotonic()
 
     def ack(self, name, k, sent):
-        """Take the acknowledgement of sample k; sent: number of samples sent."""
+        """Process the acknowledgement of sample k when ``sent`` samples have been sent."""
         last = self._acked.get(name)
         if last is None:
             self._hear(name)
-        # before the first sample is acknowledged a later one can only be an echo of a past run
+        # Before sample 0 is acknowledged, a later acknowledgement can only be from an earlier run.
         if last is None or k >= sent or k <= last or (last == STARTING and k != 0):
             return
         self._acked[name] = k
@@ -121,19 +141,19 @@ class LockStep:
 
     @property
     def slowest(self):
-        """Return the last sample that every consumer has acknowledged; STARTING before 0."""
+        """Return the last sample acknowledged by every consumer; STARTING before sample 0."""
         return min(self._acked.values())
 
     def allowed(self):
-        """Return how many samples may have been sent."""
+        """Return the number of samples that may be sent in total."""
         slowest = self.slowest
         return 1 if slowest == STARTING else slowest + 1 + self._window
 
     def repeat_due(self, sent, heard=True):
         """
-        Return whether sample 0 is to be sent again, at most every REPEAT_S.
+        Return whether to send sample 0 again, at most every REPEAT_S.
 
-        heard: whether what else has to answer it has done so.
+        ``heard`` is False while another expected answer to sample 0 is missing.
         """
         now = time.monotonic()
         if sent != 1 or (self.slowest != STARTING and heard) or now - self._repeated < REPEAT_S:
@@ -142,19 +162,24 @@ class LockStep:
         return True
 
     def done(self, count):
-        """Return whether all count samples are processed, as far as consumers will ever say."""
+        """
+        Return whether all ``count`` samples are acknowledged.
+
+        A rest within the window counts as acknowledged after SILENCE_S without progress: some
+        consumers never acknowledge the last samples.
+        """
         left = count - 1 - self.slowest
         return left <= 0 or (left <= self._window and self.slowest != STARTING
                              and time.monotonic() - self.moved > SILENCE_S)
 
     def overdue(self, sent):
-        """Return the names of the consumers that have let the timeout pass, or ()."""
+        """Return the names of the consumers that have been silent for the timeout, or ()."""
         if sent - 1 <= self.slowest or time.monotonic() - self.moved < self._timeout_s:
             return ()
         return tuple(n for n, k in self._acked.items() if k == self.slowest)
 
     def complaint(self, late, expected):
-        """Return the sentence about consumers that are late; expected: who was to run."""
+        """Return a sentence about overdue consumers; ``expected`` says who should be running."""
         names = ', '.join(sorted(self.strangers)) + (' and others' if self._more else '')
         heard = f' (heard: {names})' if names else ''
         return (f'no acknowledgement on {topics.ACK.name} from {", ".join(late)} for '

@@ -1,4 +1,4 @@
-"""Messages of a master of time that follows another one: sent at once, or as consumers answer."""
+"""Send messages at once or, in lock-step, as the consumers acknowledge (truth_adapter)."""
 
 from bisect import bisect_right
 from collections import deque
@@ -10,10 +10,11 @@ from .pacing import LockStep
 
 class Release:
     """
-    Sends what is made of an input, and says of each sample of the input when that is done.
+    Sends the samples computed from an input, and reports when an input sample is completed.
 
-    In lock-step at most ``window`` samples are unanswered, and a sample of the input is done only
-    when all that was made of it has been sent: who waits for that waits for the consumers.
+    In lock-step at most ``window`` samples are unacknowledged. An input sample is completed when
+    all samples computed from it have been sent, so a simulator that waits for the completion
+    also waits for the consumers.
 
     Parameters
     ----------
@@ -21,7 +22,7 @@ class Release:
     send : callable
         Called with the messages of a sample.
     done : callable
-        Called with the motion time of a sample of the input.
+        Called with the motion time of a completed input sample, ns.
     """
 
     def __init__(self, pacing, send, done):
@@ -37,20 +38,20 @@ class Release:
         return len(self._waiting)
 
     def clear(self):
-        """Drop what waits."""
+        """Discard the waiting samples."""
         self._waiting.clear()
 
     def add(self, stamp_ns, messages):
-        """Take the messages of a sample."""
+        """Append the messages of a sample."""
         self._waiting.append((stamp_ns, messages))
 
     def finish(self, t_ns):
-        """Take note that all is there that is made of a sample of the input, and send what may."""
+        """Mark the input sample of t_ns as complete, and send the samples that may be sent."""
         self._waiting.append((t_ns, None))
         self.advance()
 
     def advance(self):
-        """Send what may be sent."""
+        """Send the samples that may be sent."""
         waiting = self._waiting
         while waiting:
             stamp_ns, messages = waiting[0]
@@ -65,7 +66,7 @@ class Release:
     def _may_send(self, stamp_ns, messages):
         lock, stamps = self._lock, self._stamps
         if self._sent and stamp_ns <= stamps[-1]:
-            # The input has begun anew, and the consumers will, once they have answered all.
+            # The input has restarted. The consumers restart once they have acknowledged all.
             if not lock.done(self._sent):
                 return False
             self._sent = 0
@@ -76,27 +77,28 @@ class Release:
         if not self._sent:
             self._first = messages
         if self._sent - 1 <= lock.slowest:
-            # Nothing was unanswered: from now on answers are due.
+            # All samples were acknowledged; measure the timeout from now on.
             lock.moved = time.monotonic()
         stamps.append(stamp_ns)
         self._sent += 1
         return True
 
     def ack(self, name, stamp_ns):
-        """Take the acknowledgement of a stamp."""
+        """Process the acknowledgement of a stamp, ns."""
         stamps = self._stamps
         if not stamps or stamp_ns > stamps[-1] + JUMP_NS:
-            # An echo of what was before.
+            # This acknowledges a sample from before a restart.
             return
-        # An answer may stand between two samples, or before the first, by a known latency.
+        # Because of sensor latency the acknowledged stamp may lie between two samples or before
+        # the first.
         k = self._sent - len(stamps) + max(0, bisect_right(stamps, stamp_ns) - 1)
         self._lock.ack(name, k, self._sent)
 
     def look(self, who):
         """
-        Send the first sample again while it is unanswered.
+        Send the first sample again while it is not acknowledged.
 
-        Return a sentence where consumers are overdue, who they are expected to be, else ''.
+        Return a sentence if consumers are overdue, else ''. ``who`` describes them.
         """
         lock = self._lock
         if lock.repeat_due(self._sent):

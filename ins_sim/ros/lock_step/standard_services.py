@@ -1,8 +1,8 @@
 """
-The services of simulation_interfaces on the generator, where that package is installed.
+Services of the package simulation_interfaces on the generator, if that package is installed.
 
-They stand beside those of std_srvs: ~/get_simulator_features, ~/get_simulation_state,
-~/set_simulation_state, ~/step_simulation and ~/reset_simulation.
+They are ~/get_simulator_features, ~/get_simulation_state, ~/set_simulation_state,
+~/step_simulation and ~/reset_simulation, in addition to the services of std_srvs.
 """
 
 from importlib import import_module
@@ -12,12 +12,12 @@ PACKAGE = 'simulation_interfaces'
 FEATURES = ('SIMULATION_RESET', 'SIMULATION_RESET_TIME', 'SIMULATION_RESET_STATE',
             'SIMULATION_STATE_GETTING', 'SIMULATION_STATE_SETTING', 'SIMULATION_STATE_PAUSE',
             'STEP_SIMULATION_SINGLE', 'STEP_SIMULATION_MULTIPLE')
-# Steps of one call.
+# Maximum number of steps in one call.
 MOST_STEPS = 1_000_000
 
 
 def offer_standard_services(generator):
-    """Let a MotionGeneratorNode answer them, if the package is installed."""
+    """Add the services to a MotionGeneratorNode, if the package is installed."""
     if find_spec(PACKAGE) is None:
         return
     try:
@@ -35,9 +35,9 @@ def offer_standard_services(generator):
 
 class StandardServices:
     """
-    Answers the requests; the generator paces, pauses, steps and resets as ever.
+    Answers the service requests by pausing, stepping and resetting the generator.
 
-    Stopped is paused at sample 0 after a request for it; the end of a run counts as paused.
+    State *stopped* means paused at sample 0 after a request to stop; a finished run is *paused*.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class StandardServices:
                                                      msg.SimulatorFeatures)
 
     def _answer(self, response, sentence='', code=None):
-        """Fill in the result: success without a sentence, else the code, or failure."""
+        """Fill in the result: success if there is no error sentence, else an error code."""
         codes = self._codes
         response.result.error_message = sentence
         response.result.result = codes.RESULT_OK if not sentence else (
@@ -66,7 +66,7 @@ class StandardServices:
         return states.STATE_STOPPED if self._stopped else states.STATE_PAUSED
 
     def get_simulator_features(self, request, response):
-        """Return what can be done."""
+        """Return the supported features."""
         response.features.features = [getattr(self._features, name) for name in FEATURES
                                       if hasattr(self._features, name)]
         response.features.custom_info = 'ins_sim: truth, IMU and inertial navigation'
@@ -120,7 +120,7 @@ class StandardServices:
         return self._answer(response)
 
     def reset_simulation(self, request, response):
-        """Go back to sample 0; it goes on as it did, paused or playing."""
+        """Go back to sample 0; the run stays paused or playing as it was."""
         request_class = type(request)
         scope = request.scope or request_class.SCOPE_ALL
         if not scope & (request_class.SCOPE_TIME | request_class.SCOPE_STATE):

@@ -1,4 +1,4 @@
-"""Live steering: solutions of a topic in, commands to the guided motion and to a topic out."""
+"""Steer a guided motion in a live run by the navigation solution on a topic."""
 
 from collections import deque
 import math
@@ -13,23 +13,23 @@ from ins_sim.messages.plausible import PlausibleReader
 from ..process.net import described
 from ..transport.patience import MISSING_S
 
-# Control periods between two times at which what was flown is forgotten.
+# The flown history is discarded once per this number of control periods.
 FORGET = 4096
-# How far the length of a quaternion may be from 1.
+# Tolerance of the norm of a quaternion.
 UNIT = 1e-3
-# Of so many solutions the shortest interval is the one in which they come.
+# The period of the solutions is the shortest of this number of intervals between them.
 INTERVALS = 8
 LATE = 'late'
 
 
 class Steerer:
     """
-    Steers the guided motion of a TruthSource by the Odometry that a queue gives.
+    Steers the guided motion of a TruthSource by the Odometry messages of a queue.
 
-    A command is given when the sample behind it is to be sent.  In lock-step it waits for the
-    solution of the instant that the autopilot uses, so that the flight is that of the offline run;
-    where solutions come less often than commands, for the last one up to that instant.  In real
-    time the newest solution serves, and the one before where it is late.
+    A command is computed when the sample after it is about to be sent. In lock-step it waits for
+    the solution of the instant that the autopilot uses (or, if solutions come less often than
+    commands, for the last one before it), so that the flight equals that of the offline run. In
+    real time the newest solution is used, even if it is late.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ class Steerer:
     publish : callable
         Called with the bytes of every command.
     fault : callable
-        Called with a sentence of what was met.
+        Called with a sentence about each fault.
 
     Attributes
     ----------
     steering : Steering
     heard : bool
-        Whether a solution has come in this run.
+        Whether a solution has arrived in this run.
     """
 
     def __init__(self, settings, source, queue, publish, fault):
@@ -70,7 +70,7 @@ class Steerer:
         self.restart()
 
     def restart(self):
-        """Begin a run: forget what was flown, and what has come."""
+        """Begin a run: discard the flown history and the received solutions."""
         self._source.restart()
         self.steering.reset()
         if self._margin:
@@ -85,20 +85,23 @@ class Steerer:
         self.wait_anew()
 
     def wait_anew(self):
-        """Count from now on how long a solution has not come."""
+        """Measure the wait for a solution from now on."""
         self._since = None
 
     @property
     def heard(self):
-        """Return whether a solution of this run has come."""
+        """Return whether a solution has arrived in this run."""
         return self._newest_ns is not None
 
     def reach(self, sent, allowed, waits):
         """
-        Return how many samples may be sent, and give the command that the next one needs.
+        Compute the command that the next sample needs, and return how many samples may be sent.
 
-        sent: number of samples sent; allowed: how many may have been sent as for the rest; waits:
-        whether to wait for the solution of the instant, as in lock-step.
+        Parameters
+        ----------
+        sent : number of samples sent
+        allowed : number of samples that the pace allows
+        waits : whether to wait for the solution of the instant, as in lock-step
         """
         self._take()
         if sent < allowed and sent >= self._source.known and self._ready(waits):
@@ -114,7 +117,7 @@ class Steerer:
             except ValueError as error:
                 self._fault(str(error))
             except Exception as error:
-                # a message of another package must never end the node
+                # A message of another package must never end the node.
                 self._fault(described(error))
 
     def _hear(self, data):
@@ -141,7 +144,7 @@ class Steerer:
                                  f'{seconds(newest_ns + self._epoch_ns)} to {seconds(stamp_ns)}; '
                                  'expected rising stamps of one publisher; the message was '
                                  'dropped')
-            # sample 0 is answered again
+            # This is the solution of a repeated sample 0.
             return
         if newest_ns is not None:
             self._intervals.append(t_ns - newest_ns)
@@ -149,9 +152,9 @@ class Steerer:
         self._newest_ns = t_ns
 
     def _ready(self, waits):
-        """Return whether to give the command at the instant up to which the motion is known."""
+        """Return whether the next command can be computed."""
         wanted_ns = max(self._motion.known_ns - self._latency_ns, self._first_ns)
-        # the solution after the newest one would be later than wanted
+        # The newest solution is the one wanted if the following one would be too late.
         if self.heard and self._newest_ns + min(self._intervals, default=1) > wanted_ns:
             self._misses, self._since, self._late_ns = 0, None, None
             return True
@@ -163,7 +166,7 @@ class Steerer:
             return True
         if self._since is None:
             self._since = now
-        # A sample may have been lost; who has ended is waited for less and less.
+        # A solution may have been lost, or its node may have ended: halve the wait each time.
         if now - self._since < MISSING_S / 2 ** self._misses:
             return False
         goes_on = 'the last one is used' if self.heard else 'the vehicle flies straight'
@@ -176,7 +179,7 @@ class Steerer:
         return True
 
     def _look_for_silence(self, now):
-        """Say, once, that nothing has come yet."""
+        """Report, once, that no solution has arrived yet."""
         if self._began_s is None:
             self._began_s = now
         if not self.heard and NO_SOLUTION not in self._told and now - self._began_s > MISSING_S:
@@ -185,7 +188,7 @@ class Steerer:
                         'steer by (guidance.topic): the vehicle flies straight until one comes')
 
     def _look_for_lateness(self, wanted_ns):
-        """Say, once, that solutions are late for longer than the autopilot would hold one."""
+        """Report, once, that solutions have been late for longer than the autopilot's timeout."""
         if not self.heard or LATE in self._told:
             return
         if self._late_ns is None:
@@ -199,12 +202,12 @@ class Steerer:
                         'it may be): the last one is used')
 
     def _steer(self):
-        """Command the next control period, and publish what was commanded."""
+        """Compute the command of the next control period, apply it and publish it."""
         t_ns, steering = self._motion.known_ns, self.steering
         try:
             command = steering.command(t_ns)
         except Exception as error:
-            # an autopilot of the user
+            # The autopilot may be code of the user.
             self._fault(f'the autopilot raises {type(error).__name__} ({error}) at '
                         f'{seconds(t_ns)}; expected a command: the vehicle flies straight')
             steering.give_up(NO_COMMAND)
@@ -228,7 +231,7 @@ class Steerer:
         return 'engaged' + (', from the end of the turn on' if self.steering.in_turn(t_ns) else '')
 
     def describe(self):
-        """Return nothing that is wrong, and the values for /diagnostics."""
+        """Return '' (this never reports a fault) and the values for /diagnostics."""
         command = self._command
         return '', (('autopilot', command.why or 'steers'),
                     ('commanded sideslip rad', f'{command.beta:.6g}'),

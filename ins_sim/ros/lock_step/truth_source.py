@@ -1,4 +1,4 @@
-"""The truth of a run as ready messages, computed a block ahead where it is known."""
+"""Compute the truth of a run as serialized messages, block by block."""
 
 import math
 
@@ -17,21 +17,27 @@ from ins_sim.settings.guidance import check_control_rate
 
 BLOCK = 256
 STAMP_END_S = STAMP_END_NS // SECOND
-# Of a run without an end, how much of it is looked at before it, s.
+# Part of an endless run whose places are checked before the start, s.
 LOOK_S = 86400.0
-# the stamps of readings are later than those of the truth by latency and jitter
+# Margin for the stamps of sensor samples, which latency and jitter make later than the truth, ns.
 END_NS = 10 * SECOND
 
 
 class TruthSource:
     """
-    Sample k of the run as the bytes of its messages, in the order of topics.TRUTH.
+    Serialized truth messages of each sample of a run, in the order of topics.TRUTH.
 
-    Where tf.source is truth, that of /tf stands behind them.  epoch_ns: the stamp of motion time
-    zero; announcement: the RunAnnouncement; count: number of samples; endless: whether only the
-    stamps of ROS end the run; dt_ns: the sampling period; guided: the GuidedMotion, which has to
-    be commanded before it is known, or None.  Raises ValueError on settings that name no motion or
-    a run longer than it.
+    If tf.source is ``truth``, the message for /tf follows them. Raises ValueError if the settings
+    name no motion, or a run longer than the motion.
+
+    Attributes
+    ----------
+    epoch_ns, first_ns : stamp of motion time zero; motion time of sample 0, ns
+    dt_ns : sampling period, ns
+    count : number of samples
+    endless : whether the run has no end of its own, so that it ends at the last ROS stamp
+    announcement : RunAnnouncement
+    guided : GuidedMotion, whose samples are known only after its commands, or None
     """
 
     def __init__(self, settings):
@@ -57,7 +63,7 @@ class TruthSource:
         if last_s >= STAMP_END_S:
             raise ValueError(f'time.epoch_s + start_s + duration_s is {last_s:g} s; expected less '
                              f'than {STAMP_END_S} s, which a ROS stamp can hold')
-        # an endless run ends where its stamps do
+        # An endless run ends at the largest ROS stamp.
         last_ns = round(length_s * SECOND) if length_s else STAMP_END_S * SECOND - END_NS - \
             self.stamp_ns(0)
         self.endless, self.count = not length_s, last_ns // self.dt_ns + 1
@@ -80,13 +86,13 @@ class TruthSource:
 
     @property
     def known(self):
-        """Return of how many samples the truth is known."""
+        """Return the number of samples whose truth is known."""
         if not self.guided:
             return self.count
         return min(self.count, (self.guided.known_ns - self.first_ns) // self.dt_ns + 1)
 
     def stamp_ns(self, k):
-        """Return the stamp of sample k."""
+        """Return the stamp of sample k, ns."""
         return self.epoch_ns + self.first_ns + k * self.dt_ns
 
     def messages(self, k):

@@ -1,4 +1,4 @@
-"""Node aided_navigator: readings of an IMU and fixes in, aided solution and its errors out."""
+"""Node aided_navigator: estimate the aided navigation solution from IMU samples and fixes."""
 
 import time
 
@@ -21,14 +21,18 @@ from .following import NavigatorNode
 
 
 class AidedNavigatorNode(NavigatorNode):
-    """Reads imu/data_raw, truth/odometry and fixes; publishes aided/*."""
+    """
+    Aided navigation: subscribes to imu/data_raw, truth/odometry and the fixes, publishes aided/*.
+
+    The truth is used for the errors of the solution and, as in strapdown, for the initial state.
+    """
 
     NAME = 'aided_navigator'
     SETTINGS = AidedNavigatorSettings
     PUBLISHED = (topics.AIDED_ODOMETRY, *topics.AIDED_ERRORS, topics.AIDED_ORTHODROME)
 
     def make_navigator(self):
-        """Return the navigator."""
+        """Return the aided navigator that processes the streams."""
         self._route = GreatCircleRoute.of_points(self.settings.motion.route.points)
         return AidedStream(self.settings, self.settings.topics.depth)
 
@@ -37,7 +41,7 @@ class AidedNavigatorNode(NavigatorNode):
         return Broadcaster(self, self.settings, AIDED_MOVES)
 
     def begin_announced(self):
-        """Read the fixes by the epoch."""
+        """Convert the stamps of fixes to motion time with the announced epoch."""
         self._pairs.epoch_ns = self.epoch_ns
 
     def make_outputs(self):
@@ -58,7 +62,7 @@ class AidedNavigatorNode(NavigatorNode):
             self._queues.append((HandQueue(self, topics.METER_RECORD, self.depth), METER,
                                  lambda data: [velocity_record.read_fix(data, self.epoch_ns)]))
         if GNSS in sources:
-            # the velocity first, for the fix waits for it
+            # Read the velocity first: a fix is complete only with the velocity of its instant.
             self._queues += [(HandQueue(self, topic, self.depth), GNSS, push) for topic, push in (
                 (topics.GNSS_VELOCITY, self._pairs.push_velocity),
                 (topics.GNSS_FIX, self._pairs.push_fix))]
@@ -67,37 +71,38 @@ class AidedNavigatorNode(NavigatorNode):
         self.monitor.add(self._health.describe)
 
     def hand_queues(self):
-        """Return the queues of truth and fixes."""
+        """Return {topic name: HandQueue} of the truth, the fixes and, for TF, ins/odometry."""
         queues = [queue for queue, *_ in self._queues]
         if self._odom is not None:
             queues.append(self._odom.queue)
         return {**super().hand_queues(), **{queue.topic: queue for queue in queues}}
 
     def start_anew(self):
-        """Forget all that has come, that of the INS too."""
+        """Discard all received data, including the free INS solutions kept for map -> odom."""
         super().start_anew()
         if self._odom is not None:
             self._odom.clear()
 
     def waits(self):
-        """Return whether the truth, a fix or the INS has to come."""
+        """Return whether a truth message, a fix or a free INS solution is still missing."""
         return super().waits() or self._odom is not None and self._odom.waiting
 
     def progress(self):
-        """Return what changes when something comes that is waited for."""
+        """Return a value that changes whenever an awaited message arrives."""
         return super().progress() if super().waits() else self._odom.reached_ns
 
     def place(self, stamp_ns, pose):
-        """Place odom, once the INS of this instant has come."""
+        """Broadcast map -> odom as soon as the free INS solution of this instant has arrived."""
         if self._odom is not None:
             self._odom.solved(stamp_ns, pose)
 
     def on_drained(self):
         """
-        Acknowledge, but for the first time only when those whose fixes are waited for are there.
+        Acknowledge the samples processed so far.
 
-        Lock-step repeats sample 0 until then; what a node sends before DDS has made it known is
-        lost.  Who does not come within MISSING_S runs elsewhere, or not at all.
+        The first acknowledgement is held back until the publishers of the expected fixes have
+        been discovered: what a node publishes before discovery is lost. Until then lock-step
+        repeats sample 0. After MISSING_S the node no longer waits for publishers.
         """
         if not self._joined:
             now = time.monotonic()
@@ -109,11 +114,11 @@ class AidedNavigatorNode(NavigatorNode):
             super().on_drained()
 
     def begin_run(self):
-        """Begin on the first leg."""
+        """Reset the route to its first leg."""
         self._leg = 0
 
     def take(self):
-        """Take the truth and the fixes that have come."""
+        """Process the truth messages and fixes that have arrived."""
         super().take()
         for queue, source, read in self._queues:
             for data in self.taken_of(queue):
@@ -132,16 +137,16 @@ class AidedNavigatorNode(NavigatorNode):
         for fix in fixes:
             self._health.came(source, fix)
             self.publish(self.push(self.stage.push_fix, (source, fix)))
-            # where that fix was none, what it held up goes on without it
+            # If the fix is invalid, the samples that waited for it can be processed now.
             self.publish(self.push(self.stage.match, ()))
 
     def miss(self):
-        """Say which fix has not come, and go on without its instrument; or the truth."""
+        """Report what has not arrived in time (a fix or the truth), and continue without it."""
         awaited = self.stage.awaited
         for source in awaited:
             self.fault(f'no fix of {source} in {MISSING_S:g} s; expected one for every '
-                       f'{"window" if source == METER else "instant"}: going on without it until '
-                       'it delivers again')
+                       f'{"window" if source == METER else "instant"}: continuing without it '
+                       'until it delivers again')
             self.publish(self.push(self.stage.go_on_without, (source,)))
         if not awaited and not self.stage.waiting:
             self._odom.miss()
@@ -149,22 +154,22 @@ class AidedNavigatorNode(NavigatorNode):
             super().miss()
 
     def publish(self, outputs):
-        """Publish, and take note of what became of the fixes."""
+        """Publish outputs, and count the fixes that the filter used and rejected."""
         self._health.count(self.stage.judged)
         super().publish(outputs)
 
     def messages(self, rate, solution, errors, sigmas):
-        """Return the runs of the topics that every filter has."""
+        """Return the fields of the topics that are published with every filter."""
         return (aided_odometry_one(self.frame, solution, rate, sigmas, self._rate_variance),
                 *((e,) for e in errors), (self._orthodrome(solution),))
 
     def publish_one(self, stamp_ns, rate, solution, errors, sigmas):
-        """Publish an output, with three sigma where the filter has them."""
+        """Publish an output, with three-sigma bounds if the filter estimates covariances."""
         super().publish_one(stamp_ns, rate, solution, errors, sigmas)
         if self._fix.get_subscription_count():
             pack = self._fix_alone if sigmas is None else self._fix_pack
             self._fix.publish(pack(stamp_ns, *aided_fix_one(solution, sigmas)))
-        # attitude first, as the errors
+        # The topics begin with attitude, like those of the errors; the filter ends with it.
         for (publisher, pack), sigma in zip(self._sigmas, sigmas[::-1] if sigmas else ()):
             if publisher.get_subscription_count():
                 publisher.publish(pack(stamp_ns, [SIGMAS * s for s in sigma]))

@@ -1,4 +1,4 @@
-"""What imu_sensor publishes beside the IMU: imu/mag and imu/pressure."""
+"""Magnetometer and barometer of the node imu_sensor: publish imu/mag and imu/pressure."""
 
 from collections import deque
 
@@ -10,7 +10,11 @@ from ..transport.backlog import DrivingQueue
 
 
 class EnvironmentPublisher:
-    """Reads truth/odometry beside a StageNode, whose epoch, faults and depth it takes."""
+    """
+    Publishes magnetometer and barometer samples computed from truth/odometry.
+
+    It belongs to a StageNode and uses that node's epoch, fault reports and queue depth.
+    """
 
     def __init__(self, node):
         self._node, self._sensors = node, EnvironmentSensors(node.settings)
@@ -23,11 +27,11 @@ class EnvironmentPublisher:
                                   node.guarded(self._on_truth), lambda: None, node.nobody_waits)
 
     def reset(self):
-        """Start anew with the next sample."""
+        """Restart the sensors with the next sample."""
         self._sensors.reset()
 
     def _on_truth(self, data):
-        # what comes before the epoch is known waits for it
+        # Messages that arrive before the epoch is known wait for the announcement.
         self._held.append(data)
         while self._held and self._node.knows_run:
             self._take(self._held.popleft())

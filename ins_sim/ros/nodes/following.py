@@ -1,4 +1,4 @@
-"""What the nodes that navigate share: readings of an IMU, and the truth that each waits for."""
+"""Base class of the navigating nodes: match IMU samples with the truth and publish solutions."""
 
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.navigation.loop import Decimation
@@ -10,25 +10,31 @@ from ..transport.backlog import HandQueue
 from ..transport.patience import MISSING_S, Patience
 from .stage import StageNode
 
-# rate and message of a reading that is not known any more
+# Angular rate and message used when the IMU sample of an output is no longer stored.
 NO_READING = (0.0, 0.0, 0.0), None
 
 
 class NavigatorNode(StageNode):
     """
-    A node driven by imu/data_raw whose stage is a core.streams.matching.MatchedStreams.
+    Base class of nodes driven by imu/data_raw whose stage is a MatchedStreams.
 
-    A subclass has PUBLISHED, its Topics, an Odometry first; make_navigator(), and messages(rate,
-    *output) -> the runs of each of these, output being one of the stage without its instant.  It
-    may have more to take, ``take``, to wait for, ``waits``, and to miss, ``miss``.
+    A subclass defines
+
+    * ``PUBLISHED``: the Topics it publishes, beginning with an Odometry;
+    * ``make_navigator()``: returns the stage;
+    * ``messages(rate, *output)``: returns the fields of each published topic for one output of
+      the stage (without its instant).
+
+    A subclass with further inputs extends ``take`` (process what has arrived), ``waits`` (is
+    something still missing?) and ``miss`` (report it and continue).
     """
 
     DRIVER = topics.IMU_RAW
-    # a solution counts from its first reading, wherever the epoch is
+    # A solution starts at its first IMU sample, so stamps outside the announced run are accepted.
     CHECKS_STAMPS = False
 
     def make_stage(self):
-        """Return the navigator."""
+        """Return the navigator that processes the streams."""
         settings = self.settings
         self.frame = MapFrame(settings.datum, settings.earth.rotation)
         self._decimation = Decimation(settings.output_every, period_ns(settings.rate_hz))
@@ -47,10 +53,10 @@ class NavigatorNode(StageNode):
 
     def make_queues(self):
         """Make the queue of truth."""
-        # the rate of the body is not needed: pose and velocity only
+        # Read pose and velocity only; the angular rate is not needed.
         self._truth_reader = PlausibleReader(topics.TRUTH_ODOMETRY, ((0, 3), (3, 7), (43, 46)))
-        # Truth waits in its queue until a reading needs it; were it in the wait set, every truth
-        # message would cost a cycle of the executor.
+        # Truth messages stay in their queue until an IMU sample needs them: in the executor's
+        # wait set, each would cost one cycle of the executor.
         self._truth = HandQueue(self, topics.TRUTH_ODOMETRY, self.depth)
 
     def hand_queues(self):
@@ -58,22 +64,22 @@ class NavigatorNode(StageNode):
         return {topics.TRUTH_ODOMETRY.name: self._truth}
 
     def start_anew(self):
-        """Forget all that has come, and which stream is ahead of the other."""
+        """Discard all received data, and match the two streams afresh."""
         self._readings.clear()
         self._newest_ns = None
         self.stage.rejoin()
 
     def instant(self, stamp_ns):
-        """Return the instant of a reading by its stamp, motion time."""
+        """Return the instant (motion time, ns) of an IMU sample, given its stamp."""
         return stamp_ns
 
     def read_imu(self, data):
-        """Return instant, rate and specific force of a message, or None after a report."""
+        """Return instant, angular rate and specific force of a message, None if it is bad."""
         sample = self.read(self._imu_reader, data)
         return None if sample is None else (self.instant(sample[0]), *sample[1:])
 
     def on_message(self, data):
-        """Give one IMU message to the navigator, and what it waits for."""
+        """Process one IMU message, and wait for the messages that it needs."""
         sample = self.read_imu(data)
         if sample is None:
             return
@@ -82,39 +88,43 @@ class NavigatorNode(StageNode):
         self._patience.wait()
 
     def push_reading(self, sample, data):
-        """Give one reading to the navigator, and what it waits for."""
+        """Pass one IMU sample to the navigator, after the other inputs that have arrived."""
         if len(self._readings) > self.depth:
-            # of readings that are refused, none is ever needed
+            # The stored samples were refused by the stage and will never be needed.
             self._readings.clear()
         self._readings[sample[0]] = sample[1], data
-        # the rest first: it may have jumped back as the IMU is about to
+        # Read the other queues first: if the simulation was reset, their stamps jump back before
+        # those of the IMU.
         self.take()
         self.publish(self.push(self.stage.push_imu, sample))
 
     def waits(self):
-        """Return whether something has to come before what was taken is done."""
+        """Return whether the samples received so far still need another message."""
         return self.stage.waiting
 
     def progress(self):
-        """Return what changes when something comes that is waited for."""
+        """Return a value that changes whenever an awaited message arrives."""
         return self.stage.processed_ns
 
     def take(self):
-        """Take what has come beside the readings."""
+        """Process the truth messages that have arrived."""
         for data in self.taken_of(self._truth):
             sample = self.read(self._truth_reader, data)
             if sample is not None:
                 self.publish(self.push(self.stage.push_truth, sample))
 
     def miss(self):
-        """Say what has not come, and go on without."""
+        """Report what has not arrived in time, and continue without it."""
         if self.stage.parted:
-            self.fault(f'of {topics.IMU_RAW.name} and {topics.TRUTH_ODOMETRY.name} one has jumped '
-                       f'back and the other has not followed in {MISSING_S:g} s; expected both '
-                       'from one run: they are taken as of one run from now on')
+            self.fault(f'the stamps of one of {topics.IMU_RAW.name} and '
+                       f'{topics.TRUTH_ODOMETRY.name} have jumped back, and those of the other '
+                       f'have not followed within {MISSING_S:g} s; expected both topics from one '
+                       'run: from now on they are treated as belonging to one run')
         else:
             self.fault(f'no message on {topics.TRUTH_ODOMETRY.name} in {MISSING_S:g} s; expected '
-                       'the truth of every reading')
+                       'the truth of every IMU sample: is motion_generator or truth_adapter '
+                       'running? (strapdown needs no truth if initial.source is given, fix or '
+                       'alignment)')
         self.stage.rejoin()
 
     def _settle(self):
@@ -126,7 +136,7 @@ class NavigatorNode(StageNode):
             self.seen(self._newest_ns)
 
     def publish(self, outputs):
-        """Publish every output_every-th of the stage's outputs, and report what ended them."""
+        """Publish every output_every-th output of the stage, and report the stage's faults."""
         while self.stage.faults:
             self.fault(str(self.stage.faults.pop(0)))
         for t_ns, *output in outputs:
@@ -139,15 +149,21 @@ class NavigatorNode(StageNode):
             self.monitor.sent += 1
 
     def begin_run(self):
-        """Start anew at the first instant of a run."""
+        """Prepare for the first output of a new run; subclasses override this."""
 
     def publish_one(self, stamp_ns, rate, *output):
         """
-        Publish an output; rate: the reading of the gyros at its instant, rad/s.
+        Publish one output of the stage.
 
-        ``reading`` is the message that it is from, or None.
+        Parameters
+        ----------
+        stamp_ns : stamp of the messages, ns
+        rate : angular rate measured by the gyros at this instant, rad/s, shape (3,)
+        output : output of the stage without its instant
+
+        ``self.reading`` is the IMU message of this instant, or None.
         """
-        # asking costs a fifth of packing and publishing what nobody hears
+        # Skip topics without subscribers: checking costs a fifth of packing and publishing.
         heard = [publisher.get_subscription_count() for publisher, _ in self._outputs]
         if not any(heard) and not self.places:
             return
@@ -155,14 +171,14 @@ class NavigatorNode(StageNode):
         for (publisher, pack), runs, count in zip(self._outputs, messages, heard):
             if count:
                 publisher.publish(pack(stamp_ns, *runs))
-        # of the Odometry, which is the first of them
+        # The first message is the Odometry; it begins with the pose.
         self.place(stamp_ns, messages[0][0])
 
     @property
     def places(self):
-        """Return whether a frame is placed on TF."""
+        """Return whether the node broadcasts a transform."""
         return self.broadcaster.publish is not None
 
     def place(self, stamp_ns, pose):
-        """Place the vehicle on TF."""
+        """Broadcast the pose of the vehicle on /tf."""
         self.broadcaster.send(stamp_ns, pose)

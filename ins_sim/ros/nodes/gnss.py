@@ -1,4 +1,4 @@
-"""Node gnss: streamed truth in, fixes of a GNSS receiver out."""
+"""Node gnss: simulate the fixes of a GNSS receiver from the streamed truth."""
 
 from std_srvs.srv import SetBool
 
@@ -16,14 +16,14 @@ from .stage import StageNode
 
 
 class GnssNode(StageNode):
-    """Reads truth/odometry, publishes gnss/fix and, while there is a fix, gnss/velocity."""
+    """GNSS receiver: truth/odometry in; gnss/fix and, for valid fixes, gnss/velocity out."""
 
     NAME = 'gnss'
     SETTINGS = GnssSettings
     DRIVER = topics.TRUTH_ODOMETRY
 
     def make_stage(self):
-        """Return the receiver."""
+        """Return the simulated receiver."""
         settings = self.settings
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._receiver = Gnss(settings)
@@ -34,7 +34,7 @@ class GnssNode(StageNode):
         return Broadcaster(self, self.settings, fixed={'': gnss_mounting(self.settings)})
 
     def begin_announced(self):
-        """Stamp by the epoch."""
+        """Convert motion time to stamps with the announced epoch."""
         self._writer.epoch_ns = self.epoch_ns
 
     def make_outputs(self):
@@ -49,7 +49,7 @@ class GnssNode(StageNode):
         self.create_service(SetBool, '~/outage', self._on_outage)
 
     def on_message(self, data):
-        """Give one truth message to the receiver and publish the fixes that are there by then."""
+        """Process one truth message, and publish the fixes that are available at its instant."""
         sample = self.read(self._reader, data)
         if sample is None:
             return
@@ -65,15 +65,15 @@ class GnssNode(StageNode):
         self.seen(t_ns)
 
     def change(self, settings):
-        """Take outages and a jump from the next fix on."""
+        """Apply new outages and jumps from the next fix on."""
         self._receiver.change(settings)
 
     def effective_ns(self, name):
-        """Return the motion time of the next fix."""
+        """Return the motion time of the next fix, ns."""
         return self._receiver.next_ns
 
     def _describe(self):
-        """Return nothing that is wrong, and the values for /diagnostics."""
+        """Return '' (this never reports a fault) and the values for /diagnostics."""
         return '', (('fixes', self._fixes), ('outages', self._outages),
                     ('outage forced', self._receiver.forced))
 

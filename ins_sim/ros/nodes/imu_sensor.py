@@ -1,4 +1,4 @@
-"""Node imu_sensor: streamed truth in, readings of the IMU out."""
+"""Node imu_sensor: simulate the samples of an IMU from the streamed truth."""
 
 from std_srvs.srv import SetBool
 
@@ -19,9 +19,10 @@ from .stage import StageNode
 
 class ImuSensorNode(StageNode):
     """
-    Reads truth/imu, publishes imu/data_raw and, with tuned gyros, imu/parity.
+    Inertial measurement unit: truth/imu in; imu/data_raw and, with tuned gyros, imu/parity out.
 
-    Where they are asked for, it reads truth/odometry and publishes imu/mag and imu/pressure.
+    With magnetometer.publish or barometer.publish it also reads truth/odometry and publishes
+    imu/mag or imu/pressure.
     """
 
     NAME = 'imu_sensor'
@@ -29,11 +30,11 @@ class ImuSensorNode(StageNode):
     DRIVER = TRUTH = topics.TRUTH_IMU
 
     def make_stage(self):
-        """Return the IMU."""
+        """Return the simulated IMU."""
         settings = self.settings
         motion = None
         if settings.source == 'motion':
-            # off the way of a node that hears its motion
+            # Imported lazily: a node that receives its motion as messages starts faster without.
             from ins_sim.io.motion import read_motion
             motion = read_motion(settings)
         return make_imu(settings, motion)
@@ -60,11 +61,11 @@ class ImuSensorNode(StageNode):
             self._watch_parity()
 
     def hand_queues(self):
-        """Return the queue of what surrounds the IMU, if it is read."""
+        """Return {topic name: queue} of truth/odometry if magnetometer or barometer needs it."""
         return {topics.TRUTH_ODOMETRY.name: self._environment.queue} if self._environment else {}
 
     def start_anew(self):
-        """Forget all that has come."""
+        """Discard all received data."""
         super().start_anew()
         if self._environment:
             self._environment.reset()
@@ -78,7 +79,7 @@ class ImuSensorNode(StageNode):
         self.create_service(SetBool, '~/fault', self._on_fault)
 
     def on_message(self, data):
-        """Give one truth message to the IMU and publish what it completes."""
+        """Process one truth message, and publish the IMU samples that it completes."""
         sample = self.read(self._reader, data)
         if sample is None:
             return
@@ -100,7 +101,7 @@ class ImuSensorNode(StageNode):
 
     def _test_parity(self, stamp_ns, t_ns, omega, force, parity):
         if t_ns != self._tested_ns:
-            # Sample 0 may be repeated, but counts once.
+            # Lock-step may repeat sample 0; the parity test counts it once.
             self._tested_ns = t_ns
             self._parity.push(t_ns, omega, force, parity)
         if self._parity_publisher.get_subscription_count():
@@ -108,7 +109,7 @@ class ImuSensorNode(StageNode):
                 self._parity_writer.pack(stamp_ns, self._parity.row(parity)))
 
     def _describe_parity(self):
-        """Return what is wrong with the channels, or '', and the values for /diagnostics."""
+        """Return a fault of the gyro channels, or '', and the values for /diagnostics."""
         test = self._parity
         mean, most = test.mean / DEG_H, test.threshold / DEG_H
         wrong = ''
@@ -118,14 +119,14 @@ class ImuSensorNode(StageNode):
         return wrong, (('parity deg/h', f'{mean:.6g}'), ('parity threshold deg/h', f'{most:.6g}'))
 
     def check_change(self, settings):
-        """Refuse a fault of gyros that have none."""
+        """Refuse gyro.dtg.fault if the gyros are not tuned gyros."""
         gyro = settings.gyro
         if gyro.model != 'dtg' and gyro.dtg.fault != self.settings.gyro.dtg.fault:
-            raise ValueError(f'gyro.model is {gyro.model}; expected dtg: the fault is one of a '
-                             'tuned gyro')
+            raise ValueError(f'gyro.model is {gyro.model}; expected dtg: gyro.dtg.fault applies '
+                             'to tuned gyros only')
 
     def change(self, settings):
-        """Take biases, the fault of a tuned gyro and drop-outs from the next reading on."""
+        """Apply new biases, faults of a tuned gyro and drop-outs from the next sample on."""
         self.stage = changed(self.stage, settings)
         self._take_sampling(settings)
         if self._parity is not None:
@@ -136,7 +137,12 @@ class ImuSensorNode(StageNode):
                                 self._dt_ns)
 
     def effective_ns(self, name):
-        """Return the motion time of the next reading; of tuned gyros, that is not made yet."""
+        """
+        Return the motion time from which a parameter counts, ns, or None before the first sample.
+
+        That is the next sample; tuned gyros are computed ahead, so theirs is the next one not yet
+        computed.
+        """
         if self._reading_ns is None:
             return None
         if self.stage.pair is not None and name.startswith('gyro.'):

@@ -1,4 +1,4 @@
-"""Node motion_generator: the master of time, which publishes the truth."""
+"""Node motion_generator: publish the truth of a motion; this node sets the pace of a run."""
 
 import math
 import time
@@ -30,7 +30,7 @@ from ..transport.qos_overrides import advertise
 
 SERVE_S = 0.01
 POLL_S = 2e-4
-# For samples there is so many times as long as for the callbacks of the executor, up to REST_S.
+# Serving callbacks may take one part in SHARE of the time; the pause between is at most REST_S.
 SHARE, REST_S = 30.0, 0.2
 BURST = 50
 CLOCK_HZ = 100.0
@@ -38,9 +38,9 @@ CLOCK_HZ = 100.0
 
 class MotionGeneratorNode(Node):
     """
-    Publishes truth/*, /tf, /clock, sim/run and sim/status; paces by the clock or by sim/ack.
+    Publishes truth/*, /tf, /clock, sim/run, sim/status, paced by the wall clock or by sim/ack.
 
-    A guided motion it steers by the Odometry of guidance.topic, and publishes guidance/command.
+    A guided motion is steered by the Odometry on guidance.topic; see also guidance/command.
     """
 
     NAME = 'motion_generator'
@@ -51,7 +51,7 @@ class MotionGeneratorNode(Node):
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
         self._source = TruthSource(self.settings)
-        # first, so that whoever has found the truth knows that there is an announcement
+        # Created first: whoever has discovered the truth knows that there is an announcement.
         self._announcements = qos.make_publisher(self, topics.RUN, depth)
         self._announcements.publish(self._source.announcement.pack())
         self._lock = None
@@ -99,7 +99,7 @@ class MotionGeneratorNode(Node):
         self.create_service(SetBool, '~/engage', self._on_engage)
 
     def hand_queues(self):
-        """Return {topic name: HandQueue} of what steers, nothing where nothing does."""
+        """Return {topic name: HandQueue} of the steering solution, empty for other motions."""
         return self._queues
 
     def run(self, executor, stop):
@@ -118,18 +118,18 @@ class MotionGeneratorNode(Node):
             if now > serve_s:
                 serve_ready(executor)
                 served = time.monotonic()
-                # where looking takes long, it is done more rarely
+                # If serving is slow on this machine, serve less often.
                 serve_s = served + min(REST_S, max(SERVE_S, SHARE * (served - now)))
             elif wait_s > 0.0:
                 time.sleep(min(wait_s, SERVE_S))
 
     def _tell_time(self):
-        """Say what others need where the stamps are not those of the wall clock."""
+        """Log what other nodes need if the stamps do not follow the wall clock."""
         if sentence := clock_needed(self.settings):
             self.get_logger().info(sentence)
 
     def _advance(self, stop):
-        """Publish what may be published; return how long there is nothing to do, s."""
+        """Publish the samples that are due; return the time until the next one, s."""
         if self.monitor.state == 'finished':
             return SERVE_S
         lock, source = self._lock, self._source
@@ -163,13 +163,13 @@ class MotionGeneratorNode(Node):
 
     def step(self):
         """
-        Send the next sample, whoever is to acknowledge; return its stamp, None at the end.
+        Send the next sample without waiting for acknowledgements; return its stamp, ns, or None.
 
-        The solution that steers must be there by then: its node is in this process.
+        The node whose solution steers a guided motion must be in this process. None: end of run.
         """
         k = self._next
         if k == 0:
-            # silence between two steps is no fault
+            # Announce a pause, so that other nodes do not report the silence between two steps.
             self._announce('paused')
         if k >= self._source.count:
             self._announce('finished')
@@ -181,11 +181,11 @@ class MotionGeneratorNode(Node):
         return self._source.stamp_ns(k)
 
     def repeat_first(self):
-        """Send sample 0 again: a consumer has come since."""
+        """Send sample 0 again, for a consumer that has joined since."""
         self._send(0)
 
     def _drained(self):
-        """Let the nodes of this process acknowledge what they have taken."""
+        """Let the other nodes of this process acknowledge the samples they have processed."""
         if self.hand_over is not None:
             self.hand_over.drained()
 
@@ -230,7 +230,7 @@ class MotionGeneratorNode(Node):
             stop.request()
 
     def pause(self, on):
-        """Pause, or go on."""
+        """Pause (``on`` true) or resume the run."""
         self._paused = on
         self._restart_clocks()
         if self.monitor.state != 'finished':
@@ -248,9 +248,9 @@ class MotionGeneratorNode(Node):
 
     def send(self, steps):
         """
-        Send so many samples in a pause; return how many were sent.
+        Send ``steps`` samples while paused; return how many were sent.
 
-        They are fewer at the end of the run, and where a consumer is late for pacing.timeout_s.
+        Fewer are sent at the end of the run, or if a consumer is silent for pacing.timeout_s.
         """
         first, moved = self._next, time.monotonic()
         self._single = steps

@@ -1,4 +1,4 @@
-"""Node player: the messages of a bag, byte for byte, by their log times or in lock-step."""
+"""Node player: publish the messages of a bag, unchanged, by their log times or in lock-step."""
 
 from array import array
 from bisect import bisect_right
@@ -24,16 +24,16 @@ SERVE_S = 0.01
 SETTLE_S = 0.2
 POLL_S = 2e-4
 DEPTH = 2000
-# a late joiner gets at most so many of the messages of a latched topic
+# Number of messages of a latched topic that a late joiner receives at most.
 LATCHED_DEPTH = 1000
-# a silence that takes longer to wait for than this is said
+# A gap in the bag that takes longer than this to play is logged, s of wall time.
 GAP_S = 10.0
-# /clock leaps a gap of the bag that lock-step does not wait through
+# In lock-step without a rate, /clock jumps over gaps longer than this.
 LEAP_NS = 10 * SECOND
 
 
 class PlayerNode(Node):
-    """Publishes what a bag holds, under the names in the bag and in the namespace of the node."""
+    """Publishes the messages of a bag on the topics of the bag, in the namespace of the node."""
 
     NAME = 'player'
 
@@ -73,7 +73,7 @@ class PlayerNode(Node):
             self._clock_publisher = qos.make_publisher(self, topics.CLOCK_TOPIC, DEPTH)
             self._clock_writer = topics.CLOCK_TOPIC.writer()
             self._tick_ns = max(1, round(SECOND / options.clock_hz * (options.rate or 1.0)))
-        # nanoseconds of the bag are what the pace counts
+        # The samples that the pace counts are nanoseconds of the bag.
         self._pace = Pace(options.rate, 1e-9)
         self._stamps, self._repeated = array('q'), []
         self.monitor = Monitor(self)
@@ -109,7 +109,7 @@ class PlayerNode(Node):
                                'topics')
 
     def _wait_readers(self):
-        """Wait until every topic has a reader, and a little for the readers to know it too."""
+        """Wait until every topic has a reader, then a little until the readers know it too."""
         end = time.monotonic() + self._options.wait_s
         heard = False
         while not self._stop and (left_s := end - time.monotonic()) > 0.0:
@@ -142,7 +142,7 @@ class PlayerNode(Node):
             self._wait_all_answered()
 
     def _tell_gap(self, before_ns, log_ns):
-        """Say that a silence of the bag is waited for, if it is long, and how to leave it out."""
+        """Log that a long gap in the bag is played in real time, and how to skip it."""
         wait_s = (log_ns - before_ns) / SECOND / self._options.rate if self._options.rate else 0.0
         if wait_s > GAP_S:
             begin_ns = self._playing.first_ns - round(self._options.start_s * SECOND)
@@ -150,7 +150,7 @@ class PlayerNode(Node):
             self.get_logger().warning(
                 f'nothing was logged for {(log_ns - before_ns) / SECOND:.3f} s from '
                 f'{before_ns / SECOND:.3f} s on: waiting {wait_s:.0f} s (--start {start_s:.3f} '
-                'begins behind it, --duration ends before it, --rate shortens it)')
+                'begins after the gap, --duration ends before it, --rate shortens it)')
 
     def _send(self, name, data):
         publish = self._publish.get(name)
@@ -161,7 +161,7 @@ class PlayerNode(Node):
                 self._serve(0.0)
 
     def _wait_due(self, t_ns):
-        """Wait until a time of the bag, ns after its first, has come."""
+        """Wait until it is time to play a message logged t_ns after the first one."""
         while not self._stop:
             self._allowed_ns = self._pace.allowed() - 1
             if t_ns <= self._allowed_ns:
@@ -178,7 +178,7 @@ class PlayerNode(Node):
             self._next_tick_ns += self._tick_ns
 
     def _serve(self, wait_s):
-        """Let the node answer, at most every SERVE_S, or sleep."""
+        """Serve the callbacks of the node, at most every SERVE_S; otherwise sleep."""
         now = time.monotonic()
         if now - self._served > SERVE_S:
             self._executor.spin_once(timeout_sec=0.0)
@@ -187,7 +187,7 @@ class PlayerNode(Node):
             time.sleep(min(wait_s, SERVE_S))
 
     def _begin(self):
-        """Send the first sample of a part until all consumers have answered it."""
+        """Send the first sample repeatedly until all consumers have acknowledged it."""
         beginning = PlaybackStart(self._playing, stamp_of)
         for name, _, data in beginning.early:
             self._send(name, data)
@@ -212,7 +212,7 @@ class PlayerNode(Node):
             self._await(lambda: self._lock.allowed() > len(self._stamps))
             self._stamps.append(stamp_ns)
         elif stamp_ns < self._stamps[-1]:
-            # the consumers start anew as well
+            # The stamps jump back: the consumers restart as well.
             self._wait_all_answered()
             self._start_sample(stamp_ns)
             self._repeated = []
@@ -248,9 +248,10 @@ class PlayerNode(Node):
                 self.monitor.fault(f'{topics.ACK.name}: {error}; the message was dropped')
                 continue
             if stamp_ns > self._stamps[-1] + JUMP_NS:
-                # an echo of the part before
+                # This acknowledges a sample from before the jump.
                 continue
-            # an answer may stand between two samples, or before the first, by a known latency
+            # Because of sensor latency the acknowledged stamp may lie between two samples or
+            # before the first.
             k = max(0, bisect_right(self._stamps, stamp_ns) - 1)
             self._lock.ack(name, k, len(self._stamps))
             self.monitor.received += 1

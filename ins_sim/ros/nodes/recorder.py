@@ -1,4 +1,4 @@
-"""Node recorder: topics, as they appear, into a bag."""
+"""Node recorder: write topics into a bag as soon as they appear."""
 
 import time
 
@@ -22,20 +22,21 @@ from ..recording.definitions import installed_definition
 from ..transport import qos
 
 SCAN_S = 0.2
-# to ask for the publishers of a topic costs 0.1 ms
+# Known topics are checked for new publishers this often, s; asking costs 0.1 ms per topic.
 WATCH_S = 2.0
 SERVE_S = 0.02
 NAP_S = 0.002
 ABSENT_S = 2.0
-# of all topics none may have appeared for so long before a sample of lock-step is answered
+# When all topics are recorded: the first lock-step sample is acknowledged only after no new topic
+# has appeared for this time, s.
 SETTLE_S = 1.0
-# what is known beforehand is subscribed to at once, so that nothing of its start is missed
+# Topics of this package are subscribed to at once, so that their first messages are not missed.
 OURS = (topics.RUN, *topics.DATA, *topics.BESIDE, topics.CLOCK_TOPIC, *topics.AIDING,
         *topics.GUIDANCE)
 
 
 class RecorderNode(Node):
-    """Writes any topics into a bag, whatever their types and quality of service."""
+    """Writes topics of any type and quality of service into a bag."""
 
     NAME = 'recorder'
 
@@ -87,7 +88,7 @@ class RecorderNode(Node):
             self.recorder.finish()
             self._bag.close()
         except OSError as error:
-            # the writer has closed its file as it is; what was waiting is not in it
+            # The writer has closed its file as it is, without the messages that were waiting.
             self.get_logger().fatal(str(error))
             stop.code = EXIT_FAULT
             self._say_what_is_in_it(_kept(self._bag.folder))
@@ -95,7 +96,7 @@ class RecorderNode(Node):
             self._say_what_is_in_it(self.recorder.counts)
 
     def _scan(self):
-        """Subscribe to what has appeared."""
+        """Subscribe to topics that have appeared."""
         recorder = self.recorder
         here = {name for name, _ in self.get_topic_names_and_types()}
         wanted = [n for n in self._named if n in here]
@@ -146,7 +147,7 @@ class RecorderNode(Node):
         self.get_logger().info(f'recording {name} ({type_name})')
 
     def _watch(self, track, infos):
-        """See whether publishers that came later go with the subscription."""
+        """Check that publishers that joined later are compatible with the subscription."""
         others = {info.topic_type for info in infos} - {track.type_name}
         reliability, durability = qos.offered_profile(infos)
         mine = track.queue.subscription.qos_profile
@@ -170,7 +171,7 @@ class RecorderNode(Node):
             self.monitor.fault(f'{track.name}: {why}')
 
     def _describe(self):
-        """Return what is wrong, or '', and the values for /diagnostics."""
+        """Return a fault, or '', and the values for /diagnostics."""
         tracks = self.recorder.tracks.values()
         lost = sum(track.gaps.lost + track.unwritten for track in tracks)
         wrong = ''
@@ -210,7 +211,7 @@ def _kept(folder):
         with open_bag(folder) as bag:
             return {name: span.count for name, span in bag.spans().items()}
     except (ValueError, OSError):
-        # not even the head of a file found room
+        # There was not even room for the header of the file.
         return {}
 
 
@@ -219,7 +220,7 @@ def _hidden(name):
 
 
 def _as_yaml(infos):
-    """Return the offered profiles as the bag keeps them."""
+    """Return the offered QoS profiles in the YAML format of the bag."""
     kinds = dict.fromkeys((info.qos_profile.durability.name.lower(),
                            info.qos_profile.reliability.name.lower()) for info in infos)
     return '\n'.join(bag_qos.profile_yaml(*kind) for kind in kinds)

@@ -1,4 +1,4 @@
-"""Executable simulation: the nodes of a simulation in one process, joined in memory."""
+"""Executable simulation: all nodes of a simulation in one process, connected in memory."""
 
 import sys
 
@@ -17,10 +17,10 @@ RENAMES = ('__node:=', '__name:=')
 
 class SimulationNode(Node):
     """
-    Holds the nodes motion_generator, imu_sensor, strapdown and, if ``aided``, those of the aids.
+    Contains motion_generator, imu_sensor, strapdown and, if ``aided``, the aiding nodes.
 
-    They have the names, parameters, topics and services that they have as processes of their
-    own, and the numbers too, for they hand over the bytes that they publish.
+    They have the same names, parameters, topics and services as in separate processes. They also
+    compute the same numbers, because they exchange the serialized messages that they publish.
     """
 
     NAME = 'simulation'
@@ -40,13 +40,13 @@ class SimulationNode(Node):
 
     @property
     def publishers(self):
-        """Return the publishers of all nodes."""
+        """Yield the publishers of all nodes."""
         yield from super().publishers
         for node in self.members:
             yield from node.publishers
 
     def run(self, executor, stop):
-        """Let the generator work until the end or until stop is set; the others follow it."""
+        """Run the generator until the end or until stop is set; it drives the other nodes."""
         for node in self.members:
             executor.add_node(node)
         self.members[0].run(executor, stop)
@@ -61,14 +61,14 @@ class SimulationNode(Node):
         self.members[0].repeat_first()
 
     def destroy_node(self):
-        """Leave the graph, all nodes."""
+        """Destroy all nodes."""
         for node in self.members:
             node.destroy_node()
         super().destroy_node()
 
 
 def _classes(aided):
-    # the generator first: it is the one that runs
+    # The generator comes first: its loop drives the process.
     yield from (MotionGeneratorNode, ImuSensorNode)
     if aided:
         # Imported lazily: a simulation without them starts faster.
@@ -82,7 +82,7 @@ def _classes(aided):
 
 
 def _named(cls):
-    """Return the arguments that keep the name of a node where the process is given one."""
+    """Return arguments that keep a member's name if the command line renames the process."""
     if not any(word.startswith(RENAMES) for word in sys.argv):
         return {}
     return {'cli_args': ['--ros-args', '-r', f'__node:={cls.NAME}']}

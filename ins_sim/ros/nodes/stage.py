@@ -1,4 +1,4 @@
-"""What the nodes that follow a stream share: parameters, faults, acknowledgements, reset."""
+"""Base class of nodes driven by a stream: parameters, faults, acknowledgements, reset."""
 
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -23,14 +23,25 @@ from ..transport.qos_overrides import subscribe
 
 class StageNode(Node):
     """
-    A node driven by one topic, which reads no clock and computes from the messages alone.
+    Base class of the nodes that process one input topic.
 
-    A subclass sets NAME, SETTINGS and DRIVER, makes ``self.stage`` with ``reset()`` and whose
-    pushes raise StreamFault, and has ``on_message(bytes)``.  What a callback raises beside that
-    is a fault too, after which the node starts anew.  CHECKS_STAMPS: whether stamps outside the
-    announced run are refused; TRUTH: what the node reads of the generator.  Where the SETTINGS
-    have SETTABLE ones, the node has ``change(settings)`` and ``effective_ns(name)``, as a part of
-    LiveParameters.
+    All computation uses the time stamps of the messages, never a clock, so that a live run gives
+    the same numbers as an offline one.
+
+    A subclass defines
+
+    * ``NAME``, ``SETTINGS`` (its settings class) and ``DRIVER`` (the input Topic);
+    * ``make_stage()``, whose result has ``reset()`` and raises StreamFault on bad input;
+    * ``on_message(data)``, called with the bytes of each input message;
+    * ``change(settings)`` and ``effective_ns(name)`` if SETTINGS.SETTABLE is not empty, see
+      ``LiveParameters``.
+
+    Any other exception in a callback is reported as a fault, and the node restarts.
+
+    Attributes
+    ----------
+    CHECKS_STAMPS : whether messages with stamps outside the announced run are refused
+    TRUTH : Topic of the generator that the node reads
     """
 
     CHECKS_STAMPS = True
@@ -54,7 +65,7 @@ class StageNode(Node):
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
         subscribe(self, String, topics.STATUS.name, self._on_status, qos.latched_profile())
-        # whoever waits for an answer waits for every one of them: only then nothing may be lost
+        # Messages may be dropped as too old only while nobody waits for acknowledgements.
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
                                    self.guarded(self.on_drained),
                                    self.nobody_waits,
@@ -67,12 +78,12 @@ class StageNode(Node):
         self.get_logger().info(told(self.NAME, self.settings))
 
     def make_announced(self):
-        """Return the AnnouncedRun, or Unannounced."""
+        """Return the AnnouncedRun of this node, or Unannounced."""
         return AnnouncedRun(self, self.TRUTH, self.depth, self._begin_announced, self._give_held)
 
     @property
     def knows_run(self):
-        """Return whether the run, and so its epoch, is known."""
+        """Return whether the run and its epoch are known."""
         return self._announced.run is not None
 
     def nobody_waits(self):
@@ -80,18 +91,18 @@ class StageNode(Node):
         return not self._ack_publisher.get_subscription_count()
 
     def hand_queues(self):
-        """Return {topic name: HandQueue} of what is taken beside the driver."""
+        """Return {topic name: HandQueue} of the inputs other than the driving topic."""
         return {}
 
     def taken_of(self, queue):
-        """Yield the messages of a HandQueue, no more than it may have held: never for ever."""
+        """Yield the messages of a HandQueue, at most its depth, so that the loop always ends."""
         for _ in range(self.depth):
             if self.stop or (data := queue.take()) is None:
                 return
             yield data
 
     def guarded(self, callback):
-        """Return a callback that raises nothing: an exception is a fault, after it all is new."""
+        """Return the callback wrapped so that an exception is reported and restarts the node."""
         return caught(callback, self._rescue)
 
     def _rescue(self, sentence):
@@ -99,25 +110,25 @@ class StageNode(Node):
         self.start_anew()
 
     def start_anew(self):
-        """Forget all that has come."""
+        """Discard all received data."""
         self.stage.reset()
 
     def check_change(self, settings):
-        """Raise ValueError on new settings that cannot be taken amid a run."""
+        """Raise ValueError if new settings cannot be applied during a run."""
 
     def make_broadcaster(self):
-        """Return the Broadcaster of what the node places."""
+        """Return the Broadcaster of the transforms that this node publishes."""
         return Broadcaster(self, self.settings)
 
     def _begin_announced(self, run):
-        """Follow a run of another epoch from its begin."""
+        """Restart for a run with another epoch."""
         self.epoch_ns = run.epoch_ns
         self.start_anew()
         self.begin_announced()
         self.broadcaster.send_fixed(run.first_stamp_ns)
 
     def begin_announced(self):
-        """Take note of another epoch_ns."""
+        """Adapt to a new ``epoch_ns``; subclasses override this."""
 
     def _on_data(self, data):
         if not self.stop and not self._announced.holds(data):
@@ -129,11 +140,11 @@ class StageNode(Node):
         if self.hand_over is None:
             self.on_drained()
         else:
-            # what it led to may be in the other nodes of this process
+            # The message may have led to messages in other nodes of this process.
             self.hand_over.drained()
 
     def read(self, reader, data):
-        """Return motion time and runs of a message, or None after reporting that it is bad."""
+        """Return motion time (ns) and fields of a message; report a bad one and return None."""
         try:
             stamp_ns, *runs = reader.read(data)
             if self.CHECKS_STAMPS:
@@ -144,7 +155,12 @@ class StageNode(Node):
         return (stamp_ns - self.epoch_ns, *runs)
 
     def push(self, push, sample):
-        """Return the outputs of a push; report a fault, start anew or stop, as on_fault says."""
+        """
+        Return the outputs of push(*sample).
+
+        A StreamFault is reported; the stage is reset and the sample pushed again, or the node
+        stops, depending on on_fault.
+        """
         try:
             return push(*sample)
         except StreamFault as fault:
@@ -159,28 +175,28 @@ class StageNode(Node):
             return []
 
     def fault(self, sentence):
-        """Report a fault; end the node if on_fault says so."""
+        """Report a fault; end the node if on_fault is ``stop``."""
         self.monitor.fault(sentence, fatal=self._stops)
         if self._stops:
             self.stop.request(EXIT_FAULT)
 
     def seen(self, t_ns):
-        """Remember the motion time up to which all is done, for the acknowledgement."""
+        """Store the motion time (ns) up to which everything is processed, to acknowledge it."""
         self._seen_ns, self._last_stamp = t_ns, t_ns + self.epoch_ns
 
     def seen_so_far(self, t_ns):
-        """Remember, once, up to where all is done while what comes behind has to wait."""
+        """Store, once, how far processing has come while later samples have to wait."""
         if t_ns is not None and t_ns != self._seen_ns:
             self.seen(t_ns)
 
     def on_drained(self):
-        """Acknowledge once a wake-up."""
+        """Acknowledge what was processed; called once per burst of messages."""
         if self._last_stamp is not None:
             self._ack_publisher.publish(self._ack.pack(self._last_stamp))
             self._last_stamp = None
 
     def _on_status(self, message):
-        # silence of a generator that has paused or finished is no fault
+        # Do not report silence while the generator is paused or has finished.
         self.monitor.awaited = message.data == 'running'
 
     def _on_reset(self, request, response):

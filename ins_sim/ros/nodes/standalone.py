@@ -1,4 +1,4 @@
-"""What the node strapdown does without truth: a real IMU in, navigation out."""
+"""Operation of the node strapdown without truth: navigate on the samples of a real IMU."""
 
 from dataclasses import replace
 import math
@@ -18,15 +18,18 @@ from ..transport import qos
 from ..transport.backlog import HandQueue
 
 STATIC_DEPTH = 100
-# Of a field that is read at all, T.
+# Magnetic fields above this are refused, T.
 MOST_FIELD_T = 0.1
 
 
 class StandaloneDrive:
     """
-    The inputs of a StrapdownNode that has no truth, and its stage.
+    Inputs and navigator of a StrapdownNode that runs without truth.
 
-    driver: Topic of the IMU; stage: StandaloneNavigator.
+    Attributes
+    ----------
+    driver : Topic of the IMU
+    stage : StandaloneNavigator
     """
 
     def __init__(self, node):
@@ -42,12 +45,12 @@ class StandaloneDrive:
             for kind, unit in (('rate', settings.units.rate), ('force', settings.units.force)))
         if settings.vertical.channel == 'truth':
             self.stage.infos.append(
-                f'vertical.channel is truth and initial.source {settings.initial.source}: there '
-                f'is none, the channel is damped towards vertical.reference, '
-                f'{settings.vertical.reference} (free lets it run)')
+                f'vertical.channel is truth, but with initial.source {settings.initial.source} '
+                f'there is no truth: the channel is damped towards vertical.reference, '
+                f'{settings.vertical.reference} (vertical.channel: free leaves it undamped)')
 
     def make_queues(self):
-        """Make the queues of what comes beside the IMU."""
+        """Make the queues of GNSS fixes, pressure, magnetic field and static transforms."""
         node, inputs = self._node, self._node.settings.inputs
         self._fix_topic = replace(topics.GNSS_FIX, name=inputs.fix)
         self._readers = {
@@ -66,7 +69,7 @@ class StandaloneDrive:
         node.monitor.add(lambda: ('', (('state', self.stage.state),)))
 
     def take(self):
-        """Take what has come beside the IMU, and navigate what waits."""
+        """Process the messages of the other topics, and navigate on the waiting IMU samples."""
         node, outputs = self._node, []
         if self._static is not None:
             for data in node.taken_of(self._static):
@@ -101,13 +104,13 @@ class StandaloneDrive:
         self.stage.push_pressure(t_ns, pressure[0])
 
     def _on_field(self, data, t_ns, field):
-        # false for what is not a number
+        # Written as "not <" so that NaN is refused too.
         if not math.hypot(*field) < MOST_FIELD_T:
             raise ValueError(f'the field is {field} T; expected less than {MOST_FIELD_T:g} T')
         self.stage.push_field(t_ns, field)
 
     def on_message(self, data, sample):
-        """Give a reading of the IMU, (t_ns, rate, specific force), to the stage."""
+        """Pass an IMU sample (t_ns, angular rate, specific force) to the stage."""
         stage = self.stage
         if not self._looked:
             self._looked = True
@@ -118,7 +121,7 @@ class StandaloneDrive:
                                     tuple(self._force * a for a in f), data))
 
     def _look(self, data):
-        """Take the frame of the first message, and say what it says that it has not (REP-145)."""
+        """Store the frame of the first message; report quantities marked absent (REP-145)."""
         self.stage.samples.frame_id = self._texts.strings(data)[0]
         _, rate, force = self._measured.read(data)
         missing = [name for name, (first,) in (('angular_velocity', rate),
@@ -128,7 +131,7 @@ class StandaloneDrive:
                                      f'no {" and no ".join(missing)} (REP-145); expected both')
 
     def publish(self, outputs):
-        """Publish solutions, and say what there is to say."""
+        """Publish solutions, and log the notes, warnings and faults of the stage."""
         node, stage, log = self._node, self.stage, self._node.get_logger()
         while stage.infos:
             log.info(stage.infos.pop(0))

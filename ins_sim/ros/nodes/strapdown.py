@@ -1,4 +1,4 @@
-"""Node strapdown: readings of an IMU in, navigation solution and its errors out."""
+"""Node strapdown: compute the free inertial solution from IMU samples, and its errors."""
 
 from std_srvs.srv import Trigger
 
@@ -21,9 +21,10 @@ from .following import NavigatorNode
 
 class StrapdownNode(NavigatorNode):
     """
-    Reads imu/data_raw and truth/odometry, publishes ins/odometry, ins/fix, ins/error/*.
+    Strapdown INS: imu/data_raw and truth/odometry in; ins/odometry, ins/fix, ins/error/* out.
 
-    With another initial.source than truth it needs none, and publishes no errors: StandaloneDrive.
+    If initial.source is not ``truth``, the node needs no truth and publishes no errors, see
+    ``StandaloneDrive``.
     """
 
     NAME = 'strapdown'
@@ -35,7 +36,7 @@ class StrapdownNode(NavigatorNode):
         return Broadcaster(self, self.settings, INS_MOVES, INS_FIXED)
 
     def make_navigator(self):
-        """Return the navigator."""
+        """Return the navigator that processes the streams."""
         self._sample_clock = SampleClock(self.settings, period_ns(self.settings.rate_hz))
         self._drive = None
         if self.settings.standalone:
@@ -53,27 +54,27 @@ class StrapdownNode(NavigatorNode):
         return drive
 
     def make_announced(self):
-        """Return the AnnouncedRun; without truth the stamps are all there is of time."""
+        """Return the AnnouncedRun; without truth, motion time is the stamp (Unannounced)."""
         return super().make_announced() if self._drive is None else Unannounced()
 
     def make_queues(self):
-        """Make the queues of what comes beside the IMU."""
+        """Make the queues of the inputs other than the IMU."""
         (super() if self._drive is None else self._drive).make_queues()
 
     def hand_queues(self):
-        """Return them by the names of their topics."""
+        """Return {topic name: HandQueue} of the inputs other than the IMU."""
         return super().hand_queues() if self._drive is None else self._drive.queues
 
     def take(self):
-        """Take what has come beside the readings."""
+        """Process the messages that have arrived on the other inputs."""
         (super() if self._drive is None else self._drive).take()
 
     def publish(self, outputs):
-        """Publish solutions, and report what ended them."""
+        """Publish solutions, and report the faults of the navigator."""
         (super() if self._drive is None else self._drive).publish(outputs)
 
     def make_outputs(self):
-        """Make publishers, that of imu/data too if it is asked for, and the service ~/align."""
+        """Make the publishers (with imu_data: true also imu/data) and the service ~/align."""
         super().make_outputs()
         self.create_service(Trigger, '~/align', self._on_align)
         self._imu_data, self._compared = None, False
@@ -81,18 +82,18 @@ class StrapdownNode(NavigatorNode):
             self._imu_data = qos.make_publisher(self, topics.IMU_DATA, self.depth)
 
     def instant(self, stamp_ns):
-        """Return the instant of a reading by its stamp, motion time."""
+        """Return the instant (motion time, ns) of an IMU sample, given its stamp."""
         return self._sample_clock.instant(stamp_ns)
 
     def on_message(self, data):
-        """Give one IMU message to the navigator; of the first one, look whose IMU it is from."""
+        """Process one IMU message; compare the noise that the first one states with settings."""
         if not self._compared:
             self._compared = True
             self._compare(data)
         super().on_message(data)
 
     def push_reading(self, sample, data):
-        """Give one reading to the navigator, and what it waits for."""
+        """Pass one IMU sample to the navigator, after the other inputs that have arrived."""
         if self._drive is None:
             super().push_reading(sample, data)
         else:
@@ -115,27 +116,27 @@ class StrapdownNode(NavigatorNode):
         try:
             _, rate, force = Reader(topics.IMU, ((16, 25), (28, 37))).read(data)
         except ValueError:
-            # said where the message is read
+            # The fault is reported where the message is read.
             return
         sentence = disagreement(self.settings, (rate[::4], force[::4]))
         if sentence and min(*rate[::4], *force[::4]) > 0.0:
             self.get_logger().warning(sentence)
 
     def messages(self, rate, solution, errors, known):
-        """Return the runs of each topic; of a place that is not known in map, no fix."""
+        """Return the fields of each topic; no fix while the position on the Earth is unknown."""
         if self._drive is not None and not self.stage.located:
             return (ins_odometry_one(self.frame, solution, rate, known),)
         return (ins_odometry_one(self.frame, solution, rate, known),
                 (fix_one(solution), known.place), *((e,) for e in errors))
 
     def publish_one(self, stamp_ns, rate, solution, errors, known):
-        """Publish an output, and imu/data."""
+        """Publish an output and, if asked for, imu/data."""
         super().publish_one(stamp_ns, rate, solution, errors, known)
         if self._imu_data is not None and self.reading is not None \
                 and self._imu_data.get_subscription_count():
             pose, _ = odometry_one(self.frame, solution, rate)
             q, covariance = orientation_one(pose, known)
             if self._drive is not None:
-                # of the frame of the IMU
+                # imu/data has the orientation of the IMU, not of the vehicle.
                 q = quaternion.multiply(q, self.stage.q_bs)
             self._imu_data.publish(with_orientation(self.reading, stamp_ns, q, covariance))

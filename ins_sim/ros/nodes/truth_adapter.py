@@ -1,4 +1,4 @@
-"""Node truth_adapter: the odometry of another simulator in, truth out."""
+"""Node truth_adapter: convert the odometry of another simulator to truth messages."""
 
 from std_msgs.msg import String
 
@@ -27,11 +27,12 @@ LOOK_S = 0.005
 
 class TruthAdapterNode(StageNode):
     """
-    Reads odom, publishes truth/* and sim/status; paces by its input, and in lock-step by sim/ack.
+    Subscribes to odom; publishes truth/*, sim/run and sim/status.
 
-    It is the master of time in place of motion_generator: stamps of the input are those of the
-    truth, and it announces a run with the epoch zero.  docs/design/other_simulators.md says how it
-    and the simulator wait for each other.
+    It replaces motion_generator: the truth has the stamps of the input, and the announced run has
+    the epoch zero. The pace is that of the input and, in lock-step, of the acknowledgements on
+    sim/ack. docs/design/other_simulators.md describes how it and the simulator wait for each
+    other.
     """
 
     NAME = 'truth_adapter'
@@ -39,7 +40,7 @@ class TruthAdapterNode(StageNode):
     DRIVER = topics.OTHER_ODOMETRY
 
     def make_stage(self):
-        """Return the adapter."""
+        """Return the adapter that computes the truth."""
         return TruthAdapter(self.settings, topics.OTHER_ODOMETRY.name)
 
     def make_broadcaster(self):
@@ -47,8 +48,9 @@ class TruthAdapterNode(StageNode):
         return Broadcaster(self, self.settings, TRUTH_MOVES)
 
     def make_outputs(self):
-        """Make publishers, readers and writers, and in lock-step the queue of the answers."""
-        # first, so that whoever has found the truth knows that there is an announcement
+        """Make publishers, readers and writers, and in lock-step the queue of sim/ack."""
+        # Created before the truth publishers: a node that has discovered the truth can then rely
+        # on discovering the announcement as well.
         announcement = RunAnnouncement(0, 0, self.settings.truth_hz, LATEST_NS).pack()
         qos.make_publisher(self, topics.RUN, self.depth).publish(announcement)
         name, pacing = topics.OTHER_ODOMETRY.name, self.settings.pacing
@@ -70,13 +72,13 @@ class TruthAdapterNode(StageNode):
         self._announced.take(announcement)
 
     def start_anew(self):
-        """Forget all that has come, and what the input is like."""
+        """Discard all received data and what was learned about the input."""
         self._release.clear()
         self._frames.forget()
         self.stage.begin()
 
     def on_message(self, data):
-        """Give one message to the adapter and send the truth that it completes."""
+        """Process one odometry message, and send the truth that it completes."""
         sample = self.read(self._reader, data)
         if sample is None:
             return
@@ -110,7 +112,7 @@ class TruthAdapterNode(StageNode):
         self.monitor.sent += 1
 
     def on_drained(self):
-        """Take the answers, send what may be sent, acknowledge."""
+        """Process acknowledgements, send the samples that are due, and acknowledge the input."""
         if self._acks is not None:
             self._take_acks()
             self._release.advance()
@@ -134,5 +136,5 @@ class TruthAdapterNode(StageNode):
             self.stop.request(EXIT_CONSUMER)
 
     def _describe(self):
-        """Return nothing that is wrong, and the values for /diagnostics."""
+        """Return '' (this never reports a fault) and the values for /diagnostics."""
         return '', (('input', self.stage.state), ('waiting', len(self._release)))

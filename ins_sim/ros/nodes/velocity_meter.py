@@ -1,4 +1,4 @@
-"""Node velocity_meter: streamed truth in, windows of the correlation velocity meter out."""
+"""Node velocity_meter: simulate the correlation velocity meter from the streamed truth."""
 
 from ins_sim.core.earth.frames import MapFrame
 from ins_sim.core.numerics.instants import period_ns
@@ -17,10 +17,10 @@ from .stage import StageNode
 
 class VelocityMeterNode(StageNode):
     """
-    Reads truth/odometry, publishes velocity_meter/record and, of a valid fit, .../velocity.
+    Velocity meter: truth/odometry in; velocity_meter/record and, for valid fits, .../velocity out.
 
-    With attack_angle ``ins`` it reads ins/odometry too, and a window waits for the solution at
-    its end.
+    With attack_angle ``ins`` it also reads ins/odometry, and each measurement window waits for
+    the INS solution at its end.
     """
 
     NAME = 'velocity_meter'
@@ -28,7 +28,7 @@ class VelocityMeterNode(StageNode):
     DRIVER = topics.TRUTH_ODOMETRY
 
     def make_stage(self):
-        """Return the instrument."""
+        """Return the simulated velocity meter."""
         settings = self.settings
         self._frame = MapFrame(settings.datum, settings.earth.rotation)
         self._meter = VelocityMeter(settings)
@@ -62,13 +62,13 @@ class VelocityMeterNode(StageNode):
         return {} if self._ins is None else {topics.INS_ODOMETRY.name: self._ins}
 
     def start_anew(self):
-        """Forget all that has come, that of the INS too."""
+        """Discard all received data, including INS solutions."""
         self._newest_ns = None
         self.stage.reset()
         self._meter.rejoin()
 
     def on_message(self, data):
-        """Give one truth message to the instrument, and the solutions that have come."""
+        """Process one truth message and the INS solutions that have arrived."""
         sample = self.read(self._reader, data)
         if sample is None:
             return
@@ -91,13 +91,14 @@ class VelocityMeterNode(StageNode):
     def _miss_ins(self):
         self._absent = True
         if self._meter.parted:
-            self.fault(f'of {self.DRIVER.name} and {topics.INS_ODOMETRY.name} one has jumped back '
-                       f'and the other has not followed in {MISSING_S:g} s; expected both from '
-                       'one run: they are taken as of one run from now on')
+            self.fault(f'the stamps of one of {self.DRIVER.name} and {topics.INS_ODOMETRY.name} '
+                       'have jumped back, and those of the other have not followed within '
+                       f'{MISSING_S:g} s; expected both topics from one run: from now on they are '
+                       'treated as belonging to one run')
         else:
             self.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected '
-                       'the solution up to the end of every window (attack_angle: none needs '
-                       'none)')
+                       'the solution up to the end of every window (with attack_angle: none the '
+                       'velocity meter needs no INS)')
         self._publish(self.stage.add(self._meter.give_up_ins()))
 
     def _settle(self):
@@ -121,14 +122,14 @@ class VelocityMeterNode(StageNode):
             self.monitor.sent += 1
 
     def change(self, settings):
-        """Take drop-outs from the next window to end on."""
+        """Apply new drop-outs from the next window that ends."""
         self._meter.change(settings)
 
     def effective_ns(self, name):
-        """Return the motion time at which the next window ends."""
+        """Return the motion time at which the next window ends, ns."""
         return self._meter.next_end_ns
 
     def _describe(self):
-        """Return nothing that is wrong, and the values for /diagnostics."""
+        """Return '' (this never reports a fault) and the values for /diagnostics."""
         return '', (('windows', self._windows), ('invalid fits', self._invalid),
                     ('last reason', self._reason))

@@ -1,1 +1,1 @@
-"""A node process: start, parameters, diagnostics, end."""
+"""Life of a node process: start, parameters, diagnostics, end."""

@@ -1,15 +1,15 @@
-"""What became of the fixes, for /diagnostics.  No ROS is imported."""
+"""Statistics of the aiding fixes for /diagnostics. This module does not import ROS."""
 
 from ins_sim.core.aiding.filters.base import INVALID_FIX
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.numerics.units import DEG
 
-# below it a sigma of mu, kx, kz is the floor of what is given as known
+# A sigma of mu, kx or kz below this means that the quantity was set as known; it is not shown.
 KNOWN = 1e-8
 
 
 class AidingHealth:
-    """Counts of an AidedStream, by instrument, and the filter's view of the velocity meter."""
+    """Counts fixes per sensor, and describes what the filter estimates of the velocity meter."""
 
     def __init__(self, stream):
         self._stream = stream
@@ -20,7 +20,7 @@ class AidingHealth:
         self._reason = self._wrong = ''
 
     def came(self, source, fix):
-        """Count a fix that has come."""
+        """Count a fix that has arrived."""
         self._came[source] += 1
         if fix.valid:
             self._last_ns[source] = fix.t_ns
@@ -37,13 +37,13 @@ class AidingHealth:
             if not result.taken:
                 self._reason = f'{source}: {result.reason}'
                 if result.innovation:
-                    # weighed and found wanting, not merely absent
+                    # The filter tested the fix and rejected it; it was not just missing.
                     self._wrong = (f'{source}: the fix at {seconds(t_ns)} is not taken: '
                                    f'{result.reason}')
         judged.clear()
 
     def describe(self):
-        """Return the last fix refused since the last time, or '', and the values."""
+        """Return the last fix rejected since the previous call, or '', and the values."""
         values, now_ns = [], self._stream.processed_ns
         for source, count in self._came.items():
             values += [(f'{source} fixes', count), (f'{source} taken', self._taken[source]),
@@ -68,11 +68,12 @@ class AidingHealth:
         return wrong or self._missing(now_ns), values
 
     def _missing(self, now_ns):
-        """Return which instruments are missing, or ''."""
+        """Return a sentence naming the sensors whose fixes are missing, or ''."""
         silent = self._stream.silent
-        # a moment's waiting is in order: it is stuck where it was the last time
+        # Waiting for a moment is normal; report it only without progress since the last call.
         awaited = self._stream.awaited if now_ns == self._stuck_ns else []
         self._stuck_ns = now_ns
         if silent:
-            return f'going on without {" and ".join(silent)}; expected the fixes of all that aid'
+            return f'continuing without {" and ".join(silent)}; expected fixes of every aiding ' \
+                'sensor'
         return f'waiting for a fix of {" and ".join(awaited)}' if awaited else ''

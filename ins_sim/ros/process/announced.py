@@ -1,4 +1,4 @@
-"""The run that the generator announces on sim/run; what comes before it is known waits."""
+"""Receive the announcement of the run on sim/run; earlier messages wait until it is known."""
 
 from collections import deque
 import time
@@ -10,38 +10,37 @@ from ..transport import qos
 from ..transport.patience import MISSING_S
 from ..transport.qos_overrides import subscribe
 
-# An announcement whose publisher is known comes; a busy machine may take its time.
+# How long to wait for an announcement whose publisher is known: a busy machine may be slow, s.
 PATIENCE_S = 30.0
-# Readings may be stamped later than the truth, by their latency.
+# IMU samples may be stamped later than the truth by their latency, ns.
 LATER_NS = 10_000_000_000
 
 
 class Unannounced:
-    """In the place of AnnouncedRun for a node that asks for no run: motion time is the stamp."""
+    """Replaces AnnouncedRun in a node that needs no announced run: motion time is the stamp."""
 
     run = UNANNOUNCED
 
     def holds(self, data):
-        """Return that no message has to wait."""
+        """Return False: no message has to wait."""
         return False
 
 
 class AnnouncedRun:
     """
-    Epoch and end of the run of a node, which it learns and never sets.
+    Epoch and end of the run, as announced by the generator.
 
-    Where nobody announces a run, as with a recorded or a real IMU, motion time is the stamp.  A
-    generator makes its publisher of sim/run before all others: one whose truth is found without it
-    announces nothing.
+    If no run is announced, as with a recorded or a real IMU, motion time is the stamp. A generator
+    creates its publisher of sim/run before all others; if the truth is discovered without a
+    publisher of sim/run, there is no announcement to wait for.
 
     Parameters
     ----------
     node : Node with a ``monitor`` and ``guarded``
-    truth : Topic
-        That of the generator, which the node reads.
-    depth : of the messages that wait
+    truth : Topic of the generator that the node reads
+    depth : maximum number of messages that wait for the announcement
     begin : callable
-        Called with every RunAnnouncement of another epoch, and the first one.
+        Called with the first RunAnnouncement, and with each one that has another epoch.
     give : callable
         Called with each message that had to wait.
     """
@@ -57,16 +56,16 @@ class AnnouncedRun:
             hand_over.join(node, topics.RUN, self)
 
     def subscribe(self):
-        """Hear the announcements by DDS."""
+        """Subscribe to the announcements."""
         subscribe(self._node, qos.message_class(topics.RUN), topics.RUN.name,
                   self._node.guarded(self.take), qos.latched_profile(), raw=True)
 
     def accept(self, patience):
-        """Return the function that takes an announcement in this process."""
+        """Return the function that receives announcements of a node in this process."""
         return self._node.guarded(self.take)
 
     def holds(self, data):
-        """Return whether a message has to wait for the announcement; it is kept then."""
+        """Return whether a message has to wait for the announcement; if so, store it."""
         if self.run is not None:
             return False
         now = time.monotonic()
@@ -81,11 +80,11 @@ class AnnouncedRun:
         return False
 
     def _may_come(self, waited_s):
-        """Return whether an announcement may still come; say so where it is no longer awaited."""
+        """Return whether an announcement may still arrive; log if the node stops waiting."""
         node = self._node
         known, truth = (node.count_publishers(node.resolve_topic_name(topic.name))
                         for topic in (topics.RUN, self._truth))
-        # readings may come from a sensor that has found the generator earlier
+        # Without either publisher wait too: the sensor may have discovered the generator earlier.
         if waited_s < (PATIENCE_S if known else 0.0 if truth else MISSING_S):
             return True
         if known:
@@ -98,7 +97,7 @@ class AnnouncedRun:
         return False
 
     def take(self, data):
-        """Take a message of sim/run."""
+        """Process a message of sim/run."""
         try:
             run = read_announcement(bytes(data))
         except ValueError as error:
@@ -116,14 +115,14 @@ class AnnouncedRun:
         if before is None or run.epoch_ns != before.epoch_ns:
             self._begin(run)
         if self._dropped:
-            self._node.monitor.fault(f'{self._dropped} messages were dropped, for which more than '
+            self._node.monitor.fault(f'{self._dropped} messages were dropped, because more than '
                                      f'topics.depth waited for {topics.RUN.name}')
         held, self._held, self._dropped = self._held, deque(), 0
         for data in held:
             self._give(data)
 
     def check(self, stamp_ns):
-        """Raise ValueError for a stamp outside the run: that of another epoch."""
+        """Raise ValueError for a stamp outside the announced run, ns."""
         run = self.run
         first_ns, end_ns = run.epoch_ns, run.epoch_ns + run.end_ns + LATER_NS
         if not first_ns <= stamp_ns <= end_ns:
@@ -132,5 +131,5 @@ class AnnouncedRun:
                 f'a message has the stamp {seconds(stamp_ns)}, '
                 f'{seconds(stamp_ns - end_ns if late else first_ns - stamp_ns)} '
                 f'{"after the end" if late else "before the epoch"} of the run announced on '
-                f'{topics.RUN.name}, {seconds(end_ns if late else first_ns)}; expected a stamp of '
-                'that run, of one generator; the message was dropped')
+                f'{topics.RUN.name}, {seconds(end_ns if late else first_ns)}; expected a stamp '
+                'within that run, from one generator; the message was dropped')

@@ -1,4 +1,4 @@
-"""What stands on the command line of a node beside its ROS arguments.  No ROS is imported."""
+"""Command line of a node outside its ROS arguments. This module does not import ROS."""
 
 import sys
 
@@ -15,9 +15,16 @@ HELP = ('-h', '--help')
 
 def answer(name, words):
     """
-    Print the help, or what is wrong with the arguments; return the exit code, None to go on.
+    Handle ``--help`` and unknown arguments.
 
-    name: of the executable; words: command line, with the name of the program before ROS_ARGS.
+    Parameters
+    ----------
+    name : name of the executable
+    words : command line; the first word is the name of the program
+
+    Returns
+    -------
+    exit code after printing the help or an error, or None if the node can start
     """
     others = _others(words)
     if any(word in HELP for word in others):
@@ -33,10 +40,9 @@ def answer(name, words):
 
 def with_paths(words):
     """
-    Return a command line in which parameter files are paths, as rcl takes them.
+    Return a command line in which the names of shipped parameter files are replaced by paths.
 
-    Names of shipped files are replaced by their paths.  What is neither stays, and is refused
-    with all else that rcl does not take.
+    A word that is neither a name nor a path stays as it is; rcl then reports the error.
     """
     found = list(words)
     for k, (word, place) in enumerate(_placed(words)):

@@ -1,4 +1,4 @@
-"""What a node says about itself on /diagnostics, once a second of wall time."""
+"""Publish the status of a node on /diagnostics once per second of wall time."""
 
 import time
 
@@ -14,10 +14,16 @@ RECENT_S = 5.0
 
 class Monitor:
     """
-    Counts of one node and its last fault.
+    Counts messages and faults of one node, and publishes them.
 
-    The owner increments ``received`` and ``sent``, and clears ``awaited`` while silence is in
-    order.  input_name: what drives the node, or None; it is stale after stale_s in silence.
+    The owner increments ``received`` and ``sent``, and sets ``awaited`` to False while no input
+    is expected (a paused or finished run).
+
+    Parameters
+    ----------
+    node : Node
+    input_name : name of the topic that drives the node, or None
+    stale_s : silence on that topic after which a warning is logged, s
     """
 
     def __init__(self, node, input_name=None, stale_s=2.0):
@@ -35,14 +41,14 @@ class Monitor:
 
     def add(self, describe):
         """
-        Let describe() -> (what is wrong or '', [(key, value)]) have its say once a second.
+        Call describe() once per second; it returns a fault or '', and pairs (key, value).
 
-        What stays wrong is logged when it begins.
+        A fault that persists is logged once, when it begins.
         """
         self._more.append(describe)
 
     def fault(self, sentence, fatal=False):
-        """Count a fault and log it, each kind once and then more and more rarely."""
+        """Count and log a fault; repeated faults of one kind are logged at growing intervals."""
         self.faults += 1
         self.last_fault = sentence = short(sentence)
         self._fault_time = time.monotonic()
@@ -62,11 +68,11 @@ class Monitor:
                                   hardware_id=name)
         silence = now - self._seen_time
         if not self._looked:
-            # once all of the node is made
+            # At the first call all publishers and subscriptions of the node exist.
             self._looked = True
             self._tell_unused()
         if self._input and self._told != bool(self.received):
-            # here and not at the start, where the first log line would cost 50 ms of CPU
+            # Logged here and not at the start, where the first log line costs 50 ms of CPU time.
             self._told = bool(self.received)
             self._node.get_logger().info(
                 f'{"receiving" if self._told else "waiting for"} {self._input}')
@@ -83,7 +89,7 @@ class Monitor:
         kinds = {kind(wrong): wrong for wrong, _ in more if wrong}
         for name, wrong in kinds.items():
             if name in self._standing:
-                # said when it began, and true until it ends
+                # It was logged when it began and has not ended.
                 self.last_fault, self._fault_time = short(wrong), now
             else:
                 self.fault(wrong)
@@ -107,7 +113,7 @@ class Monitor:
         if names:
             self._node.get_logger().info(
                 f'{len(names)} qos_overrides are of no publisher and no subscription of this '
-                f'node, {short(names[0])} the first: not used here')
+                f'node and have no effect here; the first is {short(names[0])}')
 
     @staticmethod
     def _ask(describe):

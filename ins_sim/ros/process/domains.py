@@ -1,4 +1,4 @@
-"""ROS domains of their own for runs on one machine that must not hear each other."""
+"""Reserve a ROS domain for each run on a machine, so that runs do not receive each other."""
 
 from contextlib import contextmanager
 import fcntl
@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 import tempfile
 
-# Domains that every system has ports for.
+# Domain ids up to this one are safe on every operating system.
 DOMAINS = 101
 _taken = itertools.count(1)
 
@@ -15,14 +15,14 @@ _taken = itertools.count(1)
 @contextmanager
 def own_domain():
     """
-    Give a ROS domain that no other process of this user has taken in this way.
+    Reserve a ROS domain that no other process of this user has reserved in this way.
 
-    Raises RuntimeError where all of them are taken.
+    Raises RuntimeError if all are in use.
     """
     folder = Path(tempfile.gettempdir()) / f'ins_sim-domains-{os.getuid()}'
     folder.mkdir(exist_ok=True)
-    # Processes begin at different places, so that a domain is not used again at once; the lock
-    # falls with the process, however it ends.
+    # Processes start their search at different domains, so that a domain is not reused at once.
+    # The operating system releases the lock when the process ends, however it ends.
     first = os.getpid() * 7 + next(_taken)
     for step in range(DOMAINS):
         domain = 1 + (first + step) % DOMAINS

@@ -1,4 +1,4 @@
-"""The parameters that a node takes while it runs."""
+"""Parameters that can be set while a node runs."""
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
@@ -12,20 +12,20 @@ from .parameter_requests import refused
 
 class LiveParameters:
     """
-    Lets a node take the parameters that are SETTABLE in its settings, from its next sample on.
+    Lets the SETTABLE parameters of a node be changed while it runs, from its next sample on.
 
-    What is asked is checked as at the start, all together, and taken all at once or not at all; a
-    number stands for three equal ones and a whole number for a float. Of lists that belong
-    together, the begins and ends of spans, the begins alone may be set: ends that are missing are
-    the last instant, ends too many are dropped.
+    A request is checked like the settings at the start; its parameters are applied all together
+    or not at all. A single number is accepted for three equal axes, and an integer for a float.
+    Spans have two lists, their begins and their ends. If only the begins are set, missing ends
+    become the latest possible instant, and surplus ends are dropped.
 
     Parameters
     ----------
     node : Node with ``settings`` and ``monitor``
-    part : what takes them, by default the node
-        ``check_change(settings)`` raises ValueError on what cannot be taken amid a run;
-        ``effective_ns(name)`` returns the motion time from which on a parameter will count, None
-        for the first sample; ``change(settings)`` takes new settings.
+    part : object that applies the changes, by default the node
+        ``check_change(settings)`` raises ValueError if settings cannot be applied during a run;
+        ``effective_ns(name)`` returns the motion time from which a parameter counts, ns, or None
+        for the first sample; ``change(settings)`` applies new settings.
     """
 
     def __init__(self, node, part=None):
@@ -39,7 +39,7 @@ class LiveParameters:
         node.monitor.add(lambda: ('', (('parameter changes', self._count),)))
 
     def _spelt(self, parameters):
-        """Return parameters in the types that they are declared with, where they fit these."""
+        """Return the parameters converted to their declared types where that is possible."""
         found = {}
         for parameter in parameters:
             f = self._fields.get(parameter.name)
@@ -51,7 +51,7 @@ class LiveParameters:
         return list(found.values())
 
     def _fit_ends(self, found, starts, ends):
-        """Add the ends of spans of which the begins alone are set."""
+        """Adjust the number of span ends if only the begins are set."""
         given = values_of(self._node.settings)[ends]
         wanted = found[starts].value
         if found[starts].type_ == Parameter.Type.DOUBLE_ARRAY and len(wanted) != len(given):
@@ -67,7 +67,7 @@ class LiveParameters:
         return build(type(self._node.settings), {**values_of(self._node.settings), **values})
 
     def _judge(self, parameters):
-        """Return whether the parameters can be taken."""
+        """Return whether the parameters can be applied."""
         try:
             for parameter in parameters:
                 if parameter.name in self._fields and parameter.type_ == Parameter.Type.NOT_SET:
@@ -81,14 +81,14 @@ class LiveParameters:
         return SetParametersResult(successful=True)
 
     def _keep_types(self, parameters):
-        """Undo that rclpy has noted the types of values that are refused."""
+        """Restore the declared types, which rclpy has replaced by those of the refused values."""
         for parameter in parameters:
             if parameter.name in self._fields:
                 kept = self._node.get_parameter(parameter.name)
                 self._node.describe_parameter(parameter.name).type = kept.type_.value
 
     def _take(self, parameters):
-        """Take parameters that were found good, and say from when on they count."""
+        """Apply parameters that passed the check, and log from when on they count."""
         node, ours = self._node, self._ours(parameters)
         if not ours:
             return
@@ -97,7 +97,7 @@ class LiveParameters:
             node.settings = self._settings(ours)
             self._part.change(node.settings)
         except Exception as error:
-            # they were checked; nothing that is left to fail may end the node
+            # The values were checked; an unexpected error must not end the node.
             node.monitor.fault(described(error))
             return
         self._count += 1
@@ -115,7 +115,7 @@ def _from(t_ns):
 
 
 def _typed(parameter, f):
-    """Return a parameter in the type of its field f, or as it is where it has no such value."""
+    """Return a parameter converted to the type of its field f, unchanged if that fails."""
     try:
         value = check_value(parameter.name, from_ros(parameter.value, f), f)
     except ValueError:

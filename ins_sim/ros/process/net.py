@@ -1,4 +1,4 @@
-"""The last net round the callbacks of a node: what should never happen becomes a fault."""
+"""Guard the callbacks of a node: report unexpected exceptions as faults."""
 
 from functools import wraps
 from pathlib import Path
@@ -6,18 +6,19 @@ import traceback
 
 
 def described(error):
-    """Return an exception as one sentence that names where it was raised."""
+    """Return one sentence about an exception, with the file and line that raised it."""
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return (f'{type(error).__name__} ({error}) at line {frame.lineno} of '
-            f'{Path(frame.filename).name}; what was being computed is dropped and the node starts '
-            'anew: please report it')
+            f'{Path(frame.filename).name}; what was being computed is dropped and the node '
+            'restarts: please report it')
 
 
 def caught(call, rescue):
     """
-    Return a function that calls call(*arguments), whatever it raises.
+    Return a function that calls call(*arguments) and catches its exceptions.
 
-    rescue(sentence) is told of an exception.  Those that end a process pass.
+    rescue(sentence) is called with a description of an exception. Exceptions that end the process
+    (KeyboardInterrupt, SystemExit) are not caught.
     """
     @wraps(call)
     def guarded(*arguments):

@@ -1,7 +1,8 @@
 """
-The services that set the parameters of a node: whatever is asked, one sentence answers.
+Services that set the parameters of a node; each refusal is explained in one sentence.
 
-Those of rclpy name no unknown parameter, and a value of no type of ROS ends the node.
+They replace those of rclpy, which do not name an unknown parameter, and in which a value of an
+invalid type ends the node.
 """
 
 from functools import partial
@@ -17,7 +18,7 @@ from .said import short
 
 
 def answer_requests(node):
-    """Let the services of a node that set parameters answer so."""
+    """Replace the callbacks of the services that set the parameters of a node."""
     for service in node.services:
         if service.srv_type is SetParameters:
             service.callback = partial(_set_each, node)
@@ -64,5 +65,5 @@ def _read_only(node, name, names):
 
 
 def refused(sentence):
-    """Return the result of what is refused."""
+    """Return the SetParametersResult of a refusal, with its reason."""
     return SetParametersResult(successful=False, reason=short(sentence))

@@ -1,4 +1,4 @@
-"""The catalogue of settings as declared ROS parameters."""
+"""Declare the settings of a node as ROS parameters."""
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
@@ -12,17 +12,19 @@ def declare_settings(node, cls):
     """
     Declare the parameters of a settings class, and return the settings.
 
-    They are read-only but for its SETTABLE, see ``live_parameters``.
+    The parameters are read-only except those in ``SETTABLE``, see ``live_parameters``. All values
+    are checked by the settings catalogue before they are declared. An integer is therefore
+    accepted for a float, and live and offline runs report the same errors in the same words.
 
-    Raises ValueError, one sentence, on an unknown key, a wrong type or a bad value.  All that
-    was given is checked by the catalogue before it is declared, so that a whole number serves as
-    a float and so that live and offline runs refuse the same things in the same words.
+    Raises
+    ------
+    ValueError : unknown parameter, wrong type or bad value; the message is one sentence
     """
     fields = flatten(cls)
     given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
     strange = [name for name in given if name not in fields and not is_of_ros(name)]
     if strange:
-        # a parameter file may serve all nodes: a key of another node is not a mistake
+        # A parameter file may serve all nodes, so parameters of other nodes are accepted.
         from ins_sim.settings.by_node import ALL_NAMES
         for name in strange:
             if name not in ALL_NAMES:
@@ -44,8 +46,9 @@ def declare_settings(node, cls):
 def _descriptor(field, value, settable):
     facts = field.metadata
     text = f"{facts['doc']} [{facts['unit']}]" if facts['unit'] else facts['doc']
-    # rclpy takes an empty list for bytes, which only a dynamically typed parameter survives; and
-    # what is set is to be refused in our words, which name it
+    # rclpy takes an empty list for bytes, which only a dynamically typed parameter accepts. For
+    # settable parameters dynamic typing lets our own check, which names the parameter, refuse
+    # a wrong type.
     descriptor = ParameterDescriptor(description=text, read_only=not settable,
                                      dynamic_typing=settable or value == ())
     if facts['choices']:

@@ -1,7 +1,8 @@
 """
-Topics that one node alone should publish: two on one of them are said in words.
+Check the publishers of topics, and count lost messages.
 
-A publisher that offers best effort alone, as drivers of sensors do, is read so from then on.
+Most topics should have one publisher; a second one is reported. If a publisher offers only best
+effort, as sensor drivers do, the subscription is changed to best effort.
 """
 
 from rclpy.qos import ReliabilityPolicy
@@ -10,15 +11,18 @@ from ..transport.backlog import BACKLOG_NS
 from ..transport.qos_overrides import given
 from .said import short
 
-# as many are named
+# Number of publishers that a message names at most.
 NAMED = 4
 
 
 class SolePublishers:
     """
-    Looks who publishes some topics of a node.
+    Watches the publishers of topics that should have only one.
 
-    queues: {topic name: a queue with ``gaps``, or None where the node publishes the topic itself}.
+    Parameters
+    ----------
+    node : Node
+    queues : {topic name: queue with ``gaps``, or None if the node itself publishes the topic}
     """
 
     def __init__(self, node, queues):
@@ -26,7 +30,7 @@ class SolePublishers:
         self._queues = {node.resolve_topic_name(name): queue for name, queue in queues.items()}
 
     def describe(self):
-        """Return what is wrong, or '', and no values: as ``Monitor.add`` takes it."""
+        """Return a fault, or '', and no values, as expected by ``Monitor.add``."""
         wrong = ''
         for name, queue in self._queues.items():
             count = self._node.count_publishers(name)
@@ -35,12 +39,12 @@ class SolePublishers:
                 self._suit(name, queue)
             if count > 1 and not wrong:
                 wrong = (f'{name} has {count} publishers, {self._names(name)}; expected one: two '
-                         'of them (two generators, two of the same node, or a player beside a '
-                         'simulation) make whoever reads it start anew again and again')
+                         'of them (two generators, the same node twice, or a player together with '
+                         'a simulation) make its readers restart repeatedly')
         return wrong, ()
 
     def _suit(self, name, queue):
-        """Read a topic best effort if a publisher offers no more, unless a parameter forbids."""
+        """Subscribe with best effort if a publisher offers no more, unless a parameter is set."""
         if queue.subscription is None or name in self._suited:
             return
         if 'reliability' in given(self._node, name, 'subscription'):
@@ -52,8 +56,8 @@ class SolePublishers:
             self._suited.add(name)
             queue.read_best_effort()
             self._node.get_logger().info(
-                f'{name} is published best effort: it is read so from now on, and what is lost '
-                'on the way is not sent again')
+                f'{name} is published with best effort: it is read with best effort from now on, '
+                'and lost messages are not sent again')
 
     def _names(self, name):
         infos = self._node.get_publishers_info_by_topic(name)
@@ -64,9 +68,14 @@ class SolePublishers:
 
 class MessageLosses:
     """
-    Messages that a node has lost, by the numbers that their publishers give them, or has dropped.
+    Reports messages that were lost in transport or dropped as too old.
 
-    queues: {topic name: a queue with ``gaps`` and ``dropped``}; depth: of these queues.
+    Losses are found from the sequence numbers that the publishers assign.
+
+    Parameters
+    ----------
+    queues : {topic name: queue with ``gaps`` and ``dropped``}
+    depth : depth of these queues
     """
 
     def __init__(self, queues, depth):
@@ -74,18 +83,18 @@ class MessageLosses:
         self._lost, self._dropped = dict.fromkeys(queues, 0), dict.fromkeys(queues, 0)
 
     def describe(self):
-        """Return what was lost since the last time, or '', and the counts."""
+        """Return a fault about losses since the previous call, or '', and the counts."""
         wrong, values = '', []
         for name, queue in self._queues.items():
             lost, dropped = queue.gaps.lost, queue.dropped
             if dropped > self._dropped[name]:
                 wrong = (f'{dropped - self._dropped[name]} messages of {name} were dropped: they '
-                         f'had waited for more than {BACKLOG_NS // 1_000_000_000} s, this node '
-                         'cannot keep up; expected a lower rate_hz or real_time_factor, or '
+                         f'had waited for more than {BACKLOG_NS // 1_000_000_000} s because this '
+                         'node cannot keep up; expected a lower rate_hz or real_time_factor, or '
                          'pacing.lock_step')
             elif lost > self._lost[name]:
                 wrong = (f'{lost - self._lost[name]} messages of {name} were lost: this node '
-                         'cannot keep up, or the transport; expected a lower rate_hz or '
+                         'cannot keep up, or the transport cannot; expected a lower rate_hz or '
                          f'real_time_factor, pacing.lock_step, or a topics.depth above '
                          f'{self._depth}')
             self._lost[name], self._dropped[name] = lost, dropped

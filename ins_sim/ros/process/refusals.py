@@ -1,4 +1,4 @@
-"""One sentence for the ROS arguments that rcl refuses, in the words of the offline commands."""
+"""Explain in one sentence why rcl refuses ROS arguments, as the offline commands do."""
 
 import sys
 
@@ -14,10 +14,12 @@ LONGEST = 400
 
 def sentence(error, arguments=None):
     """
-    Return what is wrong with the arguments of a node, one sentence.
+    Return one sentence about what is wrong with the arguments of a node.
 
-    error: that of rcl, which names its own source lines and stays where nothing better is known;
-    arguments: command line, by default that of the process.
+    Parameters
+    ----------
+    error : exception of rcl; its text, which names source lines of rcl, is the fallback
+    arguments : command line, by default ``sys.argv``
     """
     words = sys.argv if arguments is None else list(arguments)
     parameters = Parameters()

@@ -1,12 +1,12 @@
 """
-How a node process starts, runs and ends: signals, exit codes, the loop.
+Start, run and end a node process: signals, exit codes, the loop.
 
-rclpy's own handlers end the context under a running callback, and a second SIGINT kills Python
-while it finalises.  So the handlers here only set a flag, and the first signal makes the process
-deaf to the next ones.  Nothing heavy is imported before they stand.
+The signal handlers of rclpy shut the context down while a callback is running, and a second SIGINT
+kills Python during finalisation. The handlers here only set a flag, and after the first signal
+further ones are ignored. They are installed before anything large is imported.
 
-A signal that falls into the few instructions in which Python changes a handler is reported, with a
-traceback, as "ignored due to race condition": ignored is what it shall be, so that is not said.
+If a signal arrives while Python is replacing a handler, Python prints a traceback, "ignored due to
+race condition". The exception is harmless and is suppressed.
 """
 
 import gc
@@ -17,17 +17,19 @@ from ins_sim import entry
 from ins_sim.visible_text import visible
 from ..transport.repairs import drain_publishers, use_profile
 
-EXIT_OK, EXIT_PARAMETERS = entry.OK, entry.BAD_INPUT
-EXIT_FAULT, EXIT_CONSUMER = entry.FAULT, entry.CONSUMER
-# the alarm: a signal of the command line that came amid its imports
+EXIT_OK = 0
+EXIT_PARAMETERS = 2
+EXIT_FAULT = 3
+EXIT_CONSUMER = 4
+# SIGALRM: the command line sends it for a signal that arrived during its imports.
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 POLL_S = 0.2
-# far longer than a node takes to leave the graph
+# Far longer than a node needs to shut down.
 END_S = 5
 
 
 class Stop:
-    """The wish to end: set by a signal or by the node itself; the first one counts."""
+    """Request to end the process, set by a signal or by the node; the first exit code counts."""
 
     def __init__(self):
         self.code = None
@@ -52,13 +54,13 @@ class Stop:
 
 
 def deafen():
-    """Ignore further signals: the process is on its way out already."""
+    """Ignore further signals, because the process is already ending."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
 
 def _report(unraisable):
-    """Report an exception that nobody can catch, unless it is a signal that came too late."""
+    """Report an exception that cannot be caught, except the harmless one described above."""
     if 'ignored due to race condition' not in str(unraisable.exc_value):
         sys.__unraisablehook__(unraisable)
 
@@ -67,8 +69,12 @@ def node_main(load, args=None, **more):
     """
     Run a node process and return its exit code.
 
-    load: function that imports and returns the node class.  The class is called with ``stop``
-    and what else is given, and has ``run(executor, stop)`` if it brings its own loop.
+    Parameters
+    ----------
+    load : callable
+        Imports and returns the node class. A class with its own loop has ``run(executor, stop)``.
+    args : command line with ROS arguments, by default ``sys.argv``
+    more : keyword arguments of the node class, in addition to ``stop``
     """
     stop = Stop()
     stop.install()
@@ -97,7 +103,7 @@ def node_main(load, args=None, **more):
         _fatal(rclpy, node_class, error)
         stop.request(EXIT_PARAMETERS)
     except (RuntimeError, NameValidationException, ParameterException) as error:
-        # the view of rcl or rclpy: a file that is no YAML, a remapping that is none
+        # rcl or rclpy refuses the arguments, for example invalid YAML or an invalid remapping.
         from .refusals import sentence
         unknown = type(error).__name__ == 'UnknownROSArgsError'
         _fatal(rclpy, node_class, ('unknown ROS argument ' if unknown else '')
@@ -106,16 +112,17 @@ def node_main(load, args=None, **more):
     else:
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        # what the start has made stays: a collector that walks it again and again costs 10 %
+        # Objects made during start-up live for ever; freezing them saves the garbage collector
+        # 10 % of the CPU time.
         gc.collect()
         gc.freeze()
-        # a node must not stop for the seconds that a compiler takes
+        # Compiling would block the node for seconds, so the loops run in plain Python.
         with plain_only():
             getattr(node, 'run', _spin)(executor, stop)
         executor.shutdown()
     exit_within(END_S, stop.code)
     if node is not None:
-        # what has left this process only counts once the readers have it
+        # Wait until the readers have received everything that was published.
         drain_publishers(node.publishers)
         node.destroy_node()
     deafen()

@@ -1,4 +1,4 @@
-"""What a node says on its log: each kind of sentence once, then more and more rarely, cut."""
+"""Limit the log of a node: repeated messages of one kind at growing intervals, long ones cut."""
 
 import math
 import re
@@ -7,30 +7,31 @@ import time
 from ins_sim.settings.shown import cut
 from ins_sim.visible_text import visible
 
-# of a sentence, which may repeat a stranger's text
+# Maximum length of a message, which may quote text received from elsewhere.
 LONGEST = 400
-# sentences of the same kind: after so long, then after twice as long, up to the last
+# Messages of one kind are logged again after FIRST_S, then after twice as long each time, up to
+# LAST_S.
 FIRST_S, LAST_S = 1.0, 64.0
-# kinds that are remembered, and lines of new kinds: so many at once, and so many a second
+# Number of kinds remembered; limits of lines of new kinds: a burst, and a rate per second.
 KINDS, AT_ONCE, PER_SECOND = 100, 20, 2.0
 _VARIES = re.compile(r"'[^']*'|\b(nan|inf)\b|[-+.\d]+(e[-+]?\d+)?")
 
 
 def short(text, longest=LONGEST):
-    """Return a text cut, with what cannot be seen in it as escapes."""
+    """Return a text cut to a length, with invisible characters escaped."""
     return visible(cut(text, longest))
 
 
 def kind(sentence):
-    """Return a sentence without numbers and quoted texts: which kind of fault it tells of."""
+    """Return the kind of a message: the sentence without numbers and quoted text."""
     return _VARIES.sub('#', sentence)
 
 
 class Said:
     """
-    Lets a sentence through to log(sentence), or counts it.
+    Passes a message on to log(sentence), or counts it.
 
-    However many are said, and whatever they hold, the log and the memory of it stay small.
+    Log and memory stay small, whatever the number and content of the messages.
     """
 
     def __init__(self, log):
@@ -39,7 +40,7 @@ class Said:
         self._left, self._left_at, self._unsaid = AT_ONCE, -math.inf, 0
 
     def say(self, sentence):
-        """Log a sentence, unless its kind was just said; ``short`` must have cut it."""
+        """Log a sentence unless its kind was logged recently; pass it through ``short`` first."""
         now, name = time.monotonic(), kind(sentence)
         due, pause_s, more = self._kinds.pop(name, (now, FIRST_S, 0))
         if now < due:
@@ -53,7 +54,7 @@ class Said:
         if more:
             sentence += f' ({more} more of this kind before it)'
         if self._unsaid:
-            sentence += f' ({self._unsaid} other faults were not said)'
+            sentence += f' ({self._unsaid} other faults were not logged)'
             self._unsaid = 0
         self._kinds[name] = now + pause_s, min(2.0 * pause_s, LAST_S), 0
         while len(self._kinds) > KINDS:

@@ -1,8 +1,8 @@
-"""Callbacks of nodes whose process has a loop of its own."""
+"""Serve callbacks in a node process that has its own loop."""
 
 from rclpy.executors import TimeoutException
 
-# Of the callbacks that are ready, so many run at once; the others follow the next time.
+# Maximum number of callbacks per call; the others follow in the next call.
 MOST = 50
 
 
@@ -10,7 +10,7 @@ def serve_ready(executor):
     """
     Run the callbacks that are ready, without waiting for others.
 
-    ``spin_once`` runs one of them, and gathers all that could be ready again for the next one.
+    This is faster than ``spin_once``, which rebuilds the wait set for each single callback.
     """
     try:
         for _ in range(MOST):

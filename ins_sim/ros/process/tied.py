@@ -1,8 +1,8 @@
 """
-A node process that ends with the one that started it, however that ends.
+Run a node process that ends when its parent process ends, even if the parent is killed.
 
-``python -m ins_sim.ros.process.tied PARENT NODE [--ros-args ...]``: PARENT is the process that
-waits for it.  Nodes that are started otherwise do not look at their parent.
+``python -m ins_sim.ros.process.tied PARENT NODE [--ros-args ...]``, where PARENT is the id of the
+process to watch. Nodes that are started in another way do not watch their parent.
 """
 
 import sys
@@ -11,7 +11,7 @@ from ins_sim.jobs.parent import end_with_parent
 
 
 def main(words):
-    """Run the node that the second word names; return its exit code."""
+    """Run the node named by the second word; return its exit code."""
     from ins_sim.entry import end_at_once
     end_at_once()
     end_with_parent(int(words[0]))

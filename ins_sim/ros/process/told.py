@@ -1,8 +1,8 @@
-"""What a node simulates, in one line for its start: told(name of the node, its settings)."""
+"""Describe in one line, logged at the start, what a node simulates."""
 
 from ins_sim.settings.catalogue import values_of
 
-# What is told with its figure; of the other errors only how many there are.
+# Errors that are listed with their values; of other errors only the number is given.
 GYRO = (('ARW', 'angle_random_walk_deg_sqrt_h', 'deg/sqrt(h)'),
         ('noise', 'noise_density_rad_s_sqrt_hz', 'rad/s/sqrt(Hz)'),
         ('turn-on bias', 'turn_on_bias_sigma_deg_h', 'deg/h'), ('bias', 'bias_deg_h', 'deg/h'),
@@ -16,12 +16,12 @@ ACCELEROMETER = (('VRW', 'velocity_random_walk_m_s_sqrt_h', 'm/s/sqrt(h)'),
 
 
 def told(name, settings):
-    """Return the line of a node of that name; '' of one that simulates nothing."""
+    """Return the line of the node ``name`` with its settings; '' for a node without one."""
     return _LINES[name](settings) if name in _LINES else ''
 
 
 def clock_needed(generator):
-    """Return what other nodes need where the stamps are not those of the wall clock, or ''."""
+    """Return what other nodes need if the stamps do not follow the wall clock, else ''."""
     pacing = generator.pacing
     if not pacing.waits and pacing.real_time_factor == 1.0:
         return ''
@@ -72,7 +72,7 @@ def _sampling(sampling):
 
 
 def _not_default(settings):
-    """Return {name: value} of what is not the default in a group of settings."""
+    """Return {name: value} of the settings in a group that differ from their defaults."""
     default = values_of(type(settings)())
     return {key: value for key, value in values_of(settings).items() if value != default[key]}
 
@@ -80,7 +80,7 @@ def _not_default(settings):
 def _strapdown(s):
     start, rate = '', f'an IMU at {s.rate_hz:g} Hz'
     if s.initial.source != 'truth':
-        # the rate is that of the readings
+        # Without truth any sampling rate of the IMU is accepted.
         start, rate = f' without truth, start from {s.initial.source}', 'any IMU'
     return (f'strapdown for {rate}, {s.input}{start}; vertical channel {s.vertical.channel}, '
             f'attitude by {s.orientation.replace("_", " ")}')
@@ -111,7 +111,7 @@ def _adapter(s):
 
 
 def _axes(values):
-    """Return the numbers of three axes, one where they are equal."""
+    """Return the numbers of three axes as text, a single one if they are equal."""
     values = values if isinstance(values, tuple) else (values,)
     return f'{values[0]:g}' if len(set(values)) == 1 else \
         f'[{", ".join(f"{value:g}" for value in values)}]'

@@ -1,4 +1,4 @@
-"""Topics into a bag, byte for byte: what came, what was repeated, what was lost."""
+"""Record topics into a bag unchanged, and count messages, repetitions and losses."""
 
 from dataclasses import dataclass
 import time
@@ -16,20 +16,20 @@ from .run_clock import is_stamped, RunClock
 
 BATCH = 200
 FLUSH_S = 1.0
-# publishers that go on may not hold up the end
+# Publishers that keep sending must not delay the end for longer than this, s.
 FINISH_S = 2.0
 NAP_S = 0.002
-# messages without a stamp that wait for the first stamp of the run
+# Maximum number of messages without a stamp that wait for the first stamp of the run.
 WAITING = 1000
-# by which of them a recorder answers in lock-step: the first that it records
+# In lock-step the recorder acknowledges the first of these topics that it records.
 ANSWERED = (topics.TRUTH_IMU, *topics.DATA)
-# what the generator sends with every sample; it ends when the last one is answered
+# Topics that the generator sends with every sample; it ends when the last is acknowledged.
 PACED = topics.TRUTH
 
 
 @dataclass
 class RecordedTopic:
-    """One topic in recording: its messages in the bag, and the repeated ones that are not."""
+    """A topic being recorded; ``repeated`` counts messages that were not written again."""
 
     name: str
     type_name: str
@@ -49,14 +49,23 @@ class RecordedTopic:
 
 class BagRecorder:
     """
-    Writes what a node hears into a bag.
+    Writes the messages that a node receives into a bag.
 
-    bag: BagWriter; log_time: 'stamp' or 'received' (docs/design/bags.md); report(sentence) is
-    told what is wrong.  The owner calls ``poll`` until nothing more is to come, and closes the
-    bag.  A stamped message equal to the one before it is a repeated sample of lock-step and is
-    written once.  The stamps of the first topic of ANSWERED are acknowledged, no further than all
-    of PACED that are recorded have come, and from when every stamped topic has been heard, one of
-    topics.SELDOM has a publisher, and ``settled`` is true: until then lock-step repeats sample 0.
+    The owner calls ``poll`` until the end of the run, and closes the bag. A stamped message equal
+    to the one before it is a sample repeated by lock-step and is written once.
+
+    The stamps of the first topic of ANSWERED are acknowledged, but never later than the last
+    stamp of each recorded topic of PACED. Acknowledgement starts when every stamped topic has
+    been received (or, for topics.SELDOM, has a publisher) and ``settled`` is true; until then
+    lock-step repeats sample 0.
+
+    Parameters
+    ----------
+    node : Node with the subscriptions
+    bag : BagWriter
+    log_time : ``stamp`` or ``received`` (docs/design/bags.md)
+    depth : depth of the subscriptions
+    report : callable, called with a sentence about each fault, or None
     """
 
     def __init__(self, node, bag, log_time='stamp', depth=10000, report=None):
@@ -73,11 +82,23 @@ class BagRecorder:
 
     def add(self, topic, profile=None, offered=None, definition=None, type_hash=''):
         """
-        Subscribe to a Topic and declare it in the bag; return its Track.
+        Subscribe to a Topic and declare it in the bag.
 
-        profile: QoS of the subscription, by default that of our own data; offered: that of the
-        publishers as the bag keeps it; definition and type_hash as BagWriter.add_topic takes
-        them.  Raises ValueError if the type is unknown, ImportError if it is not installed.
+        Parameters
+        ----------
+        topic : Topic
+        profile : QoS of the subscription, by default that of the topics of this package
+        offered : QoS profiles of the publishers, in the YAML format of the bag
+        definition, type_hash : see BagWriter.add_topic
+
+        Returns
+        -------
+        RecordedTopic
+
+        Raises
+        ------
+        ValueError : the type is unknown
+        ImportError : the type is not installed
         """
         name = self._node.resolve_topic_name(topic.name)
         if topic.latched:
@@ -91,12 +112,13 @@ class BagRecorder:
             raise
         seldom = self._is_one_of(name, topics.SELDOM)
         run = self._is_one_of(name, [topics.RUN])
-        # their arrays are stamped with the time of the run, as that of /diagnostics need not be
+        # Records of the velocity meter are DiagnosticArrays stamped with the time of the run,
+        # unlike those on /diagnostics.
         by_stamp = is_stamped(topic.type_name) or run or self._is_one_of(
             name, [topics.METER_RECORD])
         track = RecordedTopic(name, topic.type_name, queue, Gaps(), by_stamp, seldom, Holes())
         self.tracks[name] = track
-        # a run need not be announced, and what is latched is not missed
+        # A run need not be announced, and a latched announcement cannot be missed.
         if (track.stamped or seldom) and name != self._ack_name and not run:
             self._silent.append(track)
         order = [self._node.resolve_topic_name(t.name) for t in ANSWERED]
@@ -112,7 +134,7 @@ class BagRecorder:
                    or name.endswith(f'/{topic.name}') for topic in wanted)
 
     def subscribe_anew(self, track, profile):
-        """Replace the subscription of a topic, of which nothing has been heard."""
+        """Replace the subscription of a topic on which nothing has been received."""
         self._node.destroy_subscription(track.queue.subscription)
         track.queue = HandQueue(self._node, topics.Topic(track.name, track.type_name),
                                 self._depth, profile)
@@ -124,11 +146,11 @@ class BagRecorder:
 
     @property
     def length_s(self):
-        """Return the time from the first to the last of the answered messages, s."""
+        """Return the time from the first to the last acknowledged message, s."""
         return 0.0 if self._answered_ns is None else (self._answered_ns - self._first_ns) / SECOND
 
     def poll(self):
-        """Take what has come; return how many messages."""
+        """Record the messages that have arrived; return their number."""
         taken = 0
         for track in self.tracks.values():
             take = track.queue.take_with_info
@@ -152,7 +174,7 @@ class BagRecorder:
             return
         stamp_ns = self._clock.hear(data, received_ns)
         if track is self._answered and stamp_ns is not None:
-            # a repeated sample is answered too: the first answer may have been lost
+            # Acknowledge a repeated sample too: the first acknowledgement may have been lost.
             self._answered_ns, self._sent_ns = stamp_ns, None
             self._first_ns = stamp_ns if self._first_ns is None else self._first_ns
         if stamp_ns is not None:
@@ -176,7 +198,7 @@ class BagRecorder:
     def _take_unstamped(self, track, data, received_ns):
         stamp_ns = None
         if track.type_name == topics.TRANSFORMS and self._by_stamp:
-            # of many publishers, whose stamps take turns
+            # /tf has many publishers, so its stamps are not sorted.
             if data == track.last:
                 track.repeated += 1
                 return
@@ -208,7 +230,7 @@ class BagRecorder:
         self._write(track, received_ns if log_ns is None else log_ns, data)
 
     def _write_waiting(self):
-        """Log what came before the first stamp at that stamp; at the end, when it came."""
+        """Write messages that waited for the first stamp, at that stamp or the time received."""
         for track, received_ns, data in self._waiting:
             log_ns = self._clock.now(received_ns)
             self._write(track, received_ns if log_ns is None else log_ns, data)
@@ -220,7 +242,7 @@ class BagRecorder:
                 t.seldom and t.queue.subscription.get_publisher_count())]
         if self._answered_ns is None or not self.settled or self._silent:
             return
-        # another topic of the same sample may still be on its way, or under repair
+        # Another topic of the same sample may still be in transit or being resent.
         stamp_ns = min([self._answered_ns, *(t.heard_ns for t in self._paced)])
         if stamp_ns != self._sent_ns:
             self._ack_publisher.publish(self._ack.pack(stamp_ns))
@@ -228,9 +250,9 @@ class BagRecorder:
 
     def finish(self):
         """
-        Take what is on its way or in the queues, write all there is, leave the bag open.
+        Record the messages in transit and in the queues; the bag stays open.
 
-        What cannot be written within FINISH_S is counted as ``unwritten``.
+        Messages that cannot be written within FINISH_S are counted as ``unwritten``.
         """
         end_ns = time.time_ns() + round(REPAIR_S * SECOND)
         repaired = time.monotonic() + REPAIR_S
@@ -244,7 +266,7 @@ class BagRecorder:
             self._count_unwritten(track, end_ns)
 
     def _count_unwritten(self, track, end_ns):
-        """Count what came before the end and still lies in a queue."""
+        """Count the messages received before the end that are still in a queue."""
         for _ in range(self._depth):
             message = track.queue.take_with_info()
             if message is None or message[1]['received_timestamp'] > end_ns:

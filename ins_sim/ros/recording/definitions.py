@@ -1,4 +1,4 @@
-"""Definitions of message types that are installed in ROS but unknown to the bags."""
+"""Find the definitions of message types that are installed in ROS but unknown to ins_sim."""
 
 from pathlib import Path
 import re
@@ -11,10 +11,9 @@ _BUILT_IN = {'bool', 'byte', 'char', 'float32', 'float64', 'int8', 'uint8', 'int
 
 def installed_definition(type_name):
     """
-    Return the definition of a type and of all it holds, in the language ros2msg.
+    Return the definition of a type and of the types that it contains, in the format ros2msg.
 
-    It is that of the .msg files in the share directories.  Raises ValueError where one is
-    missing.
+    It is read from the .msg files in the share directories. Raises ValueError if one is missing.
     """
     texts, waiting = {}, [type_name]
     while waiting:
@@ -45,7 +44,7 @@ def _read(type_name):
         from ament_index_python.packages import get_package_share_directory
         directories.insert(0, Path(get_package_share_directory(package)))
     except (ImportError, OSError, LookupError):
-        # AMENT_PREFIX_PATH is unset, or the package is not in the index
+        # AMENT_PREFIX_PATH is not set, or the package is not in the index.
         pass
     for directory in directories:
         path = directory / 'msg' / f'{name}.msg'

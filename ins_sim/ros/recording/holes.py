@@ -1,31 +1,31 @@
-"""Samples that are missing in a steady stream, seen by its stamps alone.  No ROS is imported."""
+"""Count missing samples of a steady stream from its stamps. This module does not import ROS."""
 
 import math
 
-# steps are counted by classes so narrow
+# Steps between stamps are counted in logarithmic classes of this width.
 CLASS = 0.02
-# a stream is steady where so much of its steps is the usual one, give or take NEAR
+# A stream is steady if at least this part of its steps is within NEAR (relative) of the usual one.
 STEADY, NEAR = 0.5, 0.2
 LEAST = 20
-# a longer silence is a pause, not samples lost; so many periods and so long
+# A silence longer than both limits (periods; ns) is a pause, not lost samples.
 PAUSE, PAUSE_NS = 1000.0, 10_000_000_000
 
 
 class Holes:
     """
-    Counts the samples that a stream lacks against its own usual step.
+    Counts the missing samples of a stream, given its usual step.
 
-    The usual step is the middle one of all, so that it is right while fewer than half of the
-    samples are missing.  ``take`` is called with every stamp.
+    The usual step is the median of all steps, which is right while fewer than half of the samples
+    are missing. The owner calls ``take`` with every stamp.
     """
 
     def __init__(self):
         self._last_ns = None
-        # class of the step: [how many, their sum]
+        # {class of the step: [number of steps, their sum in ns]}
         self._classes = {}
 
     def take(self, stamp_ns):
-        """Take a stamp, ns; what jumps back starts anew."""
+        """Count the step to a new stamp, ns; after a jump back, start again from that stamp."""
         last_ns, self._last_ns = self._last_ns, stamp_ns
         if last_ns is not None and stamp_ns > last_ns:
             step_ns = stamp_ns - last_ns
@@ -34,7 +34,7 @@ class Holes:
             found[1] += step_ns
 
     def count(self):
-        """Return the number of samples missing and the usual step, ns; (0, None) if not steady."""
+        """Return the number of missing samples and the usual step, ns; (0, None) if unsteady."""
         steps = sum(n for n, _ in self._classes.values())
         if steps < LEAST:
             return 0, None

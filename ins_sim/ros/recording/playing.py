@@ -1,4 +1,4 @@
-"""What is played of a bag: topics, span, order.  No ROS is imported."""
+"""Select the topics and the time span of a bag to play. This module does not import ROS."""
 
 from dataclasses import dataclass
 from itertools import chain
@@ -9,21 +9,26 @@ from ins_sim.messages.cdr import SECOND, STAMP_END_NS
 from .run_clock import is_stamped
 
 CLOCK = topics.CLOCK_TOPIC.name
-# what ROS names absolutely stays where it is, whatever the namespace of the player
+# Topics with absolute names in ROS, which do not move into the namespace of the player.
 ABSOLUTE = {CLOCK, '/rosout', '/parameter_events', '/diagnostics', '/tf', '/tf_static'}
-# whose stamps count as samples in lock-step: that of the last stage first
+# Topics whose stamps can be the samples of lock-step; the first one in the bag is used.
 DRIVERS = (topics.IMU_RAW, topics.TRUTH_IMU, topics.TRUTH_ODOMETRY)
 
 
 @dataclass(frozen=True)
 class Options:
     """
-    How a bag is played (``ins_sim play``).
+    Options of playing a bag (``ins_sim play``).
 
-    topics: names, or None for all; rate: bag time per time, 0 = as fast as lock-step allows;
-    start_s, duration_s (None: to the end); loop; wait_s at most for a reader of every topic;
-    clock_hz of /clock, or None; required: consumers of lock-step, window and timeout_s as in
-    pacing.*.
+    Attributes
+    ----------
+    topics : names of the topics, or None for all
+    rate : bag time per wall time; 0 for as fast as lock-step allows
+    start_s, duration_s : part of the bag that is played, s; duration None for up to the end
+    loop : whether to play the part again and again
+    wait_s : time to wait at most for a reader of every topic, s
+    clock_hz : rate of /clock, Hz, or None
+    required, window, timeout_s : lock-step, see the parameters pacing.*
     """
 
     topics: tuple | None = None
@@ -38,7 +43,7 @@ class Options:
     timeout_s: float = 30.0
 
     def __post_init__(self):
-        """Refuse what cannot be."""
+        """Raise ValueError for an option outside its range."""
         if self.rate is None:
             object.__setattr__(self, 'rate', 0.0 if self.required else 1.0)
         if not 0.0 <= self.rate <= 1e6 or (self.rate == 0.0 and not self.required):
@@ -56,15 +61,20 @@ class Playing:
     """
     The part of a bag that is played.
 
-    channels: of the topics, by name; runs: those of them that announce a run; first_ns: log time
-    at which it begins; driver: name of the topic whose messages are the samples of lock-step, or
-    None.  Raises ValueError and OSError
-    as ``open_bag``, and ValueError where there is nothing to play.
+    Raises ValueError and OSError like ``open_bag``, and ValueError if there is nothing to play.
+
+    Attributes
+    ----------
+    channels : {topic name: channel of the bag}
+    runs : names of the topics that announce a run
+    left_out : names of topics that the player itself publishes or reads
+    first_ns : log time at which the part begins, ns
+    driver : name of the topic whose messages are the samples of lock-step, or None
     """
 
     def __init__(self, path, options):
         self.bag = open_bag(path)
-        # announced before all else, whatever is chosen: the nodes take the epoch from there
+        # The announcement of a run is always played first: the nodes need its epoch.
         runs = [n for n in self.bag.topics if n.endswith('/' + topics.RUN.name)]
         chosen = [self.bag.topic(n).name for n in options.topics or self.bag.topics]
         names = [*runs, *(n for n in chosen if n not in runs)]
@@ -109,7 +119,7 @@ class Playing:
         return max(present, key=self.counts.get)
 
     def announcements(self):
-        """Return [(topic, data)] of the announcements of runs, the first one of each."""
+        """Return [(topic, data)] with the first message of each topic that announces a run."""
         return [(name, next(iter(self.bag.messages([name])))[2]) for name in self.runs]
 
     def messages(self):
@@ -127,12 +137,19 @@ class Playing:
 
 class PlaybackStart:
     """
-    The first sample of lock-step, which is repeated until the consumers have answered.
+    The first sample of lock-step, which is repeated until the consumers have acknowledged it.
 
-    It is the first message of the driving topic, at s_0, and of every other stamped topic the
-    last one of stamp up to s_0 that comes before the second message of the driver.  early: what
-    is older; repeated; held: what has no stamp or a later one, and follows the answer; rest:
-    iterator of all that comes behind.
+    It consists of the first message of the driving topic, with stamp s_0, and for every other
+    stamped topic of the last message with a stamp up to s_0 that comes before the second message
+    of the driving topic.
+
+    Attributes
+    ----------
+    stamp_ns : s_0, ns
+    early : messages with older stamps, played before the first sample
+    repeated : messages of the first sample
+    held : messages without a stamp or with a later one, played after the acknowledgement
+    rest : iterator over all following messages
     """
 
     LONGEST = 10000

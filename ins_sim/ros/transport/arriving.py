@@ -1,13 +1,13 @@
-"""Fixes that are there later than their instant, by stamps alone.  No ROS is imported."""
+"""Delay fixes until they have arrived, judged by stamps. This module does not import ROS."""
 
 from collections import deque
 
 
 class Arriving:
     """
-    An instrument as a stage whose fixes are handed out when the truth has reached arrival_ns.
+    Stage that holds back the fixes of a sensor until the truth has reached their arrival_ns.
 
-    Raises StreamFault as the instrument does; reset() is that of both.
+    It raises StreamFault when the sensor does.
     """
 
     def __init__(self, instrument):
@@ -16,22 +16,22 @@ class Arriving:
         self._now_ns = None
 
     def reset(self):
-        """Forget the stream and the fixes on their way."""
+        """Reset the sensor, and discard the fixes that have not arrived yet."""
         self.instrument.reset()
         self._waiting.clear()
         self._now_ns = None
 
     def advance(self, t_ns, push, *sample):
-        """Return the fixes that are there after the truth of t_ns went to push(t_ns, *sample)."""
+        """Call push(t_ns, *sample) with a truth sample; return the fixes that have arrived."""
         fixes = push(t_ns, *sample)
         self._now_ns = t_ns
         return self.add(fixes)
 
     def add(self, fixes):
-        """Take new fixes; return those that are there, in order."""
+        """Add new fixes; return those that have arrived, in order."""
         waiting = self._waiting
         for fix in fixes:
-            # the first sample may be repeated, and so may be its fix
+            # Lock-step may repeat the first sample and thus its fix.
             if not waiting or fix.t_ns > waiting[-1].t_ns:
                 waiting.append(fix)
         due = []

@@ -1,7 +1,7 @@
 """
-Subscriptions that give bytes and are emptied by hand.
+Subscriptions that deliver serialized messages and are emptied explicitly.
 
-Each counts by the numbers of the publishers what was lost before it was taken.
+Each counts lost messages from the sequence numbers that the publishers assign.
 """
 
 from collections import deque
@@ -17,7 +17,7 @@ TURN_S = 0.01
 LINGER_S = 0.003
 NAP_S = 5e-4
 BATCH = 50
-# what has waited for longer is dropped where nobody waits for its answer
+# A message that has waited for longer is dropped if nobody waits for its acknowledgement, ns.
 BACKLOG_NS = 5_000_000_000
 
 
@@ -38,9 +38,14 @@ class NeverReady(CallbackGroup):
 
 class HandQueue:
     """
-    A raw subscription out of the wait set; profile: its QoS, by default that of data.
+    A raw subscription that is not in the executor's wait set; its owner takes the messages.
 
-    In a process of several nodes it may be a queue in memory, see ``hand_over``.
+    In a process with several nodes it may be a queue in memory, see ``hand_over``.
+
+    Parameters
+    ----------
+    node, topic, depth : Node, Topic and depth of the queue
+    profile : QoS of the subscription, by default reliable, volatile, keep-last
     """
 
     def __init__(self, node, topic, depth, profile=None):
@@ -50,14 +55,14 @@ class HandQueue:
         self._class = qos.message_class(topic)
         hand_over = qos.hand_over_of(node)
         if hand_over is not None and profile is None and hand_over.serves(topic):
-            # nothing comes before it is joined
+            # Nothing arrives before the queue is connected.
             self.take = lambda: None
             hand_over.join(node, topic, self)
         else:
             self.subscribe()
 
     def subscribe(self):
-        """Hear the topic by DDS."""
+        """Subscribe to the topic over DDS."""
         self.take = self._take_counted
         self.subscription = subscribe(self._node, self._class, self.topic, lambda data: None,
                                       self._profile, raw=True, callback_group=self._group)
@@ -65,9 +70,9 @@ class HandQueue:
 
     def read_best_effort(self):
         """
-        Subscribe anew, so that a publisher that is no more than best effort is heard.
+        Replace the subscription by one with best effort, to match publishers with best effort.
 
-        Nothing is to be done where the messages come in memory, without a subscription.
+        If the messages are passed in memory there is no subscription, and nothing is done.
         """
         if self.subscription is None:
             return
@@ -76,7 +81,7 @@ class HandQueue:
         self.subscribe()
 
     def accept(self, patience):
-        """Return the function that takes a message; patience: goes on when one has come."""
+        """Return the function that receives a message; a waiting Patience then continues."""
         waiting = deque()
         self.take = lambda: waiting.popleft() if waiting else None
 
@@ -99,20 +104,28 @@ class HandQueue:
         return taken[0]
 
     def take_with_info(self):
-        """Return the oldest message as bytes and what DDS notes of it, or None."""
+        """Return the oldest message as bytes with its DDS information, or None."""
         return self._take(self._class, True)
 
 
 class DrivingQueue:
     """
-    A raw subscription whose wake-up drains its queue.
+    A raw subscription whose callback processes all messages in its queue.
 
-    A cycle of the executor costs more than a message.  So a wake-up takes all there are, and
-    with linger_s waits that long for the next one before it goes back to the executor; it does
-    so after TURN_S in any case, for timers and services.  on_data(bytes) takes each message,
-    on_drained() follows when the queue is empty and every BATCH messages.  What has waited for
-    BACKLOG_NS is ``dropped``, and counted, where may_drop() says so: in real time, what is late
-    is worth less than what is new.
+    One cycle of the executor costs more than one message. The callback therefore takes all
+    messages and waits linger_s for another one before it returns to the executor. After TURN_S
+    it returns in any case, so that timers and services are served.
+
+    Messages that have waited for BACKLOG_NS are dropped and counted if may_drop() is true: in
+    real time a late message is worth less than a new one.
+
+    Parameters
+    ----------
+    node, topic, depth : Node, Topic and depth of the queue
+    on_data : callable, called with the bytes of each message
+    on_drained : callable, called when the queue is empty and after every BATCH messages
+    may_drop : callable that returns whether old messages may be dropped
+    linger_s : time to wait for a further message, s
     """
 
     def __init__(self, node, topic, depth, on_data, on_drained, may_drop, linger_s=0.0):
@@ -125,19 +138,19 @@ class DrivingQueue:
         if hand_over is None:
             self.subscribe()
         else:
-            # what is sent elsewhere is served beside the run of this process
+            # Do not linger: the main loop of this process also serves the other nodes.
             self._linger_s = 0.0
             hand_over.join(node, topic, self)
             hand_over.add_drained(on_drained)
 
     def subscribe(self):
-        """Hear the topic by DDS."""
+        """Subscribe to the topic over DDS."""
         self.subscription = subscribe(self._node, self._class, self.topic, self._wake,
                                       self._profile, raw=True)
         self._take = self.subscription.handle.take_message
 
     def read_best_effort(self):
-        """Subscribe anew, as a HandQueue does."""
+        """Replace the subscription by one with best effort, as a HandQueue does."""
         if self.subscription is None:
             return
         self._node.destroy_subscription(self.subscription)
@@ -145,12 +158,12 @@ class DrivingQueue:
         self.subscribe()
 
     def accept(self, patience):
-        """Return the function that takes a message in this process."""
+        """Return the function that receives messages of nodes in this process."""
         return self._on_data
 
     def _give(self, data, info, late_ns):
         self.gaps.take(info['publication_sequence_number'])
-        # a middleware that notes no time gives zero
+        # A middleware that does not record the time of reception reports zero.
         if 0 < info['received_timestamp'] < late_ns and self._may_drop():
             self.dropped += 1
         else:

@@ -1,4 +1,4 @@
-"""Transforms on /tf and /tf_static, where tf2_msgs is installed."""
+"""Publish transforms on /tf and /tf_static, if tf2_msgs is installed."""
 
 from collections import deque
 
@@ -7,26 +7,26 @@ from ins_sim.messages.transforms import read_transforms, TransformWriter
 from . import qos
 from .backlog import HandQueue
 
-# Of the queues of /tf, as tf2 has it.
+# Depth of the queues of /tf, the value that tf2 uses.
 DEPTH = 100
-# So many of our own messages are remembered: more than a queue of /tf holds.
+# Number of our own messages that are remembered: more than a queue of /tf holds.
 REMEMBERED = 4 * DEPTH
 
 
 class Broadcaster:
     """
-    What a node publishes of the transforms of its vehicle, as tf.source says.
+    Publishes the transforms of a vehicle that a node is responsible for, according to tf.source.
 
-    Nothing is published where tf2_msgs is missing, which is no part of the ROS of PyPI and is
-    imported only where tf.source asks for it.  A frame that another node places as well is named
-    on /diagnostics.
+    The package tf2_msgs is imported only if tf.source asks for transforms. Without it (it is not
+    among the ROS packages on PyPI) a warning is logged and nothing is published. If another node
+    publishes the same frame, this is reported on /diagnostics.
 
     Parameters
     ----------
     node : Node with a ``monitor``
-    settings : of the node, with ``frames`` and ``tf``
-    moving : {tf.source: (parent, child)}, the frame that the node places on /tf, by default names
-    fixed : {tf.source: (parent, child, pose)} of /tf_static; the key '' is for every source
+    settings : settings of the node, with ``frames`` and ``tf``
+    moving : {tf.source: (parent, child)} of the transform on /tf, as names of ``frames``
+    fixed : {tf.source: (parent, child, pose)} on /tf_static; the key '' is for every source
     """
 
     def __init__(self, node, settings, moving=None, fixed=None):
@@ -59,19 +59,19 @@ class Broadcaster:
         self._publish(data)
 
     def send(self, stamp_ns, pose):
-        """Publish the moving frame at a pose, if any."""
+        """Publish the moving transform, if the node has one."""
         if self.publish is not None:
             self.publish(self._pack(stamp_ns, pose))
 
     def send_fixed(self, stamp_ns):
-        """Publish what stands fixed, with a stamp of the run."""
+        """Publish the static transform, if the node has one, with a stamp of the run."""
         if self._static is not None:
             parent, child, pose = self._fixed
             self._static.publish(TransformWriter(
                 (self._names[parent], self._names[child])).pack(stamp_ns, pose))
 
     def describe(self):
-        """Return who else places our frame, or '', and no values: as ``Monitor.add`` takes it."""
+        """Return a fault if another node publishes our frame, else '', and no values."""
         wrong, sent = '', set(self._sent)
         parent, child = self._placed
         for _ in range(DEPTH):

@@ -1,18 +1,27 @@
-"""Lost messages, seen as gaps in the numbers that their publishers give them.  No ROS."""
+"""
+Count lost messages from gaps in the sequence numbers of their publishers.
 
-# rising sequences that are told apart
+This module does not import ROS.
+"""
+
+# Maximum number of rising sequences that are distinguished.
 MOST = 100
 
 
 class Gaps:
     """
-    Counts what is missing in the sequence numbers of one topic.
+    Counts missing sequence numbers of one topic.
 
-    Each publisher numbers its messages from 1.  What was sent before the first message heard of
-    it is not lost but ``before``.  A message does not say whose it is: of several publishers the
-    numbers are sorted into as many rising sequences, so that without loss nothing is counted, and
-    with loss the count is an estimate.  publishers: how many there have been; the owner keeps it
-    up to date.  ``known`` is False where the middleware numbers nothing.
+    Each publisher numbers its messages from 1. Messages sent before the first one received from
+    a publisher count as ``before``, not as ``lost``. A message does not identify its publisher,
+    so the numbers of several publishers are sorted into as many rising sequences: without loss
+    the count is exactly zero, with loss it is an estimate.
+
+    Attributes
+    ----------
+    publishers : number of publishers there have been; the owner keeps it up to date
+    known : False if the middleware does not number messages
+    lost, before : counts of messages
     """
 
     def __init__(self):
@@ -21,7 +30,7 @@ class Gaps:
         self._next = []
 
     def take(self, number):
-        """Take the number of a message, or None if it has none."""
+        """Process the sequence number of a message, or None if it has no number."""
         following = self._next
         if len(following) == 1 and following[0] == number:
             following[0] = number + 1
@@ -39,5 +48,5 @@ class Gaps:
                 if len(following) < self.publishers:
                     self.before += number - 1
                 following.append(number + 1)
-                # of publishers that have left
+                # Drop the sequences of publishers that have left.
                 del following[:-MOST]

@@ -1,17 +1,17 @@
-"""Messages between the nodes of one process: handed over in memory, beside their publication."""
+"""Pass messages between the nodes of one process in memory, in addition to publishing them."""
 
 from ins_sim.messages import topics
 
 
 class HandOver:
     """
-    Joins the publishers and the queues of the nodes of one process, by the names of the topics.
+    Connects the publishers and queues of the nodes of one process by topic name.
 
-    A queue whose topic is published in this process gets the bytes of its messages at once, in
-    the call that publishes them, and has no subscription: it hears nobody else.  All other queues
-    subscribe, as they do in a process of their own.
+    A queue whose topic is published in this process receives the serialized messages within the
+    call that publishes them. It has no subscription, so it does not receive messages from other
+    processes. All other queues subscribe, as in separate processes.
 
-    The nodes have it as their attribute ``hand_over``; ``connect`` follows when all are made.
+    Each node has it as attribute ``hand_over``; call ``connect`` when all nodes are made.
     """
 
     def __init__(self):
@@ -21,15 +21,14 @@ class HandOver:
     @staticmethod
     def serves(topic):
         """
-        Return whether messages of a Topic are handed over.
+        Return whether messages of a Topic are passed in memory.
 
-        Those of the whole graph (an absolute name) and the acknowledgements come from any node,
-        and are heard from all of them.
+        Topics with absolute names and acknowledgements are not: any node may publish them.
         """
         return not topic.name.startswith('/') and topic.name != topics.ACK.name
 
     def publisher(self, node, topic, publisher):
-        """Return what publishes a Topic with a publisher of a node, and hands it over."""
+        """Return a publisher of a Topic that also passes the messages on in memory."""
         if not self.serves(topic):
             return publisher
         name = node.resolve_topic_name(topic.name)
@@ -39,19 +38,19 @@ class HandOver:
         return handing
 
     def join(self, node, topic, queue):
-        """Let a queue of a node be connected: ``accept(patience)`` or ``subscribe()``."""
+        """Register a queue; ``connect`` calls its ``accept(patience)`` or ``subscribe()``."""
         self._joining.append((node, topic, queue))
 
     def add_patience(self, node, patience):
-        """Let a Patience go on at once when something comes for its node."""
+        """Let a Patience continue as soon as a message for its node arrives."""
         self._patiences[node] = patience
 
     def add_drained(self, on_drained):
-        """Call a function whenever a burst of messages is over."""
+        """Register a function to be called after each burst of messages."""
         self._drained.append(on_drained)
 
     def connect(self):
-        """Connect every queue to the publishers here, or else to DDS."""
+        """Connect every queue to the publishers in this process, or else to DDS."""
         for node, topic, queue in self._joining:
             receivers = self._receivers.get(node.resolve_topic_name(topic.name))
             if receivers is None:
@@ -65,9 +64,9 @@ class HandOver:
 
     def listen(self, node, topic, receive):
         """
-        Let a function receive the bytes of a Topic, as a queue of a node does.
+        Let a function receive the serialized messages of a Topic, as a queue of a node does.
 
-        Return whether it is published here.
+        Return whether the topic is published in this process.
         """
         receivers = self._receivers.get(node.resolve_topic_name(topic.name))
         if receivers is not None:
@@ -75,28 +74,32 @@ class HandOver:
         return receivers is not None
 
     def drained(self):
-        """Say that a burst of messages is over: the nodes acknowledge."""
+        """Signal the end of a burst of messages, so that the nodes acknowledge."""
         for on_drained in self._drained:
             on_drained()
 
 
 class HandingPublisher:
-    """A publisher of bytes that gives them to receivers in this process as well; last: of them."""
+    """
+    Publisher of serialized messages that also calls the receivers in this process.
+
+    ``last`` is the last message published.
+    """
 
     def __init__(self, publisher, receivers):
-        # The handle itself: rclpy locks it for each call, and looks what kind of message it is.
+        # Use the handle directly: publish() of rclpy locks it and checks the message type.
         self._publish = publisher.handle.publish_raw
         self._count = publisher.handle.get_subscription_count
         self._receivers = receivers
         self.last = None
 
     def publish(self, data):
-        """Publish a message and hand it over."""
+        """Publish a message and pass it to the receivers."""
         self.last = data
         self._publish(data)
         for receive in self._receivers:
             receive(data)
 
     def get_subscription_count(self):
-        """Return how many read it, here and elsewhere."""
+        """Return the number of readers: those in this process or, without any, those elsewhere."""
         return len(self._receivers) or self._count()

@@ -1,4 +1,4 @@
-"""The transform map -> odom, from the aided solution and the free INS at the same instants."""
+"""Compute the transform map -> odom from the aided solution and the free INS solution."""
 
 from ins_sim.core.streams.pairs import StampPairs
 from ins_sim.messages import topics
@@ -10,11 +10,20 @@ from .patience import MISSING_S
 
 class MapToOdom:
     """
-    Reads ins/odometry beside the solutions of a node, and broadcasts map -> odom.
+    Subscribes to ins/odometry and broadcasts map -> odom.
 
-    An aided solution waits for the INS of its instant, so that every one that has both is
-    published.  node: StageNode; depth: of the queue.  reached_ns: the stamp of the INS that came
-    last, or None.
+    Each aided solution waits for the free INS solution of its instant; the transform is published
+    for every instant that has both.
+
+    Parameters
+    ----------
+    node : StageNode
+    broadcaster : Broadcaster
+    depth : depth of the queue
+
+    Attributes
+    ----------
+    reached_ns : stamp of the last free INS solution, ns, or None
     """
 
     def __init__(self, node, broadcaster, depth):
@@ -26,19 +35,19 @@ class MapToOdom:
 
     @property
     def waiting(self):
-        """Return whether a solution waits for the INS."""
+        """Return whether an aided solution waits for the free INS solution."""
         return self._patient and self._pairs.waiting
 
     def clear(self):
-        """Forget what has come."""
+        """Discard the waiting solutions."""
         self._pairs.clear()
 
     def solved(self, stamp_ns, pose):
-        """Take the pose of the aided solution."""
+        """Process the pose of an aided solution."""
         self._send(self._pairs.push_first(stamp_ns, pose))
 
     def take(self):
-        """Take the solutions of the INS that have come."""
+        """Process the free INS solutions that have arrived."""
         for data in self._node.taken_of(self.queue):
             try:
                 stamp_ns, place, turn = self._reader.read(data)
@@ -49,7 +58,7 @@ class MapToOdom:
                 self._send(self._pairs.push_second(stamp_ns, (*place, *turn)))
 
     def miss(self):
-        """Say that nothing has come, and wait no longer until something comes."""
+        """Report that no free INS solution has arrived, and stop waiting until one does."""
         self._patient = False
         self._node.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected '
                          'the odom of every solution (tf.source aided): no map -> odom without it')

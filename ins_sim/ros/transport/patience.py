@@ -1,4 +1,4 @@
-"""Waiting for what another topic must bring, for as long as it may reasonably take."""
+"""Wait for messages of another topic for a limited time."""
 
 import time
 
@@ -13,12 +13,19 @@ MISSING_S = 5.0
 
 class Patience:
     """
-    Waits while waiting() is true: here for a moment, then from a timer of the node.
+    Waits while waiting() is true: first for a moment in the caller, then in a timer of the node.
 
-    take() takes what has come; settle() follows each time, be it that nothing is waited for or
-    that the timer goes on; missed() is called when progress() has given the same value for
-    MISSING_S of wall time, and must end that waiting.  No number depends on a clock: without
-    missed() the outcome is the same however long it takes.
+    No result depends on a clock: unless missed() is called, the outcome is the same however long
+    a message takes.
+
+    Parameters
+    ----------
+    node : Node with ``guarded``, ``on_drained`` and ``stop``
+    waiting : callable that returns whether a message is still missing
+    progress : callable that returns a value which changes whenever an awaited message arrives
+    take : callable that processes the messages that have arrived
+    missed : callable, called after MISSING_S of wall time without progress; must end the waiting
+    settle : callable, called after each attempt, whether it ended the waiting or not
     """
 
     def __init__(self, node, waiting, progress, take, missed, settle):
@@ -28,7 +35,7 @@ class Patience:
         self._patience_s = PATIENCE_S
         hand_over = hand_over_of(node)
         if hand_over is not None:
-            # nothing comes while this process waits
+            # The messages come from this process, so none can arrive while it waits here.
             self._patience_s = 0.0
             hand_over.add_patience(node, self)
         self._retry = wall_timer(node, RETRY_S, node.guarded(self._on_retry))
@@ -36,11 +43,11 @@ class Patience:
 
     @property
     def waits(self):
-        """Return whether something has not come in that moment."""
+        """Return whether the timer is still waiting for a message."""
         return self._since is not None
 
     def wait(self):
-        """Wait for a moment, and if that is not enough let the timer go on."""
+        """Wait for a moment; if that is not enough, continue in the timer."""
         self._wait(self._patience_s)
 
     def _wait(self, patience_s):
@@ -69,6 +76,6 @@ class Patience:
         self._node.on_drained()
 
     def go_on(self):
-        """Take what has come."""
+        """Process the messages that have arrived, and check whether more are missing."""
         self._take()
         self._wait(0.0)

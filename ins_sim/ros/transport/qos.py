@@ -1,4 +1,4 @@
-"""Quality of service: one profile for data, one for what late joiners must see."""
+"""Quality of service: profiles for data, for latched topics, and for recording and playing."""
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
@@ -10,14 +10,14 @@ LATCHING = DurabilityPolicy.TRANSIENT_LOCAL
 
 
 def data_profile(depth):
-    """Return reliable, volatile, keep-last: no loss as long as a queue holds what is under way."""
+    """Return reliable, volatile, keep-last: nothing is lost unless a queue overflows."""
     return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth,
                       reliability=ReliabilityPolicy.RELIABLE,
                       durability=DurabilityPolicy.VOLATILE)
 
 
 def best_effort_profile(depth):
-    """Return best effort, volatile, keep-last: it suits publishers of every reliability."""
+    """Return best effort, volatile, keep-last: compatible with publishers of any reliability."""
     return keep_last(depth, ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
 
 
@@ -36,7 +36,7 @@ def message_class(topic):
 
 
 def make_publisher(node, topic, depth):
-    """Return a publisher of a Topic for bytes; depth: of its queue, unless it is latched."""
+    """Return a publisher of serialized messages of a Topic; latched topics ignore ``depth``."""
     profile = latched_profile() if topic.latched else data_profile(depth)
     publisher = advertise(node, message_class(topic), topic.name, profile)
     hand_over = hand_over_of(node)
@@ -44,7 +44,7 @@ def make_publisher(node, topic, depth):
 
 
 def hand_over_of(node):
-    """Return the HandOver of a node that shares its process with others, else None."""
+    """Return the HandOver of a node that shares its process with other nodes, else None."""
     return getattr(node, 'hand_over', None)
 
 
@@ -55,9 +55,9 @@ def ack_publisher(node):
 
 def offered_profile(infos):
     """
-    Return the reliability and durability that suit all publishers (TopicEndpointInfo) of a topic.
+    Return the strongest reliability and durability that all publishers of a topic offer.
 
-    They are the most that every one of them offers.
+    ``infos`` are their TopicEndpointInfo.
     """
     profiles = [info.qos_profile for info in infos]
     reliable = all(p.reliability == ReliabilityPolicy.RELIABLE for p in profiles)
@@ -74,9 +74,9 @@ def keep_last(depth, reliability, durability):
 
 def recorded_profile(profiles, depth):
     """
-    Return the profile that offers what all recorded offers did, so that it suits their readers.
+    Return a profile that is compatible with the readers of all recorded publishers of a topic.
 
-    profiles: as ``bags.qos.read_profiles`` gives them; old bags have numbers for names.
+    ``profiles`` is the result of ``bags.qos.read_profiles``; old bags have numbers for names.
     """
     weak = profiles and all(p.get('reliability') in ('best_effort', 2) for p in profiles)
     latching = any(p.get('durability') in ('transient_local', 1) for p in profiles)

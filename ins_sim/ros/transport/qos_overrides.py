@@ -1,8 +1,8 @@
 """
-Quality of service by parameters: qos_overrides./topic.publisher.depth and the like.
+Set the quality of service by parameters such as qos_overrides./topic.publisher.depth.
 
-rclpy declares such parameters for every entity that asks for it, which takes a node's start
-milliseconds; here they are declared for those alone of which one is given.
+rclpy declares these parameters for every publisher and subscription that allows overrides, which
+costs milliseconds at the start of a node. Here they are declared only if the user has set one.
 """
 
 from rclpy.qos import QoSPolicyKind
@@ -11,7 +11,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from ins_sim.settings.shown import shown
 from ins_sim.settings.suggest import nearest_name
 
-# What each policy may be; of a depth the bounds.
+# Allowed values of each policy; for depth, the bounds.
 POLICIES = {'history': ('keep_last', 'keep_all'), 'depth': (1, 1_000_000),
             'reliability': ('reliable', 'best_effort'),
             'durability': ('volatile', 'transient_local')}
@@ -19,13 +19,13 @@ PREFIX = 'qos_overrides.'
 
 
 def advertise(node, message_class, name, profile):
-    """Return a publisher with a profile, or what the parameters make of it."""
+    """Return a publisher with a QoS profile, modified by the parameters."""
     return node.create_publisher(message_class, name, profile,
                                  qos_overriding_options=_options(node, name, 'publisher'))
 
 
 def subscribe(node, message_class, name, callback, profile, **options):
-    """Return a subscription likewise; options: further ones of ``create_subscription``."""
+    """Return a subscription likewise; ``options`` are passed to ``create_subscription``."""
     return node.create_subscription(message_class, name, callback, profile,
                                     qos_overriding_options=_options(node, name, 'subscription'),
                                     **options)
@@ -33,9 +33,17 @@ def subscribe(node, message_class, name, callback, profile, **options):
 
 def given(node, name, kind):
     """
-    Return {policy: value} of the parameters for a topic; kind: publisher or subscription.
+    Return {policy: value} of the parameters set for a topic.
 
-    Raises ValueError, one sentence, for a policy that cannot be set, or not to that value.
+    Parameters
+    ----------
+    node : Node
+    name : name of the topic
+    kind : ``publisher`` or ``subscription``
+
+    Raises
+    ------
+    ValueError : the policy does not exist or cannot have that value; the message is one sentence
     """
     overrides = {key: parameter.value for key, parameter in node._parameter_overrides.items()
                  if key.startswith(PREFIX)}
@@ -44,7 +52,7 @@ def given(node, name, kind):
     try:
         prefix = f'{PREFIX}{node.resolve_topic_name(name)}.{kind}.'
     except RuntimeError:
-        # a name that is none: rclpy refuses it in its own words when the entity is made
+        # The name is invalid; rclpy reports this when the publisher or subscription is made.
         return {}
     return {key[len(prefix):]: _checked(key, key[len(prefix):], value)
             for key, value in overrides.items() if key.startswith(prefix)}
@@ -52,7 +60,7 @@ def given(node, name, kind):
 
 def _checked(key, policy, value):
     if policy not in POLICIES:
-        raise ValueError(f'{key}: no policy {policy!r} can be set; expected one of '
+        raise ValueError(f'{key}: the policy {policy!r} cannot be set; expected one of '
                          f'{", ".join(POLICIES)} (nearest: {nearest_name(policy, POLICIES)})')
     allowed = POLICIES[policy]
     if policy == 'depth':
@@ -71,7 +79,7 @@ def _options(node, name, kind):
 
 
 def unused(node):
-    """Return the given names that belong to no publisher and no subscription of a node."""
+    """Return the override parameters that belong to no publisher or subscription of a node."""
     known = tuple(f'{PREFIX}{node.resolve_topic_name(entity.topic_name)}.{kind}.'
                   for entities, kind in ((node.publishers, 'publisher'),
                                          (node.subscriptions, 'subscription'))

@@ -1,4 +1,4 @@
-"""What a transport drops is sent again: soon, and before its publisher leaves."""
+"""Configure fast retransmission of lost messages, and wait for it before a process ends."""
 
 from importlib import metadata
 import os
@@ -6,30 +6,31 @@ import time
 
 from ins_sim import resources
 
-# Of Fast DDS up to 2.x, which is that of Jazzy, and from 3 on, that of Kilted and Lyrical: the
-# variable, and the profile, whose elements have other names.  Other middlewares know neither.
+# (environment variable, name of the XML profile) of Fast DDS 2 (Jazzy) and of Fast DDS 3 (Kilted,
+# Lyrical), whose XML elements have other names. Other middlewares ignore both variables.
 BEFORE_3 = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'fastdds')
 FROM_3 = ('FASTDDS_DEFAULT_PROFILES_FILE', 'fastdds3')
-# the first rclpy of a distribution with Fast DDS 3, which warns of the variable of before
+# First major version of rclpy with Fast DDS 3, which warns about the old variable.
 RCLPY_FROM_3 = 8
-# heartbeats are 0.1 s apart in config/fastdds.xml and config/fastdds3.xml
+# Time allowed for retransmissions, s; the period of heartbeats is 0.1 s in config/fastdds.xml and
+# config/fastdds3.xml.
 REPAIR_S = 0.5
 DRAIN_S = 2.0
 
 
 def use_profile():
     """
-    Let the publishers of this process and its children ask every 0.1 s what readers miss.
+    Set the heartbeat period of the publishers of this process and its children to 0.1 s.
 
-    Fast DDS does so every 3 s.  A profile that the user has named stays.  It counts before the
-    first participant is made.
+    At a heartbeat, readers request the messages that they miss; the default period of Fast DDS
+    is 3 s. A profile chosen by the user is kept. Call this before the first participant is made.
     """
     for variable, name in profiles():
         os.environ.setdefault(variable, str(resources.middleware_profile(name)))
 
 
 def profiles():
-    """Return (variable, name of its profile) of the Fast DDS here, of both where it is unknown."""
+    """Return [(variable, profile name)] of the installed Fast DDS, both if it is unknown."""
     try:
         major = int(metadata.version('rclpy').partition('.')[0])
     except (metadata.PackageNotFoundError, ValueError):
@@ -38,7 +39,7 @@ def profiles():
 
 
 def drain_publishers(publishers):
-    """Wait until the readers of publishers have all that was sent, at most DRAIN_S together."""
+    """Wait, at most DRAIN_S in total, until the readers have received everything published."""
     from rclpy.duration import Duration
     end = time.monotonic() + DRAIN_S
     for publisher in publishers:

@@ -1,8 +1,8 @@
 """
-Timers that run on when simulated time stands still.
+Timers that follow the wall clock even with use_sim_time.
 
-With use_sim_time the timers of a node follow /clock, and in lock-step /clock waits for the
-node: a timer that is to get it out of its waiting would wait for itself.
+With use_sim_time the timers of a node follow /clock, and in lock-step /clock waits for the node.
+A timer meant to end this waiting would therefore never fire.
 """
 
 from rclpy.clock import Clock, ClockType

@@ -1,4 +1,4 @@
-"""Tracks as KML: read by a parser, on both sides of the antimeridian."""
+"""Tracks as KML can be parsed, and are correct on both sides of the antimeridian."""
 
 import xml.etree.ElementTree as ElementTree
 

@@ -1,4 +1,4 @@
-"""The chart of an Allan deviation: each line lies where the number in the legend says."""
+"""In the chart of an Allan deviation each line is where the number in the legend says."""
 
 from dataclasses import replace
 

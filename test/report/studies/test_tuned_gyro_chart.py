@@ -34,7 +34,7 @@ def test_the_paper_beside_ours():
 
 
 def test_a_study_without_a_paper_has_no_difference():
-    """One panel; a side without a limit has no line."""
+    """Without published values there is one panel; a missing limit has no line."""
     settings = TunedGyroStudySettings(sweep='rotor_speed', values=(130.0, 337.0))
     cells = tuple(Cell(c.value, c.poisson_deg, c.euler_vector_deg, None) for c in CELLS)
     top, = study_chart('x', settings, cells, cells, (None, 337.4)).panels

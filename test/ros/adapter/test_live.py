@@ -51,7 +51,7 @@ def without_covariances(numbers):
 
 @pytest.mark.parametrize('pace', ['lock_step', 'real_time'])
 def test_another_simulator_drives_imu_and_strapdown(pace, ros_domain, tmp_path):
-    """In lock-step and in real time every number is that of the run without nodes."""
+    """In lock-step and in real time all numbers equal those of the same run without nodes."""
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, WANTED)
     chain.environment['PYTHONPATH'] += f':{ROOT / "test"}'
     place = {**PLACE, 'vertical.channel': 'free'}

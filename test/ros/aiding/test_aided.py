@@ -144,10 +144,10 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         errors = stream.heard['aided/error/velocity']
         stream.listener.poll_until(lambda: 99 * DT in errors)
         stream.chain.wait_text(node, 'no fix of velocity_meter in 5 s; expected one for every '
-                                     'window: going on without it until it delivers again')
+                                     'window: continuing without it until it delivers again')
         stream.wait_ack(150 * DT)
         stream.listener.poll_until(lambda: 150 * DT in errors)
-        stream.wait_diagnosis('going on without velocity_meter')
+        stream.wait_diagnosis('continuing without velocity_meter')
         fixes = offline_fixes(stream, np.arange(0, 301) * DT, values)
         # The record is wrong by 5 m/s, so that its use is visible.
         late = replace(fixes[0], velocity=(fixes[0].velocity[0] - 5.0, fixes[0].velocity[1]))

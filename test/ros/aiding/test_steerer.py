@@ -191,7 +191,7 @@ def test_a_loop_that_cannot_be_closed_is_named_once(generator, sentence, ros_dom
 
 
 def test_a_command_beyond_the_limit_is_counted(ros_domain):
-    """From 100 m beside the leg the command is at its limit."""
+    """From 100 m off the leg the command is at its limit, and these instants are counted."""
     with Steered({'motion.guided.offset_m': 100.0}) as flight:
         flight.good(30)
         assert flight.commands[-1][1] == math.radians(8.0)

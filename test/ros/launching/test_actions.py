@@ -44,7 +44,7 @@ class Context(SimpleNamespace):
     is_shutdown = False
 
     def get_locals_as_dict(self):
-        """Return the event that is being handled, or nothing."""
+        """Return the event being handled, or an empty dict."""
         return {'event': self.event} if self.event else {}
 
 

@@ -1,4 +1,4 @@
-"""Simulations for the tests of other filters."""
+"""`running_simulation` lets tests of other filters step a simulation."""
 
 import os
 import subprocess

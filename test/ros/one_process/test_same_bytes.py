@@ -90,7 +90,7 @@ def _keep(messages, data):
 
 @pytest.mark.parametrize('name', RUNS)
 def test_the_bytes_of_separate_nodes(name, ros_domain):
-    """Every message of every topic, in lock-step."""
+    """In lock-step every message on every topic has the same bytes."""
     expected, sent = apart(RUNS[name]), together(RUNS[name])
     for topic, messages in expected.items():
         if topic not in ('sim/ack', '/clock'):

@@ -23,7 +23,7 @@ NONSENSE = [
     ('imu_sensor', LOST, 'often', " is 'often'; expected a number"),
     ('imu_sensor', LOST, [0.5], ' is [0.5]; expected a number'),
     ('imu_sensor', FAULT + 'channel', 'gyro_1_y', ' cannot be set: gyro.model is ideal; expected '
-     'dtg: the fault is one of a tuned gyro'),
+     'dtg: gyro.dtg.fault applies to tuned gyros only'),
     ('gnss', 'outages.end_s', [1.0], 'outages.start_s has 0 entries and outages.end_s 1; expected '
      'as many'),
     ('gnss', 'outages.start_s', [-1.0], ' is -1 s; expected 0 to 1e+07 s'),

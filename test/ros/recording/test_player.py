@@ -1,4 +1,4 @@
-"""Playing a bag: byte for byte, by its own time or in lock-step with the nodes."""
+"""A bag is played byte for byte, by its log times or in lock-step with the nodes."""
 
 import re
 import signal
@@ -237,7 +237,7 @@ def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
             bag.write('imu', log_ns, pack(log_ns, (0.0,) * 3, (0.0, 0.0, 9.8)))
     player = chain.start_verb('play', path, '--wait', '0')
     chain.wait_text(player, 'nothing was logged for 1700000000.010 s from 0.040 s on: waiting '
-                            '1700000000 s (--start 1700000000.050 begins behind it')
+                            '1700000000 s (--start 1700000000.050 begins after the gap')
     end(chain, player)
     player = chain.start_verb('play', path, '--wait', '0', '--start', '1700000000.050')
     assert player.wait(30.0) == 0

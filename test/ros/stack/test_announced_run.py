@@ -141,7 +141,7 @@ def test_more_than_the_queue_holds_is_counted(ros_domain):
         flight.know(1)
         flight.good(12)
         flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
-        assert '7 messages were dropped, for which more than topics.depth waited for sim/run' in \
+        assert '7 messages were dropped, because more than topics.depth waited for sim/run' in \
             flight.said('imu_sensor')
         flight.good(3)
         assert flight.newest(topics.IMU_RAW) == 14 * SECOND // 100
@@ -163,8 +163,8 @@ def test_another_generator_starts_all_anew(flight):
 
 @pytest.mark.parametrize('run, sentence', [
     (RUN, 'a message has the stamp 0.000000000 s, 1735689600.000000000 s before the epoch of the '
-     'run announced on sim/run, 1735689600.000000000 s; expected a stamp of that run, of one '
-     'generator; the message was dropped'),
+     'run announced on sim/run, 1735689600.000000000 s; expected a stamp within that run, from '
+     'one generator; the message was dropped'),
     (RunAnnouncement(-100 * SECOND, 100 * SECOND, 100.0, 100 * SECOND), 'a message has the stamp '
      '10.010000000 s, 0.010000000 s after the end of the run')], ids=('before', 'after'))
 def test_stamps_of_no_announced_run_are_named(run, sentence, flight):

@@ -79,7 +79,8 @@ def test_a_best_effort_publisher_is_heard(make_node, talker):
     for publisher in publishers:
         wait_for(lambda: node.get_publishers_info_by_topic(publisher.topic_name))
     node.monitor.publish()
-    assert sum('is published best effort: it is read so' in text for text in said) == 2
+    assert sum('is published with best effort: it is read with best effort' in text
+               for text in said) == 2
     talker.wait_matched(*publishers)
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
@@ -146,8 +147,8 @@ def import_odometry():
 
 @pytest.mark.live
 @pytest.mark.parametrize('key, value, sentence', [
-    ('ins/odometry.publisher.depht', 5, "no policy 'depht' can be set; expected one of history, "
-     r'depth, reliability, durability \(nearest: depth\)'),
+    ('ins/odometry.publisher.depht', 5, "the policy 'depht' cannot be set; expected one of "
+     r'history, depth, reliability, durability \(nearest: depth\)'),
     ('ins/odometry.publisher.depth', 0, 'is 0; expected a whole number from 1 to 1000000'),
     ('ins/odometry.publisher.depth', 2.5, 'is 2.5; expected a whole number from 1 to 1000000'),
     ('imu/data_raw.subscription.reliability', 'best-effort', "is 'best-effort'; expected one of "
@@ -167,6 +168,7 @@ def test_overrides_of_other_nodes_are_told_once(make_node):
     node.monitor._publisher = type('Publisher', (), {'publish': staticmethod(sent.append)})
     node.monitor.publish()
     node.monitor.publish()
-    assert sum('1 qos_overrides are of no publisher and no subscription of this node, '
-               'qos_overrides./no/topic.publisher.depth the first' in text for text in said) == 1
+    assert sum('1 qos_overrides are of no publisher and no subscription of this node '
+               'and have no effect here; the first is qos_overrides./no/topic.publisher.depth'
+               in text for text in said) == 1
     assert {array.status[0].hardware_id for array in sent} == {'/strapdown'}

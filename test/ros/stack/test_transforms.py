@@ -37,7 +37,7 @@ class Placed(HostileFlight):
                 if name == '/tf' and frames == [f'uav1/{parent}', f'uav1/{child}']}
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return what a node has logged."""
         return '\n'.join(self.fed.logs[node].kept)
 
     def look(self):

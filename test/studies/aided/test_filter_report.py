@@ -40,8 +40,8 @@ def test_the_answer():
         'Of 5 filters over 12 flights of 50 min, eskf, N 1000, was best: rms horizontal error at '
         'the end 300 m, 3 times less than window_kf, N 1000 (900 m). Too optimistic by NIS '
         'and by NEES of the position at the end: window_kf, N 1000. Consistent by NIS and by NEES '
-        'of the position at the end: eskf, N 1000; eskf, N 100. Without a covariance, so that '
-        'nothing can be said: free, N 1000; paper, N 1000.')
+        'of the position at the end: eskf, N 1000; eskf, N 100. No statement is possible '
+        'without a covariance: free, N 1000; paper, N 1000.')
 
 
 def test_rows_have_nees_at_the_end():
