@@ -132,7 +132,7 @@ GUIDANCE_COMMAND = Topic('guidance/command', VECTOR, ('leg',))
 # Odometry of another simulator for truth_adapter, in any frames.
 OTHER_ODOMETRY = Topic('odom', ODOMETRY, ('odom', 'base_link'))
 ACK = Topic('sim/ack', HEADER)
-STATUS = Topic('sim/status', STRING)
+STATUS = Topic('sim/status', STRING, latched=True)
 # Announcement of the run, see run_announcement.
 RUN = Topic('sim/run', DIAGNOSTICS, latched=True)
 CLOCK_TOPIC = Topic('/clock', CLOCK)

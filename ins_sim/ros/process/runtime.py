@@ -17,10 +17,8 @@ from ins_sim import entry
 from ins_sim.visible_text import visible
 from ..transport.repairs import drain_publishers, use_profile
 
-EXIT_OK = 0
-EXIT_PARAMETERS = 2
-EXIT_FAULT = 3
-EXIT_CONSUMER = 4
+EXIT_OK, EXIT_PARAMETERS = entry.OK, entry.BAD_INPUT
+EXIT_FAULT, EXIT_CONSUMER = entry.FAULT, entry.CONSUMER
 # SIGALRM: the command line sends it for a signal that arrived during its imports.
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 POLL_S = 0.2
