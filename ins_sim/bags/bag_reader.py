@@ -134,7 +134,7 @@ class BagReader:
 
         Parameters
         ----------
-        name : name of the topic
+        name : topic name
         fields : fields of the message by their ROS names (``messages.columns``), such as
             'angular_velocity', which is (n, 3); None for all
         type_name : expected message type, or None

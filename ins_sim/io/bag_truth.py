@@ -27,7 +27,7 @@ def read_poses(path, topic, datum, key=KEY, origin='fix'):
     Parameters
     ----------
     path : path of the bag
-    topic : name of the topic, or 'auto' for the only one that ends in truth/odometry
+    topic : topic name, or 'auto' for the only one that ends in truth/odometry
     datum : Datum of the settings
     key : parameter that gives the topic, for messages
     origin : 'fix' to search the origin in the bag, 'datum' to use the datum

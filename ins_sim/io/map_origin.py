@@ -29,7 +29,7 @@ def map_origin(bag, name, given):
     Parameters
     ----------
     bag : BagReader
-    name : name of the odometry topic
+    name : odometry topic
     given : Datum of the settings; the default one counts as not given
 
     Raises

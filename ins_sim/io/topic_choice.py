@@ -12,7 +12,7 @@ def choose_topic(bag, types, wanted, key, ending='', needed=False):
     ----------
     bag : BagReader
     types : accepted message types
-    wanted : name of the topic, 'auto' for the only one whose name ends in ending, or 'none'
+    wanted : topic name, 'auto' for the only one whose name ends in ending, or 'none'
     key : parameter that gives wanted, for messages
     ending : end of the name for 'auto'
     needed : whether a topic must be found

@@ -30,7 +30,7 @@ class Preset:
 
     Attributes
     ----------
-    name : name of the preset
+    name : preset name
     datasheet : description of the class
     figures : its figures from data sheets, as text
     values : read-only {dotted key of imu_sensor: value}
