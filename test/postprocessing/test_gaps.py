@@ -1,4 +1,4 @@
-"""Gaps, bad stamps and bad samples of a record: what is left of the solution, and what is said."""
+"""Gaps, bad stamps and bad samples of a record: remaining solution and messages."""
 
 from dataclasses import replace
 import math
@@ -22,14 +22,14 @@ SECOND = 1_000_000_000
 
 
 def with_gap(first_s=8.0, length_s=0.5):
-    """Return 20 s of record with a gap."""
+    """Return a record of 20 s with a gap."""
     t_ns = stamps(100.0)
     start = t_ns[0] + round(first_s * SECOND)
     return t_ns[(t_ns <= start) | (t_ns >= start + round(length_s * SECOND))]
 
 
 def test_a_gap_ends_the_solution():
-    """on_gap stop: the last state is that before the gap, and a note says so."""
+    """With on_gap stop the last state is the one before the gap, and a note says so."""
     t_ns = with_gap()
     got = run(*recorded(t_ns))
     assert got.states[-1].t_ns[-1] == 9 * SECOND and len(got.states) == 1
@@ -38,7 +38,7 @@ def test_a_gap_ends_the_solution():
 
 
 def test_a_gap_restarts_from_the_reference():
-    """on_gap restart: a second segment, exact where it begins."""
+    """With on_gap restart there is a second segment, exact at its start."""
     got = run(*recorded(with_gap()), on_gap='restart')
     assert [s.t_ns[0] for s in got.states] == [SECOND, 9_500_000_000]
     errors = got.comparisons[0]
@@ -60,7 +60,7 @@ def test_a_gap_without_a_restart_says_why():
 
 
 def test_a_gap_restarts_from_a_standstill_behind_it():
-    """A fix and no attitude: the IMU aligns itself again behind the gap, by gyrocompassing."""
+    """Without a reference attitude the IMU aligns again after the gap, by gyrocompassing."""
     lat = 0.7
     t_ns = stamps(50.0, 60.0, 0.0)
     t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
@@ -74,7 +74,7 @@ def test_a_gap_restarts_from_a_standstill_behind_it():
               alignment__longest_s=8.0, alignment__gyro_bias_sigma_deg_h=0.0)
     assert [int(s.t_ns[0]) // SECOND for s in got.states] == [7, 32]
     assert sum('heading by gyrocompassing' in note for note in got.notes) == 2
-    # east is forward: q_nb is the identity
+    # The nose points east: q_nb is the identity.
     assert np.abs(got.states[1].q_nb[-1] - [0.0, 0.0, 0.0, 1.0]).max() < 1e-11
 
 
@@ -85,10 +85,10 @@ def _degrees(q_nb):
 
 def test_a_gap_is_bridged_by_straight_lines(capsys):
     """
-    on_gap bridge: the error is that of lines across the gap, and it is said.
+    With on_gap bridge the error is that of linear interpolation, and a note says so.
 
-    Bound on the attitude: the largest second derivative of the rates (their sinusoids at most
-    0.7 Hz) times T^3 / 12, T = 0.05 s, by the error of the trapezoid.
+    Bound on the attitude: the largest second derivative of the rates (their sinusoids have at most
+    0.7 Hz) times T^3 / 12, T = 0.05 s, which is the error of the trapezoid rule.
     """
     t_ns = with_gap(length_s=0.05)
     imu, reference = recorded(t_ns)
@@ -105,7 +105,7 @@ def test_a_gap_is_bridged_by_straight_lines(capsys):
 
 
 def test_a_gap_of_decades_is_not_bridged():
-    """One stamp of another epoch at the end would take millions of steps."""
+    """A single stamp of another epoch at the end is not bridged by millions of steps."""
     t_ns = np.append(stamps(100.0), 1_700_000_000 * SECOND)
     imu, reference = recorded(t_ns[:-1])
     rows = np.append(np.arange(len(imu)), len(imu) - 1)
@@ -118,7 +118,7 @@ def test_a_gap_of_decades_is_not_bridged():
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.integers(0, 30), min_size=2, max_size=25))
 def test_as_few_stamps_as_possible_are_dropped(values):
-    """Against the quadratic textbook method; what is left rises."""
+    """Compared with the quadratic textbook method; the remaining stamps increase."""
     t_ns = np.array(values, dtype=np.int64)
     longest = [1] * len(values)
     for k in range(len(values)):
@@ -137,12 +137,12 @@ def test_as_few_stamps_as_possible_are_dropped(values):
 
 
 def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
-    """The solution is the one of the record without them."""
+    """The solution is that of the record without the bad samples."""
     imu, reference = recorded(stamps(100.0))
     clean = np.delete(np.arange(len(imu)), [500, 900])
     omega, t_ns = imu.omega.copy(), imu.t_ns.copy()
     omega[500, 1] = np.nan
-    # one stamp far ahead must cost itself alone
+    # One stamp far ahead must cost only its own sample.
     t_ns[900] += 3600 * SECOND
     got = run(replace(imu, omega=omega, t_ns=t_ns), reference)
     expected = run(imu[clean], reference)
@@ -152,7 +152,7 @@ def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
 
 
 def test_a_solution_that_runs_away_is_cut_and_said():
-    """Degrees per second for radians: no NaN, no traceback."""
+    """With degrees per second read as radians the solution ends with a note, without NaN."""
     imu, reference = recorded(stamps(100.0, 300.0))
     got = run(replace(imu, omega=imu.omega * 57.3, f=imu.f * 9.8 * 1000.0), reference)
     assert any('runs away' in n for n in got.notes)

@@ -1,4 +1,4 @@
-"""The strapdown over samples of any rate: orders of truncation, gaps, faults of the record."""
+"""The strapdown with samples of any rate: truncation orders, gaps, faults of the record."""
 
 from dataclasses import replace
 import math
@@ -33,10 +33,10 @@ SECOND = 1_000_000_000
 
 def test_instant_samples_converge_with_the_square_of_the_step(capsys):
     """
-    The trapezoid is of second order: half the step, a quarter of the error.
+    The trapezoid rule is of second order: half the step, a quarter of the error.
 
-    The order is estimated from 50, 100, 200 and 400 Hz over 20 s of six sinusoids; it must be 2
-    within 0.15, for the terms of fourth order at the coarsest step.
+    The order is estimated from 50, 100, 200 and 400 Hz over 20 s of six sinusoids; it must be 2 to
+    within 0.15, because of the fourth-order terms at the largest step.
     """
     position, turn = np.array([end_errors(run(*recorded(stamps(r))))
                                for r in (50.0, 100.0, 200.0, 400.0)]).T
@@ -53,10 +53,10 @@ def test_instant_samples_converge_with_the_square_of_the_step(capsys):
 @given(seed=st.integers(0, 10000), lost=st.floats(0.0, 0.3))
 def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
     """
-    Stamps that jitter and samples that are lost, each at its own true value.
+    With jitter and drop-outs, each sample with its true value, the error is that of its steps.
 
-    The error of a trapezoid over steps dt_k is bounded by C sum(dt_k^3); C is taken from the
-    uniform 100 Hz run, times ten because signed errors cancel there and need not here.
+    The error of the trapezoid rule over steps dt_k is bounded by C sum(dt_k^3); C is taken from
+    the uniform 100 Hz run, times ten, because there signed errors cancel.
     """
     t_ns = stamps(100.0)
     uniform, _ = end_errors(run(*recorded(t_ns)))
@@ -70,10 +70,10 @@ def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
 
 def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_instants():
     """
-    Of w = a + b t, f = c + d t the increments of both kinds are the same cross products.
+    For w = a + b t, f = c + d t the increments from means equal those from instant values.
 
-    The intervals before and now are unequal, so that the scaling of the earlier mean is tested.
-    Both are exact to third order in dt; they differ by rounding.
+    This interval and the previous one are unequal, so that the scaling of the earlier mean is
+    tested. Both are exact to third order in dt and differ by rounding.
     """
     a, b, c, d = np.random.default_rng(4).standard_normal((4, 3))
     before, now = 0.013, 0.007
@@ -86,16 +86,17 @@ def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_inst
     ends = uneven_increments('instant', (tuple(a.tolist()), tuple(c.tolist())),
                              (mean(a, b, now, now), mean(c, d, now, now)), now, before)
     assert np.abs(np.array(means) - np.array(ends)).max() < 1e-16
-    # and the coning of the interval in closed form: b x a dt^3 / 12 with the sign of a x b
+    # The coning of the interval in closed form: b x a dt^3 / 12 with the sign of a x b.
     alpha = np.array(mean(a, b, 0.0, now)) * now
     assert np.abs(np.array(ends[0]) - alpha - np.cross(a, b) * now ** 3 / 12.0).max() < 1e-16
 
 
 def test_the_loop_closes_on_the_simulated_imu(capsys):
     """
-    imu_sensor's own output, both modes, navigates back to the truth.
+    The output of imu_sensor, in both modes, is navigated back to the truth.
 
-    Bound: the error of the offline strapdown on the same samples, times 1.01 for another start.
+    Bound: the error of the offline strapdown on the same samples, times 1.01 because the start
+    differs.
     """
     shown = []
     for mode in ('rotation_vector', 'integrated'):
@@ -118,17 +119,17 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
 
 def test_the_damped_channel_follows_the_height_of_the_reference():
     """
-    An accelerometer bias along up, in a record at rest: free g-long fall, damped offset.
+    With an upward accelerometer bias at rest the free channel diverges, the damped one does not.
 
-    The third-order loop ends with no offset: its integrator takes the bias.  Free: b t^2 / 2
-    within the gradient of gravity, 1 + (2 g / R) t^2 / 12.
+    The third-order loop has no steady offset: its integrator estimates the bias. Free: b t^2 / 2
+    times the effect of the gravity gradient, 1 + (2 g / R) t^2 / 12.
     """
     lat, b = 0.7, 0.01
     g = ellipsoid.gravity(math.sin(lat), 0.0)
     t_ns = stamps(20.0, 300.0, 0.0)
     n = len(t_ns)
     rate = (0.0, ellipsoid.ROTATION_RATE * math.cos(lat), ellipsoid.ROTATION_RATE * math.sin(lat))
-    # heading 90 deg in compass terms is q = identity in ENU
+    # Compass heading 90 deg is the identity quaternion in ENU.
     imu = RecordedImu(t_ns, np.tile(rate, (n, 1)), np.tile([0.0, 0.0, g + b], (n, 1)),
                       np.full((n, 4), np.nan))
     reference = Reference('truth', SampledTrack(t_ns, np.tile([lat, 0.0, 0.0], (n, 1))),
@@ -138,13 +139,13 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
     damped = run(imu, reference, vertical__channel='damped').comparisons[0].position.values[:, 2]
     growth = 1.0 + 2.0 * g / ellipsoid.SEMI_MAJOR * 300.0 ** 2 / 12.0
     assert abs(free / (0.5 * b * 300.0 ** 2) - growth) < 1e-3
-    # a triple pole at -1/20 s: after 300 s = 15 time constants, e^-15 (15^2 / 2) b 20^2
+    # Triple pole at -1/20 s: after 300 s = 15 time constants, e^-15 (15^2 / 2) b 20^2.
     assert abs(damped[-1]) < 4.0 * math.exp(-15.0) * 112.5 * b * 400.0
     assert np.abs(damped).max() < b * 400.0
 
 
 def test_the_rows_are_the_errors_at_their_instants():
-    """10 s and the end of a run of 20 s, and no row beyond."""
+    """Rows for 10 s and for the end of a run of 20 s; none beyond."""
     imu, reference = recorded(stamps(100.0))
     got = run(imu, reference)
     table = error_rows(got.comparisons[0], int(imu.t_ns[0]), int(imu.t_ns[-1]))
@@ -167,13 +168,13 @@ def test_heading_error_is_clockwise():
 
 
 def test_the_sections_name_the_settings():
-    """One section, and the defaults build."""
+    """All parameters are in one section, and the defaults are valid."""
     assert build(NAVIGATE['navigate'], {}) == NavigateSettings()
     assert MotionGeneratorSettings().earth == NavigateSettings().earth
 
 
 def test_free_navigation_is_the_kernel_of_the_strapdown():
-    """One step is mechanization.advance on the increments, bit by bit."""
+    """One step has the bits of mechanization.advance with the increments."""
     imu, _ = recorded(stamps(100.0, 0.01))
     truth = MOTION.at(imu.t_ns)
     state = (float(truth.lat[0]), float(truth.lon[0]), float(truth.height[0]),

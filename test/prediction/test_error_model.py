@@ -1,4 +1,4 @@
-"""The loop of the error model: equal bits in single steps, in plain Python and compiled."""
+"""The loop of the error model has the same bits in single steps, plain and compiled."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def coefficients():
 
 
 def through(run, cuts=()):
-    """Return the states (n, 7) of a run of the loop in blocks."""
+    """Return the states (n, 7) of the loop run in blocks."""
     columns, states = coefficients(), np.empty((COUNT, 7))
     state, ends = START, [*cuts, COUNT]
     for first, stop in zip([0, *cuts], ends):
@@ -30,7 +30,7 @@ def through(run, cuts=()):
 
 @pytest.fixture
 def by_steps():
-    """Return the states of single steps."""
+    """Return the states from single steps."""
     state, states = START, []
     for row in zip(*(c.tolist() for c in coefficients())):
         omega_in, f_n, force, turn, pull = map(tuple, row)
@@ -41,14 +41,14 @@ def by_steps():
 
 @pytest.mark.parametrize('cuts', [(), (1, 2, 77, 400)])
 def test_a_plain_loop_is_its_steps(by_steps, cuts, monkeypatch):
-    """However the run is cut."""
+    """The plain loop has the bits of single steps, however the run is cut."""
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', float('inf'))
     np.testing.assert_array_equal(through(compilation.run, cuts), by_steps)
 
 
 @pytest.mark.parametrize('cuts', [(), (1, 2, 77, 400)])
 def test_a_compiled_loop_is_its_steps(by_steps, cuts, monkeypatch):
-    """However the run is cut."""
+    """The compiled loop has the bits of single steps, however the run is cut."""
     pytest.importorskip('numba', reason='Numba is not installed')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', -1)
     assert compilation.compiled(error_model.advance_through) is not None

@@ -1,4 +1,4 @@
-"""Delays of milliseconds, and the motion before the first sample, predicted and streamed."""
+"""Delays of milliseconds, and the motion before the first sample: predicted and simulated."""
 
 import numpy as np
 import pytest
@@ -33,14 +33,14 @@ def largest(errors):
 def test_delays_of_milliseconds_from_the_motion_itself(flown):
     """x 5, y 25, z 0 ms on motion 2 detuned by 0.1 rad/s, 600 s: 5869.9 / 85141.9 m."""
     north, east = largest(flown[0]['motion', 'analytic'])
-    # 2e-5: the mechanization is another one than that of which the figures are.
+    # 2e-5: the published figures were computed with a different mechanization.
     assert (north, east) == (pytest.approx(5869.9, rel=2e-5), pytest.approx(85141.9, rel=2e-5))
 
 
 @pytest.mark.xdist_group('long delays')
 @pytest.mark.parametrize('history', ['analytic', 'frozen'])
 def test_the_stream_continues_the_motion_backwards(flown, history):
-    """The history before the first sample: 4 % of one axis by a constant rate; 1e-3 is allowed."""
+    """The history before the first sample matters: 4 % of an axis if constant; 1e-3 is allowed."""
     runs = flown[0]
     streamed, itself = (largest(runs[source, history]) for source in ('stream', 'motion'))
     off = np.abs(np.subtract(streamed, itself)) / itself
@@ -51,7 +51,7 @@ def test_the_stream_continues_the_motion_backwards(flown, history):
 @pytest.mark.xdist_group('long delays')
 @pytest.mark.parametrize('history', ['analytic', 'frozen'])
 def test_the_prediction_is_within_its_bound(flown, history):
-    """What it leaves out, of second order, is found and is less than what is stated."""
+    """The neglected second-order terms are visible and smaller than the stated bound."""
     errors, predicted = flown[0]['motion', history], flown[1][history]
     n = len(predicted.t_s)
     off = np.abs(errors.position[::10][:n] - predicted.position).max(axis=0)
@@ -63,13 +63,13 @@ def test_the_prediction_is_within_its_bound(flown, history):
     assert relative < 4.4e-3 < bound
     assert off.max() < predicted.position_bound
     assert drift < predicted.drift_bound
-    # The bound is the order of what is left out, not of the error itself.
+    # The bound has the order of the neglected terms, not of the error itself.
     assert bound < 0.1
 
 
 @pytest.mark.parametrize('source', ['motion', 'stream'])
 def test_a_frozen_history_is_predicted(source):
-    """1, 1, 1 us, 600 s: 0.0023 / 0.0001 m, where an analytic history gives 0.018 / 0.73 m."""
+    """Delays 1, 1, 1 us, 600 s: 0.0023 / 0.0001 m; an analytic history gives 0.018 / 0.73 m."""
     values = {**MOTION_2, 'gyro.delay_us.x': 1.0, 'gyro.delay_us.z': 1.0, 'duration_s': 600.0,
               'source': source}
     frozen = settings({**values, 'history': 'frozen'})
@@ -88,9 +88,9 @@ def test_histories_of_every_output_are_predicted(output, model, history):
     """
     5 ms on all channels, and 7 ms on one accelerometer: within the bound of the prediction.
 
-    A history that stood still ends within an interval of its grid, 12.5 ms, in which the turns of
-    both delays at 1.1 rad/s are taken to grow evenly: at most g times 13 mrad times 12.5 ms, a
-    velocity that adds up over a minute.
+    A frozen history ends within an interval of the time grid, 12.5 ms, in which the prediction
+    assumes both delayed rotations, at 1.1 rad/s, to grow evenly. The error is at most g times 13
+    mrad times 12.5 ms, a velocity that adds up over a minute.
     """
     values = {**MOTION_2, 'gyro.delay_us.x': 5e3, 'gyro.delay_us.y': 5e3, 'gyro.delay_us.z': 5e3,
               'duration_s': 60.0, 'output': output, 'input': output, 'gyro.model': model,
@@ -107,7 +107,7 @@ def test_histories_of_every_output_are_predicted(output, model, history):
 
 
 def test_long_turns_are_the_exact_response_of_the_channel():
-    """The mean of R (w x D) over a period is the Fourier sum of exp(-j w tau), to 1e-9 of it."""
+    """The mean of R (w x D) over a period is the Fourier sum of exp(-j w tau), to 1e-6."""
     chosen = settings({**LONG, 'earth.rotation': False})
     generator = chosen.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -117,12 +117,12 @@ def test_long_turns_are_the_exact_response_of_the_channel():
     from ins_sim.core.prediction.drift import mean_drift
     time = mean_drift(motion, turns.at, False, 0.0, None)
     fourier = channel_drift(motion, [delay_response(1e-9 * t) for t in tau_ns])
-    # Instants are whole nanoseconds of milliseconds.
+    # Instants are rounded to nanoseconds, which is 1e-6 of a delay of milliseconds.
     assert np.linalg.norm(fourier - time) <= 1e-6 * np.linalg.norm(time)
 
 
 def test_predict_says_what_it_covers(capsys):
-    """Its bound always; that instrument errors are not in it where they are on."""
+    """It always prints its bound, and that instrument errors are not included if they are on."""
     words = ['predict', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=60.0']
     assert main(words) == 0
     said = ' '.join(capsys.readouterr().out.split())
@@ -137,7 +137,7 @@ def test_predict_says_what_it_covers(capsys):
 
 
 def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsys, monkeypatch):
-    """With errors on, table and figure leave the prediction out; beside the twin it fits."""
+    """With errors on, table and figure omit the prediction, except next to error minus twin."""
     from ins_sim.report.runs import page
     drawn = []
     draw = page.error_chart
@@ -162,7 +162,7 @@ def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsy
     ((), 1), (('source:=motion',), 0), (('history:=frozen',), 0), (('gyro.delay_us.y:=0.0',), 1),
     (('gyro.delay_us.x:=5e4',), 0)])
 def test_a_delay_beyond_what_a_stream_is_continued_by_is_said_once(more, count, tmp_path, capsys):
-    """60 ms, of the 50 that a stream with its analytic history is continued backwards."""
+    """60 ms exceed the 50 ms by which a stream with analytic history is continued backwards."""
     words = ['gyro.delay_us.x:=6e4', 'duration_s:=1.0', *more]
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-o', str(tmp_path / 'run'),
                  *(word for a in words for word in ('-p', a))]) == 0

@@ -1,4 +1,4 @@
-"""The prediction against the measurement, and against itself by another road."""
+"""The prediction against simulation, and against an independent computation."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ RANDOM = [5, 17, 42]
 
 
 def harmonics(seed):
-    """Return a random multi-harmonic motion of 10 s with random delays; and its top rate."""
+    """Return a random multi-harmonic motion of 10 s with random delays, and its highest rate."""
     rng = np.random.default_rng(seed)
     values = {'motion.kind': 'harmonics', 'motion.harmonics.period_s': 10.0,
               'motion.psi_deg': float(rng.uniform(-180, 180)),
@@ -27,7 +27,7 @@ def harmonics(seed):
 
 
 def cases():
-    """Return name, settings and the rate w of each motion the drift is measured for."""
+    """Return name, settings and rate w of each motion whose drift is measured."""
     yield 'motion 1', MOTION_1, 2 * np.pi
     yield 'motion 2', MOTION_2, 1.0
     for seed in RANDOM:
@@ -42,7 +42,7 @@ DRIFTS = [pytest.param(*case, marks=pytest.mark.slow) if case[0] in ('random 17'
 
 @pytest.mark.parametrize('name, values, w', DRIFTS, ids=NAMES)
 def test_measured_drift_is_the_predicted_one(name, values, w, figures):
-    """The slope of the inertial attitude error, within 1e-4 + (w dt)^2 / 4 (section 5)."""
+    """The slope of the inertial attitude error agrees within 1e-4 + (w dt)^2 / 4 (section 5)."""
     s = settings(values, duration_s=1000.0)
     measured = run_offline(s, twin=False).errors.drift[-1]
     predicted = prediction_of(s).drift
@@ -56,7 +56,7 @@ def test_measured_drift_is_the_predicted_one(name, values, w, figures):
 
 @pytest.mark.parametrize('name, values, w', CASES, ids=NAMES)
 def test_fourier_sum_equals_time_mean(name, values, w):
-    """Equal to first order in the delay; at nanoseconds the second, k w tau, is below 1e-7."""
+    """Equal to first order in the delay; for nanoseconds the second, k w tau, is below 1e-7."""
     s = settings(values)
     generator, delay = s.motion_generator, s.imu_sensor.gyro.delay_us
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -70,7 +70,7 @@ def test_fourier_sum_equals_time_mean(name, values, w):
     pytest.param(MOTION_1, marks=pytest.mark.slow), MOTION_2, {**FLIGHT, 'motion.kind': 'cruise'}],
     ids=['motion 1', 'motion 2', 'cruise'])
 def test_linear_model_predicts_the_position_error(values):
-    """Within 1 % of the largest error, at every instant of 20 minutes."""
+    """The prediction is within 1 % of the largest error at every instant of 20 minutes."""
     s = settings(values, duration_s=1200.0, output_every=10)
     result = run_offline(s)
     position = result.errors.position - result.twin.position
@@ -82,7 +82,7 @@ def test_linear_model_predicts_the_position_error(values):
 
 
 def test_linear_model_predicts_initial_errors():
-    """Attitude, velocity and position errors at the start, without delays, within 1 %."""
+    """Initial attitude, velocity and position errors are predicted within 1 %, without delays."""
     s = settings({'motion.kind': 'static', 'rate_hz': 20.0,
                   'initial.attitude_error_deg': [0.001, -0.002, 0.01],
                   'initial.velocity_error_m_s': [0.05, -0.02, 0.0],
@@ -110,7 +110,7 @@ def test_both_resonances_of_motion_2_by_simulation():
         assert {n for n, rate, d in found if rate == 1.0} == {name}
         measured = run_offline(s, twin=False).errors.drift[-1]
         drifts[name] = np.linalg.norm(measured)
-        # the formula neglects the rotation of the Earth: Omega / gamma' of the larger resonance
+        # The formula neglects the rotation of the Earth: Omega / gamma' of the larger resonance.
         bound = 7.3e-5 / 0.5 * max(map(np.linalg.norm, formula.values()))
         assert np.linalg.norm(measured - formula[name]) <= bound
         print(f'\n{name}: {measured * DEG_PER_HOUR} deg/h, formula '
