@@ -1,4 +1,4 @@
-"""Runs of the aided chain side by side are the single runs; their NEES is that of the filter."""
+"""Aided runs computed side by side equal single runs; their NEES is that of the filter."""
 
 from ins_sim.core.aiding.consistency import BLOCKS, FilterNote, nees, TrueValues
 from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
@@ -20,7 +20,7 @@ FLIGHT = ('duration_s:=20.0', *aided_runs.FLIGHT[1:])
 
 
 def flights(*assignments, runs=(0, 3), wanted_ns=WANTED_NS):
-    """Return the settings and the AidedFlights of runs of a short flight."""
+    """Return the settings and the AidedFlights for runs of a short flight."""
     settings = aided_runs.settings(*assignments, flight=FLIGHT)
     motion = read_motion(settings.simulation.motion_generator)
     return settings, simulate_aided_runs(settings, motion, runs, wanted_ns)
@@ -34,7 +34,7 @@ def flights(*assignments, runs=(0, 3), wanted_ns=WANTED_NS):
     ('rate_hz:=50.0', 'velocity_meter:attack_angle:=none')], ids=[
         'plain', 'losses', 'seldom', 'stream', 'late', 'latency', 'slow'])
 def test_a_run_is_the_single_run_to_the_bit(assignments):
-    """Solution, sigmas and innovations at the instants, as of simulate --aided with run=k."""
+    """Solution, sigmas and innovations are those of ``simulate --aided`` with run=k."""
     settings, found = flights(*assignments)
     for flight in found:
         _, _, single = aided_runs.flown(settings.with_run(flight.run))
@@ -49,7 +49,7 @@ def test_a_run_is_the_single_run_to_the_bit(assignments):
 
 
 def test_the_instants_are_those_wanted():
-    """Each at the first sample from then on; one whose sample was lost is left out."""
+    """Each output is the first sample from its instant on; lost samples have no output."""
     wanted_ns = np.array([0, 3, 13, 15]) * SECOND + 1_000_000
     wanted_ns[0] = 0
     settings, found = flights(wanted_ns=wanted_ns)
@@ -62,10 +62,10 @@ def test_the_instants_are_those_wanted():
 
 
 def test_nees_is_that_of_the_covariance():
-    """Of each block by NumPy; what is held or given exactly is no state of it."""
+    """Every block agrees with NumPy; states held or given exactly are not counted."""
     settings, (flight, _) = flights()
     squares, freedoms = flight.nees()
-    # position and velocity East and North, attitude, two biases of three, and the mounting
+    # East and north of position and velocity, attitude, two biases of three, and the mounting.
     assert freedoms[1:].tolist() == [[2, 2, 3, 14]] * 4 and np.isnan(squares[0]).all()
     note = flight.result.notes[-1]
     rows = [k for k, name in enumerate(note.states) if name not in note.given]
@@ -89,21 +89,21 @@ def test_nees_is_that_of_the_covariance():
 
 
 def test_the_bias_of_the_truth_is_what_the_readings_show():
-    """The mean error of the readings of a level instrument at rest, white noise averaged."""
+    """The biases equal the mean error of a level instrument at rest, with averaged white noise."""
     settings = aided_runs.settings(flight=FLIGHT).simulation.imu_sensor
     errors, count = with_errors(settings), 20000
     level = np.tile((0.0, 0.0, 9.80665), (count, 1))
     imu = ImuSamples(np.arange(count) * 10_000_000, np.tile(STILL, (count, 1)), level)
     readings = errors.advance(imu)
     gyro, accelerometer = errors.biases(0)
-    # five sigma of the mean of the white noise
+    # Five sigma of the mean of the white noise.
     for found, bias, density in ((readings.omega, gyro, np.radians(0.01) / 60.0),
                                  (readings.f - level, accelerometer, 0.0177 / 60.0)):
         assert np.abs(found.mean(axis=0) - bias).max() < 5.0 * density / np.sqrt(count * 0.01)
 
 
 def test_without_a_covariance_there_is_no_nees():
-    """The note of a filter with fixed gains has none, and NEES has no degree of freedom."""
+    """A filter with fixed gains has no covariance, and its NEES no degree of freedom."""
     note = FilterNote((), (), None, ((0.0,) * 3,) * 2, (0.0,) * 3)
     squares, freedoms = nees(note, ((1.0,) * 3,) * 3, TrueValues(None, None, (0.0,) * 3))
     assert np.isnan(squares).all() and freedoms == [0] * len(BLOCKS)
@@ -113,7 +113,7 @@ def test_without_a_covariance_there_is_no_nees():
 
 
 def test_a_run_that_is_refused_does_not_count():
-    """It is named with its reason, and the others are as without it."""
+    """A rejected run is reported with its reason, and the others are unchanged."""
     settings, found = flights(runs=(0, 1, 2))
     whole = result_of(settings, range(3), WANTED_NS, found)
     found[1].refused = 'why'
@@ -127,7 +127,7 @@ def test_a_run_that_is_refused_does_not_count():
 
 
 def test_a_solution_that_diverges_is_said(monkeypatch):
-    """A covariance that is none makes the navigator start anew; the run does not count."""
+    """After an invalid covariance the navigator starts anew; the run is not counted."""
     settings, (flight,) = flights(runs=(0,))
     assert why_not(flight) == ''
     monkeypatch.setattr(ErrorStateFilter, 'healthy', False)
@@ -138,7 +138,7 @@ def test_a_solution_that_diverges_is_said(monkeypatch):
 
 
 def test_sums_are_chi_square():
-    """The sum over runs has the sum of their degrees of freedom; groups merge to the same."""
+    """The sum over runs has the summed degrees of freedom, however groups are merged."""
     rng = np.random.default_rng(5)
     freedoms = np.tile(np.array([2, 3, 0]), (4, 50, 1))
     squares = rng.chisquare(np.maximum(freedoms, 1))
@@ -150,14 +150,14 @@ def test_sums_are_chi_square():
                          for part in (slice(0, 20), slice(20, 50))))
     np.testing.assert_array_equal(both.count, whole.count)
     np.testing.assert_allclose(both.total, whole.total, rtol=1e-14)
-    # 1e-6 of all such sums lie outside
+    # 1e-6 of all such sums are outside.
     low, high = chi2.ppf([5e-7, 1.0 - 5e-7], 150)
     assert (low < whole.total[:, 1]).all() and (whole.total[:, 1] < high).all()
     assert np.isnan(whole.mean[:, 2]).all()
 
 
 def test_fixes_of_other_instants_merge():
-    """By their stamps, whichever runs have them."""
+    """Fixes are merged by their stamps, in whichever runs they occur."""
     def fixes(*stamps):
         ones = np.ones(len(stamps), dtype=np.int64)
         return FixSums(np.array(stamps), ChiSquareSums(ones, 1.0 * ones, 2 * ones), ones, 0 * ones)

@@ -1,4 +1,4 @@
-"""Run k of an ensemble is the single run k, to the bit, however the work is shared out."""
+"""Run k of an ensemble has the bits of the single run k, however the work is divided."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ def settings_of(*assignments, names=LATE_MOTION_2, seconds=12.0):
 
 
 def drawn_initial(settings):
-    """Return a function of the number of a run that returns other initial errors for each."""
+    """Return a function that returns different initial errors for each run number."""
     def initial(run):
         a, b, c = np.random.default_rng(run).normal(size=(3, 3))
         return replace(settings.strapdown.initial, attitude_error_deg=tuple((0.1 * a).tolist()),
@@ -53,7 +53,7 @@ def errors_of(result):
      ('vertical.channel:=damped', 'input:=integrated', 'output:=integrated')),
     ((*LATE_MOTION_2, *NOISY), LAGGED)])
 def test_a_lane_is_the_single_run(names, assignments):
-    """Solution and errors of a run are those of simulate with that run, whatever the channel."""
+    """Solution and errors are those of simulate with that run, for any vertical channel."""
     settings = settings_of(*assignments, names=names)
     motion, initial = read_motion(settings.motion_generator), drawn_initial(settings)
     found = many_runs.simulate_runs(settings, motion, range(5, 22), [2.0, 7.003, 12.0],
@@ -82,7 +82,7 @@ def same(a, b):
 
 @pytest.mark.parametrize('count', [0, 1, 15, 16, 17, 1000])
 def test_any_number_of_runs_and_of_threads(count):
-    """One and two threads give the same bits; a run does not depend on how many there are."""
+    """One and two threads give the same bits; a run does not depend on their number."""
     settings = settings_of('rate_hz:=20.0', names=(*LATE_MOTION_2, *NOISY), seconds=3.0)
     motion = read_motion(settings.motion_generator)
     one, two = (many_runs.simulate_runs(settings, motion, range(count), [1.0, 3.0],
@@ -95,7 +95,7 @@ def test_any_number_of_runs_and_of_threads(count):
 
 
 def test_plain_python_gives_the_same_bits():
-    """Loops in plain Python and compiled ones are equal."""
+    """Plain and compiled loops give equal bits."""
     settings = settings_of(names=(*LATE_MOTION_2, *NOISY), seconds=7.0)
     motion = read_motion(settings.motion_generator)
     usual = many_runs.simulate_runs(settings, motion, range(3), [7.0])
@@ -104,7 +104,7 @@ def test_plain_python_gives_the_same_bits():
 
 
 def test_instants_and_their_statistics():
-    """The statistics are those of the errors of the single runs at the instants named."""
+    """The statistics are those of the errors of single runs at the given instants."""
     settings = settings_of('initial.after_s:=0.5', names=(*LATE_MOTION_2, *NOISY), seconds=4.0)
     motion, runs = read_motion(settings.motion_generator), range(20)
     found = many_runs.simulate_runs(settings, motion, runs, [4.0, 0.1, 1.995, 1.995])
@@ -120,7 +120,7 @@ def test_instants_and_their_statistics():
 
 
 def test_cutting_and_a_lost_lane_change_no_other():
-    """Samples in pieces of any length give the same states, beside a run that has diverged too."""
+    """Pieces of any length give the same states, also next to a run that has diverged."""
     settings = settings_of('vertical.channel:=free', names=(*LATE_MOTION_2, *NOISY))
     motion = read_motion(settings.motion_generator)
     imu = next(ideal_blocks(settings, motion))

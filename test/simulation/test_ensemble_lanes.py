@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 pytestmark = pytest.mark.skipif(compilation.numba() is None, reason='Numba is not installed')
-# x86-64 and aarch64
+# Patterns for x86-64 and aarch64.
 PACKED = r'\bv?(?:mul|add|sub)pd\b|\bf(?:mul|add|sub)\s+v\d+\.2d'
 SINGLE = r'\bv?(?:mul|add|sub)sd\b|\bf(?:mul|add|sub)\s+d\d+,'
 
 
 @pytest.mark.parametrize('gravity', GRAVITY_TERMS.values(), ids=GRAVITY_TERMS)
 def test_small_steps_are_packed(gravity):
-    """Nearly all products and sums of a small step take several runs at once."""
+    """Nearly all products and sums of a small step process several runs at once."""
     jit = compilation.numba()
     steps = compilation.compiled(lanes.small_steps)
     alone = jit.njit(steps.py_func, error_model='numpy', nogil=True)

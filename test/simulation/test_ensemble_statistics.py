@@ -1,4 +1,4 @@
-"""Running moments and percentiles are those of all samples at once."""
+"""Running moments and percentiles equal those of all samples at once."""
 
 from ins_sim.core.ensemble.statistics import ErrorStatistics
 import numpy as np
@@ -15,7 +15,7 @@ def streamed(samples, cuts):
 
 @pytest.mark.parametrize('cuts', [[], [1], [16, 32, 33, 90], [0, 99]])
 def test_moments_and_percentiles(cuts):
-    """Means and covariances to rounding, percentiles to the width of a bin, for any groups."""
+    """Means and covariances agree to rounding, percentiles to a bin width, for any groups."""
     rng = np.random.default_rng(7)
     samples = 1e3 + rng.normal(size=(2, 100, 3)) * [1.0, 50.0, 2000.0]
     found = streamed(samples, cuts)
@@ -25,12 +25,12 @@ def test_moments_and_percentiles(cuts):
         np.testing.assert_allclose(found.covariance[k], np.cov(samples[k].T), rtol=1e-11)
     for percent in (5.0, 50.0, 95.0):
         exact = np.percentile(samples, percent, axis=1, method='inverted_cdf')
-        # bins are a part in 32 of a power of two wide
+        # The width of a bin is 1/32 of a power of two.
         np.testing.assert_allclose(found.percentile(percent), exact, rtol=1.0 / 32.0)
 
 
 def test_what_is_not_finite_is_left_out():
-    """A run with a NaN or an infinity does not count; nothing is warned of."""
+    """A run with NaN or infinity is not counted, without a warning."""
     samples = np.random.default_rng(8).normal(size=(2, 9, 3))
     broken = np.concatenate([samples, samples[:, :2]], axis=1)
     broken[:, 9, 1], broken[:, 10, 0] = np.nan, np.inf
@@ -41,7 +41,7 @@ def test_what_is_not_finite_is_left_out():
 
 
 def test_too_few_runs():
-    """Without runs there are no percentiles, and of one run there is no covariance."""
+    """Without runs there are no percentiles, and with one run there is no covariance."""
     found = ErrorStatistics(1, 2)
     assert np.isnan(found.percentile(50.0)).all()
     found.add(0, np.ones((1, 1, 2)))

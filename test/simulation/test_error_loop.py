@@ -1,4 +1,4 @@
-"""The reduced flights: the published table, and the linear theory for small angles."""
+"""The reduced flights against a published table, and linear theory for small angles."""
 
 import math
 
@@ -14,7 +14,7 @@ DEG = math.pi / 180.0
 
 
 def many(aiding, gains, k_z, duration_s):
-    """Return half the range of beta of some cases, deg."""
+    """Return half the range of beta for several cases, deg."""
     cases = ReducedCases(np.array(gains), np.array(k_z), np.full(len(gains), 100.0))
     flights = fly_reduced(loop(), aiding, cases, duration_s, MOST)
     return np.array([half_range(beta) for beta in flights.beta.T]) / DEG
@@ -22,7 +22,7 @@ def many(aiding, gains, k_z, duration_s):
 
 @pytest.mark.parametrize('cycles', [10, 100, 1000])
 def test_without_errors_of_the_meter_all_is_quiet(cycles):
-    """Sliding conventional with K_v up to 50 1/s, and paper_corrected: below 0.05 deg."""
+    """For sliding conventional with K_v up to 50 1/s, and paper_corrected, beta < 0.05 deg."""
     duration_s = 100.0 if cycles == 10 else 300.0
     slid = many(sliding(cycles, 1.0, 1), [0.001, 0.01, 0.05, 0.5], [0.0] * 4, duration_s)
     corrected = many(paper(cycles, 1.0), [0.1, 0.344, 1.0, 1.9], [0.0] * 4, duration_s)
@@ -35,7 +35,7 @@ def test_without_errors_of_the_meter_all_is_quiet(cycles):
     (10, 1.0, 0.15, 8.0, 0.557, 10.0), (100, 5.0, 0.15, 8.0, None, None),
     (100, 1.0, 0.30, 8.0, None, None)])
 def test_published_oscillations(cycles, k_v, k_z, beta, omega, z):
-    """Within 3 %, the command running linearly where it was held in the publication."""
+    """Oscillations within 3 %; the command is linear here and was held in the publication."""
     flight = flown(sliding(cycles, k_v), k_z)
     found = half_range(flight.beta[:, 0]) / DEG
     assert found == pytest.approx(beta, rel=0.03)
@@ -46,14 +46,14 @@ def test_published_oscillations(cycles, k_v, k_z, beta, omega, z):
 
 
 def test_slow_aiding_is_quiet_and_ten_metres_off():
-    """K_v 0.2 1/s and less: beta below 0.05 deg, z -10 m."""
+    """For K_v of 0.2 1/s and less, beta is below 0.05 deg and z is -10 m."""
     flight = flown(sliding(100, 0.2), 0.15)
     assert half_range(flight.beta[:, 0]) < 0.05 * DEG
     assert flight.z[-1, 0] == pytest.approx(-10.0, rel=0.03)
 
 
 def test_paper_corrected_leaves_the_leg_quietly():
-    """-k_z V mean(beta) of the first window is never seen; engaged after it, there is none."""
+    """-k_z V mean(beta) of the first window is unobservable; it is zero if engaged later."""
     aiding = paper(1000, 0.344)
     flight = flown(aiding, 0.15)
     assert half_range(flight.beta[:, 0]) < 0.05 * DEG
@@ -64,7 +64,7 @@ def test_paper_corrected_leaves_the_leg_quietly():
 
 
 def test_a_large_start_diverges_where_a_small_one_is_quiet():
-    """paper_corrected, N = 1000, K = 1, k_z = 0.3, linearly stable: z0 = 100 and 10 m."""
+    """paper_corrected, N = 1000, K = 1, k_z = 0.3, linearly stable: z0 = 100 m and 10 m."""
     assert half_range(flown(paper(1000, 1.0), 0.30).beta[:, 0]) == pytest.approx(MOST, rel=0.01)
     assert half_range(flown(paper(1000, 1.0), 0.30, 10.0).beta[:, 0]) < 0.05 * DEG
 
@@ -72,7 +72,7 @@ def test_a_large_start_diverges_where_a_small_one_is_quiet():
 @pytest.mark.parametrize('aiding, k_z', [(sliding(100, 1.0), 0.15), (sliding(10, 1.0, 1), 0.145),
                                          (paper(100, 0.344), 0.19)])
 def test_small_flights_grow_as_the_linear_theory_says(aiding, k_z):
-    """From 1 cm, 120 s apart; the decay of the other modes leaves 1e-3 of it."""
+    """From 1 cm, 120 s apart, growth is as predicted; the other modes contribute 1e-3 of it."""
     mode = growth(loop(), aiding, k_z)
     flight = flown(aiding, k_z, offset=0.01, duration_s=300.0)
     sizes = [np.abs(flight.beta[a:a + 400, 0]).max() for a in (1400, 2600)]

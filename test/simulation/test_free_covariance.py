@@ -1,4 +1,4 @@
-"""The covariance of the free INS: against Monte Carlo, its bits, and what it holds."""
+"""The covariance of the free INS: against Monte Carlo, equal bits, and special cases."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def in_turn(settings, motion, blocks, covariance):
          'initial.after_s': 0.83}, {'vertical.channel': 'damped', 'rate_hz': 7.0,
                                     'imu_sensor:rate_hz': 7.0}])
 def test_the_stream_gives_the_bits_of_the_batch(values):
-    """However the readings are cut; with initial errors and sigmas."""
+    """Readings in any pieces give the same bits, with initial errors and sigmas."""
     settings = settings_of('motion_2', FOG, 5.0, **{
         'initial.position_error_m': [3.0, -2.0, 1.0], **SIGMAS, **values})
     expected = steps_of(settings)
@@ -48,7 +48,7 @@ def test_the_stream_gives_the_bits_of_the_batch(values):
 
 
 def test_what_is_predicted_is_what_runs_show():
-    """The smallest case: 60 runs of a minute of the racetrack; 0.75 to 1.25 on every axis."""
+    """60 runs of a minute of the racetrack: ratio 0.75 to 1.25 on every axis."""
     found = ratios(settings_of('racetrack', MEMS, 60.0, **SIGMAS), [60.0])
     level = np.delete(found, UP, axis=1)
     assert (level > 0.75).all() and (level < 1.25).all(), found.round(2)
@@ -59,7 +59,7 @@ def test_what_is_predicted_is_what_runs_show():
 @pytest.mark.parametrize('instrument', [FOG, MEMS])
 @pytest.mark.parametrize('motion', ['rest', 'racetrack'])
 def test_the_table_of_predictions(motion, instrument, channel):
-    """60 runs; 60, 300 and 600 s: 0.75 to 1.25 on every axis, up too where it is free."""
+    """60 runs at 60, 300 and 600 s: ratio 0.75 to 1.25 on every axis, and up if it is free."""
     found = ratios(settings_of(motion, instrument, 600.0, **SIGMAS, **{
         'vertical.channel': channel}), [60.0, 300.0, 600.0])
     print(motion, instrument, channel, found.round(2).tolist())
@@ -70,7 +70,7 @@ def test_the_table_of_predictions(motion, instrument, channel):
 
 @pytest.mark.slow
 def test_the_prediction_of_motion_2():
-    """16 km in 600 s, almost all by scale factor: 0.6 to 1.6."""
+    """16 km in 600 s, almost all due to scale factor: ratio 0.6 to 1.6."""
     found = ratios(settings_of('motion_2', FOG, 600.0), [60.0, 300.0, 600.0])
     print('motion_2', found.round(2).tolist())
     level = np.delete(found, UP, axis=1)
@@ -78,14 +78,14 @@ def test_the_prediction_of_motion_2():
 
 
 def is_positive(p):
-    """Return whether a symmetric matrix is positive semi-definite, in units of its sigmas."""
+    """Return whether a symmetric matrix is positive semidefinite, scaled to correlations."""
     size = np.sqrt(np.diag(p))
     return np.array_equal(p, p.T) and np.linalg.eigvalsh(p / np.outer(size, size))[0] > -1e-12
 
 
 @pytest.mark.parametrize('motion, instrument', [('motion_2', MEMS), ('racetrack', FOG)])
 def test_every_covariance_is_positive(motion, instrument):
-    """All 27 states, after each step; the up rows are held where height is that of the truth."""
+    """All 27 states after each step; vertical rows are zero if height comes from the truth."""
     steps = steps_of(settings_of(motion, instrument, 60.0))
     assert len(steps) > 100
     for _, p, mean, _ in steps:
@@ -96,25 +96,25 @@ def test_every_covariance_is_positive(motion, instrument):
 
 
 def test_a_perfect_ins_is_not_believed_to_be_exact():
-    """No covariance is zero, and none grows by much where nothing errs."""
+    """No covariance is zero, and none grows by much without errors."""
     steps = steps_of(settings_of('rest', 'default', 20.0))
     assert (np.diag(steps[0][1]) > 0.0).all()
     assert 1e-3 <= np.sqrt(steps[-1][1][0, 0]) < 2e-3
 
 
 def test_readings_slower_than_the_steps_are_cut():
-    """A reading every four seconds is eight steps: as fine steps to the middle of the interval."""
+    """A reading every four seconds is divided into eight steps, nearly as fine ones would be."""
     slow, fast = (settings_of('rest', MEMS, 60.0, **{
         'rate_hz': rate, 'imu_sensor:rate_hz': rate, 'motion_generator:rate_hz': rate})
         for rate in (0.25, 100.0))
     one, other = (steps_of(s)[-1] for s in (slow, fast))
     assert one[0] == other[0] == 60_000_000_000
-    # the white noise of flicker is the same; the pulses and the middle of the steps are not
+    # White noise in place of flicker is the same; pulses and middles of the steps differ.
     assert np.sqrt(np.diag(one[1])[:9]) == pytest.approx(np.sqrt(np.diag(other[1])[:9]), rel=1e-3)
 
 
 def test_what_is_published_belongs_to_the_step_before():
-    """Pose, velocity, rate and place at the start: initial sigmas, turned to the axes of map."""
+    """At the start: initial sigmas, with pose, velocity, rate and place in the axes of map."""
     settings = settings_of('racetrack', FOG, 1.0, **SIGMAS)
     motion = read_motion(settings.motion_generator)
     free = published_covariance(settings.strapdown)
@@ -131,7 +131,7 @@ def test_what_is_published_belongs_to_the_step_before():
     assert np.sqrt(np.diag(pose)[3:]) == pytest.approx([3e-4, 3e-4, 1.5e-3], rel=1e-3)
     speed = float(np.hypot(*truth.v_n[0, :2]))
     velocity = np.reshape(known.velocity, (3, 3))
-    # across the track the azimuth turns the velocity too
+    # Across the track the azimuth error rotates the velocity too.
     assert np.trace(velocity) == pytest.approx(
         2 * 0.05 ** 2 + (speed * 1.5e-3) ** 2 + (speed * 3e-4) ** 2, rel=1e-3)
     assert all(is_positive(np.reshape(m, (n, n))) for m, n in (
@@ -141,7 +141,7 @@ def test_what_is_published_belongs_to_the_step_before():
 @pytest.mark.parametrize('name', ['default', FOG, MEMS, 'imu_navigation_rlg', 'imu_tactical_dtg',
                                   'grade_tactical', 'grade_mid', 'grade_navigation'])
 def test_the_files_describe_one_imu_to_both_nodes(name):
-    """What imu/data_raw states is what the strapdown expects; of another IMU it is said."""
+    """imu/data_raw states the noise the strapdown expects; another IMU is reported."""
     settings = parameter_files.read([resources.parameter_file(name)])
     stated = reported_variances(settings.imu_sensor)
     assert disagreement(settings.strapdown, stated) == ''
@@ -151,7 +151,7 @@ def test_the_files_describe_one_imu_to_both_nodes(name):
 
 
 def test_figures_that_do_not_fit_are_refused():
-    """As the sensor does, in one sentence that names the key."""
+    """Invalid figures are rejected as by the sensor, with one sentence that names the key."""
     settings = settings_of('rest', FOG, 1.0, **{'gyro.errors.saturation_deg_s': [1e-4] * 3})
     with pytest.raises(ValueError, match='gyro.errors.saturation_deg_s is 0.0001 on axis x'):
         free_covariance(settings.strapdown)

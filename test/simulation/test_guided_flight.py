@@ -1,4 +1,4 @@
-"""The closed loop offline: the bits of the open one on the truth as flown, and refusals."""
+"""The closed loop offline has the bits of the open one on the flown truth; rejected cases."""
 
 from dataclasses import replace
 import math
@@ -41,7 +41,7 @@ def flown(chosen, aided=None):
     {'sampling__drop_out_probability': 0.01, 'filter': 'window_kf'}],
     ids=('eskf', 'paper_corrected', 'noise and gnss', 'from the motion, ahead', 'drop-outs'))
 def test_the_loop_steers_by_the_solution_of_the_open_run(more):
-    """Its estimates are, bit for bit, those of ``simulate_aided`` on the motion as flown."""
+    """The estimates have the bits of ``simulate_aided`` on the motion as flown."""
     run = ins_sim.simulate_aided(settings(**more), twin=False)
     seen, motion = run.run.steered.estimates, run.run.motion
     states, generator = run.states, run.run.settings.motion_generator
@@ -62,7 +62,7 @@ def test_the_loop_steers_by_the_solution_of_the_open_run(more):
 
 
 def test_the_strapdown_steers_without_aiding():
-    """By its solution, which drifts by less than a millimetre in these seconds."""
+    """The strapdown's solution steers; it drifts by less than a millimetre in these seconds."""
     run = ins_sim.simulate(settings(False))
     seen, states = run.steered.estimates, run.steered.states
     assert seen.steers.all()
@@ -71,7 +71,7 @@ def test_the_strapdown_steers_without_aiding():
 
 
 def test_the_topic_says_which_solution_steers():
-    """That of the strapdown in an aided run too; a topic that is not simulated is said."""
+    """Also in an aided run the strapdown may steer; a topic not simulated is reported."""
     aided = settings(guidance__topic='ins/odometry', surrogate__k_z=0.5, filter='conventional',
                      duration_s=3.0)
     free, alone = (flown(aided.simulation, chosen)[1] for chosen in (aided, None))
@@ -85,7 +85,7 @@ def test_the_topic_says_which_solution_steers():
 
 @pytest.mark.parametrize('aids', [False, True])
 def test_a_navigator_that_skips_steps_steers_by_those_it_publishes(aids):
-    """Every fifth solution: what the autopilot sees changes every 50 ms."""
+    """With every fifth solution published, the autopilot's input changes every 50 ms."""
     name = 'aided_navigator' if aids else 'strapdown'
     chosen = settings(aids, duration_s=3.0, **{f'{name}:output_every': 5})
     _, result = flown(chosen.simulation, chosen) if aids else flown(chosen)
@@ -95,7 +95,7 @@ def test_a_navigator_that_skips_steps_steers_by_those_it_publishes(aids):
 
 
 def test_a_motion_of_ones_own_fits_the_samples():
-    """Its control instants are samples of the truth."""
+    """Control instants that are not samples of the truth are rejected."""
     motion, _ = flown(settings(False, duration_s=1.0))
     chosen = settings(False, duration_s=1.0, rate_hz=75.0, motion__guided__control_rate_hz=75.0)
     with pytest.raises(ValueError, match='the control period of the motion is 10000000 ns; '
@@ -104,7 +104,7 @@ def test_a_motion_of_ones_own_fits_the_samples():
 
 
 def test_rates_of_truth_and_control_may_differ():
-    """200 Hz, and commands at 50 Hz, 10 ms later: the same flight within 0.5 %."""
+    """200 Hz truth and 50 Hz commands, 10 ms later, give the same flight within 0.5 %."""
     fast = flown(settings(False, rate_hz=200.0, motion__guided__control_rate_hz=50.0))[1]
     usual = flown(settings(False))[1]
     assert len(fast.states) == 301
@@ -113,7 +113,7 @@ def test_rates_of_truth_and_control_may_differ():
 
 
 def test_turns_are_flown_straight_and_left_behind():
-    """The autopilot is off in the turn; on the next leg it brings the offset to zero."""
+    """The autopilot is off in the turn; on the next leg it returns the offset to zero."""
     chosen = settings(False, duration_s=42.0, start_s=270.0, motion__route__turn_rate_deg_s=3.0,
                       motion__route__points__latitude_deg=[55.0, 55.5, 55.6],
                       motion__route__points__longitude_deg=[37.0, 37.3, 38.2],
@@ -132,11 +132,11 @@ def test_turns_are_flown_straight_and_left_behind():
 
 def test_delays_are_predicted_on_the_truth_as_flown():
     """
-    Twin and prediction of 3, 6, 9 us on a motion stirred by jumps of the command.
+    Twin and prediction agree for delays of 3, 6, 9 us on a motion with jumps of the command.
 
-    The strapdown turns the velocity increment of an interval by the attitude at its start, the
-    theory is continuous: the position error is half an interval of exp(-t/0.4) behind, 5 ms of 400
-    at 100 Hz; it falls with the interval.  The attitude error has no such part.
+    The strapdown rotates the velocity increment of an interval with the attitude at its start,
+    while the theory is continuous: the position error lags by half an interval of exp(-t/0.4), 5
+    ms of 400 at 100 Hz; this decreases with the interval. The attitude error has no such part.
     """
     off = {}
     for rate_hz in (100.0, 500.0):
@@ -161,7 +161,7 @@ def test_delays_are_predicted_on_the_truth_as_flown():
 
 @pytest.mark.slow
 def test_closure_of_an_hour(figures):
-    """Ideal readings of the motion itself at 100 Hz: within 1e-2 m; through the stream: noted."""
+    """With ideal readings of the motion at 100 Hz an hour closes within 1e-2 m."""
     for source in ('motion', 'stream'):
         chosen = settings(False, duration_s=3600.0, source=source,
                           motion__route__points__latitude_deg=[55.0, 60.0],
@@ -185,7 +185,7 @@ def test_closure_of_an_hour(figures):
     ({'velocity_meter:attack_angle': 'ins', 'strapdown:output_every': 2}, 'output_every is 2 with '
      'motion.kind guided and attack_angle ins; expected 1')], ids=lambda v: '')
 def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
-    """Before the start, in one sentence."""
+    """Settings for which the loop cannot be closed are rejected before the start."""
     with pytest.raises(ValueError, match=sentence):
         ins_sim.read_settings(FILE, values, aided=True)
 
@@ -196,14 +196,14 @@ def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
     (['simulate', '-p', 'duration_s:=5000.0'], 'duration_s is 5000 s; expected at most '),
     (['simulate', '-p', 'duration_s:=0.0'], 'duration_s is 0, endless')], ids=lambda v: v[0])
 def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):
-    """With exit code 2."""
+    """Commands reject the settings with one sentence and exit code 2."""
     folder = ['-o', str(tmp_path / 'run')] if command[0] == 'simulate' else []
     assert main([*command[:1], '--params-file', FILE, *command[1:], *folder]) == 2
     assert sentence in capsys.readouterr().err.replace('\n', ' ')
 
 
 def test_the_command_writes_the_histories(tmp_path, capsys):
-    """With the truth as flown, and what is to be said of the loop."""
+    """The output has the flown truth, the commands and the notes on the loop."""
     assert main(['simulate', '--aided', '--params-file', FILE, '-p', 'duration_s:=3.0', '-p',
                  'window.cycles:=100', '-p', 'guidance.latency_s:=2.0', '-o',
                  str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag')]) == 0
@@ -215,7 +215,7 @@ def test_the_command_writes_the_histories(tmp_path, capsys):
     assert ins_sim.open_motion(ins_sim.read_settings(FILE)).known_ns == 0
     with ins_sim.open_bag(tmp_path / 'bag') as bag:
         commands = bag.arrays('guidance/command')
-    # the last sample needs no further command
+    # After the last sample no further command is needed.
     assert np.array_equal(commands['stamp_ns'] - 10**9 * EPOCH_S, arrays['steering_t_ns'][:-1])
     assert np.array_equal(commands['vector'], np.stack(
         [arrays[f'steering_{name}'][:-1] for name in ('command', 'z', 'v_z')], axis=1))

@@ -1,4 +1,4 @@
-"""Limits of stability of the closed loop: against published ones, and against eigenvalues."""
+"""Stability limits of the closed loop against published ones and against eigenvalues."""
 
 from dataclasses import replace
 import math
@@ -17,7 +17,7 @@ from ins_sim.core.guidance.margin import phase_margin
 from ins_sim.core.guidance.steering import margin_sentence
 
 INF = math.inf
-# K_v: k_z and rad/s at N = 10, 100, 1000, as published; held commands, which the study has
+# K_v: k_z and rad/s at N = 10, 100, 1000, as published for commands that are held.
 SLIDING = {0.1: (('.819', '.336'), ('.899', '.248'), ('1.31', '.095')),
            0.5: (('.203', '.526'), ('.232', '.326'), ('.534', '.118')),
            1.0: (('.141', '.614'), ('.158', '.345'), ('.440', '.122')),
@@ -31,9 +31,9 @@ LENGTHS = (10, 100, 1000)
 
 def meets(value, printed):
     """
-    Return whether a number is the printed one, within 0.6 of its last digit.
+    Return whether a number agrees with the printed one, within 0.6 of its last digit.
 
-    Half of it is rounding, and the mean over a window, trapezoids or exact, makes 4e-4 of it.
+    Half a digit is rounding; the mean over a window, trapezoid or exact, contributes 4e-4 of it.
     """
     digits = len(printed.split('.')[1])
     return abs(value - float(printed)) <= 0.6 * 10.0 ** -digits
@@ -41,7 +41,7 @@ def meets(value, printed):
 
 @pytest.mark.parametrize('k_v', SLIDING)
 def test_published_limits_with_windows_that_slide(k_v, figures):
-    """All to the digits printed, with a command that is held; that of the house is near them."""
+    """With held commands all printed digits agree; with linear ones the limits are close."""
     for cycles, (k_z, omega) in zip(LENGTHS, SLIDING[k_v]):
         held, ramped = (limits(loop(ramps=r), sliding(cycles, k_v)) for r in (False, True))
         print(f'N {cycles}, K_v {k_v}: {held.positive}, linear command {ramped.positive}')
@@ -55,9 +55,9 @@ def test_published_limits_with_windows_that_slide(k_v, figures):
 @pytest.mark.parametrize('gain', PAPER)
 def test_published_limits_of_paper_corrected(gain):
     """
-    Positive and negative ones.
+    Positive and negative limits agree with the published ones.
 
-    At N = 1000, K = 0.1, published as none, there is one at 7.3, far beyond any meter.
+    At N = 1000, K = 0.1 no limit was published; there is one at 7.3, far beyond any real meter.
     """
     for cycles, (k_z, omega, negative) in zip(LENGTHS, PAPER[gain]):
         found = limits(loop(ramps=False), paper(cycles, gain))
@@ -73,10 +73,10 @@ def test_published_limits_of_paper_corrected(gain):
                                                     (20, '.151', 2)])
 def test_published_limits_with_latency(latency, k_z, unstable):
     """
-    N = 100, K_v = 1, latency 0, 0.05 and 0.2 s.
+    Limits for N = 100, K_v = 1 and latencies 0, 0.05 and 0.2 s.
 
-    At 0.2 s the slow mode's limit is as published, but a fast one grows whatever k_z is: what
-    steers is corrected against a mean of the past.
+    At 0.2 s the limit of the slow mode is as published, but a fast mode grows for any k_z: the
+    solution used for steering is corrected with a mean of the past.
     """
     found = limits(loop(latency, ramps=False), sliding(100, 1.0))
     assert meets(found.positive.k_z, k_z) and found.unstable == unstable
@@ -84,7 +84,7 @@ def test_published_limits_with_latency(latency, k_z, unstable):
 
 
 def test_a_long_latency_moves_limits_as_a_delay_does():
-    """One second, 100 states: with one window a correction, limits are roots of the growth."""
+    """One second, 100 states, one window per correction: limits are roots of the growth."""
     slow = loop(100, ramps=False)
     found = limits(slow, block(1000, 0.05))
     assert found.unstable == 0
@@ -94,7 +94,7 @@ def test_a_long_latency_moves_limits_as_a_delay_does():
 
 
 def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
-    """Limit 0.153 for 0.158; every 50 cycles the loop is unstable without any error."""
+    """Every ten cycles the limit is 0.153, not 0.158; every 50 cycles the loop is unstable."""
     assert meets(limits(loop(ramps=False), sliding(100, 1.0, 10)).positive.k_z, '.153')
     assert limits(loop(ramps=False), sliding(100, 1.0, 50)).unstable == 1
 
@@ -102,7 +102,7 @@ def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
 @pytest.mark.parametrize('cycles, gain', [(10, '1.02'), (50, '.417'), (100, '.354'),
                                           (200, '.369'), (500, '.339'), (1000, '.932')])
 def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gain, figures):
-    """At k_z = 0, as published, by bisection; it is quiet below."""
+    """At k_z = 0 the critical gain is as published, by bisection; the loop is quiet below."""
     low, high = 0.0, 2.0
     assert growth(loop(ramps=False), block(cycles, 0.05), 0.0).growth < 0.0
     while high - low > 1e-5:
@@ -116,7 +116,7 @@ def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gai
 
 
 def test_growth_just_inside_the_limit():
-    """k_z 0.15 decays with 0.0048 1/s at 0.345 rad/s, as published."""
+    """k_z = 0.15 decays at 0.0048 1/s with 0.345 rad/s, as published."""
     mode = growth(loop(ramps=False), sliding(100, 1.0), 0.15)
     assert meets(mode.growth, '-.0048') and meets(mode.frequency, '.345')
 
@@ -127,7 +127,7 @@ def test_growth_just_inside_the_limit():
        latency=st.integers(0, 12), ramps=st.booleans())
 def test_limits_are_where_eigenvalues_leave_the_unit_circle(cycles, step, k_v, kind, latency,
                                                             ramps):
-    """A small step inside all decays, outside something grows; so says the count at zero."""
+    """A little inside the limit all modes decay, outside one grows; the count at 0 agrees."""
     aiding = sliding(cycles, k_v, step) if kind == 'sliding' else paper(cycles, min(1.9, k_v))
     lateral = loop(latency, ramps)
     found = limits(lateral, aiding)
@@ -144,7 +144,7 @@ def test_limits_are_where_eigenvalues_leave_the_unit_circle(cycles, step, k_v, k
 
 @pytest.mark.parametrize('ramps', [True, False])
 def test_a_period_of_the_plant(ramps):
-    """Against integration: sideslip, rate and offset under a command that runs or is held."""
+    """Sideslip, rate and offset agree with integration, for linear and held commands."""
     lateral = loop(ramps=ramps)._replace(period_s=0.3)
     z, v, beta, old, new = 3.0, -2.0, 0.05, 0.1, -0.07
 
@@ -158,7 +158,7 @@ def test_a_period_of_the_plant(ramps):
 
 @pytest.mark.parametrize('k_v', [0.3, 1.0, 10.0])
 def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
-    """Latency from stable to unstable, to a period, by the margin and by the count of modes."""
+    """The latency at the stability limit agrees, to a period, by margin and by mode count."""
     aiding = sliding(100, k_v)
     margin = aided_margin(loop(), aiding)
     most = math.floor(margin.delay_s / PERIOD_S)
@@ -170,17 +170,17 @@ def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
 
 
 def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
-    """K_v 0.001 1/s; ``margin.phase_margin`` of exact navigation, its command a period late."""
+    """At K_v = 0.001 1/s it equals ``margin.phase_margin``, with the command a period late."""
     lateral, slow = loop(), aided_margin(loop(), sliding(100, 0.001))
     alone = phase_margin((lateral.k1, lateral.k2), lateral.side_force, lateral.lag_s, PERIOD_S)
-    # the crossover is between two of 20001 frequencies, and K_v lowers it by its part
+    # The crossover is between two of 20001 frequencies, and K_v lowers it slightly.
     assert slow.margin == pytest.approx(alone, abs=5e-3)
 
 
 @pytest.mark.parametrize('latency_s, gain, said', [(0.15, 1.0, False), (0.2, 1.0, True),
                                                    (0.2, 0.2, False)])
 def test_a_latency_that_the_corrections_do_not_bear_is_said(latency_s, gain, said):
-    """One sentence, where exact navigation would bear a second more."""
+    """One sentence, although exact navigation would tolerate a second more."""
     settings = parameter_files.read_aided([resources.config('guided_flight')], [
         'filter:=conventional', 'window.cycles:=100', 'window.slide_cycles:=1',
         f'gain_per_s:={gain}', f'guidance.latency_s:={latency_s}'])

@@ -1,4 +1,4 @@
-"""Memory grows with the blocks, not with the run; blocks of any length give the same bits."""
+"""Memory grows with the block size, not with the run; any block length gives the same bits."""
 
 import tracemalloc
 
@@ -13,12 +13,12 @@ from ins_sim.report.spool import Spool
 from ins_sim.settings.presets import preset
 
 TUNED = {**preset('tactical_dtg'), **FLIGHT, 'motion.kind': 'aggressive', 'output': 'integrated'}
-# Bytes of truth, readings, solution and errors a sample.
+# Bytes of truth, readings, solution and errors per sample.
 WHOLE = 384
 
 
 def peak_of(work):
-    """Return the most memory that a function allocates, bytes."""
+    """Return the peak memory that a function allocates, bytes."""
     tracemalloc.start()
     try:
         work()
@@ -31,7 +31,7 @@ def peak_of(work):
     {**MOTION_2, 'initial.after_s': 1.0}, {**FLIGHT, 'motion.kind': 'cruise'}, TUNED],
     ids=['motion 2', 'cruise', 'tuned gyros'])
 def test_blocks_of_a_prediction_join_to_the_bit(values, monkeypatch):
-    """The integrals, the rotors, RK4 and the mean drift are carried from block to block."""
+    """Integrals, rotors, RK4 and the mean drift are continued from block to block."""
     chosen = settings(values, duration_s=47.33, accelerometer__delay_us__y=-2.0)
     motion = read_motion(chosen.motion_generator)
     whole = prediction.predict(chosen, motion)
@@ -45,7 +45,7 @@ def test_blocks_of_a_prediction_join_to_the_bit(values, monkeypatch):
 
 
 def test_a_prediction_without_histories_has_the_same_figures():
-    """Two hours would take 600 MB as a whole (85 kB a second)."""
+    """Two hours would take 600 MB with histories (85 kB per second)."""
     chosen = settings(MOTION_2, duration_s=7200.0)
     motion = read_motion(chosen.motion_generator)
     found = []
@@ -58,10 +58,10 @@ def test_a_prediction_without_histories_has_the_same_figures():
 
 
 def test_a_spooled_run_takes_the_memory_of_its_blocks(tmp_path, monkeypatch):
-    """Ten times the run in a quarter of what its further samples would take as arrays."""
+    """Ten times the run needs a quarter of the memory of its further samples as arrays."""
     monkeypatch.setattr(inertial, 'BLOCK', 256)
     peaks = []
-    # The first run loads what stays, such as compiled loops.
+    # The first run loads what stays in memory, such as compiled loops.
     for duration_s in (100.0, 10.0, 100.0):
         chosen = settings(MOTION_2, duration_s=duration_s)
         motion = read_motion(chosen.motion_generator)
@@ -73,7 +73,7 @@ def test_a_spooled_run_takes_the_memory_of_its_blocks(tmp_path, monkeypatch):
 
 
 def test_a_spooled_run_is_the_run_in_memory(tmp_path):
-    """Every field of every history, the twin too."""
+    """Every field of every history is equal, also in the twin."""
     chosen = settings({**MOTION_2, **preset('tactical_fog')}, duration_s=60.0, output_every=3)
     motion = read_motion(chosen.motion_generator)
     expected = inertial.simulate(chosen, motion)

@@ -1,4 +1,4 @@
-"""Delays of any size and sign on a stream of truth, with the zero-delay twin."""
+"""Delays of any size and sign on streamed truth, with the zero-delay twin."""
 
 import json
 
@@ -16,7 +16,7 @@ EARLY = {'motion.kind': 'two_axis', 'source': 'stream', 'duration_s': 5.0}
                                     (0.0, -1e6, 1e6), (-1e6, -1e6, -1e6)])
 @pytest.mark.parametrize('where', ['gyro', 'accelerometer'])
 def test_any_delay_is_simulated_with_its_twin(delays, where):
-    """The twin has the instants of the run, which ends where the truth no longer covers it."""
+    """The twin has the instants of the run, which ends where the truth does not suffice."""
     chosen = settings({**EARLY, **{f'{where}.delay_us.{axis}': delay
                                    for axis, delay in zip('xyz', delays)}})
     result = run_offline(chosen)
@@ -28,14 +28,14 @@ def test_any_delay_is_simulated_with_its_twin(delays, where):
 
 
 def test_a_lead_longer_than_the_run_leaves_the_first_reading():
-    """There is nothing to read, and it is no error."""
+    """If the lead exceeds the run there are no further readings, and this is not an error."""
     chosen = settings({**EARLY, 'duration_s': 0.5, 'gyro.delay_us.x': -1e6})
     result = run_offline(chosen)
     assert len(result.imu) == len(result.twin) == 1 and withheld_readings(chosen) == 50
 
 
 def test_the_command_writes_the_run_and_says_what_is_missing(tmp_path, capsys):
-    """Nothing is lost after the run, and the summary has the twin."""
+    """The run is complete, and the summary includes the twin."""
     words = [word for name, value in {**EARLY, 'gyro.delay_us.x': -1.0,
                                       'gyro.delay_us.z': -25000.0}.items()
              for word in ('-p', f'{name}:={value}')]

@@ -46,7 +46,7 @@ def of_increments(count, integrated):
 @pytest.mark.parametrize('kind', KINDS)
 @pytest.mark.parametrize('channel', CHANNELS)
 def test_a_copy_is_a_snapshot(kind, channel):
-    """What is advanced after a copy leaves the copy alone, and the copy goes on with its bits."""
+    """Advancing the original does not affect the copy, which continues with the same bits."""
     chosen, reference = CHANNELS[channel]
     steps = list(of_increments(200, True))
     whole = Strapdown(5_000_000_000, PLACE, SPIN, *chosen, orientation=kind)
@@ -65,7 +65,7 @@ def test_a_copy_is_a_snapshot(kind, channel):
 @pytest.mark.parametrize('integrated', (False, True))
 @pytest.mark.parametrize('channel', ('free', 'truth'))
 def test_simulated_and_aided_navigation_share_the_strapdown(channel, integrated):
-    """Without errors and without corrections both have the bits of the strapdown alone."""
+    """Without errors and corrections both have the bits of the strapdown alone."""
     form = 'integrated' if integrated else 'rotation_vector'
     navigator = InertialNavigator(build(StrapdownSettings, {
         'vertical.channel': channel, 'input': form}))
@@ -83,7 +83,7 @@ def test_simulated_and_aided_navigation_share_the_strapdown(channel, integrated)
 
 @pytest.mark.parametrize('channel', ('free', 'damped'))
 def test_recorded_navigation_shares_the_strapdown(channel):
-    """Readings that are increments already need no other sample: the same bits."""
+    """Readings that already are increments need no previous sample: the same bits."""
     options, reference = CHANNELS[channel]
     (t_ns, omega, f), *rest = samples(300)
     recorded = RecordedNavigator('rotation_vector', SPIN, PLACE,
@@ -96,7 +96,7 @@ def test_recorded_navigation_shares_the_strapdown(channel):
 
 
 def test_even_and_uneven_increments_agree():
-    """At a fixed rate the two functions differ by rounding only."""
+    """At a fixed rate the two functions differ only by rounding."""
     last, now = ((o, f) for _, o, f in samples(2))
     dt = 0.01
     even = fixed_rate_increments(True, integrals(*now, dt), integrals(*last, dt))
@@ -106,7 +106,7 @@ def test_even_and_uneven_increments_agree():
 
 
 def test_a_correction_keeps_the_attitude_that_it_sets():
-    """The solution holds what was set, to the bit, until the next interval; zero is no change."""
+    """The attitude that is set is kept to the bit until the next interval; zero is no change."""
     (t_ns, omega, f), *rest = samples(50)
     ins = CorrectedStrapdown(t_ns, omega, f, 0.01, PLACE, SPIN, True)
     assert ins.solution == PLACE

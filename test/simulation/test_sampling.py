@@ -1,4 +1,4 @@
-"""Latency, jitter and drop-outs through the chain, and the choice of the orientation algorithm."""
+"""Latency, jitter and drop-outs through the chain, and the choice of attitude algorithm."""
 
 import numpy as np
 import pytest
@@ -13,13 +13,13 @@ NOMINAL = {'imu_time': 'nominal', 'imu_latency_us': 1500.0}
 
 
 def test_nominal_instants_undo_latency_and_jitter():
-    """The same solution, bit for bit, as with perfect stamps; the stamps are what differs."""
+    """The solution has the bits of one with perfect stamps; only the stamps differ."""
     perfect = run_offline(settings(MOTION_2, duration_s=20.0), twin=False)
     found = run_offline(settings({**DISTURBED, **NOMINAL}, duration_s=20.0), twin=False)
     off = (found.imu.t_ns - perfect.imu.t_ns) * 1e-3
     print(f'\nstamps late by {off.mean():.0f} +- {off.std():.0f} us')
     assert 5.0 * 900.0 / np.sqrt(len(off)) > abs(off.mean() - 1500.0)
-    # five standard deviations of an estimate from as many stamps
+    # Five standard deviations of an estimate from this number of stamps.
     assert off.std() == pytest.approx(900.0, rel=5.0 / np.sqrt(2.0 * len(off)))
     assert np.array_equal(found.imu.omega, perfect.imu.omega)
     for name, value in perfect.errors.arrays().items():
@@ -28,9 +28,10 @@ def test_nominal_instants_undo_latency_and_jitter():
 
 def test_stamps_taken_at_their_word_cost_accuracy():
     """
-    A reading turns by the mean rate of another interval: a random walk of w' dt times the jitter.
+    With stamps used as they are, jitter causes a random walk of w' dt times the jitter.
 
-    With d_k the jitter of stamp k the angle of a step errs by -w' dt (d_k + d_{k-1})/2.
+    A reading is applied over the wrong interval. With d_k the jitter of stamp k, the angle of a
+    step errs by -w' dt (d_k + d_{k-1})/2.
     """
     values = {**MOTION_2, 'gyro.delay_us.y': 0.0, 'sampling.jitter_us': 200.0}
     sizes = []
@@ -38,11 +39,11 @@ def test_stamps_taken_at_their_word_cost_accuracy():
         found = run_offline(settings({**values, 'seed': seed}, duration_s=20.0), twin=False)
         assert not found.faults
         sizes.append(np.linalg.norm(found.errors.attitude[-1]))
-    # |w'| = psi' gamma' cos(30 deg) of the horizontal rate, which turns in the body
+    # |w'| = psi' gamma' cos(30 deg) of the horizontal rate, which rotates in the body.
     expected = 1.0 * 0.5 * np.cos(np.radians(30.0)) * 0.01 * 200e-6 * np.sqrt(2000.0)
     size = np.sqrt(np.mean(np.square(sizes)))
     print(f'\nattitude off by {size:.2e} rad, root mean square; expected {expected:.2e}')
-    # a chi-square of about 8 degrees of freedom
+    # Chi-square with about 8 degrees of freedom.
     assert 0.4 * expected < size < 1.8 * expected
     wild = run_offline(settings({**values, 'sampling.jitter_us': 900.0}, duration_s=5.0),
                        twin=False)
@@ -50,7 +51,7 @@ def test_stamps_taken_at_their_word_cost_accuracy():
 
 
 def test_drop_outs_start_the_strapdown_anew():
-    """As many gaps as there are runs of lost samples; the error begins at zero after each."""
+    """There is a gap for each run of lost samples, and the error restarts from zero after it."""
     values = {**MOTION_2, 'sampling.drop_out_probability': 0.003, 'seed': 3}
     found = run_offline(settings(values, duration_s=60.0), twin=False)
     gaps = np.flatnonzero(np.diff(found.imu.t_ns) > 10_000_000)
@@ -58,14 +59,14 @@ def test_drop_outs_start_the_strapdown_anew():
     assert len(gaps) > 5 and len(found.faults) == len(gaps)
     assert all('imu has a gap from' in f for f in found.faults)
     after = np.isin(found.errors.t_ns, found.imu.t_ns[gaps + 1])
-    # the resolution of a latitude, 1e-9 m
+    # Resolution of a latitude, 1e-9 m.
     assert np.abs(found.errors.position[after]).max() <= 2e-9
     with pytest.raises(ValueError, match='imu has a gap from'):
         run_offline(settings({**values, 'on_fault': 'stop'}, duration_s=60.0), twin=False)
 
 
 def test_sample_clock():
-    """Half a period belongs to the later instant; the latency comes off first."""
+    """Half a period is rounded to the later instant; the latency is subtracted first."""
     s = settings({**NOMINAL, 'imu_latency_us': 2000.0}).strapdown
     clock = SampleClock(s, 10_000_000)
     assert [clock.instant(t) for t in (2_000_000, 6_999_999, 7_000_000, 12_000_000)] == [
@@ -78,22 +79,22 @@ def test_sample_clock():
     ({'imu_latency_us': 5.0}, 'imu_latency_us is 5 us with imu_time stamp; expected imu_time nom'),
     ({'imu_time': 'nominal', 'start_s': 0.004}, 'start_s is 0.004 s with imu_time nominal; exp')])
 def test_bad_clocks_are_refused(values, says):
-    """One sentence each."""
+    """Invalid clock settings are rejected with one sentence each."""
     with pytest.raises(ValueError, match=says):
         run_offline(settings(values, duration_s=1.0))
 
 
 def test_orientation_algorithms_agree_to_their_truncation():
     """
-    Poisson and Euler vector by RK4 against the exact quaternion over ten minutes of motion 2.
+    Poisson and Euler vector by RK4 agree with the exact quaternion over 10 min of motion 2.
 
-    RK4 of a constant rate w errs by (w dt)^5/120 in angle a step for Poisson's equation; the
-    Euler vector by less than that.
+    For Poisson's equation RK4 at a constant rate w errs by (w dt)^5/120 in angle per step; for
+    the Euler vector by less.
     """
     chosen = settings(MOTION_2, duration_s=600.0)
     results = compare_orientations(chosen, read_motion(chosen.motion_generator))
     assert [r.kind for r in results] == ['quaternion', 'poisson', 'euler_vector']
-    # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms
+    # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms.
     bound = 60000 * (np.sqrt(1.75) * 0.01) ** 5 / 120.0
     for r in results:
         print(f'\n{r.kind}: off the quaternion by {r.apart:.2e} rad (bound {bound:.2e}), drift '

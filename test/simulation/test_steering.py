@@ -1,4 +1,4 @@
-"""What an autopilot is given to steer by, and when the vehicle flies straight."""
+"""Which solution an autopilot gets, and when the vehicle flies straight."""
 
 import math
 
@@ -23,13 +23,13 @@ def steering(turns=(), **values):
 
 
 def beside(z=0.0, leg=LEGS[0]):
-    """Return a solution at rest z metres on the sphere to the right of a leg."""
+    """Return a solution at rest, z metres (on the sphere) to the right of a leg."""
     lat, lon = leg.from_xz(10_000.0, z)
     return lat, lon, 500.0, (0.0, 0.0, 0.0)
 
 
 def test_the_command_is_that_of_the_estimate():
-    """k1 z + k2 v_z of a true motion, without anything in between, and limited."""
+    """The command is k1 z + k2 v_z of a true motion, limited."""
     motion = fly(guided(offset_m=5.0), 0.5)
     made = Steering(GuidanceSettings(), motion.route.legs, motion.turns)
     truth, states = motion.one(500_000_000), motion.states(np.array([500_000_000]))
@@ -45,7 +45,7 @@ def test_the_command_is_that_of_the_estimate():
 
 
 def test_hold_course_leaves_the_offset():
-    """Only the rate of the offset is steered."""
+    """With hold_course only the rate of the offset is controlled."""
     made = steering(autopilot='hold_course')
     lat, lon, height, _ = beside(80.0)
     made.take(0, (lat, lon, height, (0.0, 0.0, 0.0)))
@@ -56,7 +56,7 @@ def test_hold_course_leaves_the_offset():
 
 
 def test_the_solution_is_as_old_as_the_latency():
-    """The newest one that is at least that old; before there is one the vehicle flies straight."""
+    """The newest solution that is old enough is used; before, the vehicle flies straight."""
     made = steering(latency_s=0.03)
     for k in range(10):
         made.take(k * TICK_NS, beside(float(k)))
@@ -66,7 +66,7 @@ def test_the_solution_is_as_old_as_the_latency():
 
 
 def test_engaged_after_a_time_and_by_hand():
-    """The schedule, and calls that take its place."""
+    """The autopilot engages by schedule, or by calls that override it."""
     made = steering(engage_after_s=0.02)
     made.take(0, beside(5.0))
     assert [made.command(k * TICK_NS).why for k in range(4)] == ['not engaged'] * 2 + [''] * 2
@@ -78,7 +78,7 @@ def test_engaged_after_a_time_and_by_hand():
 
 
 def test_turns_are_flown_without_the_autopilot():
-    """Behind a turn it steers on the next leg; engaged in one it says when it takes over."""
+    """After a turn it steers on the next leg; a note tells when it was engaged in a turn."""
     made = steering(turns=[(1.0, 2.0)])
     made.disengage()
     made.engage(1_500_000_000)
@@ -96,7 +96,7 @@ def test_turns_are_flown_without_the_autopilot():
     (lambda s: (math.nan, *s[1:]), 'no number'), (lambda s: (*s[:3], (math.inf, 0.0, 0.0)),
                                                   'no number')], ids=('nan', 'inf'))
 def test_bad_solutions_are_not_steered_by(spoil, why):
-    """One sentence and a count; the next good one is steered by again."""
+    """A bad solution causes one sentence and a count; the next good one is used again."""
     made = steering()
     for k in range(12):
         solution = beside(5.0)
@@ -110,7 +110,7 @@ def test_bad_solutions_are_not_steered_by(spoil, why):
 
 
 def test_a_jump_is_not_steered_by_until_the_solution_has_gone_on():
-    """For timeout_s without another jump; back and forth are two."""
+    """Steering resumes after timeout_s without a jump; a jump back is a second jump."""
     made = steering(timeout_s=0.05)
     for k in range(30):
         made.take(k * TICK_NS, beside(3000.0 if k in (4, 5) else 5.0))
@@ -125,7 +125,7 @@ def test_a_jump_is_not_steered_by_until_the_solution_has_gone_on():
 
 
 def test_two_publishers_that_alternate_never_steer():
-    """Every solution jumps; the vehicle flies straight."""
+    """If two publishers alternate, every solution jumps and the vehicle flies straight."""
     made = steering()
     for k in range(20):
         made.take(k * TICK_NS, beside(2000.0 * (k % 2)))
@@ -134,7 +134,7 @@ def test_two_publishers_that_alternate_never_steer():
 
 
 def test_a_solution_that_stops_is_held_and_then_left():
-    """For timeout_s, then one sentence; a new one is steered by again."""
+    """The last solution is held for timeout_s, then reported; a new one is used again."""
     made = steering(timeout_s=0.05)
     made.take(0, beside(5.0))
     whys = [made.command(k * TICK_NS).why for k in range(12)]
@@ -145,17 +145,17 @@ def test_a_solution_that_stops_is_held_and_then_left():
 
 
 class Spoilt(Autopilot):
-    """An autopilot of somebody's own that fails."""
+    """A user's autopilot that fails."""
 
     given = math.nan
 
     def command(self, t_ns, z, v_z):
-        """Return no number."""
+        """Return an invalid command."""
         return self.given
 
 
 def test_an_autopilot_of_ones_own(monkeypatch):
-    """By an entry in the table; what it commands is checked."""
+    """It is found by its entry in the table, and its commands are checked."""
     monkeypatch.setitem(guidance.AUTOPILOTS, 'spoilt', AutopilotEntry(f'{__name__}:Spoilt'))
     monkeypatch.setitem(__import__('sys').modules, __name__, __import__('types').SimpleNamespace(
         Spoilt=Spoilt))
@@ -170,7 +170,7 @@ def test_an_autopilot_of_ones_own(monkeypatch):
 
 
 def test_phase_margin_is_that_of_the_characteristic_equation():
-    """With the delay that takes the margin, s = i w solves it; and a sentence says so."""
+    """With a delay equal to the margin, s = i w is a root; a warning sentence says so."""
     gains, force, lag_s = (0.0125, 0.04), 20.0, 0.4
     w = np.array([1e-3 * k for k in range(1, 5000)])
     loop = force * (gains[0] + 1j * w * gains[1]) / ((1j * w) ** 2 * (1.0 + 1j * w * lag_s))
