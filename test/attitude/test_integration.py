@@ -15,12 +15,12 @@ SPIN, WOBBLE, TURN = 1.0, 0.01, 0.7
 
 
 def rate(t):
-    """Spin of 1 rad/s about z and a wobble of 0.01 rad/s that turns in the body."""
+    """Return a rate of 1 rad/s about z plus a wobble of 0.01 rad/s that rotates in the body."""
     return WOBBLE * math.cos(TURN * t), WOBBLE * math.sin(TURN * t), SPIN
 
 
 def truth(t):
-    """Return q of that motion: exp(t (w(0) + TURN e_z)) exp(-TURN t e_z)."""
+    """Return q for that rate: exp(t (w(0) + TURN e_z)) exp(-TURN t e_z)."""
     return quaternion.multiply(quaternion.exponential((WOBBLE * t, 0.0, (SPIN + TURN) * t)),
                                quaternion.exponential((0.0, 0.0, -TURN * t)))
 
@@ -39,10 +39,10 @@ def run(kind, duration, dt):
 
 def test_three_algorithms_agree():
     """
-    20 s at 10 ms through three switches at pi, any element of the DCM.
+    The DCMs of the algorithms agree over 20 s at 10 ms, through three switches at pi.
 
-    RK4 on C' = C [w x] lags by (w h)^5 / 120 a step, here 1.67e-9 rad in all: that truncation
-    bound is the tolerance of Poisson; the other two are good to 1e-11.
+    RK4 on C' = C [w x] lags by (w h)^5 / 120 per step, here 1.67e-9 rad in all: this truncation is
+    the tolerance for Poisson; the other two are good to 1e-11.
     """
     bound = (SPIN * 0.01) ** 4 / 120.0 * SPIN * 20.0
     errors, histories = zip(*(run(kind, 20.0, 0.01) for kind in KINDS))
@@ -51,7 +51,7 @@ def test_three_algorithms_agree():
     difference = abs(histories[0] - histories[1]).max()
     print(f'Poisson against the Euler vector: {difference:.2e}')
     assert difference <= bound and errors[0] <= bound and max(errors[1:]) <= 1e-11
-    # at 8 ms it is below 1e-9 throughout
+    # At 8 ms the difference is below 1e-9 throughout.
     assert abs(run('poisson', 20.0, 0.008)[1] - run('euler_vector', 20.0, 0.008)[1]).max() <= 1e-9
 
 
@@ -64,7 +64,7 @@ def test_order_is_four(kind):
 
 
 def test_quaternion_is_exact_for_a_constant_rate():
-    """One step of any length."""
+    """A quaternion step of any length is exact for a constant rate."""
     w = (0.3, -0.8, 1.1)
     algorithm = Orientation('quaternion')
     algorithm.advance(tuple(1.3 * a for a in w), 1.3)
@@ -74,7 +74,7 @@ def test_quaternion_is_exact_for_a_constant_rate():
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_readings_alone_and_a_kept_state(kind):
-    """The mean rate of each interval does; a state set back gives the same bits."""
+    """Mean rates of the intervals suffice; a restored state gives the same bits."""
     algorithm, start = Orientation(kind, truth(5.0)), np.array(truth(5.0))
     assert min(abs(np.array(algorithm.q) - start).max(),
                abs(np.array(algorithm.q) + start).max()) < 1e-14
@@ -89,7 +89,7 @@ def test_readings_alone_and_a_kept_state(kind):
 
 
 def test_bortz_series_meets_the_closed_form():
-    """At d^2 = 0.01, to the rounding of the closed form, 1e-16 / d^2; near 2 pi it grows."""
+    """They meet at d^2 = 0.01 to the rounding of the closed form, 1e-16 / d^2; large near 2 pi."""
     half = 0.5 * math.sqrt(0.01)
     assert bortz_factor(0.01 - 1e-12) == pytest.approx((1 - half / math.tan(half)) / 0.01,
                                                        abs=3e-14)
@@ -99,7 +99,7 @@ def test_bortz_series_meets_the_closed_form():
 
 
 def test_shorter_is_the_same_rotation():
-    """At most pi long."""
+    """``shorter`` returns the same rotation with at most pi of length."""
     for d in (1.0, 3.2, 5.0, 6.2):
         theta = (0.6 * d, 0.0, 0.8 * d)
         short = shorter(theta)
@@ -109,7 +109,7 @@ def test_shorter_is_the_same_rotation():
 
 
 def test_quaternion_of_a_dcm():
-    """All four branches; roll is right wing down about the forward axis."""
+    """All four branches give the quaternion; roll is right wing down about the forward axis."""
     for seed in range(50):
         q = np.random.default_rng(seed).normal(size=4) ** 3
         q /= np.linalg.norm(q)
@@ -119,6 +119,6 @@ def test_quaternion_of_a_dcm():
 
 
 def test_unknown_algorithm():
-    """It is named with the ones there are."""
+    """The error for an unknown algorithm names it and lists the known ones."""
     with pytest.raises(ValueError, match="orientation is 'euler'; expected poisson, euler_vector"):
         Orientation('euler')

@@ -8,7 +8,7 @@ RNG = np.random.default_rng(8)
 
 
 def vectors():
-    """Return rotation vectors of all lengths, (3, n), none among them."""
+    """Return rotation vectors of all lengths, (3, n), including zero."""
     size = 10.0 ** RNG.uniform(-170.0, 0.8, 4000)
     size[:5] = 0.0
     size[5:2000] = 10.0 ** RNG.uniform(-5.0, 0.8, 1995)
@@ -16,14 +16,14 @@ def vectors():
 
 
 def test_exponentials():
-    """Short ones by their series, long ones by sine and cosine."""
+    """Short vectors (by series) and long ones (by sine and cosine) have the bits of floats."""
     for phi in (vectors(), vectors()[:, :4]):
         assert np.array_equal(np.array(exponentials(phi)).T,
                               [quaternion.exponential(row) for row in phi.T.tolist()])
 
 
 def test_logarithms():
-    """Of both signs of a quaternion, and of one that is not normal."""
+    """Both signs of a quaternion, and one with another norm, have the bits of floats."""
     q = np.array(exponentials(vectors())) * RNG.choice([-1.0, 1.0, 0.7], 4000)
     assert np.array_equal(np.array(quaternion.logarithm(q)).T,
                           [quaternion.logarithm(row) for row in q.T.tolist()])

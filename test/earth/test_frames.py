@@ -1,4 +1,4 @@
-"""The map frame: a tangent plane at the datum, and back."""
+"""The map frame, a plane tangent at the datum, and the conversion back."""
 
 import math
 
@@ -34,14 +34,14 @@ def test_map_frame_round_trip(lat, lon, d_lat, d_lon, phi):
 
 
 def test_map_is_the_tangent_plane_at_the_datum():
-    """East and North on the plane, the origin at the datum, the ground falls away below."""
+    """East and north are in the plane, the origin is the datum, the ground curves away below."""
     frame = MapFrame(Datum(55.0, 37.0, 0.0), True)
     level = quaternion.IDENTITY
     lat, lon = math.radians(55.0), math.radians(37.0)
     r, _, _ = frame.pose_one(lat, lon, 0.0, (0.0, 0.0, 0.0), level)
     np.testing.assert_allclose(r, 0.0, atol=1e-8)
     r, _, _ = frame.pose_one(lat + 1e-3, lon, 0.0, (0.0, 0.0, 0.0), level)
-    # over this way the radius of the meridian changes by 3 e^2 sin(lat) cos(lat) 1e-3 = 1e-5
+    # Over this distance the meridian radius changes by 3 e^2 sin(lat) cos(lat) 1e-3 = 1e-5.
     radius = ellipsoid.radii(math.sin(lat))[0]
     assert r[1] == pytest.approx(1e-3 * radius, rel=1e-5)
     assert r[2] == pytest.approx(-0.5 * r[1] ** 2 / radius, rel=1e-5)

@@ -1,4 +1,4 @@
-"""Normal gravity by height against the closed form of the level ellipsoid."""
+"""Normal gravity at height against the closed form for the level ellipsoid."""
 
 import math
 
@@ -11,14 +11,14 @@ from ins_sim.core.earth import ellipsoid
 GM, SPIN = 3.986004418e14, 7.292115e-5
 A, B = 6378137.0, 6356752.3142
 MICRO_G = 9.80665e-6
-# Largest error over the latitudes in ug: free air is said to be off by about 14 at 10 km and by
-# 183 at 50 km, and 2 % at 500 km; the second order leaves the third, 4 (h / a)^3.
+# Largest error over the latitudes, ug. According to the documentation free air is off by 14 at 10
+# km, 183 at 50 km and 2 % at 500 km; the second order leaves the third-order term, 4 (h / a)^3.
 EXPECTED = {10e3: (14.0, 0.1), 50e3: (183.0, 4.0), 500e3: (2e4, 2200.0)}
 
 
 def closed_form(sin_lat, height):
     """
-    Return gravity, m/s^2, of the rotating level ellipsoid outside it.
+    Return gravity, m/s^2, outside the rotating level ellipsoid.
 
     Heiskanen and Moritz, "Physical Geodesy", section 2-7, in ellipsoidal coordinates (u, beta).
     """
@@ -52,14 +52,14 @@ def off(height, model):
 
 
 def test_both_are_exact_on_the_ellipsoid():
-    """Somigliana's formula is the closed form at height zero, to the digits of its constants."""
+    """At height zero Somigliana's formula is the closed form, to the digits of its constants."""
     for model in ellipsoid.GRAVITY_TERMS:
         assert off(0.0, model) < 1e-3
 
 
 @pytest.mark.parametrize('height', EXPECTED)
 def test_gravity_at_height(height):
-    """Free air is off as the documentation says, the second order by the third."""
+    """Free air errs as documented, the second-order formula by the third-order term."""
     free, second = (off(height, model) for model in ('free_air', 'second_order'))
     print(f'\n{height:g} m: free air {free:.4g} ug, second order {second:.4g} ug')
     expected, bound = EXPECTED[height]
@@ -73,7 +73,7 @@ HIGH = {'motion.kind': 'racetrack', 'datum.latitude_deg': 55.0, 'datum.longitude
 
 @pytest.mark.parametrize('kind', ['racetrack', 'two_axis'])
 def test_truth_and_navigation_have_the_same_gravity(kind):
-    """A run closes with either; with one in the truth and the other in the INS it falls apart."""
+    """A run closes with either formula, but not with different ones in truth and INS."""
     values = {**HIGH, 'motion.kind': kind, 'datum.height_m': 400e3 if kind == 'two_axis' else 0.0}
     found = {model: np.abs(study({**values, 'earth.gravity': model}, False)[0].position).max()
              for model in ('free_air', 'second_order')}
@@ -81,7 +81,7 @@ def test_truth_and_navigation_have_the_same_gravity(kind):
 
 
 def test_gravity_that_differs_makes_the_solution_fall():
-    """400 km up the formulas differ by 1 % of g, half of which times t^2 is 0.05 t^2 m."""
+    """At 400 km the formulas differ by 1 % of g; half of it times t^2 is 0.05 t^2 m."""
     from dataclasses import replace
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.io.motion import read_motion
@@ -98,7 +98,7 @@ def test_gravity_that_differs_makes_the_solution_fall():
 
 @pytest.mark.slow
 def test_the_second_order_compiled_gives_the_same_bits(monkeypatch):
-    """Every loop in plain Python, and compiled from its first sample on."""
+    """The loops give the same bits in plain Python and compiled from the first sample on."""
     from support.studies import run_offline
     from ins_sim.core.numerics import compilation
     chosen = settings({**HIGH, 'earth.gravity': 'second_order', 'duration_s': 20.0})

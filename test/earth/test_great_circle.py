@@ -1,8 +1,8 @@
 """
-Orthodromic coordinates: there and back, against an independent library, and the sign of Z.
+Orthodromic coordinates: round trip, against an independent library, and the sign of Z.
 
-Rounding: a latitude or longitude near 180 deg has 2^-52 rad in its last digit, 1.4e-9 m; a few
-of them make up the bounds of 1e-8 m.
+Rounding: the last digit of a latitude or longitude near 180 deg is 2^-52 rad, 1.4e-9 m; a few of
+them add up to the bounds of 1e-8 m.
 """
 
 import math
@@ -21,12 +21,12 @@ LONGITUDES = st.floats(-math.pi, math.pi)
 
 
 def apart(p, q):
-    """Return the distance (m) of points (lat, lon), through the sphere."""
+    """Return the distance (m) of points (lat, lon), along the chord of the sphere."""
     return R0 * np.sqrt(sum((a - b) ** 2 for a, b in zip(unit_vector(*p), unit_vector(*q))))
 
 
 def a_leg(lat1, lon1, lat2, lon2):
-    """Return a Leg where the points have one, and have it well defined."""
+    """Return a Leg if the points have a well-defined one."""
     u, v = unit_vector(lat1, lon1), unit_vector(lat2, lon2)
     assume(1e-3 < math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(u, v))))) < 3.0)
     return Leg(lat1, lon1, lat2, lon2)
@@ -34,13 +34,13 @@ def a_leg(lat1, lon1, lat2, lon2):
 
 @given(LATITUDES, LONGITUDES, LATITUDES, LONGITUDES, LATITUDES, LONGITUDES)
 def test_there_and_back(lat1, lon1, lat2, lon2, lat, lon):
-    """A point anywhere comes back from its X and Z."""
+    """Any point is recovered from its X and Z."""
     leg = a_leg(lat1, lon1, lat2, lon2)
     assert apart((lat, lon), leg.from_xz(*leg.to_xz(lat, lon))) < 1e-8
 
 
 def test_the_worst_of_many_there_and_back():
-    """A million points on two hundred legs, from the ends of the Earth to the poles of the leg."""
+    """A million points on two hundred legs, from everywhere on Earth to the poles of the leg."""
     rng = np.random.default_rng(1)
     worst = far = 0.0
     for _ in range(200):
@@ -59,7 +59,7 @@ def test_the_worst_of_many_there_and_back():
 
 
 def test_lengths_and_courses_of_geographiclib():
-    """C. Karney's inverse problem, on the sphere and in geocentric latitude, says the same."""
+    """C. Karney's inverse problem, on the sphere with geocentric latitudes, gives the same."""
     geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(R0, 0.0)
     rng = np.random.default_rng(2)
     worst = np.zeros(4)
@@ -79,13 +79,13 @@ def test_lengths_and_courses_of_geographiclib():
                                           max(map(abs, turned)))))
     print('\nlength {:.2e} m, X and Z of the second point {:.2e}, {:.2e} m, courses {:.2e} rad'
           .format(*worst))
-    # the course of a leg of 2 km or more: degrees have 3e-14 in their last digit
+    # Course of a leg of 2 km or more: the last digit of degrees is 3e-14.
     assert worst[:3].max() < 2e-8 and worst[3] < 1e-10
 
 
 @given(LATITUDES, LONGITUDES, LATITUDES, LONGITUDES, st.floats(0.0, 1.0), st.floats(-0.3, 0.3))
 def test_the_course_turns_small_displacements(lat1, lon1, lat2, lon2, part, side):
-    """E = X sin(chi) + Z cos(chi), N = X cos(chi) - Z sin(chi), to the second order."""
+    """E = X sin(chi) + Z cos(chi) and N = X cos(chi) - Z sin(chi) hold to second order."""
     leg = a_leg(lat1, lon1, lat2, lon2)
     x, z, small = part * leg.length, side * R0, 100.0
     lat, lon = leg.from_xz(x, z)
@@ -93,24 +93,24 @@ def test_the_course_turns_small_displacements(lat1, lon1, lat2, lon2, part, side
     assume(abs(centric) < 1.5)
     chi = leg.course(lat, lon)
     for dx, dz in ((small, 0.0), (0.0, small)):
-        # X is an angle about the pole of the leg
+        # X is an angle about the pole of the leg.
         lat2, lon2 = leg.from_xz(x + dx / math.cos(z / R0), z + dz)
         north = R0 * (math.atan(FLATTENING2 * math.tan(lat2)) - centric)
         east = R0 * math.cos(centric) * math.remainder(lon2 - lon, 2 * math.pi)
-        # 100 m on a parallel whose radius is at least 0.07 R0, and on a circle of latitude
+        # 100 m on a parallel whose radius is at least 0.07 R0, and on a circle of latitude.
         bound = 2.0 * small ** 2 / R0 * (1.0 + math.tan(abs(centric)))
         assert east == pytest.approx(dx * math.sin(chi) + dz * math.cos(chi), abs=bound)
         assert north == pytest.approx(dx * math.cos(chi) - dz * math.sin(chi), abs=bound)
 
 
 def test_z_is_to_the_right():
-    """South of an eastward leg, east of a northward one."""
+    """Z is positive south of an eastward leg and east of a northward one."""
     assert Leg(0.0, 0.0, 0.0, 1.0).to_xz(-0.1, 0.5)[1] > 0.0
     assert Leg(0.0, 0.0, 1.0, 0.0).to_xz(0.5, 0.1)[1] > 0.0
 
 
 def test_both_ends_of_a_short_leg_are_on_it():
-    """Ten metres suffice for a great circle through both points, to rounding."""
+    """The great circle through points ten metres apart contains both to rounding."""
     rng = np.random.default_rng(5)
     worst = 0.0
     for _ in range(500):
@@ -118,7 +118,7 @@ def test_both_ends_of_a_short_leg_are_on_it():
         end = (lat + 2e-6 * math.cos(chi), lon + 2e-6 * math.sin(chi) / math.cos(lat))
         leg = Leg(lat, lon, *end)
         ends = np.array((leg.to_xz(lat, lon), leg.to_xz(*end)))
-        # and where the leg itself says they are
+        # The middle of the leg is where the leg itself computes it.
         middle = leg.to_xz(*leg.from_xz(0.5 * leg.length, 0.0))
         worst = max(worst, np.abs(ends - ((0.0, 0.0), (leg.length, 0.0))).max(), abs(middle[1]))
     print(f'\nlegs of 13 m: ends and middle off by {worst:.1e} m')
@@ -126,11 +126,11 @@ def test_both_ends_of_a_short_leg_are_on_it():
 
 
 def test_legs_change_at_the_bisector():
-    """Beside a corner of 90 deg the next leg begins on the line at 45 deg, either side."""
+    """At a corner of 90 deg the next leg begins on the line at 45 deg, on either side."""
     lat, lon = [0.0, 0.0, 0.02], [0.0, 0.02, 0.02]
     route = GreatCircleRoute(lat, lon)
     for side in (-1e-4, 1e-4):
-        # on the bisector, inside and outside the corner, in geocentric latitude
+        # On the bisector, inside and outside the corner, in geocentric latitude.
         up = math.atan(math.tan(side) / FLATTENING2)
         assert route.leg_at(up, 0.02 - side - 1e-9) == 0
         assert route.leg_at(up, 0.02 - side + 1e-9) == 1
@@ -140,7 +140,7 @@ def test_legs_change_at_the_bisector():
 
 
 def test_a_route_that_crosses_itself_keeps_its_order():
-    """Three sides of a square and on across the first: legs only go forwards."""
+    """Three sides of a square and across the first: legs only go forwards."""
     lat, lon = [0.0, 0.0, 0.02, 0.02, -0.02], [-0.02, 0.02, 0.02, 0.0, 0.0]
     route = GreatCircleRoute(lat, lon)
     way = [leg.from_xz(np.linspace(0.01 * leg.length, 0.99 * leg.length, 99), np.zeros(99))
@@ -167,7 +167,7 @@ BAD = [((55.0,), (37.0,), 'the route has 1 turning points; expected two or more'
 
 @pytest.mark.parametrize('lat, lon, sentence', BAD)
 def test_bad_points(lat, lon, sentence):
-    """One sentence that names the points and what was expected."""
+    """One sentence names the points and what was expected."""
     with pytest.raises(ValueError) as error:
         GreatCircleRoute.of_points(TurningPoints(lat, lon))
     assert str(error.value).startswith('motion.route.points: ')

@@ -22,14 +22,14 @@ SECOND = 1_000_000_000
 
 
 def with_gap(first_s=8.0, length_s=0.5):
-    """Return 20 s of record with a gap."""
+    """Return a record of 20 s with a gap."""
     t_ns = stamps(100.0)
     start = t_ns[0] + round(first_s * SECOND)
     return t_ns[(t_ns <= start) | (t_ns >= start + round(length_s * SECOND))]
 
 
 def test_a_gap_ends_the_solution():
-    """on_gap stop: the last state is that before the gap, and a note says so."""
+    """With on_gap stop the last state is the one before the gap, and a note says so."""
     t_ns = with_gap()
     got = run(*recorded(t_ns))
     assert got.states[-1].t_ns[-1] == 9 * SECOND and len(got.states) == 1
@@ -88,10 +88,10 @@ def _degrees(q_nb):
 
 def test_a_gap_is_bridged_by_straight_lines(capsys):
     """
-    on_gap bridge: the error is that of linear interpolation across the gap, and a note is written.
+    With on_gap bridge the error is that of linear interpolation, and a note says so.
 
-    Bound on the attitude: the largest second derivative of the rates (sinusoids of at most 0.7 Hz)
-    times T^3 / 12, T = 0.05 s, which is the error of the trapezoidal rule.
+    Bound on the attitude: the largest second derivative of the rates (their sinusoids have at most
+    0.7 Hz) times T^3 / 12, T = 0.05 s, which is the error of the trapezoid rule.
     """
     t_ns = with_gap(length_s=0.05)
     imu, reference = recorded(t_ns)

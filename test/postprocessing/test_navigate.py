@@ -71,10 +71,10 @@ def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
 
 def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_instants():
     """
-    For w = a + b t, f = c + d t means and instants give the same cross products in the increments.
+    For w = a + b t, f = c + d t the increments from means equal those from instant values.
 
-    The previous and the present interval differ in length, so that the scaling of the previous
-    mean is tested. Both are exact to third order in dt; they differ by rounding.
+    This interval and the previous one are unequal, so that the scaling of the earlier mean is
+    tested. Both are exact to third order in dt and differ by rounding.
     """
     a, b, c, d = np.random.default_rng(4).standard_normal((4, 3))
     before, now = 0.013, 0.007
@@ -140,7 +140,7 @@ def test_the_damped_channel_follows_the_height_of_the_reference():
     damped = run(imu, reference, vertical__channel='damped').comparisons[0].position.values[:, 2]
     growth = 1.0 + 2.0 * g / ellipsoid.SEMI_MAJOR * 300.0 ** 2 / 12.0
     assert abs(free / (0.5 * b * 300.0 ** 2) - growth) < 1e-3
-    # Triple pole at -1/20 s: after 300 s, 15 time constants, e^-15 (15^2 / 2) b 20^2 is left.
+    # Triple pole at -1/20 s: after 300 s = 15 time constants, e^-15 (15^2 / 2) b 20^2.
     assert abs(damped[-1]) < 4.0 * math.exp(-15.0) * 112.5 * b * 400.0
     assert np.abs(damped).max() < b * 400.0
 

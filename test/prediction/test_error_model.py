@@ -19,7 +19,7 @@ def coefficients():
 
 
 def through(run, cuts=()):
-    """Return the states (n, 7) of a run of the loop in blocks."""
+    """Return the states (n, 7) of the loop run in blocks."""
     columns, states = coefficients(), np.empty((COUNT, 7))
     state, ends = START, [*cuts, COUNT]
     for first, stop in zip([0, *cuts], ends):
@@ -30,7 +30,7 @@ def through(run, cuts=()):
 
 @pytest.fixture
 def by_steps():
-    """Return the states of single steps."""
+    """Return the states from single steps."""
     state, states = START, []
     for row in zip(*(c.tolist() for c in coefficients())):
         omega_in, f_n, force, turn, pull = map(tuple, row)

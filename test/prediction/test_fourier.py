@@ -1,4 +1,4 @@
-"""The Fourier coefficients in real arithmetic are those of NumPy."""
+"""The Fourier coefficients by real arithmetic agree with those of NumPy."""
 
 import numpy as np
 import pytest

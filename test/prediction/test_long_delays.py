@@ -1,4 +1,4 @@
-"""Delays of milliseconds, and the motion before the first sample, predicted and streamed."""
+"""Delays of milliseconds, and the motion before the first sample: predicted and simulated."""
 
 import numpy as np
 import pytest
@@ -111,7 +111,7 @@ def test_histories_of_every_output_are_predicted(output, model, history):
 
 
 def test_long_turns_are_the_exact_response_of_the_channel():
-    """The mean of R (w x D) over a period is the Fourier sum of exp(-j w tau), to 1e-9 of it."""
+    """The mean of R (w x D) over a period is the Fourier sum of exp(-j w tau), to 1e-6."""
     chosen = settings({**LONG, 'earth.rotation': False})
     generator = chosen.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)

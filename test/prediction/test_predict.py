@@ -27,7 +27,7 @@ def harmonics(seed):
 
 
 def cases():
-    """Return name, settings and the rate w of each motion the drift is measured for."""
+    """Return name, settings and rate w of each motion whose drift is measured."""
     yield 'motion 1', MOTION_1, 2 * np.pi
     yield 'motion 2', MOTION_2, 1.0
     for seed in RANDOM:

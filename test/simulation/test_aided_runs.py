@@ -20,7 +20,7 @@ FLIGHT = ('duration_s:=20.0', *aided_runs.FLIGHT[1:])
 
 
 def flights(*assignments, runs=(0, 3), wanted_ns=WANTED_NS):
-    """Return the settings and the AidedFlights of runs of a short flight."""
+    """Return the settings and the AidedFlights for runs of a short flight."""
     settings = aided_runs.settings(*assignments, flight=FLIGHT)
     motion = read_motion(settings.simulation.motion_generator)
     return settings, simulate_aided_runs(settings, motion, runs, wanted_ns)
@@ -64,13 +64,10 @@ def test_the_instants_are_those_wanted():
 
 
 def test_nees_is_that_of_the_covariance():
-    """
-    NEES of each block equals that computed with NumPy; quantities that are given exactly are no
-    states.
-    """
+    """Every block agrees with NumPy; states held or given exactly are not counted."""
     settings, (flight, _) = flights()
     squares, freedoms = flight.nees()
-    # Position and velocity East and North, attitude, two triads of biases, and the mounting.
+    # East and north of position and velocity, attitude, two biases of three, and the mounting.
     assert freedoms[1:].tolist() == [[2, 2, 3, 14]] * 4 and np.isnan(squares[0]).all()
     note = flight.result.notes[-1]
     rows = [k for k, name in enumerate(note.states) if name not in note.given]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 pytestmark = pytest.mark.skipif(compilation.numba() is None, reason='Numba is not installed')
-# x86-64 and aarch64
+# Patterns for x86-64 and aarch64.
 PACKED = r'\bv?(?:mul|add|sub)pd\b|\bf(?:mul|add|sub)\s+v\d+\.2d'
 SINGLE = r'\bv?(?:mul|add|sub)sd\b|\bf(?:mul|add|sub)\s+d\d+,'
 

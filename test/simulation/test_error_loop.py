@@ -14,7 +14,7 @@ DEG = math.pi / 180.0
 
 
 def many(aiding, gains, k_z, duration_s):
-    """Return half the range of beta of some cases, deg."""
+    """Return half the range of beta for several cases, deg."""
     cases = ReducedCases(np.array(gains), np.array(k_z), np.full(len(gains), 100.0))
     flights = fly_reduced(loop(), aiding, cases, duration_s, MOST)
     return np.array([half_range(beta) for beta in flights.beta.T]) / DEG
@@ -71,7 +71,7 @@ def test_paper_corrected_leaves_the_leg_quietly():
 
 
 def test_a_large_start_diverges_where_a_small_one_is_quiet():
-    """paper_corrected, N = 1000, K = 1, k_z = 0.3: diverges from 100 m and decays from 10 m."""
+    """paper_corrected, N = 1000, K = 1, k_z = 0.3, linearly stable: z0 = 100 m and 10 m."""
     assert half_range(flown(paper(1000, 1.0), 0.30).beta[:, 0]) == pytest.approx(MOST, rel=0.01)
     assert half_range(flown(paper(1000, 1.0), 0.30, 10.0).beta[:, 0]) < 0.05 * DEG
 

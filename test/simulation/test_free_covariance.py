@@ -80,7 +80,7 @@ def test_the_prediction_of_motion_2():
 
 
 def is_positive(p):
-    """Return whether a symmetric matrix is positive semi-definite, in units of its sigmas."""
+    """Return whether a symmetric matrix is positive semidefinite, scaled to correlations."""
     size = np.sqrt(np.diag(p))
     return np.array_equal(p, p.T) and np.linalg.eigvalsh(p / np.outer(size, size))[0] > -1e-12
 

@@ -17,7 +17,7 @@ from ins_sim.core.guidance.margin import phase_margin
 from ins_sim.core.guidance.steering import margin_sentence
 
 INF = math.inf
-# K_v: (k_z, rad/s) at N = 10, 100, 1000, as published, for held commands.
+# K_v: k_z and rad/s at N = 10, 100, 1000, as published for commands that are held.
 SLIDING = {0.1: (('.819', '.336'), ('.899', '.248'), ('1.31', '.095')),
            0.5: (('.203', '.526'), ('.232', '.326'), ('.534', '.118')),
            1.0: (('.141', '.614'), ('.158', '.345'), ('.440', '.122')),
@@ -31,7 +31,7 @@ LENGTHS = (10, 100, 1000)
 
 def meets(value, printed):
     """
-    Return whether a number is the printed one, within 0.6 of its last digit.
+    Return whether a number agrees with the printed one, within 0.6 of its last digit.
 
     0.5 is rounding; the mean over a window, by trapezoids or exactly, changes it by 4e-4.
     """
@@ -55,9 +55,9 @@ def test_published_limits_with_windows_that_slide(k_v, figures):
 @pytest.mark.parametrize('gain', PAPER)
 def test_published_limits_of_paper_corrected(gain):
     """
-    Positive and negative limits of paper_corrected agree with the published ones.
+    Positive and negative limits agree with the published ones.
 
-    At N = 1000, K = 0.1, published as having none, there is one at 7.3, far beyond any real meter.
+    At N = 1000, K = 0.1 no limit was published; there is one at 7.3, far beyond any real meter.
     """
     for cycles, (k_z, omega, negative) in zip(LENGTHS, PAPER[gain]):
         found = limits(loop(ramps=False), paper(cycles, gain))
@@ -73,10 +73,10 @@ def test_published_limits_of_paper_corrected(gain):
                                                     (20, '.151', 2)])
 def test_published_limits_with_latency(latency, k_z, unstable):
     """
-    Limits at N = 100, K_v = 1 for a latency of 0, 0.05 and 0.2 s.
+    Limits for N = 100, K_v = 1 and latencies 0, 0.05 and 0.2 s.
 
-    At 0.2 s the limit of the slow mode is as published, but a fast mode grows for every k_z: the
-    present velocity is corrected by a mean of the past.
+    At 0.2 s the limit of the slow mode is as published, but a fast mode grows for any k_z: the
+    solution used for steering is corrected with a mean of the past.
     """
     found = limits(loop(latency, ramps=False), sliding(100, 1.0))
     assert meets(found.positive.k_z, k_z) and found.unstable == unstable
@@ -107,7 +107,7 @@ def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
 @pytest.mark.parametrize('cycles, gain', [(10, '1.02'), (50, '.417'), (100, '.354'),
                                           (200, '.369'), (500, '.339'), (1000, '.932')])
 def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gain, figures):
-    """At k_z = 0 it is unstable above the published gain, found by bisection, and stable below."""
+    """At k_z = 0 the critical gain is as published, by bisection; the loop is quiet below."""
     low, high = 0.0, 2.0
     assert growth(loop(ramps=False), block(cycles, 0.05), 0.0).growth < 0.0
     while high - low > 1e-5:
@@ -121,7 +121,7 @@ def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gai
 
 
 def test_growth_just_inside_the_limit():
-    """At k_z 0.15 the mode decays at 0.0048 1/s and 0.345 rad/s, as published."""
+    """k_z = 0.15 decays at 0.0048 1/s with 0.345 rad/s, as published."""
     mode = growth(loop(ramps=False), sliding(100, 1.0), 0.15)
     assert meets(mode.growth, '-.0048') and meets(mode.frequency, '.345')
 
@@ -181,10 +181,10 @@ def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
 
 
 def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
-    """At K_v 0.001 1/s it equals ``margin.phase_margin`` with exact navigation."""
+    """At K_v = 0.001 1/s it equals ``margin.phase_margin``, with the command a period late."""
     lateral, slow = loop(), aided_margin(loop(), sliding(100, 0.001))
     alone = phase_margin((lateral.k1, lateral.k2), lateral.side_force, lateral.lag_s, PERIOD_S)
-    # The crossover lies between two of 20001 frequencies, and K_v lowers it slightly.
+    # The crossover is between two of 20001 frequencies, and K_v lowers it slightly.
     assert slow.margin == pytest.approx(alone, abs=5e-3)
 
 

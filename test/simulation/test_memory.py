@@ -1,4 +1,4 @@
-"""Memory grows with the blocks, not with the run; blocks of any length give the same bits."""
+"""Memory grows with the block size, not with the run; any block length gives the same bits."""
 
 import tracemalloc
 
@@ -18,7 +18,7 @@ WHOLE = 384
 
 
 def peak_of(work):
-    """Return the most memory that a function allocates, bytes."""
+    """Return the peak memory that a function allocates, bytes."""
     tracemalloc.start()
     try:
         work()
@@ -58,10 +58,10 @@ def test_a_prediction_without_histories_has_the_same_figures():
 
 
 def test_a_spooled_run_takes_the_memory_of_its_blocks(tmp_path, monkeypatch):
-    """Ten times the run needs a quarter of the memory of its additional samples as arrays."""
+    """Ten times the run needs a quarter of the memory of its further samples as arrays."""
     monkeypatch.setattr(inertial, 'BLOCK', 256)
     peaks = []
-    # The first run loads objects that stay, such as compiled loops.
+    # The first run loads what stays in memory, such as compiled loops.
     for duration_s in (100.0, 10.0, 100.0):
         chosen = settings(MOTION_2, duration_s=duration_s)
         motion = read_motion(chosen.motion_generator)

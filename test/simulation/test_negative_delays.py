@@ -1,4 +1,4 @@
-"""Delays of any size and sign on a stream of truth, with the zero-delay twin."""
+"""Delays of any size and sign on streamed truth, with the zero-delay twin."""
 
 import json
 
@@ -16,7 +16,7 @@ EARLY = {'motion.kind': 'two_axis', 'source': 'stream', 'duration_s': 5.0}
                                     (0.0, -1e6, 1e6), (-1e6, -1e6, -1e6)])
 @pytest.mark.parametrize('where', ['gyro', 'accelerometer'])
 def test_any_delay_is_simulated_with_its_twin(delays, where):
-    """The twin has the instants of the run, which ends where the truth no longer covers it."""
+    """The twin has the instants of the run, which ends where the truth does not suffice."""
     chosen = settings({**EARLY, **{f'{where}.delay_us.{axis}': delay
                                    for axis, delay in zip('xyz', delays)}})
     result = run_offline(chosen)

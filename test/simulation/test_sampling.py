@@ -1,4 +1,4 @@
-"""Latency, jitter and drop-outs through the chain, and the choice of the orientation algorithm."""
+"""Latency, jitter and drop-outs through the chain, and the choice of attitude algorithm."""
 
 import numpy as np
 import pytest
@@ -40,11 +40,11 @@ def test_stamps_taken_at_their_word_cost_accuracy():
         found = run_offline(settings({**values, 'seed': seed}, duration_s=20.0), twin=False)
         assert not found.faults
         sizes.append(np.linalg.norm(found.errors.attitude[-1]))
-    # |w'| = psi' gamma' cos(30 deg) of the horizontal rate, which rotates in the body
+    # |w'| = psi' gamma' cos(30 deg) of the horizontal rate, which rotates in the body.
     expected = 1.0 * 0.5 * np.cos(np.radians(30.0)) * 0.01 * 200e-6 * np.sqrt(2000.0)
     size = np.sqrt(np.mean(np.square(sizes)))
     print(f'\nattitude off by {size:.2e} rad, root mean square; expected {expected:.2e}')
-    # A chi-square variable with about 8 degrees of freedom.
+    # Chi-square with about 8 degrees of freedom.
     assert 0.4 * expected < size < 1.8 * expected
     wild = run_offline(settings({**values, 'sampling.jitter_us': 900.0}, duration_s=5.0),
                        twin=False)
@@ -95,7 +95,7 @@ def test_orientation_algorithms_agree_to_their_truncation():
     chosen = settings(MOTION_2, duration_s=600.0)
     results = compare_orientations(chosen, read_motion(chosen.motion_generator))
     assert [r.kind for r in results] == ['quaternion', 'poisson', 'euler_vector']
-    # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms
+    # sqrt(1 + 0.25 + 2 x 0.5 x sin 30 deg) rad/s, 60000 steps of 10 ms.
     bound = 60000 * (np.sqrt(1.75) * 0.01) ** 5 / 120.0
     for r in results:
         print(f'\n{r.kind}: off the quaternion by {r.apart:.2e} rad (bound {bound:.2e}), drift '

@@ -173,7 +173,7 @@ def test_an_autopilot_of_ones_own(monkeypatch):
 
 
 def test_phase_margin_is_that_of_the_characteristic_equation():
-    """With the delay that exhausts the margin, s = i w solves the characteristic equation."""
+    """With a delay equal to the margin, s = i w is a root; a warning sentence says so."""
     gains, force, lag_s = (0.0125, 0.04), 20.0, 0.4
     w = np.array([1e-3 * k for k in range(1, 5000)])
     loop = force * (gains[0] + 1j * w * gains[1]) / ((1j * w) ** 2 * (1.0 + 1j * w * lag_s))
