@@ -27,7 +27,7 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
         log.clock.now_s += 0.5
     assert len(log.lines) == 15
     assert log.lines[0].endswith('expected 0.01 s')
-    # After 1, 2, 4, ... 64 s, and then every 64 s.
+    # Logged after 1, 2, 4, ... 64 s, and then every 64 s.
     assert log.lines[1].endswith('(1 more of this kind before it)')
     assert log.lines[2].endswith('(3 more of this kind before it)')
     assert log.lines[-1].endswith('(127 more of this kind before it)')

@@ -103,7 +103,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         assert len(heard[name]) == len(states)
         difference = np.abs(got - np.array(rows))
         if name == 'aided/odometry':
-            # The rate is that of the gyros relative to the Earth.
+            # The angular rate is measured by the gyros and relative to the Earth.
             assert np.abs(got[:, 46:49]).max() > 1e-6
             difference[:, 46:49] = 0.0
         bound = most.get(name, 8e-9)

@@ -63,7 +63,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         stream.wait_counts({topics.GNSS_FIX: 21, topics.GNSS_VELOCITY: 18})
         writer = GnssWriter(0)
         for fix_ in expected[:21]:
-            # DDS pads to four bytes.
+            # DDS pads messages to a multiple of four bytes..
             assert stream.raw['gnss/fix'][fix_.t_ns].startswith(writer.fix(fix_))
             assert (fix_.t_ns in stream.raw['gnss/velocity']) == fix_.valid
             assert not fix_.valid or stream.raw['gnss/velocity'][fix_.t_ns].startswith(

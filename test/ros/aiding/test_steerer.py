@@ -12,7 +12,7 @@ from support.hostile.flight import HostileFlight, STEERED
 pytest.importorskip('rclpy')
 
 NAME = topics.AIDED_ODOMETRY.name
-# Near enough to the leg that the command is not at its limit.
+# So near to the leg that the command is not at its limit.
 NEAR = {'motion.kind': 'guided', 'rate_hz': 100.0, 'topics.depth': 500, 'duration_s': 0.0,
         'motion.guided.offset_m': 5.0, 'time.epoch_s': 0}
 # The doubles of a message of Odometry.
@@ -285,7 +285,7 @@ def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
         assert lock.may_send(0.02 * patience_s)
     assert 'no solution of 1.000000000 s on aided/odometry in 5 s; expected that' in flight.said
     assert 'guidance.latency_s must be larger): the last one is used' in flight.said
-    # The time of a pause does not count.
+    # A pause does not count as waiting.
     assert not lock.may_send(0.0)
     flight.fed.clock.now_s += 100.0
     flight.generator._on_pause(SimpleNamespace(data=False), SimpleNamespace())

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.live
 
 FLIGHT = {'motion.kind': 'racetrack'}
 VALUES = {'window.cycles': 100, 'window.latency_ms': 50.0, 'seed': 3, 'limits.height_max_m': 2e4}
-# Without covariances, as the truth is sent.
+# Without covariances, like the published truth.
 INS = replace(topics.INS_ODOMETRY, runs=None)
 BOTH = (topics.TRUTH_ODOMETRY, INS)
 

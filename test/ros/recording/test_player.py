@@ -195,7 +195,7 @@ def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
         table = bag.arrays('ins/odometry', names)
     heard = listener.heard['ins/odometry']
     assert sorted(heard) == table['stamp_ns'].tolist()
-    # Every stamp was solved at least twice, the last time as in the original.
+    # Every stamp was processed at least twice, the last time as in the original run.
     expected = np.concatenate([table[n] for n in names], axis=1)
     assert np.array_equal([heard[t] for t in sorted(heard)], expected)
 

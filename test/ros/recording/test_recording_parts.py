@@ -158,7 +158,7 @@ def stamps_with_losses(count, lost):
     # A pause is no hole, nor is a run that restarts.
     ([*range(0, 10**9, 10**7), *range(10**12, 10**12 + 10**9, 10**7)], 0, 10**7),
     ([*range(0, 10**9, 10**7), *range(0, 10**9, 10**7)], 0, 10**7),
-    # Stamps that jitter by a tenth of the period, one of ten lost.
+    # Stamps jitter by a tenth of the period; one of ten samples is lost.
     ([k * 10**7 + (k * 7919 % 1000 - 500) * 1000 for k in range(2000) if k % 10], 199, None)])
 def test_holes(stamps, missing, step_ns):
     """Holes are counted by the usual step of the stream itself."""
