@@ -19,8 +19,8 @@ ROOT = Path(__file__).resolve().parents[1]
 TERMS = ('ned', 'nees', 'empy', 'shepperd', 'fro')
 # The text is plain ASCII, and comparisons of exact words can be meant.
 UNUSED = ('typography', 'uncomparables', 'misc.phrasal_adjectives')
-# What proselint takes for something else: a name, and "the first of all runs".
-MEANT = ("'OMG'", "'first of all'")
+# What proselint takes for something else: a name, "the first of all runs", and decimation.
+MEANT = ("'OMG'", "'first of all'", "'decimate'")
 # Of repeated words only plain ones count: constants, axes and numbers may follow each other.
 REPEATED = re.compile(r"'([a-z]{2,})\s\1'")
 
@@ -38,6 +38,8 @@ def prose_of_module(text):
              if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))]
     found = '\n\n'.join(ast.get_docstring(node) or '' for node in nodes)
     found = re.sub(r'``[^`]*``', ' _ ', found)
+    # The names of parameters, which descriptions follow, are no part of the sentence.
+    found = re.sub(r'^[\w, ]+ : ', 'The ', found, flags=re.MULTILINE)
     return re.sub(r'^(    |-+$).*$', '', found, flags=re.MULTILINE)
 
 

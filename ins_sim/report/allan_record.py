@@ -1,7 +1,7 @@
 """
 Find the longest evenly sampled part of a recorded IMU, as needed for an Allan deviation.
 
-Samples count as evenly sampled if their stamps follow one rate in the long run. A single stamp may
+Samples count as evenly sampled if their stamps follow one rate over the record. A single stamp may
 be late, early or part of a burst; it is corrected if the samples before and after it are within
 half an interval of the even rate. Otherwise samples were lost or the clock has jumped, and the
 record is cut there.

@@ -1,7 +1,7 @@
 """
 End a process that hangs during its shutdown.
 
-The Fast DDS of the PyPI wheels can wait for ever in DomainParticipant::set_listener while holding
+The Fast DDS of the PyPI wheels can wait forever in DomainParticipant::set_listener while holding
 the interpreter lock, if another participant disappears at the moment in which ours is destroyed:
 its wait_until overflows (eProsima/Fast-DDS 6513). When several nodes end together this happens
 once in some thousand times. A Python thread could not run then, so a timer of the C library is
