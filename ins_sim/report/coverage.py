@@ -50,5 +50,5 @@ def coverage_lines(settings, prediction):
         north, east = prediction.largest[1], prediction.largest[0]
         lines.append(f'the errors of the instruments are on ({", ".join(names)}), which it does '
                      f'not cover: its {north:.3g} m North and {east:.3g} m East are the part '
-                     'without them, and stand beside no measured error')
+                     'without them, and are not compared with measured errors')
     return lines
