@@ -6,7 +6,7 @@ from concurrent.futures import CancelledError, FIRST_COMPLETED, wait
 # Number of attempts to compute a block whose worker ends. During the last one no other block is
 # running, so that this block is certainly the cause.
 ATTEMPTS = 3
-# Blocks submitted for each that is computed at a time: the next one already waits at the worker.
+# Number of submitted blocks for each worker: while it computes one, the next already waits.
 AHEAD = 2
 # Interval at which the executor is checked, s.
 LOOK_S = 1.0
@@ -23,7 +23,7 @@ def run_blocks(work, blocks, executor, store=None, progress=None):
         the blocks must be picklable. An error raised by it ends the study.
     blocks : sequence
     executor : LocalProcesses, ThisProcess or Cluster
-        Of ``executors.open_executor``.
+        From ``executors.open_executor``.
     store : BlockStore, optional
         Keeps the results of finished blocks; blocks in it are not computed again.
     progress : callable, optional

@@ -8,7 +8,7 @@ PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent(parent, number=signal.SIGTERM):
-    """Receive a signal when the parent (its process id) ends; end now if it has ended."""
+    """Let this process get a signal when its parent (process id) ends, at once if it has."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(number))
     if os.getppid() != parent:
         os.kill(os.getpid(), number)

@@ -44,7 +44,7 @@ class BlockStore:
 
     def __init__(self, folder, identity, replace=False):
         self.folder = Path(folder)
-        # As it is read back from the file, for the comparison.
+        # JSON returns tuples as lists; compare the identity in that form.
         identity = json.loads(json.dumps(identity))
         self._identity = identity
         before = self._before()

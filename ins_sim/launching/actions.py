@@ -90,12 +90,12 @@ def _ends(actions, texts):
 
 
 def _on_end(name, actions, texts):
-    """Return what is done at the end of a process, which launch takes for the end of a run."""
+    """Return the handler of the end of a process, which is the end of the run."""
     def ended(event, context):
         if context.is_shutdown:
             return None
         if event.returncode:
-            # launch then ends everything with an exit code other than 0.
+            # After this error launch ends all processes, with an exit code other than 0.
             raise RuntimeError(f'{name} ended with exit code {event.returncode}')
         if arguments.BOOLEANS[texts['shutdown'].lower()]:
             return [Shutdown(reason=f'{name} has ended')]

@@ -120,7 +120,7 @@ TABLE = (
     _paper(0.30, 1000, 1.0, QUIET, offset_m=10.0),
     LoopCase(0.15, 'window_kf', 1000, published=QUIET),
     LoopCase(0.15, 'eskf', 1000, published=QUIET))
-# Parameters in addition to those of the study, by the name of what they add.
+# {condition: parameters that add it to those of the study}
 CONDITIONS = {
     'perfect meter': (),
     'noise of the meter': (

@@ -41,7 +41,7 @@ def growth_rate(t_s, values):
     inside = size[1:-1]
     k = 1 + np.flatnonzero((inside > size[:-2]) & (inside >= size[2:]))
     if len(k) < FEWEST:
-        raise ValueError(f'an oscillation with {len(k)} peaks; expected at least {FEWEST}')
+        raise ValueError(f'the oscillation has {len(k)} peaks; expected at least {FEWEST}')
     # Maximum of the parabola through a peak and its neighbours.
     low, top, high = size[k - 1], size[k], size[k + 1]
     peaks = top + (high - low) ** 2 / (8.0 * (2.0 * top - low - high))

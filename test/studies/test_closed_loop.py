@@ -77,7 +77,7 @@ def test_what_is_measured_of_an_oscillation():
     assert growth_rate(t, x) == pytest.approx(-0.005, abs=2e-5)
     assert half_range(np.cos(0.345 * t)) == pytest.approx(1.0, abs=1e-3)
     assert frequency(t, np.zeros(len(t))) is None
-    with pytest.raises(ValueError, match='an oscillation with 0 peaks; expected at least 3'):
+    with pytest.raises(ValueError, match='the oscillation has 0 peaks; expected at least 3'):
         growth_rate(t, t)
 
 

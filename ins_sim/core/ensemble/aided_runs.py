@@ -63,10 +63,11 @@ def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
 @paused_in_blocks
 def _rounds(settings, motion, recent):
     """
-    Yield blocks of ideal ImuSamples, each with the Truth for the other instruments since the last.
+    Yield blocks of ideal ImuSamples, each with the Truth that the other instruments see.
 
-    The truth is a list of parts, at the instants of the generator up to the end of the block. The
-    rest of it comes at the end with an empty block. recent: RecentTruth of the motion.
+    The Truth is a list of parts, at the instants of the generator from the end of the last block
+    to the end of this one. After the last block the remaining Truth follows with an empty block.
+    recent: RecentTruth of the motion.
     """
     generator, sensor = settings.motion_generator, settings.imu_sensor
     truths, rest, ideal = truth_blocks(generator, recent), None, None

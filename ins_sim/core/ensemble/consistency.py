@@ -66,7 +66,7 @@ def merged_sums(a, b):
 
 class FixSums(NamedTuple):
     """
-    What the filters did with the fixes of one instrument, at the k instants of the fixes.
+    The use that the filters made of the fixes of one instrument, at the k instants of the fixes.
 
     Attributes
     ----------

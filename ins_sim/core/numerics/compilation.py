@@ -28,7 +28,7 @@ from .compile_cache import cache_folder
 
 LOG = logging.getLogger('ins_sim')
 PACKAGE = __name__.partition('.')[0]
-# Functions of floats, arrays and Series, and what a compiled copy calls instead.
+# {function of floats, arrays and Series: function of floats that a compiled copy calls instead}
 REPLACED = {elementary.sqrt: math.sqrt, elementary.parts: math.frexp,
             elementary.as_number: elementary.float_as_number,
             elementary.times_power_of_two: elementary.float_times_power_of_two,
@@ -40,7 +40,7 @@ PLAIN_SAMPLES = 8192
 # If Numba is already loaded, the threshold for one more loop is this fraction of PLAIN_SAMPLES.
 PART_OF_CODE = 0.125
 _taken, _broken = {}, set()
-# Numba's cache folder is a setting of the whole process, which is changed while a copy is made.
+# Lock: Numba's cache folder, a setting of the whole process, is changed while a copy is made.
 _copying = RLock()
 _plain_only = ContextVar('plain_only', default=False)
 
@@ -158,8 +158,8 @@ def _spare_linear_algebra():
     """
     Load Numba's array functions without SciPy's linear algebra, which would take 0.2 s.
 
-    Numba imports the latter only to find out whether it exists, and again where compiled code
-    needs it.
+    Numba imports SciPy's linear algebra only to find out whether it exists. Compiled code that
+    needs it imports it later.
     """
     name = 'scipy.linalg.cython_blas'
     if name in sys.modules or 'numba.np.arraymath' in sys.modules:
@@ -225,7 +225,7 @@ class _Graph:
         return self._copies[function]
 
     def _copied(self, value, attributes):
-        """Return the counterpart, in a copy, of a global whose listed attributes are used."""
+        """Return what a copy uses in place of a global; attributes: those of it that it uses."""
         if isinstance(value, FunctionType) and _ours(value.__module__):
             return self.copy(value)
         if isinstance(value, ModuleType) and _ours(value.__name__):

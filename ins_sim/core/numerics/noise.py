@@ -3,8 +3,8 @@ Random numbers as pure functions of (seed, run, name) and the index of the sampl
 
 A stream gives normal and uniform numbers by index. They are computed in blocks by a counter-based
 generator (Philox; Salmon et al., SC11, 2011), so the numbers of a sample do not depend on earlier
-calls: neither on cutting, loss, restart or worker, nor on other streams. ``processes`` makes
-Gauss-Markov processes and random walks from them.
+calls or other streams: blocks of any length, losses, restarts and workers change nothing.
+``processes`` makes Gauss-Markov processes and random walks from them.
 """
 
 from hashlib import blake2b

@@ -167,7 +167,7 @@ def between(c, s, ends, numbers):
 
     Parameters
     ----------
-    c, s : coefficients of each level, beginning with that of neighbouring samples
+    c, s : coefficients of each level, beginning with the level of neighbouring samples
     ends : (count + 1, m) values at the knots
     numbers : (count, length, m) normal numbers; length must be a power of two
     """

@@ -60,6 +60,6 @@ class Sensor:
         Returns
         -------
         list
-            A sensor with a record type returns that instead, an IMU for example ImuSamples.
+            A sensor may return a record of arrays instead; an IMU returns ImuSamples.
         """
         return [reading for sample in self.samples(truth) for reading in self.push(*sample)]

@@ -19,10 +19,10 @@ class SampleOrder:
     """
     Decides by its stamp what happens to a sample, so that as few as possible are dropped.
 
-    NEXT: the sample follows the last one. REPLACE: it replaces the last one, which had the same
-    stamp or one ahead of its time. HOLD: it is far ahead; the next sample shows whether time has
-    leapt or this stamp is wrong. RELEASE: time has leapt; use the held sample and then this one.
-    DROP: drop it. RESTART: time has jumped back for good.
+    NEXT: the sample follows the last one. REPLACE: it replaces the last one, whose stamp was the
+    same or too late. HOLD: it is far ahead; the next sample shows whether time has leapt or this
+    stamp is wrong. RELEASE: time has leapt; use the held sample and then this one. DROP: drop it.
+    RESTART: time has jumped back for good.
     """
 
     def __init__(self):
@@ -60,7 +60,7 @@ class SampleOrder:
         if t_ns > held_ns:
             self._before_ns, self._last_ns = held_ns, t_ns
             return RELEASE
-        # The stamp of the held sample was ahead of its time.
+        # The stamp of the held sample was too late; that sample is not used.
         if t_ns - self._last_ns > gap_ns:
             self._held_ns = t_ns
             return HOLD

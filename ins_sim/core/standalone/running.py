@@ -91,7 +91,7 @@ class RunningNavigation:
             navigator.bridge_next(self._step_ns)
         solution = navigator.step(t_ns, omega, f, self._heights.at(t_ns))
         if not first and (runs_away(solution) or not all(map(math.isfinite, solution[4]))):
-            raise ValueError(f'the solution runs away at {seconds(t_ns)} and is stopped: check '
+            raise ValueError(f'the solution diverges at {seconds(t_ns)} and is stopped: check '
                              'the initial values and the units of the IMU')
         self._before = self._navigator, self.t_ns
         self._navigator, self.t_ns = navigator, t_ns

@@ -6,7 +6,7 @@ import numpy as np
 
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 
-# Number of steps from which the typical one is found.
+# Number of steps whose median is the typical step.
 MOST_STEPS = 1000
 # Number of consecutive samples older than the newest one after which the clock has jumped back.
 JUMP = 10

@@ -101,7 +101,7 @@ class StandstillStream:
         return None
 
     def _look(self):
-        """Start the search again if a vehicle at rest cannot have the force of the interval."""
+        """Restart the search if the mean force of the interval is impossible at rest."""
         try:
             self._check(np.mean([w.force for w in self._search.run], axis=0))
         except ValueError as error:

@@ -15,7 +15,7 @@ from ins_sim.core.simulation.free_covariance import StartSigmas
 
 # Time for which a start on the move keeps samples for a late fix, s.
 KEPT_S = 10.0
-# On the move, largest difference of the mean specific force of the first readings from gravity.
+# On the move, the mean specific force of the first readings may differ from gravity by this much.
 MOST_OFF_M_S2 = 6.0
 
 

@@ -10,7 +10,7 @@ MOST = 10_000
 
 class VerticalReference:
     """
-    The last height whose stamp is not later than that of a reading; either may arrive first.
+    Gives each reading the newest height that is not later; either of the two may arrive first.
 
     Heights of a barometer are shifted so that the first one equals the height of the start.
     """

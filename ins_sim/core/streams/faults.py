@@ -37,7 +37,7 @@ class StreamFault(ValueError):
 
 
 def half_turn_sentence(name, t_ns, rate, interval_s):
-    """Return the message for a rate (rad/s) at which an IMU interval turns half a turn or more."""
+    """Return the message for a rate (rad/s) of half a turn or more within an IMU interval."""
     return (f'{name} at {seconds(t_ns)} turns at {rate:.4g} rad/s, {rate * interval_s:.3g} rad in '
             f'an interval of the IMU; expected less than half a turn, {math.pi:.3g} rad: raise '
             f'rate_hz of imu_sensor above {rate / math.pi:.4g} Hz, or set output integrated')

@@ -30,8 +30,8 @@ class MatchedStreams:
     Attributes
     ----------
     processed_ns : motion time of the last IMU sample that was used, or None
-    faults : faults found after samples that were still waiting, such as a gap, because they cannot
-        be raised when they are pushed; the owner removes them
+    faults : faults, such as a gap, of samples that had to wait behind others; the push methods
+        could not raise them. The owner removes them
     """
 
     def __init__(self, settings, truth_length=TRUTH_LENGTH):
@@ -82,7 +82,7 @@ class MatchedStreams:
         return False
 
     def go_on(self):
-        """Stop waiting for anything but the truth, as too many samples wait; return outputs."""
+        """Wait for nothing but the truth any longer: too many samples wait; return outputs."""
         return []
 
     def push_imu(self, t_ns, omega, f):

@@ -17,7 +17,7 @@ class LastStamps:
         return self._before_ns is not None and self._before_ns < t_ns < self._newest_ns
 
     def was_of_the_past(self, t_ns):
-        """Return whether the newest stamp was a stray of the past: t_ns continues the other."""
+        """Return whether the newest stamp was a stray of the past: t_ns follows the one before."""
         return self._before_ns is not None and self._newest_ns < self._before_ns < t_ns
 
     def take(self, t_ns):
@@ -60,13 +60,13 @@ class RestartDetector:
         return self._lead == 0
 
     def first_jumps(self, t_ns, second_ns):
-        """Register a jump of the first stream back to t_ns; second_ns: the second's, or None."""
+        """Register a jump of the first stream to t_ns; second_ns: last stamp of the second."""
         # A second stream that has not passed t_ns does not have to jump back.
         self._counted[0] = self._lead < 0 or second_ns is not None and second_ns > t_ns
         self._lead += self._counted[0]
 
     def second_jumps(self, t_ns, first_ns):
-        """Register a jump of the second stream back to t_ns; first_ns: the first's, or None."""
+        """Register a jump of the second stream to t_ns; first_ns: last stamp of the first."""
         self._counted[1] = self._lead > 0 or first_ns is not None and first_ns > t_ns
         self._lead -= self._counted[1]
 

@@ -109,7 +109,7 @@ def make_figures(sources, read_nodes, read_motion):
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f'two figures are named {name}; expected files of different names, '
-                             'as the figures bear them')
+                             'because a figure is named after its file')
     figures = []
     for name, path, assignments in sources:
         nodes = read_nodes([path], assignments, READ_NODES, KNOWN_NODES)
@@ -161,7 +161,7 @@ def _check(shows, simulation):
     if motion.kind == 'rocking' and not motion.rocking.frequency_hz:
         raise ValueError('motion.rocking.frequency_hz is 0 with figure rocking; expected more')
     if sensor.gyro.delay_us == DelaysUs():
-        raise ValueError('gyro.delay_us is 0 on every axis; expected a late channel')
+        raise ValueError('gyro.delay_us is 0 on every axis; expected a delay on one axis or more')
     initial = simulation.strapdown.initial
     for name, given, none in (
             ('gyro.model', sensor.gyro.model, 'ideal'),

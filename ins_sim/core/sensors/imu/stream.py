@@ -214,7 +214,7 @@ class StreamImu(Sensor):
 
 class PacedImu(Sensor):
     """
-    The IMU that evaluates the motion of its own parameters.
+    The IMU that evaluates the motion which its own parameters describe.
 
     Of the stream it uses only the stamps, which tell it how far to go.
     """

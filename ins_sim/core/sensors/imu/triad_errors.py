@@ -215,7 +215,8 @@ def discrete_lag(frequency_hz, order, dt_s):
     -------
     a, b, c, d : matrix that takes (output - input, rate of the output) from the start of the
         interval to its end
-    m, n : weights of the same two at the start in the mean of (output - input)
+    m, n : weights of the same two, at the start, whose weighted sum is the mean of
+        (output - input) over the interval
     """
     w = 2.0 * math.pi * frequency_hz
     if w == 0.0:

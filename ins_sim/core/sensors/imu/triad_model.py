@@ -188,7 +188,8 @@ def white_variance(settings, dt_s, name=''):
     """
     Return the variance that is published with a sample, by axis, (rad/s)^2 or (m/s^2)^2.
 
-    It is that of the noise, unless the setting reported_sigma is not negative; then its square.
+    It is the square of the setting reported_sigma or, if that is negative, the variance of the
+    noise.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ class InstrumentErrors:
                 self.accelerometer.bias(index, LEVEL, LEVEL))
 
     def advance(self, imu):
-        """Return the ImuSamples of the instrument; same bits as ``step``, however they are cut."""
+        """Return the ImuSamples of the instrument, same bits as ``step``, for any block length."""
         t_s, omega, f = imu.t_ns * 1e-9, imu.omega.copy(), imu.f.copy()
         for part in consecutive(imu.t_ns // self._dt_ns):
             first = int(imu.t_ns[part.start]) // self._dt_ns

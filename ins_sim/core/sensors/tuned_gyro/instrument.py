@@ -212,7 +212,7 @@ class PairInstrument:
         Return the rates (n, 3) and parity (n,), rad/s, of the intervals ending at t_ns, and None.
 
         rates (m, nodes, 3) and force (m, 3) are as in ``step``, and so are the bits of the result,
-        however the record is cut. If the rotors diverge, the third value is a StreamFault and n
+        for blocks of any length. If the rotors diverge, the third value is a StreamFault and n
         counts the intervals before it; otherwise n is m.
         """
         steps, disturbances, fault = self._steps, (None, None), None
@@ -268,7 +268,8 @@ class PairInstrument:
         """
         Return the variances of the mean of count samples of each channel, (rad/s)^2.
 
-        Pulses and pick-off noise are errors of the angle, so only the first and last remain.
+        Pulses and pick-off noise are errors of the angle: in a mean only those at its first and
+        last instant remain.
         """
         found = []
         for model in self._models:
