@@ -203,7 +203,7 @@ class _Replay:
         stamps, solutions, k = self._imu.t_ns[begin.index:last], [], begin.index
         for j, solution, _ in loop.run(self._samples(begin, last)):
             if solutions and runs_away(solution):
-                self._notes.append(f'the solution runs away at {seconds(stamps[j])} and is '
+                self._notes.append(f'the solution diverges at {seconds(stamps[j])} and is '
                                    'stopped: check the initial values and the units of the IMU')
                 break
             solutions.append(solution)
