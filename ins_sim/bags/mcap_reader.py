@@ -85,7 +85,7 @@ class McapReader(McapIndex):
 
     def pieces(self, wanted):
         """
-        Yield (time, place in the file, Piece); no later piece has messages before the time.
+        Yield (time, place in the file, Piece) in rising order of time.
 
         wanted holds the ids of channels.  Raises ValueError on a corrupt chunk.
         """

@@ -1,5 +1,5 @@
 """
-The aided navigator: a strapdown, and a filter that processes fixes on time or late.
+The aided navigator: a strapdown, and a filter that processes fixes, including late ones.
 
 A late fix is processed at its own instant: the navigator restores the snapshot before it, applies
 the fix, and advances again over the samples since then.

@@ -11,7 +11,7 @@ from .vertical_channel import FREE, NO_DAMPING
 
 class Strapdown(Placed):
     """
-    Position, velocity and attitude, advanced by one increment at a time.
+    Integrate position, velocity and attitude, one IMU increment at a time.
 
     Parameters
     ----------

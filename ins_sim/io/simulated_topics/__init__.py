@@ -1,1 +1,1 @@
-"""What a bag of a simulated run holds beside truth, readings and solution."""
+"""Topics of the bag of a simulated run other than truth, readings and solution."""

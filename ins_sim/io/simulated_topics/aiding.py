@@ -1,4 +1,4 @@
-"""What velocity_meter, gnss and aided_navigator would publish of an offline run."""
+"""Messages of velocity_meter, gnss and aided_navigator for an offline run."""
 
 import numpy as np
 

@@ -16,7 +16,8 @@ class CovarianceSource:
     PublishedCovariances of a SimulationResult, in the order of its states.
 
     settings: SimulationSettings; run, motion: the result, and the motion that it was flown on.
-    The strapdown runs once more over the readings, beside the covariance: with the same bits.
+    The strapdown runs once more over the readings, together with the covariance, and gives the
+same bits.
     """
 
     def __init__(self, settings, run, motion):

@@ -1,4 +1,4 @@
-"""What the nodes would publish on /tf and /tf_static of an offline run."""
+"""Transforms on /tf and /tf_static for an offline run, as the nodes would publish them."""
 
 from itertools import groupby
 from operator import itemgetter

@@ -65,7 +65,7 @@ class StageNode(Node):
         self.make_outputs()
         self.create_service(Trigger, '~/reset', self._on_reset)
         subscribe(self, String, topics.STATUS.name, self._on_status, qos.latched_profile())
-        # Messages may be dropped as too old only while nobody waits for acknowledgements.
+        # Messages may be dropped as too old only while no node waits for acknowledgements.
         self._queue = DrivingQueue(self, self.DRIVER, self.depth, self.guarded(self._on_data),
                                    self.guarded(self.on_drained),
                                    self.nobody_waits,

@@ -137,7 +137,7 @@ class AidingFilter:
         Follow one IMU sample; called after the strapdown has advanced over it.
 
         A filter that overrides this method is called for every sample, which is slow. The sums
-        of a filter that does not are computed for many samples at once.
+        of a filter that does not are computed for several samples in one call.
 
         Parameters
         ----------
