@@ -17,7 +17,7 @@ class CovarianceSource:
 
     settings: SimulationSettings; run, motion: the result, and the motion that it was flown on.
     The strapdown runs once more over the readings, together with the covariance, and gives the
-same bits.
+    same bits.
     """
 
     def __init__(self, settings, run, motion):
