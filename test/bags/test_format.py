@@ -16,7 +16,7 @@ from ins_sim.messages.cdr import Writer
 import numpy as np
 import pytest
 import yaml
-from support.bag_messages import (by_topic, KINDS, STORE, strings, TYPES, write_everything)
+from support.bags.messages import (by_topic, KINDS, STORE, strings, TYPES, write_everything)
 
 rosbag2 = pytest.importorskip('rosbags.rosbag2')
 

@@ -8,8 +8,8 @@ from ins_sim.messages.cdr import LAYOUTS
 import numpy as np
 import pytest
 import yaml
-from support.bag_messages import (by_topic, KINDS, N, STAMPS, STORE, strings, topic_of, TYPES,
-                                  values_of, write_everything, writer_of)
+from support.bags.messages import (by_topic, KINDS, N, STAMPS, STORE, strings, topic_of, TYPES,
+                                   values_of, write_everything, writer_of)
 
 rosbag2 = pytest.importorskip('rosbags.rosbag2')
 

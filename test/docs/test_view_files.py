@@ -9,7 +9,7 @@ from ins_sim.settings.gnss import GnssSettings
 from ins_sim.settings.place import Frames, ROLES
 from ins_sim.settings.velocity_meter import VelocityMeterSettings
 import pytest
-from support.bag_messages import STORE
+from support.bags.messages import STORE
 from support.places import ROOT
 import yaml
 

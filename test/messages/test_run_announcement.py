@@ -5,7 +5,7 @@ from dataclasses import replace
 from ins_sim.messages.diagnostic_array import pack_diagnostics, read_diagnostics, Status
 from ins_sim.messages.run_announcement import read_announcement, RunAnnouncement, UNANNOUNCED
 import pytest
-from support.bag_messages import STORE
+from support.bags.messages import STORE
 
 RUN = RunAnnouncement(1735689600 * 10**9 + 123, 5 * 10**9, 200.0 / 3.0, 3600 * 10**9)
 

@@ -9,7 +9,7 @@ from ins_sim.settings.velocity_meter import VelocityMeterSettings
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.bag_messages import STORE
+from support.bags.messages import STORE
 
 POSE = (1.0, -2.0, 3.5, 0.5, -0.5, 0.5, 0.5)
 

@@ -181,8 +181,8 @@ def test_closure_of_an_hour(figures):
 @pytest.mark.parametrize('values, sentence', [
     ({'accelerometer.delay_us.x': -20.0}, 'guidance.latency_s is 0 s with a channel of imu_sensor '
      'that reads 2e-05 s ahead; expected at least 0.01002 s'),
-    ({'motion.guided.control_rate_hz': 30.0}, 'control_rate_hz is 30 Hz; expected a whole part of '
-     'rate_hz of motion_generator, 100 Hz'),
+    ({'motion.guided.control_rate_hz': 30.0}, 'control_rate_hz is 30 Hz; expected rate_hz of '
+     'motion_generator, 100 Hz, divided by a whole number'),
     ({'sampling.latency_us': 100.0}, 'sampling.latency_us is 100 us; expected 0 with motion.kind '
      'guided'),
     ({'velocity_meter:attack_angle': 'ins', 'strapdown:output_every': 2}, 'output_every is 2 with '

@@ -1,1 +1,1 @@
-"""Bags of truth for tests, and readers of other packages."""
+"""Bags for tests: messages of every type, truth, and readers of other packages."""
