@@ -159,7 +159,7 @@ class StageNode(Node):
         Return the outputs of push(*sample).
 
         A StreamFault is reported; the stage is reset and the sample pushed again, or the node
-        stops, depending on on_fault.
+        stops, according to ``on_fault``.
         """
         try:
             return push(*sample)
