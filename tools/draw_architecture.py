@@ -60,7 +60,7 @@ def draw(path):
 
 
 def may_import():
-    """Return MAY_IMPORT of the architecture test: {room: the set of rooms it may import}."""
+    """Return MAY_IMPORT, {room: set of rooms it may import}, and CORE of the architecture test."""
     source = (ROOT / 'test' / 'packaging' / 'test_architecture.py').read_text(encoding='utf-8')
     names = {}
     exec(source[source.index('EARTH = {'):source.index('def room_of')], names)

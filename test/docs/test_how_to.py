@@ -6,6 +6,7 @@ import shlex
 from ins_sim.cli.main import main
 import ins_sim
 import pytest
+from support import pages
 from support.places import ROOT
 
 PAGES = ROOT / 'docs' / 'how_to'
@@ -16,10 +17,9 @@ GRADES = re.findall(
 
 def commands(page):
     """Return the words of the ins_sim commands in the shell blocks of a page."""
-    text = (PAGES / page).read_text(encoding='utf-8')
-    lines = '\n'.join(re.findall(r'```sh\n(.*?)```', text, re.DOTALL)).replace('\\\n', ' ')
-    return [shlex.split(line)[1:] for line in lines.splitlines()
-            if line.strip().startswith('ins_sim ')]
+    blocks, _ = pages.split((PAGES / page).read_text(encoding='utf-8'))
+    return [shlex.split(line)[1:] for block in blocks if block.language == 'sh'
+            for line in pages.commands(block) if line.startswith('ins_sim ')]
 
 
 def test_every_grade_has_a_row():
