@@ -3,7 +3,7 @@
 import ast
 
 from ins_sim import resources
-from ins_sim.launching.arguments import REPLAY, SIMULATION
+from ins_sim.launching.arguments import LAUNCH_FILES
 
 from .markdown import code, NO_VALUE, page, table, text
 
@@ -11,16 +11,15 @@ INTRODUCTION = '''\
 `ros2 launch ins_sim NAME --show-args` prints the same. An argument is given as `NAME:=VALUE`. An
 unknown argument, or a value that is not accepted, ends the launch with one sentence.
 '''
-# {launch file: its Arguments}
-FILES = {'simulation': SIMULATION, 'replay': REPLAY}
 
 
 def pages():
     """Return {path: Markdown}."""
     lines = []
-    for name, arguments in FILES.items():
-        told = ast.get_docstring(ast.parse(resources.launch(name).read_text('utf-8')))
-        lines += [f'## {name}.launch.py', '', '```text', told, '```', '',
+    for name, arguments in LAUNCH_FILES.items():
+        path = resources.launch(name.removesuffix('.launch.py'))
+        told = ast.get_docstring(ast.parse(path.read_text('utf-8')))
+        lines += [f'## {name}', '', '```text', told, '```', '',
                   *table(('argument', 'default', 'meaning'), [
                       (code(one.name), _default(one), text(one.doc)) for one in arguments],
                       'options')]

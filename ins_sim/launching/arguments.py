@@ -87,6 +87,9 @@ REPLAY = (
              'which is then played or published', bool),
     _SHUTDOWN)
 
+# Arguments of each launch file of the package.
+LAUNCH_FILES = {'simulation.launch.py': SIMULATION, 'replay.launch.py': REPLAY}
+
 
 def check_names(given, arguments):
     """Raise ValueError for a name that is not one of the arguments."""

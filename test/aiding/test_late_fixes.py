@@ -102,7 +102,7 @@ def test_a_fix_that_comes_twice_is_taken_once():
     taken = fly(nav, [FIXES[3], FIXES[3]])
     fly(once, [FIXES[3]])
     assert [t.outcome.taken for t in taken] == [True, False]
-    assert 'has come before' in taken[1].outcome.reason
+    assert 'was already received' in taken[1].outcome.reason
     assert nav.solution == once.solution
 
 
@@ -111,7 +111,7 @@ def test_a_window_that_the_solution_does_not_cover_is_not_taken():
     nav = navigator()
     taken = fly(nav, [FIXES[0], FIXES[1]], SAMPLES[10:])
     assert [t.outcome.taken for t in taken] == [False, True]
-    assert taken[0].outcome.reason == 'the solution does not cover its window'
+    assert taken[0].outcome.reason == 'the solution does not cover the window of the fix'
 
 
 METER_FIX, GNSS_FIX = METER_FIXES[3], gnss_fixes()[2]
@@ -168,8 +168,8 @@ def test_an_invalid_fix_says_why():
     invalid = replace(METER_FIX, velocity=(NAN, NAN), sigma=(NAN, NAN), status='calm water')
     outage = no_gnss_fix(2 * 10**9, 'outage', 2 * 10**9)
     taken = fly(navigator(), [(METER, invalid), (GNSS, outage)])
-    assert [t.outcome.reason for t in taken] == ['the fix is none: outage',
-                                                 'the fix is none: calm water']
+    assert [t.outcome.reason for t in taken] == ['invalid fix: outage',
+                                                 'invalid fix: calm water']
 
 
 def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():

@@ -69,7 +69,7 @@ def test_a_window_that_began_before_the_solution_is_not_taken():
     judged, _ = fly(navigator(), sliding_fixes(), SAMPLES[25:])
     refused = [j.t_ns // DT_NS for j in judged if not j.outcome.taken]
     assert refused == [50, 60, 70]
-    assert judged[0].outcome.reason == 'the solution does not cover its window'
+    assert judged[0].outcome.reason == 'the solution does not cover the window of the fix'
 
 
 @pytest.mark.parametrize('seed', range(2))

@@ -109,7 +109,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     health = AidingHealth(stream)
     gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
     health.count([JudgedFix(GNSS, 7 * SECOND, gated),
-                  JudgedFix(GNSS, 8 * SECOND, refused_fix('the fix is none: outage'))])
+                  JudgedFix(GNSS, 8 * SECOND, refused_fix('invalid fix: outage'))])
     wrong, values = health.describe()
     assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '
                      'gate')

@@ -35,8 +35,9 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
     assert command(tmp_path) == 0
     shown = ' '.join(capsys.readouterr().out.split())
     for words in ('mean drift east', 'aided by eskf: velocity meter (surrogate), N 100, GNSS at 1 '
-                  'Hz', 'NIS of gnss', 'gnss fixes: 91 reported, 60 taken, 31 refused: the fix is '
-                  'none: outage (31)', 'velocity_meter fixes: 90 reported, 90 taken, 0 refused'):
+                  'Hz', 'NIS of gnss', 'gnss fixes: 91 reported, 60 taken, 31 refused: '
+                  'invalid fix: outage (31)',
+                  'velocity_meter fixes: 90 reported, 90 taken, 0 refused'):
         assert words in shown
     folder = tmp_path / 'run'
     assert {path.name for path in folder.iterdir()} == {
@@ -168,7 +169,7 @@ def test_reasons_of_refusals_are_counted():
     rows = {r.name: r for r in aided.aided_rows(chosen, solution, free.states, free.errors)}
     refused = rows['aided velocity_meter fixes refused']
     assert refused.measured == 10
-    assert refused.note == 'the fix is none: speed outside the limits (10)'
+    assert refused.note == 'invalid fix: speed outside the limits (10)'
     assert 'aided NIS of velocity_meter' not in rows
 
 

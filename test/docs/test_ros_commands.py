@@ -15,7 +15,6 @@ from support.places import ROOT
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
 MAKEFILE = (ROOT / 'Makefile').read_text(encoding='utf-8')
 EXECUTABLES = set(re.findall(r"^ +'(\w+) = ins_sim\.", SETUP, re.MULTILINE))
-LAUNCH_FILES = {'simulation.launch.py': arguments.SIMULATION, 'replay.launch.py': arguments.REPLAY}
 OURS = {topic.name.lstrip('/') for topic in (
     *topics.DATA, *topics.AIDING, *topics.BESIDE, topics.CLOCK_TOPIC, topics.RUN, topics.ACK,
     topics.STATUS, topics.TF, topics.TF_STATIC, topics.GUIDANCE_COMMAND, topics.OTHER_ODOMETRY)}
@@ -60,12 +59,12 @@ def check_run(executable, words):
 
 def check_launch(file, words):
     """Check ``ros2 launch ins_sim FILE ARGUMENT:=VALUE ...``."""
-    if file not in LAUNCH_FILES:
+    if file not in arguments.LAUNCH_FILES:
         assert (ROOT / 'config' / 'recipes' / file).is_file(), file
         return
     given = dict(word.split(':=', 1) for word in words if ':=' in word)
-    arguments.check_names(given, LAUNCH_FILES[file])
-    known = {argument.name: argument for argument in LAUNCH_FILES[file]}
+    arguments.check_names(given, arguments.LAUNCH_FILES[file])
+    known = {argument.name: argument for argument in arguments.LAUNCH_FILES[file]}
     for name, value in given.items():
         if not is_own(value):
             arguments.read_values({name: value}, [known[name]])

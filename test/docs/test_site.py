@@ -16,7 +16,7 @@ from urllib.parse import unquote, urlsplit
 import ins_sim
 from ins_sim.cli.known_settings import READERS
 from ins_sim.cli.main import VERBS
-from ins_sim.launching.arguments import REPLAY, SIMULATION
+from ins_sim.launching.arguments import LAUNCH_FILES
 from ins_sim.messages.interfaces import INTERFACES
 from ins_sim.messages.topic_contents import CONTENTS
 from ins_sim.resources import config_names
@@ -195,10 +195,11 @@ def test_every_verb_has_a_page(verb, site):
 def test_every_launch_argument_is_described(site):
     """The page of the launch files has each argument of each shipped file."""
     names = [row[0] for row in Tables(read(site / GENERATED / 'launch_files.html')).rows if row]
-    assert names == [argument.name for argument in (*SIMULATION, *REPLAY)]
+    assert names == [argument.name for arguments in LAUNCH_FILES.values()
+                     for argument in arguments]
     shipped = {path.name for path in (ROOT / 'launch').glob('*.launch.py')}
     headings = set(re.findall('<h2>([^<]+)<', read(site / GENERATED / 'launch_files.html')))
-    assert headings == shipped
+    assert headings == shipped == set(LAUNCH_FILES)
 
 
 def test_every_node_topic_service_and_file_has_its_entry(site):

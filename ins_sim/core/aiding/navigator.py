@@ -238,9 +238,9 @@ class AidedNavigator:
         if fix.t_ns < self._past.start_ns:
             late = (self.ins.t_ns - fix.t_ns) * 1e-9
             return refused_fix(f'the fix is {late:.3f} s old; expected at most buffer_s, '
-                               f'{self._settings.buffer_s:g} s, and none before the start')
+                               f'{self._settings.buffer_s:g} s, and no fix from before the start')
         if self._past.knows(entry):
-            return refused_fix(f'the fix at {seconds(fix.t_ns)} has come before')
+            return refused_fix(f'the fix at {seconds(fix.t_ns)} was already received')
         return None
 
     def _insert(self, entry):
@@ -276,7 +276,7 @@ class AidedNavigator:
             return self.filter.update_gnss(ins, fix, ins.rate_to_earth,
                                            self._settings.gnss_model.lever_arm_m)
         if self._flight.covers_from_ns > fix.start_ns or ins.t_ns != fix.end_ns:
-            return refused_fix('the solution does not cover its window')
+            return refused_fix('the solution does not cover the window of the fix')
         forward, left = fix.velocity
         known = self._settings.meter_model.bias_x_m_s / fix.cycles
         return self.filter.update_velocity(ins, replace(fix, velocity=(forward - known, left)))

@@ -11,7 +11,7 @@ EMPTY = {'mean': tuple(BodyMean()), 'integrals': tuple(Integrals()),
          'accelerations': (tuple(DoubleIntegral()),) * 2, 'turned': 0.0, 'force': tuple(Force())}
 
 # Prefix of the reason given for a fix that the instrument itself marks as invalid.
-INVALID_FIX = 'the fix is none'
+INVALID_FIX = 'invalid fix'
 
 
 class FixOutcome(namedtuple('FixOutcome', 'innovation nis freedom taken reason',
