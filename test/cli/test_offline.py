@@ -42,6 +42,23 @@ def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys)
     assert '4472.1' in shown and '0.0334932' in shown and "psi' = -2 gamma'" in shown
 
 
+def test_notes_on_the_prediction_come_with_its_column(tmp_path, capsys):
+    """
+    simulate describes the prediction only where it applies.
+
+    With instrument errors as the only errors there is no predicted column, and no note on it;
+    with delays in addition the difference from the zero-delay run is predicted.
+    """
+    words = ['simulate', '--params-file', 'motion_2', '--params-file', 'imu_tactical_fog', '-p',
+             'duration_s:=5.0', '-o']
+    assert main([*words, str(tmp_path / 'run')]) == 0
+    shown = capsys.readouterr().out
+    assert 'measured' in shown and 'predicted' not in shown and 'the prediction' not in shown
+    assert main([*words, str(tmp_path / 'late'), '-p', 'gyro.delay_us.y:=1.0']) == 0
+    shown = ' '.join(capsys.readouterr().out.split())
+    assert 'predicted' in shown and 'the prediction covers' in shown
+
+
 def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
     """Exit code 2, the old run stays; --force replaces a run, and only a run."""
     out = tmp_path / 'run'

@@ -42,8 +42,12 @@ def run_notes(settings, run, prediction, steered=None):
     prediction : Prediction or None
     steered : GuidedResult of a guided motion, or None
     """
-    return [*coverage.coverage_lines(settings, prediction), *guided_lines(steered),
-            *gap_lines(run.faults), *withheld_lines(settings),
+    lines = coverage.coverage_lines(settings, prediction)
+    if prediction is not None and not np.any(prediction.largest) and (
+            coverage.comparable(settings, prediction) is None):
+        # All errors are those of the instruments, and the table has no predicted column.
+        lines = []
+    return [*lines, *guided_lines(steered), *gap_lines(run.faults), *withheld_lines(settings),
             *parity_lines(settings.imu_sensor, run.imu)]
 
 
