@@ -3,8 +3,9 @@ Run the tests as CI does, and print how long they took.
 
 Usage: python tools/run_tests.py fast | slow | figures
 
-Tests that start no processes run first, in parallel on all cores, then the tests that start
-nodes, one by one. ``figures`` runs the long studies one after another, each on all cores.
+Tests that start no processes run first, in parallel on all cores. The tests that start nodes
+follow, file by file on two workers: they mostly wait, and each has a ROS domain of its own.
+``figures`` runs the long studies one after another, each on all cores.
 """
 
 import subprocess
@@ -12,9 +13,10 @@ import sys
 import time
 
 SIDE_BY_SIDE = ['-n', 'auto', '--dist', 'loadgroup']
+LIVE = ['-n', '2', '--dist', 'loadfile']
 CALLS = {
     'fast': [(SIDE_BY_SIDE, 'not slow and not figures and not live'),
-             ([], 'live and not slow and not figures')],
+             (LIVE, 'live and not slow and not figures')],
     'slow': [(SIDE_BY_SIDE, 'slow and not figures and not live'),
              ([], 'slow and not figures and live')],
     'figures': [([], 'figures')]}
