@@ -59,7 +59,7 @@ def test_whatever_waits_is_bounded():
     assert [t for t, *_ in outputs] == [t for t, *_ in streams['push_imu']][:len(outputs)]
     assert len(outputs) > 1150 and stream.silent == [GNSS, METER]
     assert [fault.partition(';')[0] for fault in faults] == [
-        f'no fix of {source} while 50 readings came' for source in (GNSS, METER)]
+        f'no fix of {source} while 50 IMU readings arrived' for source in (GNSS, METER)]
 
 
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():

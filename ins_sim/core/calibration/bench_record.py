@@ -67,9 +67,9 @@ def usable(record):
     gaps = steps > 1.5 * record.dt_ns
     if gaps.any():
         lost = np.count_nonzero(gaps), float((steps[gaps] - record.dt_ns).max()) * 1e-9
-        notes.append(f'{record.name}: {lost[0]} gaps, the longest of {lost[1]:.6g} s: every '
-                     'reading is compared with the motion at its own stamp, so that nothing else '
-                     'is lost')
+        notes.append(f'{record.name}: {lost[0]} gaps, the longest of {lost[1]:.6g} s: each '
+                     'reading is compared with the motion at its own stamp, so that only the '
+                     'missing readings are lost')
     return BenchRecord(record.name, imu, record.dt_ns, record.motion, record.datum, record.earth,
                        record.output, record.white), notes
 

@@ -155,10 +155,10 @@ class Steering:
         age_ns = wanted_ns - stamp_ns
         if not why and age_ns > self._timeout_ns:
             why = OLD
-            self._say(why, f'the solution that the autopilot steers by is that of '
-                      f'{seconds(stamp_ns)} at {seconds(t_ns)}; expected one at most '
+            self._say(why, f'the autopilot still uses the solution of {seconds(stamp_ns)} at '
+                      f'{seconds(t_ns)}; expected one at most '
                       f'{(self._latency_ns + self._timeout_ns) * 1e-9:g} s old: the vehicle flies '
-                      'straight until one comes')
+                      'straight until a new one arrives')
         return z, v_z, why
 
     def _use(self, t_ns, stamp_ns, solution):

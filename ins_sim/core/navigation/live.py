@@ -12,8 +12,8 @@ class Navigator(MatchedStreams):
     """
     Runs an InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors, shown).
 
-    settings, truth_length: see MatchedStreams.  covariance: a FreeCovariance to propagate beside
-    the navigator, or None; ``shown`` is its current ``shown``.
+    settings, truth_length: see MatchedStreams.  covariance: a FreeCovariance to propagate together
+    with the navigator, or None; ``shown`` is its current ``shown``.
     """
 
     def __init__(self, settings, truth_length=TRUTH_LENGTH, covariance=None):

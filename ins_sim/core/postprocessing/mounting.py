@@ -46,8 +46,8 @@ def chained_mounting(transforms, base, frame, notes=None):
     for name in (base, frame):
         if name not in links:
             raise ValueError(f'/tf_static has no frame {name!r}; the nearest is '
-                             f'{nearest_name(name, links)!r}; expected it, or mounting.source '
-                             'given')
+                             f'{nearest_name(name, links)!r}; expected this frame, or '
+                             'mounting.source given')
     ways, queue = {base: []}, [base]
     for name in queue:
         for other, link in links[name]:

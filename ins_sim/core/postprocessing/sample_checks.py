@@ -110,9 +110,9 @@ def without_zeros(imu, zero_readings, notes):
             'samples' + (f' and the angular rate in {np.count_nonzero(no_rate)} others'
                          if in_turns else ''))
     if zero_readings == 'refuse':
-        raise ValueError(f'{what}: the driver seems to send them in turns; expected both in each '
-                         'sample (accept.zero_readings:=fill interpolates them between their '
-                         'neighbours, keep takes them as they are)')
+        raise ValueError(f'{what}: the driver seems to send them alternately; expected both in '
+                         'each sample (accept.zero_readings:=fill interpolates them between their '
+                         'neighbours, keep uses them as they are)')
     notes.append(f'{what}: interpolated linearly between their neighbours')
     omega = _filled(imu.t_ns, imu.omega, no_rate & ~no_force) if in_turns else imu.omega
     return replace(imu, f=_filled(imu.t_ns, imu.f, no_force), omega=omega)

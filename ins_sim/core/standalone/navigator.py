@@ -183,8 +183,8 @@ class StandaloneNavigator:
         gap_s, longest_s = 1e-9 * (sample.t_ns - self.newest_ns), self._s.gaps.longest_bridge_s
         self.gaps += 1
         if gap_s <= longest_s:
-            self.faults.append(f'imu has a gap of {gap_s:.6g} s: bridged by straight lines of '
-                               f'rate and force (gap {self.gaps})')
+            self.faults.append(f'imu has a gap of {gap_s:.6g} s: bridged by linear interpolation '
+                               f'of rate and force (gap {self.gaps})')
             return True
         self.faults.append(f'imu has a gap of {gap_s:.6g} s; expected at most '
                            f'gaps.longest_bridge_s, {longest_s:g} s: starting anew (gap '
@@ -256,11 +256,11 @@ class StandaloneNavigator:
         if self.newest_ns is None:
             return False, f'no readings on {self._s.inputs.imu} to align with'
         if self.run is None:
-            return False, f'an alignment is under way: {self.state}'
+            return False, f'an alignment is already running: {self.state}'
         self._realigning = AlignmentStart(self._s, self, self.newest_ns, turn=self._turn)
         return True, (f'alignment started: it takes {limits.shortest_s:g} to '
-                      f'{limits.longest_s:g} s at rest; until then the solution continues, and if '
-                      'the vehicle moves before, it is kept')
+                      f'{limits.longest_s:g} s at rest; until then the solution continues, and it '
+                      'is kept if the vehicle moves before')
 
     def _realigned(self, sample):
         """Give a sample to the alignment requested by ~/align, if any; return the solutions."""

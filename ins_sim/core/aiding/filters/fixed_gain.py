@@ -105,9 +105,9 @@ class PaperFilter(_ChainedFilter):
         turning = math.sqrt(x * x + y * y)
         if turning > TURN_LIMIT:
             return FixOutcome(innovation, taken=False, reason=(
-                f'filter paper refuses a window in which the body turns: it would take '
-                f'{turning:.3g} m/s^2 of it for an error; expected a straight leg without weave '
-                '(paper_corrected and eskf fly turns)'))
+                f'filter paper refuses a window in which the body turns: it would treat '
+                f'{turning:.3g} m/s^2 of the turn as an error; expected a straight leg without '
+                'weave (paper_corrected and eskf work in turns)'))
         w = tuple(self.settings.gain * x for x in innovation)
         ins.add_biases(accelerometer=(*w, 0.0))
         e, n, _ = quaternion.rotate(ins.q_nb, (*w, 0.0))

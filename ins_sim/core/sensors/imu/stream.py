@@ -77,7 +77,8 @@ class StreamImu(Sensor):
             warnings.warn(f'a channel is delayed by {longest_s * 1e3:.6g} ms, but a stream is '
                           f'continued backwards by {LINE_S * 1e3:g} ms only and is constant '
                           f'before that; the first {longest_s - LINE_S:.6g} s of readings are '
-                          'therefore wrong. source motion knows the motion before the start',
+                          'therefore wrong. Set source to motion: it knows the motion before '
+                          'the start',
                           stacklevel=2)
 
     def reset(self):

@@ -104,7 +104,7 @@ class VelocityMeter:
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
         if abs(t_ns - index * self._dt_ns) > INTERVAL_TOLERANCE * self._dt_ns:
             raise StreamFault(f'truth at {seconds(t_ns)} lies between the cycles of rate_hz; '
-                              f'expected whole periods of {self._dt_ns * 1e-9:.9g} s; the sample '
+                              f'expected a multiple of {self._dt_ns * 1e-9:.9g} s; the sample '
                               'was dropped', restart=False)
         self._ins.follow_truth(t_ns)
         v = self._in_antennas(v_b)

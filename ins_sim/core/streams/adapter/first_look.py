@@ -88,8 +88,8 @@ class FirstLook:
         if len(knots) < FEWEST - 2:
             # The stamps are so irregular that hardly any is half a period after another.
             self._samples = []
-            raise StreamFault(f'{self._name} has stamps from which no rate can be told; expected '
-                              'steady ones; its samples were dropped', restart=False)
+            raise StreamFault(f'{self._name} has irregular stamps, so that its rate is unknown; '
+                              'expected regular stamps; its samples were dropped', restart=False)
         frame = self._settings.twist_frame
         judgement = judged(knots, None if frame == 'auto' else frame == 'parent')
         self._check_steps(knots, judgement.spread_m)
