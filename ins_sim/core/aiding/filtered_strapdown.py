@@ -46,7 +46,7 @@ class FilteredStrapdown:
 
     def cut(self, samples, first, stop, event_ns):
         """
-        Return the end of the samples, from first on, that can be processed in one go.
+        Return the end of the samples, from first on, that can be processed in one call.
 
         Only the last of them may need work by the filter or the navigator.
 

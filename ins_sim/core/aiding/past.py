@@ -64,7 +64,7 @@ class Past:
         return self._fixes[-1] is entry
 
     def knows(self, entry):
-        """Return whether a fix of that source and instant has come before."""
+        """Return whether a fix of that source and instant has arrived before."""
         newer = takewhile(lambda other: other.fix.t_ns >= entry.fix.t_ns, reversed(self._fixes))
         return any(_instant(other) == _instant(entry) for other in newer)
 

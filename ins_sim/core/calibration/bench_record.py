@@ -21,11 +21,11 @@ class BenchRecord:
 
     Attributes
     ----------
-    name : what it is called in messages
+    name : its name in messages
     imu : ImuSamples; t_ns are motion times, omega mean rates over the interval before them, rad/s
     dt_ns : sampling period, ns
     motion : Motion
-    datum, earth : settings of the place of the bench
+    datum, earth : settings of the position of the bench
     output : rotation_vector or integrated, the kind of a reading (ImuSensorSettings.output)
     white : density of the white noise by axis (angle random walk), rad/sqrt(s); 0 if not known
     """

@@ -34,7 +34,7 @@ def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
     settings : AidedSimulationSettings
     motion : Motion
     runs : numbers of the runs
-    wanted_ns : (m,) motion times of the outputs, ns; each is taken at the next sample
+    wanted_ns : (m,) motion times of the outputs, ns; the next sample is used
     progress : function that is called with the fraction done, or None
 
     Raises

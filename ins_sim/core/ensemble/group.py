@@ -18,7 +18,7 @@ from .sensing import SensedTriad
 
 # Number of errors: attitude (rad), velocity (m/s) and position (m), each East, North, Up.
 ERRORS = 9
-# Number of samples processed at once; their readings in 16 runs take 0.8 MB.
+# Number of samples processed together; their readings in 16 runs take 0.8 MB.
 PIECE = 1024
 
 

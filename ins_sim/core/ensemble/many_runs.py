@@ -33,8 +33,8 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     settings : SimulationSettings
     motion : the motion of settings.motion_generator
     runs : range of numbers of runs
-    instants_s : motion times of the statistics, s; each is taken at the first sample from then on
-        that has a solution
+    instants_s : motion times of the statistics, s; the first sample from then on that has a
+        solution is used
     threads : number of threads, which does not change the bits
     initial : function (number of a run) -> its Initial errors, or None for those of the settings
 

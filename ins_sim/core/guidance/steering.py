@@ -75,7 +75,7 @@ class Steering:
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it takes over at the end of the turn, with a note."""
+        """Engage the autopilot; in a turn it steers from the end of the turn on, with a note."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '

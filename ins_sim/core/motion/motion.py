@@ -105,7 +105,7 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats if the place is fixed.
+            Latitude and longitude, rad; floats if the position is fixed.
         q_nb : (n, 4) array
             Attitude relative to the local level frame.
         """
@@ -130,7 +130,7 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats if the place is fixed.
+            Latitude and longitude, rad; floats if the position is fixed.
         f_n : tuple of three (n,) arrays
             Specific force east, north, up, m/s^2; floats if it is constant.
         """

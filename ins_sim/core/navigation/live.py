@@ -36,7 +36,7 @@ class Navigator(MatchedStreams):
             return []
         solution = self._navigator.solution
         lat, lon, height, v, q = solution
-        # One sum tests all at once: it is finite only if every term is.
+        # One sum tests all values together: it is finite only if every term is.
         if not math.isfinite(lat + lon + height + v[0] + v[1] + v[2] + q[0] + q[1] + q[2] + q[3]):
             raise StreamFault(f'the solution at {seconds(t_ns)} is not finite; expected '
                               'finite readings', restart=True)

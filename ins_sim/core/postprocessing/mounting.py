@@ -11,7 +11,7 @@ _LEAST, _UNIT = 1e-3, 1e-6
 
 
 def levelled_mounting(force, yaw):
-    """Return q_bs: the shortest rotation that takes a force (3,) up, then a yaw about up."""
+    """Return q_bs: the shortest rotation of a force (3,) to up, then a yaw about up."""
     x, y, z = force.tolist()
     size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
     # If the force points down, any level axis gives the shortest rotation.

@@ -14,7 +14,7 @@ from .fourier import fourier_coefficients
 SUBSAMPLES = 8
 STEP_S = 0.1
 PER_PERIOD = 4096
-# Number of instants evaluated at once.
+# Number of instants evaluated together.
 BLOCK = 8192
 
 

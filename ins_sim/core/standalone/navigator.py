@@ -12,7 +12,7 @@ from .running import RunningNavigation
 from .start import CourseStart, GivenStart
 from .vertical_reference import VerticalReference
 
-# Largest number of waiting samples that are navigated at once.
+# Largest number of waiting samples that are navigated in one call.
 AT_ONCE = 500
 # Largest lead of a fix over the readings, s; in lock-step fixes arrive up to a window earlier.
 MOST_AHEAD_S = 60.0

@@ -82,7 +82,7 @@ class MatchedStreams:
         return False
 
     def go_on(self):
-        """Wait for nothing but the truth any longer: too many samples wait; return outputs."""
+        """Wait only for the truth from now on, because too many samples wait; return outputs."""
         return []
 
     def push_imu(self, t_ns, omega, f):

@@ -20,7 +20,7 @@ from ..route.motion import RouteMotion
 from ..truth import in_body, translation, truth_from_pose
 from .steered import SteeredHistory
 
-# ``one`` evaluates the track at AHEAD instants at once, for at most PHASES instants per period.
+# ``one`` evaluates the track at AHEAD instants in one call, for up to PHASES instants per period.
 AHEAD, PHASES = 256, 64
 # Up to this number of instants, evaluating them one by one is faster.
 FEW = 2

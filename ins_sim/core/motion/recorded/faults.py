@@ -96,7 +96,7 @@ def _between(indices, n):
 
 
 def _jumps(t_ns, first, dt, far, turned, angle):
-    """Return the jumps among contiguous intervals, the first of which has the index first."""
+    """Return the jumps among contiguous intervals; first: index of the first interval."""
     far_limit = np.maximum(JUMP_M, np.minimum(JUMP_M_S2 * dt * dt, JUMP_M_S * dt))
     jumped = far > far_limit
     spun = (turned > np.maximum(TURN_DEG, TURN_DEG_S * dt)) | (angle > AMBIGUOUS_DEG)

@@ -217,7 +217,7 @@ class PacedImu(Sensor):
     """
     The IMU that evaluates the motion which its own parameters describe.
 
-    Of the stream it uses only the stamps, which tell it how far to go.
+    It uses only the stamps of the stream, which tell it how far to go.
     """
 
     def __init__(self, settings, motion):

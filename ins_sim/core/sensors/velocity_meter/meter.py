@@ -196,7 +196,7 @@ class VelocityMeter:
         return fixes
 
     def _advance_truth(self, t_ns, v_b, height):
-        """Return the fixes of cycles, of which only the last may end a window."""
+        """Return the fixes of cycles; only the last cycle may end a window."""
         first = len(t_ns) - 1
         if first < 2 or not self._add_cycles(t_ns[:-1], v_b[:-1], height[:-1]):
             first = 0
@@ -206,7 +206,7 @@ class VelocityMeter:
         return fixes
 
     def _add_cycles(self, t_ns, v_b, height):
-        """Add cycles to the open window at once; return False if they must be pushed singly."""
+        """Add cycles to the open window together; return False if they must be pushed singly."""
         if self._last is None or not self._ins.rises(t_ns[0]):
             return False
         last_ns, v_last, height_last = self._last

@@ -8,7 +8,7 @@ from .ins_means import WAIT_NS
 
 class MeterOnTruth:
     """
-    A VelocityMeter that takes records of the truth.
+    A VelocityMeter that accepts records of the truth.
 
     Without `follow_ins` the true angle of attack is used; the angle of a converged INS differs
     from it by milliradians.

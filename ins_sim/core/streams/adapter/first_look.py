@@ -22,7 +22,7 @@ class Beginning(NamedTuple):
     steady : Steadiness of the stamps
     judgement : Judgement of the samples
     scheme : Scheme that is chosen
-    samples : the samples, at the instants they stand for
+    samples : the samples, at the instants to which they belong
     clock : NominalClock that continues these instants, or None if stamps are used as they are
     sentence : report for the log
     """

@@ -6,7 +6,7 @@ import math
 from .judgement import Judgement
 from .stamps import Steadiness
 
-# If poses are noisier than this force, m/s^2, a zero twist is taken to mean a vehicle at rest.
+# If poses are noisier than this force, m/s^2, a zero twist means a vehicle at rest.
 UNREST = 0.1
 # Smallest and largest bandwidth of the loop that ties the path to the positions, rad/s.
 LOOSE, TIGHT = 0.53, 1.0
