@@ -133,7 +133,7 @@ class AidedFlight:
         self._held, self._fixes = deque(), []
 
     def advance(self, ideal, truth):
-        """Take ideal ImuSamples and a list of parts of the truth for the other instruments."""
+        """Process ideal ImuSamples and a list of parts of the truth for the other instruments."""
         if self.refused:
             return
         try:

@@ -60,13 +60,13 @@ class Group:
         return tuple(run for run, lost in zip(self.runs, self._lost) if lost)
 
     def wait(self, imu):
-        """Take ideal samples from before the start of the strapdown, so that lags settle."""
+        """Process ideal samples from before the strapdown starts, so that lags settle."""
         for part in _pieces(imu.t_ns // self._dt_ns):
             self._sense(imu[part])
 
     def advance(self, imu, t_ns, truth, picked):
         """
-        Take samples and return the errors (m, runs, ERRORS) at the picked ones.
+        Process samples and return the errors (m, runs, ERRORS) at the picked ones.
 
         The first sample of all starts the strapdown. Errors of a diverged run are NaN.
 

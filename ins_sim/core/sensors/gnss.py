@@ -78,9 +78,9 @@ class Gnss(Sensor):
 
     def push(self, t_ns, truth):
         """
-        Take one truth sample and return a list with the fix at its instant, or an empty list.
+        Process one truth sample and return a list with the fix at its instant, or an empty list.
 
-        The first sample may be repeated; it is answered again.
+        The first sample may be repeated; its result is then returned again.
 
         Parameters
         ----------

@@ -98,7 +98,7 @@ class StandaloneNavigator:
         return 'waiting for readings' if self._start is None else self._start.state
 
     def push_fix(self, fix):
-        """Take a PlaceFix; return the solutions that become possible."""
+        """Process a PlaceFix; return the solutions that become possible."""
         ahead_s = 0.0 if self.newest_ns is None else 1e-9 * (fix.t_ns - self.newest_ns)
         if ahead_s > MOST_AHEAD_S:
             self.faults.append(f'a fix on {self._s.inputs.fix} is {ahead_s:.6g} s ahead of the '
@@ -111,21 +111,21 @@ class StandaloneNavigator:
         return self._decided()
 
     def push_transforms(self, transforms):
-        """Take transforms of /tf_static, {(parent, child): q from child to parent}."""
+        """Add transforms of /tf_static, {(parent, child): q from child to parent}."""
         self._mounting.add(transforms)
 
     def push_pressure(self, t_ns, static_pa):
-        """Take a static pressure, Pa."""
+        """Process a static pressure, Pa."""
         self._heights.push_pressure(t_ns, static_pa)
 
     def push_field(self, t_ns, field):
-        """Take a magnetic field in the frame of the IMU, T."""
+        """Process a magnetic field in the frame of the IMU, T."""
         if self.q_bs is not None:
             self.field.push(t_ns, quaternion.rotate(self.q_bs, field))
 
     def push_imu(self, t_ns, omega, f, tag=None):
         """
-        Take a reading in the axes of the sensor; return the solutions that become possible.
+        Process a reading in the axes of the sensor; return the solutions that become possible.
 
         omega (rad/s) and f (m/s^2) are tuples; tag is returned with the solution (Solved).
         """

@@ -19,8 +19,8 @@ class MatchedStreams:
     truth) -> outputs, where truth is (lat, lon, height, v_n, q_nb).
 
     The push methods return a list of outputs and raise StreamFault. The first IMU sample may be
-    repeated; it is answered again. The result does not depend on which stream is ahead. If one
-    stream jumps back, samples of the other from before the jump are not matched.
+    repeated; its result is then returned again. The result does not depend on which stream is
+    ahead. If one stream jumps back, samples of the other from before the jump are not matched.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class MatchedStreams:
 
     def push_imu(self, t_ns, omega, f):
         """
-        Take an IMU sample and return the outputs that become possible.
+        Process an IMU sample and return the outputs that become possible.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class MatchedStreams:
 
     def push_truth(self, t_ns, r_m, q_mb, v_b):
         """
-        Take the truth of stamp t_ns (motion time).
+        Process the truth of stamp t_ns (motion time).
 
         A repeated stamp is ignored. A stamp that jumps back begins a new run; the fault is
         reported for the IMU, which jumps back too.

@@ -101,9 +101,9 @@ class StreamImu(Sensor):
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take one truth sample and return the readings that it completes.
+        Process one truth sample and return the readings that it completes.
 
-        The first sample may be repeated; it is answered again.
+        The first sample may be repeated; its result is then returned again.
 
         Parameters
         ----------

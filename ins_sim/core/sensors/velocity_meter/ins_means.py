@@ -72,7 +72,7 @@ class InsMeans:
         return self._truth_ns is None or t_ns > self._truth_ns
 
     def push(self, t_ns, v_b):
-        """Take a velocity (FLU, m/s); a repeated stamp is ignored."""
+        """Process a velocity (FLU, m/s); a repeated stamp is ignored."""
         if self.newest_ns is not None and t_ns <= self.newest_ns:
             if t_ns == self.newest_ns:
                 return

@@ -85,7 +85,7 @@ class VelocityMeter:
 
     def push_truth(self, t_ns, v_b, height):
         """
-        Take the truth at the end of a navigation cycle; return the VelocityFixes it completes.
+        Process the truth at the end of a navigation cycle; return the VelocityFixes it completes.
 
         The first sample may be repeated.
 
@@ -130,7 +130,7 @@ class VelocityMeter:
 
     def push_ins(self, t_ns, v_b):
         """
-        Take a body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
+        Process a body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
 
         Any rate is accepted, and gaps are not reported. With attack_angle ``none`` the velocity is
         ignored, and so is a repeated stamp. A stamp that jumps back begins a new run; the fault is

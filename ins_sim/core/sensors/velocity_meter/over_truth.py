@@ -19,7 +19,7 @@ class MeterOnTruth:
 
     def follow_ins(self, t_ns, v_b):
         """
-        Take the angle of attack from an INS from now on.
+        Use the angle of attack of an INS from now on.
 
         Parameters
         ----------

@@ -57,7 +57,7 @@ class FirstLook:
 
     def push(self, sample):
         """
-        Take a Sample; return a Beginning, or None if more samples are needed.
+        Process a Sample; return a Beginning, or None if more samples are needed.
 
         Raises StreamFault if samples before a gap or a jump had to be dropped.
         """
