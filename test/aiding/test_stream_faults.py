@@ -97,7 +97,7 @@ def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
             late = replace(event[1], t_ns=1000 * SECOND, arrival_ns=1000 * SECOND)
             outputs += push(stream, GNSS, (GNSS, late), faults)
     fault, = faults
-    assert fault.startswith('gnss: fix at 1000.000000000 s is from the future, the newest IMU')
+    assert fault.startswith('gnss: fix at 1000.000000000 s is from the future: the newest IMU')
     assert fault.endswith('expected a fix at most 60 s ahead; it was dropped')
     expected, _, _ = run_stream(streams, np.random.default_rng(5))
     assert outputs == expected

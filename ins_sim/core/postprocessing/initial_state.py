@@ -166,7 +166,7 @@ class _Search:
                              'longitude_deg and height_m')
         p = track.near(t_ns) if near else track.at([t_ns])[0]
         if np.isnan(p).any():
-            raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has it '
+            raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has one '
                               f'from {seconds(track.t_ns[0])} to {seconds(track.t_ns[-1])}; '
                               'expected initial.position given, or another start_s')
         return tuple(p.tolist())

@@ -108,7 +108,7 @@ class MatchedStreams:
             self._runs.first_returns()
         if len(self._imu) >= self._truth.maxlen:
             raise StreamFault(f'{len(self._imu)} imu readings wait for their truth or fixes, from '
-                              f'{seconds(self._imu[0][0])} on; expected less than topics.depth',
+                              f'{seconds(self._imu[0][0])} on; expected fewer than topics.depth',
                               restart=True)
         self._imu.append((t_ns, omega, f))
         return self.match()
