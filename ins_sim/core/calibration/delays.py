@@ -19,7 +19,7 @@ SLOW = 1e-3
 # Largest difference between records of one instrument, in standard deviations.
 APART = 6.0
 # Change of a delay, s, below which it need not be linearised again; and derivative of the rate,
-# rad/s^2, below which nothing turns.
+# rad/s^2, below which the bench does not turn.
 SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
 # Largest number of linearisations of a delay, and longest delay that is searched for, s.
 PASSES, LONGEST_S = 10, 1.0

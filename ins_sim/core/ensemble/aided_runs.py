@@ -129,7 +129,7 @@ class AidedFlight:
         self._span_ns = navigator.window.cycles * dt_ns
         self._outputs = WantedInstants(wanted_ns, dt_ns)
         self._chain = AidedChain(navigator, note_of, self._outputs)
-        # Blocks that still wait for fixes, and fixes that belong to no block yet.
+        # Blocks that still wait for fixes, and fixes that do not belong to a block yet.
         self._held, self._fixes = deque(), []
 
     def advance(self, ideal, truth):

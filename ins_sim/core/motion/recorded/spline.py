@@ -24,7 +24,7 @@ from ..motion import Motion
 from ..truth import truth_from_pose
 from .faults import median_interval, unbroken_part
 
-# The ends are not flown: the spline is less exact there, and delayed channels need earlier samples.
+# The ends are not flown: the spline is inexact there, and delayed channels need earlier samples.
 PAD_S = 3.0
 DEGREE = 5
 FEWEST_ROWS = 8
