@@ -270,7 +270,7 @@ def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
     """An alignment that uses the whole record is mentioned in the refusal."""
     said = navigated({('/imu', IMU): resting()}, *GIVEN, 'initial.heading:=given')
     assert 'fewer than 10 samples after the start at 19.980000000 s' in said
-    assert 'Found on the way: 1000 samples of bag /imu in 19.980 s' in said
+    assert 'Notes: 1000 samples of bag /imu in 19.980 s' in said
     assert 'stationary from 0.000000000 s for 19.980 s' in said
 
 

@@ -1,4 +1,4 @@
-"""A group of at most 16 runs that go through the strapdown side by side."""
+"""A group of at most 16 runs that the strapdown processes together."""
 
 from dataclasses import replace
 

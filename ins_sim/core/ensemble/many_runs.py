@@ -26,7 +26,7 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     Return the EnsembleResult of many runs.
 
     Run k has the same bits as ``simulate`` gives for ``settings.with_run(k)``. Settings for which
-    runs cannot go side by side are simulated run by run.
+    runs cannot be processed together are simulated run by run.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def check_runs(settings, motion):
 
 def in_lanes(settings):
     """
-    Return whether runs of SimulationSettings can go side by side.
+    Return whether runs of SimulationSettings can be processed together.
 
     They cannot with tuned gyros, whose rotors are stepped in each run; with samples whose instants
     differ between runs; with other orientation methods than quaternion; and with guided motions.

@@ -1,4 +1,4 @@
-"""Runs of an ensemble that cannot go side by side: each is simulated by itself."""
+"""Runs of an ensemble that cannot be processed together: each is simulated alone."""
 
 from dataclasses import replace
 

@@ -53,7 +53,7 @@ def navigate(settings, sources, progress=None):
     except ValueError as error:
         if not notes:
             raise
-        raise ValueError(f'{error}. Found on the way: {"; ".join(notes)}') from None
+        raise ValueError(f'{error}. Notes: {"; ".join(notes)}') from None
 
 
 def _navigate(settings, sources, progress, notes):

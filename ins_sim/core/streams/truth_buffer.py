@@ -144,7 +144,7 @@ class TruthBuffer:
 
         Returns
         -------
-        count : number of samples taken; 0 if fewer than three samples came before
+        count : number of samples processed; 0 if fewer than three samples came before
         block : their TruthBlock, or None
         """
         if len(self._last) < 3:
