@@ -131,8 +131,8 @@ NAN = math.nan
     (METER, replace(METER_FIX, sigma=(0.0, 1.0)), 'has standard deviations of velocity (0.0, '
      '1.0); expected positive ones'),
     (METER, replace(METER_FIX, sigma=(-1.0, 1.0)), 'expected positive ones'),
-    (METER, replace(METER_FIX, arrival_ns=0), 'arrives at 0.000000000 s; expected not before its '
-     'own instant'),
+    (METER, replace(METER_FIX, arrival_ns=0), 'arrives at 0.000000000 s, before its own '
+     'instant; expected that instant or later'),
     (GNSS, replace(GNSS_FIX, v_n=(NAN, 0.0, 0.0)), 'has a velocity of (nan, 0.0, 0.0); expected '
      'finite numbers'),
     (GNSS, replace(GNSS_FIX, lat=math.inf), 'has a position of (inf,'),
@@ -157,7 +157,7 @@ def test_a_fix_from_the_future_is_refused():
     """A fix further ahead of the newest reading than a fix may be late is rejected."""
     nav = navigator(buffer_s=2.0)
     fly(nav, [], SAMPLES[:100])
-    with pytest.raises(StreamFault, match='is from the future, the newest IMU sample is of '
+    with pytest.raises(StreamFault, match='is from the future: the newest IMU sample is at '
                                           '0.990000000 s; expected a fix at most 2.01 s ahead'):
         nav.take(METER, METER_FIXES[9])
     nav.take(METER, METER_FIXES[4])

@@ -118,7 +118,8 @@ def test_what_cannot_show_an_azimuth_is_refused():
     """A straight flight and too few fixes are rejected, with one sentence each."""
     t = np.arange(60.0)
     v = np.tile((100.0, 170.0), (60, 1))
-    with pytest.raises(ValueError, match='expected a turn, in which the azimuth error shows'):
+    with pytest.raises(ValueError, match='expected a turn, because the azimuth error is '
+                                         'observable only in turns'):
         azimuth_error(t, v, v)
     states = Truth(*(np.zeros(2),) * 3, np.zeros(2), np.zeros((2, 3)), np.zeros((2, 4)),
                    np.zeros((2, 3)), np.zeros((2, 3)))

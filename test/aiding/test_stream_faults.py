@@ -59,7 +59,7 @@ def test_whatever_waits_is_bounded():
     assert [t for t, *_ in outputs] == [t for t, *_ in streams['push_imu']][:len(outputs)]
     assert len(outputs) > 1150 and stream.silent == [GNSS, METER]
     assert [fault.partition(';')[0] for fault in faults] == [
-        f'no fix of {source} while 50 readings came' for source in (GNSS, METER)]
+        f'no fix of {source} while 50 IMU readings arrived' for source in (GNSS, METER)]
 
 
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():
@@ -97,7 +97,7 @@ def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
             late = replace(event[1], t_ns=1000 * SECOND, arrival_ns=1000 * SECOND)
             outputs += push(stream, GNSS, (GNSS, late), faults)
     fault, = faults
-    assert fault.startswith('gnss: fix at 1000.000000000 s is from the future, the newest IMU')
+    assert fault.startswith('gnss: fix at 1000.000000000 s is from the future: the newest IMU')
     assert fault.endswith('expected a fix at most 60 s ahead; it was dropped')
     expected, _, _ = run_stream(streams, np.random.default_rng(5))
     assert outputs == expected

@@ -193,7 +193,7 @@ def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
     out = tmp_path / 'out'
     assert main(['navigate', str(car(tmp_path)), '-o', str(out)]) == 0
     shown = ' '.join(capsys.readouterr().out.split())
-    assert 'too coarse to see the Earth turn' in shown and 'the course of /fix' in shown
+    assert 'too coarse to measure the rotation' in shown and 'the course of /fix' in shown
     figures = summary_of(out)['figures']
     bound = math.degrees(3.0 * (math.sqrt(27 / 50) * 1e-3 + 27e-3 / math.sqrt(1000)))
     assert abs(figures['heading_deg'] - 70.0) < bound

@@ -93,7 +93,7 @@ def test_fixes_that_are_no_position_are_dropped_with_a_count_and_a_reason(case, 
 def test_a_topic_without_a_usable_fix_says_why(messages, sentence, navigated):
     """The message does not claim that there is no NavSatFix."""
     said = navigated({('/imu', IMU): at_rest(), ('/fix', FIX): messages})
-    assert f'the latitude is unknown, for {sentence}' in said
+    assert f'the latitude is unknown, because {sentence}' in said
     assert 'no NavSatFix' not in said
 
 
@@ -111,8 +111,8 @@ def test_fixes_at_zero_can_be_meant(navigated):
     (FORCE / 9.8, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g? (units.'),
     (-FORCE / 9.8, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g?'),
     (FORCE * 1000.0 / 9.8, 'is 1000.0 m/s^2; expected 9.8: is it in mg? (units.force:=mg'),
-    (FORCE * 0.0, 'is 0.0 m/s^2; expected 9.8: was gravity removed? (it may differ by'),
-    (FORCE * 3.0, 'mean specific force at rest is 29.4 m/s^2; expected 9.8 (it may differ')])
+    (FORCE * 0.0, 'is 0.0 m/s^2; expected 9.8: was gravity removed? (the allowed difference is '),
+    (FORCE * 3.0, 'mean specific force at rest is 29.4 m/s^2; expected 9.8 (the allowed')])
 @pytest.mark.parametrize('start', [HEADED, ('initial.attitude:=given', 'initial.velocity:=given'),
                                    (*HEADED, 'mounting.source:=level')])
 def test_the_mean_specific_force_at_rest_is_judged(f, sentence, start, navigated):
@@ -212,7 +212,7 @@ def test_readings_that_are_zero_in_turns_are_recognised(navigated):
     f[1::2], omega[::2] = 0.0, 0.0
     bag = {('/imu', IMU): at_rest(f, omega)}
     assert 'the specific force is exactly zero in 500 of 1000 samples and the angular rate in ' \
-        '500 others: the driver seems to send them in turns' in navigated(bag, *GIVEN, *HEADED)
+        '500 others: the driver seems to send them alternately' in navigated(bag, *GIVEN, *HEADED)
     got = navigated(bag, *GIVEN, *HEADED, 'accept.zero_readings:=fill')
     assert 'interpolated linearly between their neighbours' in notes_of(got)
     assert abs(got['figures']['gravity_excess_m_s2'] + 0.015) < 1e-3
@@ -270,7 +270,7 @@ def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
     """An alignment that uses the whole record is mentioned in the refusal."""
     said = navigated({('/imu', IMU): resting()}, *GIVEN, 'initial.heading:=given')
     assert 'fewer than 10 samples after the start at 19.980000000 s' in said
-    assert 'Found on the way: 1000 samples of bag /imu in 19.980 s' in said
+    assert 'Notes: 1000 samples of bag /imu in 19.980 s' in said
     assert 'stationary from 0.000000000 s for 19.980 s' in said
 
 

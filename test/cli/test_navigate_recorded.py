@@ -194,7 +194,7 @@ def test_the_road_vehicle_beside_a_fibre_optic_ins(shared_data, tmp_path, capsys
     summary = navigated(folder / 'fogmems_imu.csv.gz', tmp_path / 'out', *FRD,
                         f'reference.path:={folder / "fogmems_fogins_reference.csv"}',
                         'initial.attitude:=reference')
-    shown(capsys, 'MEMS beside the fibre-optic INS', summary)
+    shown(capsys, 'MEMS compared with the fibre-optic INS', summary)
     rows, = summary['errors'].values()
     for row in rows:
         assert row['horizontal_m'] < grown(row['after_s'], math.radians(0.1), math.radians(1.0))

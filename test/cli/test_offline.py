@@ -147,7 +147,7 @@ def test_dtg_report(capsys):
     assert main(['dtg-report', '-p', 'gyro.dtg.preset:=sapegin_2016']) == 0
     text = capsys.readouterr().out
     assert 'UNSTABLE' in text and 'time constant 0.133652 s' in text
-    assert 'RK4 decays for steps of 0.3322 to 1.099 ms' in text
+    assert 'RK4 is stable for steps of 0.3322 to 1.099 ms' in text
     bad = ['-p', 'gyro.dtg.preset:=custom', '-p', 'gyro.dtg.custom.rotor_axial_kg_m2:=1.0']
     assert main(['dtg-report', *bad]) == 2
     assert 'no rigid body has more' in capsys.readouterr().err

@@ -25,16 +25,17 @@ def words(values):
 
 @pytest.mark.parametrize('values, at', [
     # The cruise flies north at half of its 100 m/s or more; 0.1 deg are 11.1 km.
-    (POLAR, 'the motion is past the pole at'),
+    (POLAR, 'the motion crosses a pole before'),
     ({'motion.kind': 'sinusoids', 'motion.sinusoids.position_m': '[0.0, 50000.0, 0.0]',
-      'datum.latitude_deg': -89.9}, 'the motion is past the pole at')])
+      'datum.latitude_deg': -89.9}, 'the motion crosses a pole before')])
 @pytest.mark.parametrize('verb', ['simulate', 'predict'])
 def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys):
     """The motion is rejected before the run, wherever in it the pole is passed."""
     more = ['-o', str(tmp_path / 'run')] if verb == 'simulate' else []
     assert main([verb, *more, *words(values)]) == 2
     said = capsys.readouterr().err
-    assert at in said and 'expected within 90: choose a datum farther from the pole' in said
+    assert at in said and ('expected at most 90 deg north or south: choose a datum farther from '
+                           'the pole') in said
     assert said.count('\n') == 1 and not (tmp_path / 'run').exists()
 
 
@@ -47,10 +48,10 @@ def test_a_motion_near_the_pole_is_flown():
 
 
 def test_a_generator_without_an_end_looks_ahead():
-    """An endless flight past the pole is rejected before its first message."""
+    """An endless flight across the pole is rejected before its first message."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = settings({**POLAR, 'duration_s': 0.0})
-    with pytest.raises(ValueError, match='past the pole'):
+    with pytest.raises(ValueError, match='crosses a pole'):
         TruthSource(chosen.motion_generator)
 
 

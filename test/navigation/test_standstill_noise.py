@@ -85,9 +85,9 @@ def test_navigate_asks_for_the_bias_or_assumes_10_deg_h(given, trusted):
         assert figures['heading_sigma_deg'] == pytest.approx(0.0664, abs=1e-3)
         return
     bias = given.get('sigma', 10.0)
-    with pytest.raises(ValueError, match=f'standard error {66.4 if bias > 5.0 else 6.64} deg, by '
-                       f'noise .* deg and by the bias of {bias:g} deg/h of '
-                       'alignment.gyro_bias_sigma_deg_h'):
+    with pytest.raises(ValueError, match=f'standard error {66.4 if bias > 5.0 else 6.64} deg, '
+                       f'from noise of .* deg and a gyro bias of {bias:g} deg/h '
+                       r'\(alignment.gyro_bias_sigma_deg_h'):
         navigate(chosen, Sources('x', imu, 'imu'))
 
 

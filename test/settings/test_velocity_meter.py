@@ -65,7 +65,7 @@ def test_a_cycle_that_takes_too_much():
         VelocityMeter(meter_settings(mode='signal', signal__prf_hz=1e7, signal__lags=4096,
                                      rate_hz=1.0))
     assert str(raised.value) == (
-        'signal.prf_hz is 1e+07 Hz with signal.pulses_per_lag 6: a cycle takes 2097152 modes of '
+        'signal.prf_hz is 1e+07 Hz with signal.pulses_per_lag 6: a cycle needs 2097152 modes of '
         'the field; expected at most 1048576')
 
 

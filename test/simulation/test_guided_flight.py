@@ -99,7 +99,7 @@ def test_a_motion_of_ones_own_fits_the_samples():
     motion, _ = flown(settings(False, duration_s=1.0))
     chosen = settings(False, duration_s=1.0, rate_hz=75.0, motion__guided__control_rate_hz=75.0)
     with pytest.raises(ValueError, match='the control period of the motion is 10000000 ns; '
-                       'expected a multiple of that of rate_hz, 13333333 ns'):
+                       'expected a multiple of the period of rate_hz, 13333333 ns'):
         fly(chosen, motion)
 
 
@@ -194,8 +194,8 @@ def test_what_cannot_be_closed_is_refused_by_the_settings(values, sentence):
 
 
 @pytest.mark.parametrize('command, sentence', [
-    (['predict'], 'motion.kind is guided; expected another kind without a flight: the motion '
-     'depends on the navigation'),
+    (['predict'], 'motion.kind is guided; expected another kind: a guided motion depends on '
+     'the navigation'),
     (['simulate', '-p', 'duration_s:=5000.0'], 'duration_s is 5000 s; expected at most '),
     (['simulate', '-p', 'duration_s:=0.0'], 'duration_s is 0, endless')], ids=lambda v: v[0])
 def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):

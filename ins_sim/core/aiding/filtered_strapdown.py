@@ -13,8 +13,8 @@ class FilteredStrapdown:
 
     window_ns: length of the windows of the velocity meter; step_ns: distance between their ends.
     For overlapping windows the filters have no sums over the window; each step is then treated as
-    a window.  takes_segments: whether many samples can be processed at once, because the filter
-    does not override ``step``.
+    a window.  takes_segments: whether several samples can be processed in one call, because the
+    filter does not override ``step``.
     """
 
     def __init__(self, ins, filter_, window_ns, step_ns):
@@ -46,7 +46,7 @@ class FilteredStrapdown:
 
     def cut(self, samples, first, stop, event_ns):
         """
-        Return the end of the samples, from first on, that can be processed in one go.
+        Return the end of the samples, from first on, that can be processed in one call.
 
         Only the last of them may need work by the filter or the navigator.
 

@@ -28,8 +28,8 @@ def check_velocity(fix, window, dt_ns):
 def check_ahead(source, t_ns, newest_ns, ahead_ns):
     """Raise StreamFault (fix dropped) if a fix is too far ahead of the newest IMU sample."""
     if t_ns > newest_ns + ahead_ns:
-        raise _dropped(f'{source}: fix at {seconds(t_ns)} is from the future, the newest IMU '
-                       f'sample is of {seconds(newest_ns)}; expected a fix at most '
+        raise _dropped(f'{source}: fix at {seconds(t_ns)} is from the future: the newest IMU '
+                       f'sample is at {seconds(newest_ns)}; expected a fix at most '
                        f'{ahead_ns * 1e-9:g} s ahead')
 
 
@@ -48,8 +48,8 @@ def check_gnss(fix):
 
 def _check_arrival(where, fix):
     if fix.arrival_ns < fix.t_ns:
-        raise _dropped(f'{where} arrives at {seconds(fix.arrival_ns)}; expected not before its '
-                       'own instant')
+        raise _dropped(f'{where} arrives at {seconds(fix.arrival_ns)}, before its own instant; '
+                       'expected that instant or later')
 
 
 def _check(where, name, values, sigmas, bound):

@@ -150,8 +150,9 @@ class AidedStream(MatchedStreams):
         outputs = []
         for source in self.awaited:
             self.faults.append(StreamFault(
-                f'no fix of {source} while {len(self._imu)} readings came; expected it within '
-                'topics.depth of them: continuing without it until it delivers again', False))
+                f'no fix of {source} while {len(self._imu)} IMU readings arrived; expected '
+                'one within topics.depth readings: continuing without it until it delivers '
+                'again', False))
             outputs += self.go_on_without(source)
         return outputs
 

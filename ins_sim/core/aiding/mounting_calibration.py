@@ -117,8 +117,8 @@ def azimuth_error(t_s, v_ins, v_gnss):
     """
     spread = np.linalg.svd(v_gnss - v_gnss.mean(axis=0), compute_uv=False) / math.sqrt(len(t_s))
     if spread[0] < 0.05 * np.linalg.norm(v_gnss, axis=1).mean():
-        raise ValueError(f'the velocity changes by {spread[0]:.3g} m/s; expected a turn, in which '
-                         'the azimuth error shows')
+        raise ValueError(f'the velocity changes by {spread[0]:.3g} m/s; expected a turn, because '
+                         'the azimuth error is observable only in turns')
     scale = t_s / max(t_s[-1], 1.0)
     powers = np.stack([np.ones_like(scale), scale, scale ** 2], axis=1)
     rows = np.zeros((len(t_s), 2, 7))
@@ -185,8 +185,8 @@ def _windows(states, t_ns, v_gnss, meter):
         read.append((fix.velocity[0], -fix.velocity[1]))
         computed.append((mean[0], -mean[1]))
     if len(read) < 3:
-        raise ValueError(f'{len(read)} windows of the velocity meter while GNSS works; expected '
-                         'at least 3')
+        raise ValueError(f'{len(read)} windows of the velocity meter during GNSS coverage; '
+                         'expected at least 3')
     return np.array(read), np.array(computed)
 
 

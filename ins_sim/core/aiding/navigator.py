@@ -135,8 +135,8 @@ class AidedNavigator:
         """
         Process samples as ``step`` does, up to the first at which a fix arrives; return their end.
 
-        If the solution is not finite at some sample, no sample is processed and first is returned;
-        ``step`` then finds out which one it is.
+        If the solution diverges at some sample, no sample is processed and first is returned;
+        ``step``, called sample by sample, then finds this sample.
 
         Parameters
         ----------
@@ -187,8 +187,8 @@ class AidedNavigator:
         """
         Move the fixes that have arrived by t_ns from a list to the navigator, as ``take`` does.
 
-        waiting: (arrival_ns, source, fix) in the order of arrival.  A rejected fix is also removed
-        from the list.
+        waiting: (arrival_ns, source, fix) in the order of arrival.  A fix that is refused is
+        removed from the list as well.
         """
         while waiting and waiting[0][0] <= t_ns:
             _, source, fix = waiting.pop(0)
@@ -286,8 +286,8 @@ class AidedNavigator:
         if not self.filter.healthy:
             raise DivergedSolution(
                 f'the covariance of filter {self._settings.filter} at '
-                f'{seconds(self.ins.t_ns)} is not positive definite; expected errors that the '
-                'model can follow', restart=True)
+                f'{seconds(self.ins.t_ns)} is not positive definite; expected errors that '
+                'agree with the model of the filter', restart=True)
 
 
 def _arrival(entry):

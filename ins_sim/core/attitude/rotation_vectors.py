@@ -1,5 +1,5 @@
 """
-Exponential of many rotation vectors at once.
+Exponential of many rotation vectors in one call.
 
 The result has the same bits as that of ``quaternion.exponential``, which takes floats. Components
 are arrays of one shape.

@@ -21,11 +21,11 @@ class BenchRecord:
 
     Attributes
     ----------
-    name : what it is called in messages
+    name : its name in messages
     imu : ImuSamples; t_ns are motion times, omega mean rates over the interval before them, rad/s
     dt_ns : sampling period, ns
     motion : Motion
-    datum, earth : settings of the place of the bench
+    datum, earth : settings of the position of the bench
     output : rotation_vector or integrated, the kind of a reading (ImuSensorSettings.output)
     white : density of the white noise by axis (angle random walk), rad/sqrt(s); 0 if not known
     """
@@ -67,9 +67,9 @@ def usable(record):
     gaps = steps > 1.5 * record.dt_ns
     if gaps.any():
         lost = np.count_nonzero(gaps), float((steps[gaps] - record.dt_ns).max()) * 1e-9
-        notes.append(f'{record.name}: {lost[0]} gaps, the longest of {lost[1]:.6g} s: every '
-                     'reading is compared with the motion at its own stamp, so that nothing else '
-                     'is lost')
+        notes.append(f'{record.name}: {lost[0]} gaps, the longest of {lost[1]:.6g} s: each '
+                     'reading is compared with the motion at its own stamp, so that only the '
+                     'missing readings are lost')
     return BenchRecord(record.name, imu, record.dt_ns, record.motion, record.datum, record.earth,
                        record.output, record.white), notes
 

@@ -9,8 +9,8 @@ where w are the mean true rates over the sampling interval and w_i' their deriva
 Weston, section 11.2, and the delay term of Bogdanov and Fomichev 2018). The asymmetry a of the
 scale factor is included, because under an oscillating motion it would be mistaken for a bias. The
 model is linear in all unknowns. If the delay is not small compared with the period of the motion,
-w is taken at t - tau for the delay found so far (Gauss-Newton iteration). An angle random walk is
-white noise of the rate, so the readings need no further whitening.
+w is evaluated at t - tau for the delay found so far (Gauss-Newton iteration). An angle random walk
+is white noise of the rate, so the readings need no further whitening.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ COLUMNS = 6
 AXES = 'xyz'
 # Number of blocks of a record; the scatter of their sums tells how white the residuals are.
 BLOCKS = 64
-# Number of readings whose true rates are in memory at once.
+# Number of readings whose true rates are in memory at the same time.
 AT_ONCE = 16384
 # Half the interval for numerical derivatives of rates, ns; the relative error is (w h)^2 / 6.
 STEP_NS = 2000

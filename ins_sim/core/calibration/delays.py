@@ -19,7 +19,7 @@ SLOW = 1e-3
 # Largest difference between records of one instrument, in standard deviations.
 APART = 6.0
 # Change of a delay, s, below which it need not be linearised again; and derivative of the rate,
-# rad/s^2, below which nothing turns.
+# rad/s^2, below which the bench does not turn.
 SETTLED_S, LEAST_CHANGE = 1e-7, 1e-12
 # Largest number of linearisations of a delay, and longest delay that is searched for, s.
 PASSES, LONGEST_S = 10, 1.0
@@ -128,7 +128,8 @@ def estimate_triad(records):
         raise NotObservable('delays are not observable in this motion: '
                             + '; '.join(c.refused for c in channels))
     notes += [f'{c.axis}: the residuals scatter {math.sqrt(c.ratio):.3g} times as much as the '
-              'angle random walk predicts; the standard deviations are those of the residuals'
+              'angle random walk predicts; the standard deviations are computed from the '
+              'residuals'
               for c in channels if c.weights == BY_RESIDUALS and c.ratio > c.limit]
     return TriadEstimate(channels, tuple(r.name for r in records), tuple(notes))
 
@@ -165,12 +166,12 @@ def _channel(records, axis):
         else:
             late_ns += round(float(fit.values[DELAY]) * 1e9)
         if abs(late_ns) > LONGEST_S * 1e9:
-            raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} comes out as '
-                             f'{late_ns * 1e-9:.4g} s; expected at most {LONGEST_S:g} s: are the '
-                             'stamps those of the motion?')
-    raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} does not settle in {PASSES} '
-                     'steps; expected readings of the motion that is given, with stamps of its '
-                     'time')
+            raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} is estimated as '
+                             f'{late_ns * 1e-9:.4g} s; expected at most {LONGEST_S:g} s: do the '
+                             'stamps use the clock of the motion?')
+    raise ValueError(f'{_names(records)}: the delay of {AXES[axis]} does not converge in '
+                     f'{PASSES} iterations; expected readings of the given motion, with stamps '
+                     'of its clock')
 
 
 def _names(records):
@@ -192,9 +193,9 @@ def _check_motion(records, axis, fit, sums):
     if abs(found) <= FOREIGN:
         found, what = _alone(sums), 'scale factor'
     if abs(found) > FOREIGN:
-        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} comes out as '
-                         f'{found:.3g}; expected less than {FOREIGN:g}: the readings are not of '
-                         'the motion that is given, or their stamps not of its time')
+        raise ValueError(f'{_names(records)}: the {what} of {AXES[axis]} is estimated as '
+                         f'{found:.3g}; expected less than {FOREIGN:g}: the readings do not '
+                         'belong to the given motion, or their stamps not to its clock')
 
 
 def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
@@ -205,8 +206,8 @@ def _check_one_instrument(records, axis, sums, noise, fit, dt_s):
         if len(records) > 1 and not unobservable(axis, alone, one.most, dt_s) and (
                 abs(off) > APART * alone.delay_sigma + SETTLED_S):
             raise ValueError(f'{record.name}: the delay of {AXES[axis]} differs by '
-                             f'{1e6 * off:.4g} us from that of all records together, with a sigma '
-                             f'of {1e6 * alone.delay_sigma:.3g} us; expected records of one '
+                             f'{1e6 * off:.4g} us from the delay of all records together, with a '
+                             f'sigma of {1e6 * alone.delay_sigma:.3g} us; expected records of one '
                              'instrument')
 
 

@@ -34,7 +34,7 @@ def planned_record(name, motion, datum, earth, white, rate_hz, start_s, duration
     ----------
     name : used in messages
     motion : Motion
-    datum, earth : settings of the place of the bench
+    datum, earth : settings of the position of the bench
     white : (3,) angle random walk, rad/sqrt(s)
     rate_hz : sampling rate, Hz
     start_s, duration_s : motion time of the start, and length, s; ValueError if too short

@@ -37,8 +37,8 @@ def unobservable(axis, fit, change, dt_s):
         k = SCALE + int(np.argmax(np.abs(row[SCALE:LAST + 1])))
         what = ('ppm of its scale factor' if k == SCALE else
                 f'urad of misalignment towards {AXES[other_axes(axis)[k - SCALE - 1]]}')
-        return (f'a delay of {name} of 1 us reads like {abs(row[k] / row[DELAY]):.3g} {what} '
-                f'(sigma {1e6 * sigma:.4g} us)')
+        return (f'a delay of {name} of 1 us has the effect of {abs(row[k] / row[DELAY]):.3g} '
+                f'{what} (sigma {1e6 * sigma:.4g} us)')
     if sigma > COARSE * dt_s:
         return (f'the rate of {name} changes by at most {change / DEG:.3g} deg/s^2, which leaves '
                 f'a sigma of {1e6 * sigma:.4g} us; expected less than '

@@ -34,7 +34,7 @@ def simulate_aided_runs(settings, motion, runs, wanted_ns, progress=None):
     settings : AidedSimulationSettings
     motion : Motion
     runs : numbers of the runs
-    wanted_ns : (m,) motion times of the outputs, ns; each is taken at the next sample
+    wanted_ns : (m,) motion times of the outputs, ns; the next sample is used
     progress : function that is called with the fraction done, or None
 
     Raises
@@ -129,11 +129,11 @@ class AidedFlight:
         self._span_ns = navigator.window.cycles * dt_ns
         self._outputs = WantedInstants(wanted_ns, dt_ns)
         self._chain = AidedChain(navigator, note_of, self._outputs)
-        # Blocks that still wait for fixes, and fixes that belong to no block yet.
+        # Blocks that still wait for fixes, and fixes that do not belong to a block yet.
         self._held, self._fixes = deque(), []
 
     def advance(self, ideal, truth):
-        """Take ideal ImuSamples and a list of parts of the truth for the other instruments."""
+        """Process ideal ImuSamples and a list of parts of the truth for the other instruments."""
         if self.refused:
             return
         try:

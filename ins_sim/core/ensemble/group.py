@@ -1,4 +1,4 @@
-"""A group of at most 16 runs that go through the strapdown side by side."""
+"""A group of at most 16 runs that the strapdown processes together."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from .sensing import SensedTriad
 
 # Number of errors: attitude (rad), velocity (m/s) and position (m), each East, North, Up.
 ERRORS = 9
-# Number of samples processed at once; their readings in 16 runs take 0.8 MB.
+# Number of samples processed together; their readings in 16 runs take 0.8 MB.
 PIECE = 1024
 
 
@@ -60,13 +60,13 @@ class Group:
         return tuple(run for run, lost in zip(self.runs, self._lost) if lost)
 
     def wait(self, imu):
-        """Take ideal samples from before the start of the strapdown, so that lags settle."""
+        """Process ideal samples from before the strapdown starts, so that lags settle."""
         for part in _pieces(imu.t_ns // self._dt_ns):
             self._sense(imu[part])
 
     def advance(self, imu, t_ns, truth, picked):
         """
-        Take samples and return the errors (m, runs, ERRORS) at the picked ones.
+        Process samples and return the errors (m, runs, ERRORS) at the picked ones.
 
         The first sample of all starts the strapdown. Errors of a diverged run are NaN.
 

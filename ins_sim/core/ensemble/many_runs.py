@@ -26,15 +26,15 @@ def simulate_runs(settings, motion, runs, instants_s, threads=1, initial=None):
     Return the EnsembleResult of many runs.
 
     Run k has the same bits as ``simulate`` gives for ``settings.with_run(k)``. Settings for which
-    runs cannot go side by side are simulated run by run.
+    runs cannot be processed together are simulated run by run.
 
     Parameters
     ----------
     settings : SimulationSettings
     motion : the motion of settings.motion_generator
     runs : range of numbers of runs
-    instants_s : motion times of the statistics, s; each is taken at the first sample from then on
-        that has a solution
+    instants_s : motion times of the statistics, s; the first sample from then on that has a
+        solution is used
     threads : number of threads, which does not change the bits
     initial : function (number of a run) -> its Initial errors, or None for those of the settings
 
@@ -106,7 +106,7 @@ def check_runs(settings, motion):
 
 def in_lanes(settings):
     """
-    Return whether runs of SimulationSettings can go side by side.
+    Return whether runs of SimulationSettings can be processed together.
 
     They cannot with tuned gyros, whose rotors are stepped in each run; with samples whose instants
     differ between runs; with other orientation methods than quaternion; and with guided motions.

@@ -1,4 +1,4 @@
-"""Runs of an ensemble that cannot go side by side: each is simulated by itself."""
+"""Runs of an ensemble that cannot be processed together: each is simulated alone."""
 
 from dataclasses import replace
 
@@ -78,7 +78,7 @@ class _Flight:
         self.restarts = len(faults)
 
     def _take(self, states, errors):
-        """Take a block of the solution."""
+        """Process a block of the solution."""
         rows = np.concatenate([errors.attitude, errors.velocity, errors.position], axis=1)
         ends = np.searchsorted(errors.t_ns, self._wanted_ns[self._taken:])
         found = rows[ends[ends < len(rows)]]

@@ -78,8 +78,8 @@ def aided_margin_sentence(generator, navigator):
     return (f'guidance.latency_s is {generator.guidance.latency_s:g} s, which with filter '
             f'conventional and gain_per_s {navigator.gain_per_s:g} leaves the loop a phase margin '
             f'of {margin.margin / DEG:.1f} deg; expected more than 0, as with '
-            f'{max(0.0, generator.guidance.latency_s + margin.delay_s):.2g} s or less: it is '
-            'unstable whatever the meter reads')
+            f'{max(0.0, generator.guidance.latency_s + margin.delay_s):.2g} s or less: the loop '
+            'is unstable whatever the meter measures')
 
 
 def _returned(loop, aiding, k_z, q):

@@ -1,5 +1,5 @@
 """
-Reduced simulation of the loop of vehicle, autopilot and aided navigator, many flights at once.
+Reduced simulation of the loop of vehicle, autopilot and aided navigator, for many flights.
 
 It consists of the plant of ``linear_plant`` with a limited command and the errors of the
 estimates. Without the Earth and IMU readings it simulates a hundred flights in a fraction of the

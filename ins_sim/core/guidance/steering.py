@@ -75,7 +75,7 @@ class Steering:
         self.notes, self.counts = [], {}
 
     def engage(self, t_ns):
-        """Engage the autopilot; in a turn it takes over at the end of the turn, with a note."""
+        """Engage the autopilot; in a turn it steers from the end of the turn on, with a note."""
         self.engaged, self._scheduled = True, False
         if self.in_turn(t_ns):
             self.notes.append(f'the autopilot was engaged at {seconds(t_ns)} in a turn; it '
@@ -155,10 +155,10 @@ class Steering:
         age_ns = wanted_ns - stamp_ns
         if not why and age_ns > self._timeout_ns:
             why = OLD
-            self._say(why, f'the solution that the autopilot steers by is that of '
-                      f'{seconds(stamp_ns)} at {seconds(t_ns)}; expected one at most '
+            self._say(why, f'the autopilot still uses the solution of {seconds(stamp_ns)} at '
+                      f'{seconds(t_ns)}; expected one at most '
                       f'{(self._latency_ns + self._timeout_ns) * 1e-9:g} s old: the vehicle flies '
-                      'straight until one comes')
+                      'straight until a new one arrives')
         return z, v_z, why
 
     def _use(self, t_ns, stamp_ns, solution):

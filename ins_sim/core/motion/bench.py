@@ -1,4 +1,4 @@
-"""Motions at a fixed place, as on a test bench, in closed form."""
+"""Motions at a fixed position, as on a test bench, in closed form."""
 
 import math
 
@@ -21,7 +21,7 @@ BODY_AXES = {'x': 0, 'y': 1, 'z': 2}
 
 class BenchMotion(Motion):
     """
-    A motion at a fixed place, with an optional small excursion about it.
+    A motion at a fixed position, with an optional small excursion about it.
 
     attitude, constants: a function of ``bench_attitudes`` and its constants; datum: Datum of the
     place; excursion: function from the Series of time to the displacement east, north, up (m), or
@@ -40,7 +40,7 @@ class BenchMotion(Motion):
         super().__init__(pose, 2, earth.rotation, period_s, self._path, earth.gravity)
         self._still = None
         if excursion is None:
-            # The place is fixed: velocity, rate and specific force in n are the same at all times.
+            # The position is fixed: velocity, rate and specific force in n are constant.
             found = translation(*self._path(taylor.Series.time(np.zeros(1), 2)), earth.rotation,
                                 earth.gravity)
             self._still = tuple(tuple(float(x[0]) for x in vector) for vector in found)
@@ -58,7 +58,7 @@ class BenchMotion(Motion):
         return truth_of(t_ns, self._spot, *self._still, self._attitude(self._constants, t))
 
     def attitude_at(self, t_ns):
-        """Return latitude and longitude (floats if the place is fixed) and q_nb (n, 4)."""
+        """Return latitude and longitude (floats if the position is fixed) and q_nb (n, 4)."""
         t = np.asarray(t_ns) * 1e-9
         q_nb = np.empty((len(t), 4))
         run(attitudes.ROWS[self._attitude], len(t), (self._constants, t), q_nb, self._rows)
@@ -73,7 +73,7 @@ class BenchMotion(Motion):
             out[:, k] = component
 
     def force_at(self, t_ns):
-        """Return latitude, longitude and specific force in n; floats if the place is fixed."""
+        """Return latitude, longitude and specific force in n; floats if the position is fixed."""
         if self._still is None:
             return super().force_at(t_ns)
         return *self._spot[:2], self._still[2]

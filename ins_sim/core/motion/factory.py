@@ -23,8 +23,8 @@ def make_motion(motion, datum, earth_settings) -> Motion:
         file (``ins_sim.io.motion.read_motion``).
     """
     if motion.maker is None:
-        raise ValueError(f'motion.kind is {motion.kind}, whose poses are in a file; expected a '
-                         'closed-form motion here')
+        raise ValueError(f'motion.kind is {motion.kind}, which is read from a file; expected '
+                         'a closed-form motion (ins_sim.io.motion.read_motion reads files)')
     made = located(motion.maker, f'motion.kind {motion.kind}')(motion, datum, earth_settings)
     if not isinstance(made, Motion):
         raise ValueError(f'motion.kind {motion.kind} is at {motion.maker!r} in its table, which '

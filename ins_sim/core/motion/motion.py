@@ -105,7 +105,7 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats if the place is fixed.
+            Latitude and longitude, rad; floats if the position is fixed.
         q_nb : (n, 4) array
             Attitude relative to the local level frame.
         """
@@ -130,7 +130,7 @@ class Motion:
         Returns
         -------
         lat, lon : (n,) arrays
-            Latitude and longitude, rad; floats if the place is fixed.
+            Latitude and longitude, rad; floats if the position is fixed.
         f_n : tuple of three (n,) arrays
             Specific force east, north, up, m/s^2; floats if it is constant.
         """
@@ -182,9 +182,10 @@ def check_latitude(t_ns, lat):
     """Raise ValueError if a latitude, rad, an array, is beyond a pole."""
     if len(lat) and not abs(lat).max() <= HALF_PI:
         k = int(np.argmax(abs(lat) > HALF_PI))
-        raise ValueError(f'the motion is past the pole at {instants.seconds(t_ns[k])} of motion '
+        raise ValueError(f'the motion crosses a pole before {instants.seconds(t_ns[k])} of motion '
                          f'time, where its latitude would be {math.degrees(lat[k]):.6g} deg; '
-                         'expected within 90: choose a datum farther from the pole')
+                         'expected at most 90 deg north or south: choose a datum farther from '
+                         'the pole')
 
 
 def check_places(motion, start_s, span_s):

@@ -31,7 +31,7 @@ def truth_of(t_ns, place, v_n, omega_in_n, f_n, q_nb):
     """
     Return the Truth from the results of ``translation`` and an attitude given as Taylor series.
 
-    place: lat, lon, height.  Components are arrays (n,), or floats if the place is fixed; q_nb:
+    place: lat, lon, height.  Components are arrays (n,), or floats if the position is fixed; q_nb:
     tuple of four Series of order >= 1.
     """
     q, omega_ib_b, f_ib_b = in_body(omega_in_n, f_n, q_nb)

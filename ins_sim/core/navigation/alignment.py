@@ -53,10 +53,10 @@ class Gyrocompass:
 
     def describe(self):
         """Return a phrase with the standard error, its contributions and the rate excess."""
-        return (f'standard error {math.degrees(self.sigma):.3g} deg, by noise '
-                f'{math.degrees(self.noise_sigma):.3g} deg and by the bias of '
-                f'{self.bias_sigma * DEG_PER_HOUR:.3g} deg/h of alignment.gyro_bias_sigma_deg_h; '
-                f'mean rate {self.excess * DEG_PER_HOUR:+.3g} deg/h from that of the Earth')
+        return (f'standard error {math.degrees(self.sigma):.3g} deg, from noise of '
+                f'{math.degrees(self.noise_sigma):.3g} deg and a gyro bias of '
+                f'{self.bias_sigma * DEG_PER_HOUR:.3g} deg/h (alignment.gyro_bias_sigma_deg_h); '
+                f'mean rate minus rate of the Earth {self.excess * DEG_PER_HOUR:+.3g} deg/h')
 
 
 def gyrocompass(still, lat, bias_sigma=0.0):
@@ -119,8 +119,8 @@ def trusted_gyrocompass(still, lat, limits):
     compass = gyrocompass(still, lat, limits.gyro_bias_sigma_deg_h / DEG_PER_HOUR)
     if is_trusted(compass, still, lat, math.radians(limits.heading_sigma_deg)):
         return compass, ''
-    return None, (f'the gyros are too coarse to see the Earth turn ({compass.describe()}; '
-                  f'expected at most {limits.heading_sigma_deg:g} deg)')
+    return None, ('the gyros are too coarse to measure the rotation of the Earth '
+                  f'({compass.describe()}; expected at most {limits.heading_sigma_deg:g} deg)')
 
 
 def level_attitude(force, heading):
@@ -166,4 +166,4 @@ def gyro_bias(still, q_nb, lat, spin):
 def bias_sentence(bias):
     """Return the sentence that reports a gyro bias (3,), rad/s, subtracted from the readings."""
     text = ', '.join(f'{b * DEG_PER_HOUR:.4g}' for b in bias)
-    return f'gyro bias of the standstill taken off: {text} deg/h in base_link'
+    return f'gyro bias at standstill subtracted: {text} deg/h in base_link'

@@ -58,7 +58,7 @@ def inertial_errors(state, truth, earth_angle):
     ----------
     state : (q_ib, lat, lon, height, v) in rad, rad, m, m/s; floats or arrays
     truth : (lat, lon, height, v_n, q_nb)
-    earth_angle : rotation of e in i since they coincided, rad
+    earth_angle : angle of the rotation from i to e, zero at the start of the run, rad
 
     """
     q_ib, lat, lon, height, v = state

@@ -84,7 +84,7 @@ def grown(p, n, noise):
 
 class FreeCovariance:
     """
-    Propagates the error covariance beside an InertialNavigator, from readings and solution.
+    Propagates the error covariance of an InertialNavigator, from its readings and solution.
 
     Parameters
     ----------

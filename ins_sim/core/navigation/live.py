@@ -12,8 +12,8 @@ class Navigator(MatchedStreams):
     """
     Runs an InertialNavigator on live IMU and truth; outputs are (t_ns, solution, errors, shown).
 
-    settings, truth_length: see MatchedStreams.  covariance: a FreeCovariance to propagate beside
-    the navigator, or None; ``shown`` is its current ``shown``.
+    settings, truth_length: see MatchedStreams.  covariance: a FreeCovariance to propagate together
+    with the navigator, or None; ``shown`` is its current ``shown``.
     """
 
     def __init__(self, settings, truth_length=TRUTH_LENGTH, covariance=None):
@@ -36,7 +36,7 @@ class Navigator(MatchedStreams):
             return []
         solution = self._navigator.solution
         lat, lon, height, v, q = solution
-        # One sum tests all at once: it is finite only if every term is.
+        # One sum tests all values together: it is finite only if every term is.
         if not math.isfinite(lat + lon + height + v[0] + v[1] + v[2] + q[0] + q[1] + q[2] + q[3]):
             raise StreamFault(f'the solution at {seconds(t_ns)} is not finite; expected '
                               'finite readings', restart=True)

@@ -47,7 +47,7 @@ def begin(lat, lon, height, v, earth_angle):
     ----------
     lat, lon, height : latitude (rad), longitude (rad), height (m)
     v : (3,) velocity east, north, up, m/s
-    earth_angle : rotation of e in i since they coincided, rad
+    earth_angle : angle of the rotation from i to e, zero at the start of the run, rad
 
     """
     return renewed((lat, lon, height, v[0], v[1], v[2], 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0,
@@ -77,7 +77,7 @@ def advance(place, q_ib, delta_v, dt, earth_rate, earth_angle, channel, referenc
     delta_v : integral of specific force, rotated to the body axes at the start, m/s
     dt : length of the interval, s
     earth_rate : rotation rate of the Earth, rad/s; 0 for an Earth that does not rotate
-    earth_angle : rotation of the Earth since i and e coincided, at the start, rad
+    earth_angle : angle of the rotation from i to e at the start of the interval, rad
     channel : how height and vertical velocity are found: FROM_TRUTH, FREE or DAMPED
     reference : a tuple of height, vertical velocity, c1, c2, c3. Height and vertical velocity at
         the end of the interval are used by FROM_TRUTH, the height also by DAMPED; c1, c2, c3 of

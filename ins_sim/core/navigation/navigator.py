@@ -24,8 +24,8 @@ class InertialNavigator:
     The first sample after ``initial.after_s`` starts the strapdown at the truth plus the initial
     errors; its increments serve only as the previous sample of the next step.
 
-    settings: StrapdownSettings.  covariance: a FreeCovariance propagated beside the strapdown, or
-    None.
+    settings: StrapdownSettings.  covariance: a FreeCovariance propagated together with the
+    strapdown, or None.
     """
 
     def __init__(self, settings, covariance=None):

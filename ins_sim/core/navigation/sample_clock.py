@@ -17,7 +17,8 @@ class SampleClock:
         self._nominal = settings.imu_time == 'nominal'
         if settings.imu_latency_us and not self._nominal:
             raise ValueError(f'imu_latency_us is {settings.imu_latency_us:g} us with imu_time '
-                             'stamp; expected imu_time nominal, which alone subtracts it')
+                             'stamp; expected imu_time nominal, because stamp does not '
+                             'subtract it')
         self._shift_ns = dt_ns // 2 - round(1000.0 * settings.imu_latency_us)
 
     def instant(self, stamp_ns):

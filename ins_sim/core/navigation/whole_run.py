@@ -28,7 +28,7 @@ def solve(carry, spin, start_ns, channel, damping, gravity, integrated, t_ns, om
     ----------
     carry : orientation, PLACE, integrals of the last sample, and its instant (ns)
     spin : rotation rate of the Earth, rad/s
-    start_ns : instant at which e and i coincided
+    start_ns : start of the run, at which the axes e and i coincide, ns
     channel, damping, gravity : see ``strapdown.Strapdown``
     integrated : whether the readings are plain integrals
     t_ns : (n,) instants

@@ -41,7 +41,7 @@ class IndexedNoise:
     ----------
     seed, run, name : identify the stream
     width : count of numbers per sample, returned as a list; None for a single float
-    block : number of samples computed at once; the numbers depend on it, so each name must always
+    block : number of samples computed together; the numbers depend on it, so each name must always
         be used with the same width and block
     """
 

@@ -17,7 +17,7 @@ from .noise import BLOCK, check_block, cut, IndexedNoise, NORMAL, whole_counters
 LEVELS = 40
 # After this many correlation times the correlation is zero.
 GONE = 700.0
-# Number of knots computed at once; there is one knot per block.
+# Number of knots computed together; there is one knot per block.
 KNOTS = 16
 _BLOCK_LEVELS = BLOCK.bit_length() - 1
 

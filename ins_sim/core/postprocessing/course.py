@@ -95,7 +95,7 @@ def find_course(turning, displacements, start_ns, distance_m, search_s):
     other arguments: see CourseSearch.
     """
     if displacements is None:
-        return None, 'has no way to show a course'
+        return None, 'contains neither a position nor a velocity to find the course from'
     search = CourseSearch(start_ns, distance_m, search_s)
     for middle_ns, way in zip(*displacements):
         search.add(middle_ns, way)

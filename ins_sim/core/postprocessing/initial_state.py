@@ -161,12 +161,12 @@ class _Search:
                     given.height_m)
         track = None if self._reference is None else self._reference.position
         if track is None:
-            raise ValueError(f'the latitude is unknown, for {self._without_position}; expected '
-                             'initial.position given with initial.latitude_deg, longitude_deg '
-                             'and height_m')
+            raise ValueError(f'the latitude is unknown, because {self._without_position}; '
+                             'expected initial.position given with initial.latitude_deg, '
+                             'longitude_deg and height_m')
         p = track.near(t_ns) if near else track.at([t_ns])[0]
         if np.isnan(p).any():
-            raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has it '
+            raise LookupError(f'the position is unknown at {seconds(t_ns)}: the reference has one '
                               f'from {seconds(track.t_ns[0])} to {seconds(track.t_ns[-1])}; '
                               'expected initial.position given, or another start_s')
         return tuple(p.tolist())

@@ -11,7 +11,7 @@ _LEAST, _UNIT = 1e-3, 1e-6
 
 
 def levelled_mounting(force, yaw):
-    """Return q_bs: the shortest rotation that takes a force (3,) up, then a yaw about up."""
+    """Return q_bs: the shortest rotation of a force (3,) to up, then a yaw about up."""
     x, y, z = force.tolist()
     size, level = math.sqrt(x * x + y * y + z * z), math.sqrt(x * x + y * y)
     # If the force points down, any level axis gives the shortest rotation.
@@ -46,8 +46,8 @@ def chained_mounting(transforms, base, frame, notes=None):
     for name in (base, frame):
         if name not in links:
             raise ValueError(f'/tf_static has no frame {name!r}; the nearest is '
-                             f'{nearest_name(name, links)!r}; expected it, or mounting.source '
-                             'given')
+                             f'{nearest_name(name, links)!r}; expected this frame, or '
+                             'mounting.source given')
     ways, queue = {base: []}, [base]
     for name in queue:
         for other, link in links[name]:

@@ -53,7 +53,7 @@ def navigate(settings, sources, progress=None):
     except ValueError as error:
         if not notes:
             raise
-        raise ValueError(f'{error}. Found on the way: {"; ".join(notes)}') from None
+        raise ValueError(f'{error}. Notes: {"; ".join(notes)}') from None
 
 
 def _navigate(settings, sources, progress, notes):
@@ -97,7 +97,7 @@ def _navigate(settings, sources, progress, notes):
         lat, lon, height, _, q_nb = begin.state
         laid = sources.odometry.aligned_to(int(imu.t_ns[begin.index]), lat, lon, height, q_nb)
         if laid is None:
-            notes.append(f'{sources.odometry.name} is not there at the start: not compared')
+            notes.append(f'{sources.odometry.name} has no message at the start: not compared')
         else:
             references.append(laid)
     pairs = [(r, compare_with_reference(states, r)) for r in references]
@@ -190,7 +190,8 @@ class _Replay:
             self._notes.append(f'{loop.gap}: restarted')
             self._notes += begin.notes
         if bridged:
-            self._notes.append(f'{bridged} gaps bridged by straight lines of rate and force')
+            self._notes.append(f'{bridged} gaps bridged by linear interpolation of rate and '
+                               'force')
         return states
 
     def _navigator(self, begin):

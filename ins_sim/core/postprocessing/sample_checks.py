@@ -7,8 +7,8 @@ import numpy as np
 from ins_sim.core.numerics.instants import seconds
 from ins_sim.core.timeseries.bounds import FORCE_M_S2, RATE_RAD_S
 
-# If between 5 % and 95 % of the samples have a force of exactly zero, forces and rates are sent in
-# turns; rounding does not produce so many zeros on all three axes.
+# If between 5 % and 95 % of the samples have a force of exactly zero, forces and rates are sent
+# alternately; rounding does not produce so many zeros on all three axes.
 _PART = 0.05
 
 
@@ -103,16 +103,16 @@ def without_zeros(imu, zero_readings, notes):
     if zero_readings == 'keep' or not in_part:
         return imu
     count, no_rate = len(imu), (imu.omega == 0.0).all(axis=1)
-    # A gyro at rest may read exactly zero now and then. The two are sent in turns only if the rate
-    # is zero in nearly all samples with a force.
+    # A gyro at rest may read exactly zero now and then. The two are sent alternately only if the
+    # rate is zero in nearly all samples with a force.
     in_turns = np.count_nonzero(no_rate & ~no_force) > 0.9 * np.count_nonzero(~no_force)
     what = (f'the specific force is exactly zero in {np.count_nonzero(no_force)} of {count} '
             'samples' + (f' and the angular rate in {np.count_nonzero(no_rate)} others'
                          if in_turns else ''))
     if zero_readings == 'refuse':
-        raise ValueError(f'{what}: the driver seems to send them in turns; expected both in each '
-                         'sample (accept.zero_readings:=fill interpolates them between their '
-                         'neighbours, keep takes them as they are)')
+        raise ValueError(f'{what}: the driver seems to send them alternately; expected both in '
+                         'each sample (accept.zero_readings:=fill interpolates them between their '
+                         'neighbours, keep uses them as they are)')
     notes.append(f'{what}: interpolated linearly between their neighbours')
     omega = _filled(imu.t_ns, imu.omega, no_rate & ~no_force) if in_turns else imu.omega
     return replace(imu, f=_filled(imu.t_ns, imu.f, no_force), omega=omega)

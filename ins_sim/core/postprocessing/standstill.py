@@ -240,7 +240,7 @@ def find_standstill(imu, limits, speed_at=None, longest=False):
 
     """
     if len(imu) < 2 * FEWEST:
-        raise ValueError(f'{len(imu)} samples are too few to find a standstill in')
+        raise ValueError(f'{len(imu)} samples are too few to find a standstill')
     step_ns = imu.step_ns
     length_ns = window_length_ns(limits, step_ns)
     windows, search, found = WindowMoments(imu, step_ns, length_ns), StandstillSearch(

@@ -14,7 +14,7 @@ from .fourier import fourier_coefficients
 SUBSAMPLES = 8
 STEP_S = 0.1
 PER_PERIOD = 4096
-# Number of instants evaluated at once.
+# Number of instants evaluated together.
 BLOCK = 8192
 
 
@@ -163,8 +163,8 @@ def channel_drift(motion, responses, start_s=0.0, count=PER_PERIOD):
     channels (``sensors.tuned_gyro.pair``).  Raises ValueError for a motion without a period.
     """
     if motion.period_s is None:
-        raise ValueError('the drift through channels is the sum over a Fourier series; expected '
-                         'a periodic motion')
+        raise ValueError('the drift through channels is computed from a Fourier series of the '
+                         'motion; expected a periodic motion')
     t = start_s + motion.period_s * np.arange(count) / count
     truth = motion.at(_nanoseconds(t))
     w_re, w_im, harmonics = fourier_coefficients(truth.omega_ib_b)

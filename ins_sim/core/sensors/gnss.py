@@ -23,7 +23,7 @@ LEAST_SIGMA = 1e-3
 
 class Gnss(Sensor):
     """
-    The GNSS receiver of GnssSettings: takes streamed truth samples and returns fixes.
+    The GNSS receiver of GnssSettings: accepts streamed truth samples and returns fixes.
 
     Raises ValueError if the period of the fixes is not a multiple of the truth period, because
     a fix needs a truth sample at its instant.
@@ -78,9 +78,9 @@ class Gnss(Sensor):
 
     def push(self, t_ns, truth):
         """
-        Take one truth sample and return a list with the fix at its instant, or an empty list.
+        Process one truth sample and return a list with the fix at its instant, or an empty list.
 
-        The first sample may be repeated; it is answered again.
+        The first sample may be repeated; its result is then returned again.
 
         Parameters
         ----------

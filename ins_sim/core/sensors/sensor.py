@@ -24,7 +24,7 @@ class Sensor:
 
     def push(self, t_ns: int, *sample: Any) -> list[Any]:
         """
-        Take one sample of the true motion.
+        Process one sample of the true motion.
 
         Parameters
         ----------

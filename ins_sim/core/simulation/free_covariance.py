@@ -88,8 +88,8 @@ def disagreement(settings, stated):
             if max(one, other) > least and not 0.25 * one <= other <= 4.0 * one:
                 return (f'imu/data_raw states a noise of {math.sqrt(max(0.0, one)):.3g} {unit} a '
                         f'sample on axis {axis}, and {name}.errors of strapdown have '
-                        f'{math.sqrt(other):.3g} {unit}; expected the figures of this IMU: '
-                        'otherwise the covariances of ins/* do not fit it')
+                        f'{math.sqrt(other):.3g} {unit}; expected the values of this IMU: '
+                        'otherwise the covariances of ins/* are wrong')
     return ''
 
 

@@ -66,7 +66,7 @@ def fly(settings, motion, aided=None, progress=None):
     steering = Steering(generator.guidance, motion.route.legs, motion.turns)
     if motion.period_ns % period_ns(generator.rate_hz):
         raise ValueError(f'the control period of the motion is {motion.period_ns} ns; expected a '
-                         f'multiple of that of rate_hz, {period_ns(generator.rate_hz)} ns')
+                         f'multiple of the period of rate_hz, {period_ns(generator.rate_hz)} ns')
     aided = _who_steers(settings, aided, steering.notes)
     sentence = margin_sentence(generator.guidance, generator.motion.guided)
     if sentence is None and aided is not None:

@@ -76,7 +76,7 @@ class AlignmentStart:
         return f'waiting for a course: {self._course.state}' if self._course else 'deciding'
 
     def push(self, sample):
-        """Take an ImuSample."""
+        """Process an ImuSample."""
         if self._still is not None:
             self._samples.append(sample)
             return

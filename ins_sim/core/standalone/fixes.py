@@ -45,7 +45,7 @@ class FixTrack:
         self.fixes, self._new = deque(maxlen=MOST), deque(maxlen=MOST)
 
     def push(self, fix):
-        """Take a PlaceFix; return whether it was accepted."""
+        """Process a PlaceFix; return whether it was accepted."""
         if self.fixes:
             last = self.fixes[-1]
             if fix.t_ns <= last.t_ns:

@@ -96,7 +96,7 @@ class FieldSamples:
         self._samples = deque(maxlen=MOST)
 
     def push(self, t_ns, field):
-        """Take a magnetic field, T, with its stamp."""
+        """Store a magnetic field, T, with its stamp."""
         self._samples.append((t_ns, field))
 
     def between(self, start_ns, end_ns):

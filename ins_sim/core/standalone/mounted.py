@@ -54,7 +54,7 @@ class LiveMounting:
         self.q_bs = angles.from_rpy(roll, pitch, yaw)
 
     def add(self, transforms):
-        """Take transforms {(parent, child): q from child to parent}."""
+        """Add transforms {(parent, child): q from child to parent}."""
         self._transforms.update(transforms)
         self._complained = False
 

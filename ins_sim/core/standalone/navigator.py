@@ -12,7 +12,7 @@ from .running import RunningNavigation
 from .start import CourseStart, GivenStart
 from .vertical_reference import VerticalReference
 
-# Largest number of waiting samples that are navigated at once.
+# Largest number of waiting samples that are navigated in one call.
 AT_ONCE = 500
 # Largest lead of a fix over the readings, s; in lock-step fixes arrive up to a window earlier.
 MOST_AHEAD_S = 60.0
@@ -98,7 +98,7 @@ class StandaloneNavigator:
         return 'waiting for readings' if self._start is None else self._start.state
 
     def push_fix(self, fix):
-        """Take a PlaceFix; return the solutions that become possible."""
+        """Process a PlaceFix; return the solutions that become possible."""
         ahead_s = 0.0 if self.newest_ns is None else 1e-9 * (fix.t_ns - self.newest_ns)
         if ahead_s > MOST_AHEAD_S:
             self.faults.append(f'a fix on {self._s.inputs.fix} is {ahead_s:.6g} s ahead of the '
@@ -111,21 +111,21 @@ class StandaloneNavigator:
         return self._decided()
 
     def push_transforms(self, transforms):
-        """Take transforms of /tf_static, {(parent, child): q from child to parent}."""
+        """Add transforms of /tf_static, {(parent, child): q from child to parent}."""
         self._mounting.add(transforms)
 
     def push_pressure(self, t_ns, static_pa):
-        """Take a static pressure, Pa."""
+        """Process a static pressure, Pa."""
         self._heights.push_pressure(t_ns, static_pa)
 
     def push_field(self, t_ns, field):
-        """Take a magnetic field in the frame of the IMU, T."""
+        """Process a magnetic field in the frame of the IMU, T."""
         if self.q_bs is not None:
             self.field.push(t_ns, quaternion.rotate(self.q_bs, field))
 
     def push_imu(self, t_ns, omega, f, tag=None):
         """
-        Take a reading in the axes of the sensor; return the solutions that become possible.
+        Process a reading in the axes of the sensor; return the solutions that become possible.
 
         omega (rad/s) and f (m/s^2) are tuples; tag is returned with the solution (Solved).
         """
@@ -183,8 +183,8 @@ class StandaloneNavigator:
         gap_s, longest_s = 1e-9 * (sample.t_ns - self.newest_ns), self._s.gaps.longest_bridge_s
         self.gaps += 1
         if gap_s <= longest_s:
-            self.faults.append(f'imu has a gap of {gap_s:.6g} s: bridged by straight lines of '
-                               f'rate and force (gap {self.gaps})')
+            self.faults.append(f'imu has a gap of {gap_s:.6g} s: bridged by linear interpolation '
+                               f'of rate and force (gap {self.gaps})')
             return True
         self.faults.append(f'imu has a gap of {gap_s:.6g} s; expected at most '
                            f'gaps.longest_bridge_s, {longest_s:g} s: starting anew (gap '
@@ -256,11 +256,11 @@ class StandaloneNavigator:
         if self.newest_ns is None:
             return False, f'no readings on {self._s.inputs.imu} to align with'
         if self.run is None:
-            return False, f'an alignment is under way: {self.state}'
+            return False, f'an alignment is already running: {self.state}'
         self._realigning = AlignmentStart(self._s, self, self.newest_ns, turn=self._turn)
         return True, (f'alignment started: it takes {limits.shortest_s:g} to '
-                      f'{limits.longest_s:g} s at rest; until then the solution continues, and if '
-                      'the vehicle moves before, it is kept')
+                      f'{limits.longest_s:g} s at rest; until then the solution continues, and it '
+                      'is kept if the vehicle moves before')
 
     def _realigned(self, sample):
         """Give a sample to the alignment requested by ~/align, if any; return the solutions."""

@@ -111,7 +111,7 @@ class OrderedSamples:
 
     def push(self, t_ns, omega, f, tag):
         """
-        Take a reading in the axes of the sensor.
+        Process a reading in the axes of the sensor.
 
         Returns [(kind, ImuSample)] with kind NEXT, HOLD for a sample after a gap, REPLACE for one
         that replaces an earlier one, or RESTART for the first after a jump back.

@@ -79,7 +79,7 @@ class RunningNavigation:
 
     def step(self, sample, gap_ns):
         """
-        Take an ImuSample; return the Solved.
+        Process an ImuSample; return the Solved.
 
         gap_ns: longest step that does not count as a gap, ns; a longer one is bridged. Raises
         ValueError if the solution diverges.

@@ -41,7 +41,7 @@ class TypicalStep:
         self._steps, self._median = [], None
 
     def take(self, step_ns):
-        """Take a step, ns."""
+        """Register a step, ns."""
         if len(self._steps) < MOST_STEPS:
             self._steps.append(step_ns)
             self._median = None

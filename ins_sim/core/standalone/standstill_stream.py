@@ -37,7 +37,7 @@ class StandstillStream:
         self._search = self._index = None
 
     def push(self, sample):
-        """Take a sample; return the Standstill that it completes, or None."""
+        """Process a sample; return the Standstill that it completes, or None."""
         if self._search is None:
             self.samples.append(sample)
             if not self._step.known:

@@ -89,7 +89,7 @@ class GivenStart:
         self._samples, self.notes, self._weighed = [], [], False
 
     def push(self, sample):
-        """Take an ImuSample."""
+        """Process an ImuSample."""
         self._samples.append(sample)
 
     def pop(self):

@@ -24,12 +24,12 @@ class VerticalReference:
         self._held, self._off = height, None
 
     def push_fix(self, t_ns, height):
-        """Take the height of a fix, m."""
+        """Process the height of a fix, m."""
         if not self._by_pressure:
             self._heights.append((t_ns, height))
 
     def push_pressure(self, t_ns, static_pa):
-        """Take a static pressure, Pa."""
+        """Process a static pressure, Pa."""
         if self._by_pressure:
             self._heights.append((t_ns, pressure_height(static_pa)))
 

@@ -34,7 +34,7 @@ class BeforeTruth:
         self._frozen, self._delay_ns, self._slopes = frozen, delay_ns, None
 
     def take_second(self, sample):
-        """Take the second sample; needed before any value of the past is requested."""
+        """Set the second sample; needed before any value of the past is requested."""
         step_ns = sample[0] - self.first[0]
         if not self._frozen and self._delay_ns > SHORT * step_ns:
             per_s = 1e9 / step_ns

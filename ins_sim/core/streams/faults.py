@@ -7,7 +7,7 @@ from ins_sim.core.numerics.instants import seconds
 # Largest deviation of an interval from the sampling period, as a fraction of it: it allows for
 # jitter of the stamps but not for a lost sample.
 INTERVAL_TOLERANCE = 0.2
-# Largest step of the truth in sampling periods; it limits what a stage computes at once.
+# Largest step of the truth in sampling periods; it limits what a stage computes in one call.
 MOST_PERIODS = 1000
 # Bounds of the square of the norm of a quaternion.
 UNIT_LOW, UNIT_HIGH = 0.998, 1.002

@@ -39,5 +39,5 @@ class SampleGrid:
         off_ns = (t_ns - reading_ns) % shorter if shorter > 0 else 0
         if off_ns and longer % shorter == 0:
             raise StreamFault(f'truth at {seconds(t_ns)} is {off_ns * 1e-9:.9g} s off the '
-                              'instants counted from its first sample, which came from another '
-                              'stream; expected one stream', restart=True)
+                              'instants counted from the first sample of the truth, which came '
+                              'from another stream; expected a single stream', restart=True)

@@ -19,8 +19,8 @@ class MatchedStreams:
     truth) -> outputs, where truth is (lat, lon, height, v_n, q_nb).
 
     The push methods return a list of outputs and raise StreamFault. The first IMU sample may be
-    repeated; it is answered again. The result does not depend on which stream is ahead. If one
-    stream jumps back, samples of the other from before the jump are not matched.
+    repeated; its result is then returned again. The result does not depend on which stream is
+    ahead. If one stream jumps back, samples of the other from before the jump are not matched.
 
     Parameters
     ----------
@@ -82,12 +82,12 @@ class MatchedStreams:
         return False
 
     def go_on(self):
-        """Wait for nothing but the truth any longer: too many samples wait; return outputs."""
+        """Wait only for the truth from now on, because too many samples wait; return outputs."""
         return []
 
     def push_imu(self, t_ns, omega, f):
         """
-        Take an IMU sample and return the outputs that become possible.
+        Process an IMU sample and return the outputs that become possible.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class MatchedStreams:
             self._runs.first_returns()
         if len(self._imu) >= self._truth.maxlen:
             raise StreamFault(f'{len(self._imu)} imu readings wait for their truth or fixes, from '
-                              f'{seconds(self._imu[0][0])} on; expected less than topics.depth',
+                              f'{seconds(self._imu[0][0])} on; expected fewer than topics.depth',
                               restart=True)
         self._imu.append((t_ns, omega, f))
         return self.match()
@@ -127,7 +127,7 @@ class MatchedStreams:
 
     def push_truth(self, t_ns, r_m, q_mb, v_b):
         """
-        Take the truth of stamp t_ns (motion time).
+        Process the truth of stamp t_ns (motion time).
 
         A repeated stamp is ignored. A stamp that jumps back begins a new run; the fault is
         reported for the IMU, which jumps back too.

@@ -29,11 +29,11 @@ class StampPairs:
         return bool(self._first) and max(self._first) > max(self._second, default=-math.inf)
 
     def push_first(self, t_ns, value):
-        """Take a value of the first stream; return [(t_ns, first, second)] of the pair, or []."""
+        """Process a first-stream value; return [(t_ns, first, second)] of the pair, or []."""
         return self._push(self._first, self._second, t_ns, value)
 
     def push_second(self, t_ns, value):
-        """Take a value of the second stream; return the same as ``push_first``."""
+        """Process a second-stream value; return the same as ``push_first``."""
         return [(t, first, second) for t, second, first in self._push(
             self._second, self._first, t_ns, value)]
 

@@ -75,7 +75,7 @@ class TruthBuffer:
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take a sample; raise StreamFault on NaN, repeated or backwards stamps, gaps and turns.
+        Process a sample; raise StreamFault on NaN, repeated or backwards stamps, gaps and turns.
 
         The step between the first two samples is the step expected of all others; it must itself
         be within the limits for rate_hz.
@@ -133,7 +133,7 @@ class TruthBuffer:
 
     def push_block(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take as many leading samples of a block as are certainly free of faults.
+        Process as many leading samples of a block as are certainly free of faults.
 
         The sample after them must go to ``push``, which may raise a StreamFault for it.
 
@@ -144,7 +144,7 @@ class TruthBuffer:
 
         Returns
         -------
-        count : number of samples taken; 0 if fewer than three samples came before
+        count : number of samples processed; 0 if fewer than three samples came before
         block : their TruthBlock, or None
         """
         if len(self._last) < 3:

@@ -1,7 +1,7 @@
 """
 Blocks of streamed truth as arrays, for offline runs.
 
-The computations of ``TruthBuffer`` for many samples at once, with the same bits: the piece of the
+The computations of ``TruthBuffer`` for many samples together, with the same bits: the piece of the
 curve between each two samples, and its value at many instants.
 """
 

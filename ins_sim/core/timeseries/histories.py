@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-# Number of rows read, joined or compared at once, for histories that need not fit in memory.
+# Number of rows read, joined or compared together, for histories that need not fit in memory.
 BLOCK = 8192
 
 

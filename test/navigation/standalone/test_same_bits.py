@@ -34,7 +34,7 @@ def test_a_coarse_imu_that_takes_the_course_of_its_fixes(late_s):
     result = offline(imu, fixes, {})
     assert 'the course of fix' in result.figures['heading_source']
     same_bits(said, result.states[0])
-    assert said.has('heading from the course') and said.has('gyro bias of the standstill')
+    assert said.has('heading from the course') and said.has('gyro bias at standstill')
 
 
 def test_a_fine_imu_that_sees_the_earth_turn():
@@ -108,7 +108,7 @@ def test_jitter_strays_repeats_and_gaps():
     said.solved = [s for s in said.solved if s.t_ns != t_ns[1700]]
     same_bits(said, states[states.t_ns != t_ns[1701]])
     for part in ('holds NaN or infinity', 'repeats the stamp', 'goes back from',
-                 'ahead of its time', 'bridged by straight lines'):
+                 'ahead of its time', 'bridged by linear interpolation'):
         assert said.has(part), part
     # The first gap is where two samples of the standstill are left out.
     assert said.stage.gaps == 3

@@ -74,7 +74,7 @@ def test_zeros_in_turns():
     f = imu.f.copy()
     f[::10] = 0.0
     said = play(stage_of({**GIVEN, 'alignment.force_sd_m_s2': 10.0}), replace(imu, f=f), fixes)
-    assert not said.solved and said.has('the driver seems to send them in turns')
+    assert not said.solved and said.has('the driver seems to send them alternately')
 
 
 def test_readings_that_are_no_numbers():

@@ -90,7 +90,7 @@ def in_frames(data, *frames):
 
 
 @pytest.mark.parametrize('change, sentence', [
-    (lambda data: None, 'the solution that the autopilot steers by is that of 0.990000000 s'),
+    (lambda data: None, 'the autopilot still uses the solution of 0.990000000 s'),
     (lambda data: with_double(data, 0, lambda _: math.nan), 'aided/odometry at 1.000000000 s '
      'holds the position (nan'),
     (lambda data: with_double(data, 43, lambda _: 1e30), 'holds the linear velocity (1e+30'),

@@ -141,7 +141,7 @@ def test_services_answer_in_a_sentence():
         assert graph.call('align') == (False, 'no readings on imu/data_raw to align with')
         graph.send(messages[:200])
         done, text = graph.call('align')
-        assert not done and 'an alignment is under way: at rest for' in text
+        assert not done and 'an alignment is already running: at rest for' in text
         graph.send(messages[200:600])
         first = len(graph.heard[topics.INS_ODOMETRY.name])
         done, text = graph.call('align')

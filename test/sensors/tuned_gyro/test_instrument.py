@@ -91,8 +91,8 @@ def test_everything_on_live_is_offline_and_reset_forgets(more):
 def test_steps_per_sample_bring_rk4_to_a_slow_imu():
     """At 100 Hz RK4 is stable for sapegin_2016 with 13 steps (0.77 ms) a sample, not with 10."""
     rotor = {'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.method': 'rk4'}
-    with pytest.raises(ValueError, match='RK4 step is 10 ms, at which this gyro grows; expected '
-                       'between 0.332'):
+    with pytest.raises(ValueError, match='RK4 step is 10 ms, at which the gyro is unstable; '
+                       'expected between 0.332'):
         instrument(rotor)
     one = instrument({**rotor, 'gyro.dtg.steps_per_sample': 13})
     assert len(one.nodes) == 27

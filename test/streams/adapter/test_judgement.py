@@ -80,7 +80,7 @@ def test_a_late_twist_is_found_with_its_delay():
 def test_a_twist_noisier_than_the_poses_is_left():
     """A twist that is noisier than the poses is not used."""
     adapter, truths = OtherSimulator('racetrack', 50.0, 3.0).noisy(metres_s=0.05).adapted()
-    assert 'only the poses are used (it is noisier than the poses)' in adapter.notes[0]
+    assert 'only the poses are used, not the twist (it is noisier' in adapter.notes[0]
     assert adapter.state == 'poses only' and truths
 
 
@@ -103,7 +103,7 @@ def test_a_vehicle_at_rest_is_judged_when_it_moves(twist, wanted):
     if not twist:
         simulator.without_twist()
     adapter, truths = resting_first(simulator, 5.0).adapted()
-    assert 'it is zero while nothing moves' in adapter.notes[0]
+    assert 'it is zero while the vehicle does not move' in adapter.notes[0]
     assert len(adapter.notes) == 2 and wanted in adapter.notes[1]
     # The change of the scheme loses no instant.
     assert set(np.diff([truth.t_ns for truth in truths])) == {5_000_000}
@@ -115,7 +115,7 @@ def test_a_twist_that_goes_wrong_is_given_up():
     simulator.v[250:] = simulator.w[250:] = 0.0
     adapter, truths = simulator.adapted()
     assert 'the twist is believed' in adapter.notes[0]
-    assert 'only the poses are used (it is missing)' in adapter.notes[1]
+    assert 'only the poses are used, not the twist (it is missing)' in adapter.notes[1]
     late = [truth for truth in truths if truth.t_ns > 9_500_000_000]
     run = AdaptedRun(simulator, late)
     assert run.f < 2e-3 and run.farthest() < 1e-6
@@ -123,7 +123,7 @@ def test_a_twist_that_goes_wrong_is_given_up():
 
 @pytest.mark.parametrize('twist, said', [
     ('use', 'the twist is believed although it is missing'),
-    ('ignore', 'only the poses are used (twist is ignore)')])
+    ('ignore', 'poses are used, not the twist (parameter twist is ignore)')])
 def test_a_choice_is_kept(twist, said):
     """With twist use or ignore the scheme is fixed; the report tells what auto would do."""
     simulator = OtherSimulator('racetrack', 50.0, 5.0)

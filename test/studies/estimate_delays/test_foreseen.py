@@ -58,8 +58,9 @@ def test_motion_2_in_one_sense_cannot_measure_delays():
     record, chosen = ideal({**MOTION_2, **FOG}, 60.0)
     with pytest.raises(NotObservable) as refusal:
         estimate_triad([read(record, chosen, 0)])
-    for text in ('not observable', 'a delay of y of 1 us reads like 0.5 urad of misalignment '
-                 'towards z', 'a delay of z of 1 us reads like 0.5 urad of misalignment towards y',
+    for text in ('not observable',
+                 'a delay of y of 1 us has the effect of 0.5 urad of misalignment towards z',
+                 'a delay of z of 1 us has the effect of 0.5 urad of misalignment towards y',
                  'the rate of x changes by at most'):
         assert text in str(refusal.value)
 

@@ -134,7 +134,7 @@ def test_bad_input_is_one_sentence(made, tmp_path, capsys):
         ([csv, *MOTION, '-p', 'rate_hz:=200.0'], '100 readings a second'),
         ([run, '-p', 'rate_hz:=200.0'], '100 readings a second'),
         ([csv, *MOTION, '-p', 'motion.rocking.frequency_hz:=1.3'],
-         'not of the motion that is given'),
+         'do not belong to the given motion'),
         ([csv, '-p', 'motion.kind:=static'], 'not observable'),
         ([csv, *MOTION, '-p', 'time.epoch:=fixed', '-p', 'time.epoch_s:=5'],
          'from motion time zero'),

@@ -30,7 +30,7 @@ class FixOutcome(namedtuple('FixOutcome', 'innovation nis freedom taken reason',
     taken : bool
         Whether the solution was corrected.
     reason : str
-        Why the fix was not taken; '' if it was.
+        Why the solution was not corrected; '' if it was.
     """
 
     __slots__ = ()

@@ -111,7 +111,7 @@ class ErrorStateFilter(AidingFilter):
 
     def _of_turns(self, ins, dt):
         """
-        Return the tilt noise density that stands for gyro scale factor and misalignment errors.
+        Return the tilt noise density that represents gyro scale factor and misalignment errors.
 
         These errors are constant, but they are not states of the filter. They are replaced by
         white noise of the tilt that has the same effect after a turn of TURN_S at the present

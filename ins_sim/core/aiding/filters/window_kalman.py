@@ -27,7 +27,7 @@ class WindowFilter(MatrixFilter):
     States: position error dp and velocity error dV (East, North), acceleration error dW and
     offset c of the velocity meter (forward, left). Over a window of length T,
     dp += T dV + A2 dW and dV += A1 dW; measured is z = B1 dV + B2 dW + c with dV at the start of
-    the window (docs/theory/aided_navigation.md). The offset c also stands for the azimuth
+    the window (docs/theory/aided_navigation.md). The offset c also contains the azimuth
     error times the velocity. The strapdown is corrected after each window.
     """
 

@@ -20,7 +20,7 @@ from ..route.motion import RouteMotion
 from ..truth import in_body, translation, truth_from_pose
 from .steered import SteeredHistory
 
-# ``one`` evaluates the track at AHEAD instants at once, for at most PHASES instants per period.
+# ``one`` evaluates the track at AHEAD instants in one call, for up to PHASES instants per period.
 AHEAD, PHASES = 256, 64
 # Up to this number of instants, evaluating them one by one is faster.
 FEW = 2
@@ -65,9 +65,9 @@ class GuidedMotion(RouteMotion):
     def check_end(self, end_s):
         """Raise ValueError if a run up to end_s, s, has not been flown."""
         if end_s > self.end_s and not self._steered.is_steered:
-            raise ValueError('motion.kind is guided; expected another kind without a flight: the '
-                             'motion depends on the navigation, and only simulate and the live '
-                             'nodes fly it')
+            raise ValueError('motion.kind is guided; expected another kind: a guided motion '
+                             'depends on the navigation and can be flown only by simulate and by '
+                             'the live nodes')
         super().check_end(end_s)
 
     def length_s(self, start_s, duration_s):

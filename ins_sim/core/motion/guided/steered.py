@@ -80,7 +80,7 @@ class SteeredHistory:
         Raises ValueError unless t_ns is ``known_ns`` and the command is finite.
         """
         if t_ns != self.known_ns:
-            raise ValueError(f'a command at {seconds(t_ns)}; expected it at '
+            raise ValueError(f'the command is for {seconds(t_ns)}; expected one for '
                              f'{seconds(self.known_ns)}, up to which the guided motion is known')
         if not abs(beta_c) < np.inf:
             raise ValueError(f'the command at {seconds(t_ns)} is {beta_c}; expected a number')
@@ -133,8 +133,8 @@ class SteeredHistory:
 
     def _check(self, first_ns, last_ns):
         if last_ns > self.known_ns:
-            raise ValueError(f'the guided motion is asked for {seconds(last_ns)}; expected at most'
-                             f' {seconds(self.known_ns)}, up to which it has been steered')
+            raise ValueError(f'the guided motion was requested for {seconds(last_ns)}; expected '
+                             f'at most {seconds(self.known_ns)}, up to which it has been steered')
         if first_ns <= self._first_ns != self._begin_ns:
-            raise ValueError(f'the guided motion is asked for {seconds(first_ns)}; expected later '
-                             f'than {seconds(self._first_ns)}: earlier motion is not stored')
+            raise ValueError(f'the guided motion was requested for {seconds(first_ns)}; expected '
+                             f'later than {seconds(self._first_ns)}: earlier motion is not stored')

@@ -96,7 +96,7 @@ def _between(indices, n):
 
 
 def _jumps(t_ns, first, dt, far, turned, angle):
-    """Return the jumps among contiguous intervals, the first of which has the index first."""
+    """Return the jumps among contiguous intervals; first: index of the first interval."""
     far_limit = np.maximum(JUMP_M, np.minimum(JUMP_M_S2 * dt * dt, JUMP_M_S * dt))
     jumped = far > far_limit
     spun = (turned > np.maximum(TURN_DEG, TURN_DEG_S * dt)) | (angle > AMBIGUOUS_DEG)
@@ -145,7 +145,7 @@ def unbroken_part(rows, turns, start_s, on_gap):
     found = describe_faults(faults, median_interval(dt))
     if on_gap != 'cut':
         raise ValueError(f'{rows.path} has {found}; expected an unbroken recording '
-                         "(motion.recording.on_gap = 'cut' keeps the part that holds start_s)")
+                         "(motion.recording.on_gap = 'cut' keeps the part that contains start_s)")
     since = (rows.t_ns - rows.t_ns[0]) * 1e-9
     parts = [(a, b) for a, b in _between([fault.index for fault in faults], len(dt))]
     holding = [(a, b) for a, b in parts if since[a] <= start_s < since[b]]
@@ -153,8 +153,9 @@ def unbroken_part(rows, turns, start_s, on_gap):
     hint = ('' if longest is None else f'the longest unbroken part is {since[longest[0]]:.4g} to '
             f'{since[longest[1]]:.4g} s after the first row')
     if not holding:
-        raise ValueError(f'{rows.path} has {found} and motion.recording.start_s = {start_s:g} s '
-                         f'lies in no part between them; {hint or "no two rows belong together"}')
+        raise ValueError(f'{rows.path} has {found} and no part between them contains '
+                         f'motion.recording.start_s = {start_s:g} s; '
+                         f'{hint or "no two rows are without a fault between them"}')
     first, last = holding[0]
     return slice(first, last + 1), [
         f'{rows.path} has {found}; cut there, {since[first]:.6g} to {since[last]:.6g} s after '

@@ -121,7 +121,7 @@ def describe_quality(path, start_ns, t, lat, lon, height, turns, resolution, smo
         sentences.append(
             f'{path}: {_count(steps, "position step")}{_cadence(t, steps)}, the largest '
             f'{far[worst]:.3g} m after t_s = {seconds(start_ns + round(t[worst] * 1e9))}; '
-            f'the spline makes about {far[worst] / dt[worst] ** 2:.2g} m/s^2 of it')
+            f'in the spline this becomes about {far[worst] / dt[worst] ** 2:.2g} m/s^2')
     turned = np.degrees(step_excess(turns, dt))
     steps = _stand_out(turned, STEP_DEG_S * interval_s)
     if len(steps):
@@ -141,7 +141,7 @@ def describe_quality(path, start_ns, t, lat, lon, height, turns, resolution, smo
             f'{path}: positions rounded to {resolution[0]:.1g} deg, {resolution[1]:.1g} deg, '
             f'{resolution[2]:.1g} m and differentiated twice at {1.0 / interval_s:.4g} Hz put '
             f'{_enu(rounding)} m/s^2 rms of noise (east, north, up) into the specific force; '
-            'motion.recording.smoothing_s lowers it')
+            'motion.recording.smoothing_s reduces it')
     if rms.max() >= WORTH_SAYING_M_S2:
         sentences.append(
             f'{path}: the second differences of its positions scatter from row to row by '

@@ -24,7 +24,7 @@ from ..motion import Motion
 from ..truth import truth_from_pose
 from .faults import median_interval, unbroken_part
 
-# The ends are not flown: spline end effects, and delayed channels need earlier samples.
+# The ends are not flown: the spline is inexact there, and delayed channels need earlier samples.
 PAD_S = 3.0
 DEGREE = 5
 FEWEST_ROWS = 8
@@ -113,9 +113,9 @@ class RecordedMotion(Motion):
         length_s = (knots[-1] - knots[0]) * 1e-9
         if len(knots) < FEWEST_ROWS or length_s <= 2.0 * PAD_S:
             raise ValueError(f'{recording.path} holds {len(knots)} rows over {length_s:g} s'
-                             f'{" in the part kept" if recording.on_gap == "cut" else ""}; '
-                             f'expected at least {FEWEST_ROWS} rows over more than '
-                             f'{2.0 * PAD_S:g} s, {PAD_S:g} s of which at each end are the pad')
+                             f'{" in the part that is kept" if recording.on_gap == "cut" else ""}'
+                             f'; expected at least {FEWEST_ROWS} rows over more than '
+                             f'{2.0 * PAD_S:g} s: a run cannot use the ends, {PAD_S:g} s each')
         interval_s = median_interval(np.diff(knots) * 1e-9)
         if interval_s > LONGEST_INTERVAL_S or length_s > LONGEST_S:
             raise ValueError(f'{recording.path} holds a row every {interval_s:g} s over '
@@ -124,14 +124,14 @@ class RecordedMotion(Motion):
         if knots[0] > -PAD_S * 1e9 or knots[-1] <= PAD_S * 1e9:
             first = recording.start_s + knots[0] * 1e-9
             raise ValueError(f'motion.recording.start_s is {recording.start_s:g} s; expected '
-                             f'{first + PAD_S:.6g} to {first + length_s - PAD_S:.6g} s, inside '
-                             f'{recording.path} by {PAD_S:g} s')
+                             f'{first + PAD_S:.6g} to {first + length_s - PAD_S:.6g} s, because a '
+                             f'run cannot use the ends of {recording.path}, {PAD_S:g} s each')
 
     def _smoothing_report(self, window_s, t):
         report = (f'{self.path}: smoothed with a boxcar of {window_s:g} s, which removes motion '
                   f'above {BOXCAR_3DB / window_s:.3g} Hz (-3 dB)')
         if window_s < 2.0 * median_interval(np.diff(t)):
-            report += '; a window below two intervals does next to nothing'
+            report += '; a window shorter than two intervals has almost no effect'
         if window_s > 2.0 * PAD_S:
             report += (f'; it narrows towards the ends, within {0.5 * window_s:g} s of the first '
                        'and the last row')
@@ -246,7 +246,7 @@ def _smoothed(t, position, q, window_s):
     if norm.min() < 0.5:
         # Uniform rotation by an angle A gives 4 sin(A/4) / A; 0.5 is a turn of 434 deg.
         raise ValueError(f'motion.recording.smoothing_s is {window_s:g} s, in which the vehicle '
-                         'turns more than once; expected a window shorter than its turns')
+                         'turns more than once; expected a window shorter than one turn takes')
     return mean(position.T, DEGREE).T, q / norm[:, None]
 
 
@@ -292,8 +292,8 @@ def _check_rates(path, t, q, rate):
     off = _rms(turning - 0.5 * (rate[1:] + rate[:-1]))
     if off > max(RATE_RAD_S, RATE_PART * _rms(turning)):
         raise ValueError(f'{path}: the angular velocity differs by {off:.3g} rad/s rms from the '
-                         f'turning of the attitude, {_rms(turning):.3g} rad/s; expected that of '
-                         'the body, resolved in its axes')
+                         f'rotation rate of the attitude, {_rms(turning):.3g} rad/s; expected the '
+                         'angular velocity of the body, resolved in body axes')
 
 
 def _rms(vectors):

@@ -147,8 +147,8 @@ def turn_between(flow, before, after, rate, roll_s):
         by -= (a * y - c * x) / determinant
     (off, piece, end), start = best
     if not _largest(off) <= _CLOSE:
-        raise ValueError(f'a turn of {math.degrees(angle):.1f} deg that ends on no path to the '
-                         'next point; expected longer legs or a smaller turn')
+        raise ValueError(f'a turn of {math.degrees(angle):.1f} deg does not end on the leg to '
+                         'the next point; expected longer legs or a smaller turn')
     return start * before.length, piece, after.to_xz(*end[:2])[0]
 
 

@@ -3,9 +3,9 @@ Responses of the nine errors to unit errors of the instruments over one interval
 
 All intervals of a run are processed side by side, in the last axis. Within each, the steps are
 processed backwards with the transition matrix A from the end of a step to that of the interval,
-so that what acts in a step is propagated to the end at once. W is the response to an error by body
-axis that is constant over a step. A process with the covariance R between its means over the
-steps j and l contributes
+so that an error that acts in a step is propagated to the end directly. W is the response to an
+error by body axis that is constant over a step. A process with the covariance R between its
+means over the steps j and l contributes
 
     sum over j, l of  W_j R_jl W_l'
 

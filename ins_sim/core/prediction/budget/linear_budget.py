@@ -58,8 +58,8 @@ class LinearBudget:
         """Return the index of the instant t_s, s; ValueError if the budget does not have it."""
         k = int(np.argmin(np.abs(self.t_s - t_s)))
         if abs(self.t_s[k] - t_s) > SAME_S:
-            raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget, '
-                             f'of which the nearest is {self.t_s[k]:g} s')
+            raise ValueError(f'the time is {t_s:g} s; expected one of the instants of the budget; '
+                             f'the nearest is {self.t_s[k]:g} s')
         return k
 
 
@@ -89,7 +89,7 @@ def error_budget(settings, motion, instants_s=()):
     model = settings.imu_sensor.gyro.model
     if model != 'ideal':
         raise ValueError(f'gyro.model is {model} in a budget; expected ideal: the errors of tuned '
-                         'gyros are those of their rotors (ins_sim dtg-report)')
+                         'gyros come from their rotors (see ins_sim dtg-report)')
     run = Propagation(settings, motion, instants_of(settings, instants_s))
     for _ in _propagated(run):
         pass

@@ -24,7 +24,7 @@ STEP_S, STEP_RAD, PER_PERIOD = 0.05, 0.1, 20
 INTERVAL_S, STEPS_AT_ONCE = 10.0, 100_000
 # Number of instants at which the motion is searched for its fastest rotation.
 LOOKS = 1000
-# Columns of what has a single value per run: unit initial errors, and the constant errors of
+# Columns of errors with a single value per run: unit initial errors, and the constant errors of
 # accelerometers and gyros.
 START, OF_TRIAD, FIXED = slice(0, 9), (slice(9, 18), slice(18, 27)), slice(27, None)
 

@@ -7,7 +7,7 @@ from ins_sim.core.earth.rates import rate_of_n
 from ins_sim.core.timeseries.histories import Truth
 from ..drift import drift_density
 
-# Number of instants at which the motion is evaluated at once.
+# Number of instants at which the motion is evaluated together.
 AT_ONCE = 16384
 
 

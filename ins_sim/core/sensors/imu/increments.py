@@ -1,7 +1,7 @@
 """
 The increments of one sampling interval, and loops over the intervals of a block.
 
-The functions take floats, or arrays as components to process many intervals at once. A function
+The functions take floats, or arrays as components to process many intervals together. A function
 ``..._rows`` loops over flat rows and is meant to be compiled; its counterpart ``..._arrays`` does
 the same with NumPy and gives the same bits. Axes m are those of the map frame, b those of the
 body, i those of inertial space.

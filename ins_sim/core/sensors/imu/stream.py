@@ -77,7 +77,8 @@ class StreamImu(Sensor):
             warnings.warn(f'a channel is delayed by {longest_s * 1e3:.6g} ms, but a stream is '
                           f'continued backwards by {LINE_S * 1e3:g} ms only and is constant '
                           f'before that; the first {longest_s - LINE_S:.6g} s of readings are '
-                          'therefore wrong. source motion knows the motion before the start',
+                          'therefore wrong. Set source to motion: it knows the motion before '
+                          'the start',
                           stacklevel=2)
 
     def reset(self):
@@ -100,9 +101,9 @@ class StreamImu(Sensor):
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):
         """
-        Take one truth sample and return the readings that it completes.
+        Process one truth sample and return the readings that it completes.
 
-        The first sample may be repeated; it is answered again.
+        The first sample may be repeated; its result is then returned again.
 
         Parameters
         ----------
@@ -216,7 +217,7 @@ class PacedImu(Sensor):
     """
     The IMU that evaluates the motion which its own parameters describe.
 
-    Of the stream it uses only the stamps, which tell it how far to go.
+    It uses only the stamps of the stream, which tell it how far to go.
     """
 
     def __init__(self, settings, motion):

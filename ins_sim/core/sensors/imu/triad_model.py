@@ -79,9 +79,9 @@ _COMMON = {
     'bandwidth_order': ('order', None),
     'temperature_scale_ppm_c': ('temperature_scale', 1e-6),
 }
-# Settings key to (coefficient, SI value of its unit). The white noise has two keys, of which the
-# settings use one. Both give its density N in SI: 1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz), and
-# 1 m/s/sqrt(h) is 1/60 m/s^2/sqrt(Hz).
+# Settings key to (coefficient, SI value of its unit). The white noise has two keys; settings
+# contain one of them. Both give its density N in SI: 1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz),
+# and 1 m/s/sqrt(h) is 1/60 m/s^2/sqrt(Hz).
 KEYS = {
     GyroErrors: _COMMON | {
         'bias_deg_h': ('bias', DEG_H),

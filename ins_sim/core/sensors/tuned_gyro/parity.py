@@ -132,7 +132,7 @@ class ParityTest:
 
     def push(self, t_ns, omega, f, parity):
         """
-        Take one reading and return whether it completes a window.
+        Process one reading and return whether it completes a window.
 
         Parameters
         ----------

@@ -53,8 +53,9 @@ class TunedGyroReport:
         found.append(f'-3 dB at {self.bandwidth_hz:.5g} Hz')
         found.append(f'peak {self.peak:.5g} at {self.peak_hz:.4g} Hz')
         window = self.rk4_window_s
-        found.append('RK4 decays for no step' if window is None else
-                     f'RK4 decays for steps of {1e3 * window[0]:.4g} to {1e3 * window[1]:.4g} ms')
+        found.append('RK4 is stable for no step' if window is None else
+                     f'RK4 is stable for steps of {1e3 * window[0]:.4g} to '
+                     f'{1e3 * window[1]:.4g} ms')
         return found
 
 

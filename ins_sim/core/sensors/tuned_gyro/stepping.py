@@ -25,7 +25,7 @@ def _check_stability(roots, dt_s, method):
         return 'the gyro is unstable and no RK4 step damps it; expected every root to decay'
     if window[0] < dt_s < window[1]:
         return None
-    return (f'the RK4 step is {1e3 * dt_s:g} ms, at which this gyro grows; expected between '
+    return (f'the RK4 step is {1e3 * dt_s:g} ms, at which the gyro is unstable; expected between '
             f'{1e3 * window[0]:.4g} and {1e3 * window[1]:.4g} ms')
 
 

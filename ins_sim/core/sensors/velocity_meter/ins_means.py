@@ -72,7 +72,7 @@ class InsMeans:
         return self._truth_ns is None or t_ns > self._truth_ns
 
     def push(self, t_ns, v_b):
-        """Take a velocity (FLU, m/s); a repeated stamp is ignored."""
+        """Process a velocity (FLU, m/s); a repeated stamp is ignored."""
         if self.newest_ns is not None and t_ns <= self.newest_ns:
             if t_ns == self.newest_ns:
                 return
@@ -105,7 +105,7 @@ class InsMeans:
         """
         Return the results of push(t_ns, v_b) for a block of velocities.
 
-        Most velocities are added at once; ``push`` is called only for the others.
+        Most velocities are added together; ``push`` is called only for the others.
 
         Parameters
         ----------
@@ -116,7 +116,7 @@ class InsMeans:
         found, half_ns = [], self._dt_ns // 2
         ends = self._end_of(t_ns)
         for a, b in pieces(np.diff(ends, append=0) != 0):
-            # Velocities before the earliest end of the part are added at once.
+            # Velocities before the earliest end of the part are added together.
             end_ns = int(ends[a])
             inside = a + int(np.searchsorted(t_ns[a:b], end_ns - half_ns))
             rising = (np.diff(t_ns[a:inside]) > 0).all() and (

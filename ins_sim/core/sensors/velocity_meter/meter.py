@@ -85,7 +85,7 @@ class VelocityMeter:
 
     def push_truth(self, t_ns, v_b, height):
         """
-        Take the truth at the end of a navigation cycle; return the VelocityFixes it completes.
+        Process the truth at the end of a navigation cycle; return the VelocityFixes it completes.
 
         The first sample may be repeated.
 
@@ -104,7 +104,7 @@ class VelocityMeter:
         index = (t_ns + self._dt_ns // 2) // self._dt_ns
         if abs(t_ns - index * self._dt_ns) > INTERVAL_TOLERANCE * self._dt_ns:
             raise StreamFault(f'truth at {seconds(t_ns)} lies between the cycles of rate_hz; '
-                              f'expected whole periods of {self._dt_ns * 1e-9:.9g} s; the sample '
+                              f'expected a multiple of {self._dt_ns * 1e-9:.9g} s; the sample '
                               'was dropped', restart=False)
         self._ins.follow_truth(t_ns)
         v = self._in_antennas(v_b)
@@ -130,7 +130,7 @@ class VelocityMeter:
 
     def push_ins(self, t_ns, v_b):
         """
-        Take a body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
+        Process a body velocity of the INS (FLU, m/s); return the VelocityFixes it completes.
 
         Any rate is accepted, and gaps are not reported. With attack_angle ``none`` the velocity is
         ignored, and so is a repeated stamp. A stamp that jumps back begins a new run; the fault is
@@ -196,7 +196,7 @@ class VelocityMeter:
         return fixes
 
     def _advance_truth(self, t_ns, v_b, height):
-        """Return the fixes of cycles, of which only the last may end a window."""
+        """Return the fixes of cycles; only the last cycle may end a window."""
         first = len(t_ns) - 1
         if first < 2 or not self._add_cycles(t_ns[:-1], v_b[:-1], height[:-1]):
             first = 0
@@ -206,7 +206,7 @@ class VelocityMeter:
         return fixes
 
     def _add_cycles(self, t_ns, v_b, height):
-        """Add cycles to the open window at once; return False if they must be pushed singly."""
+        """Add cycles to the open window together; return False if they must be pushed singly."""
         if self._last is None or not self._ins.rises(t_ns[0]):
             return False
         last_ns, v_last, height_last = self._last

@@ -8,7 +8,7 @@ from .ins_means import WAIT_NS
 
 class MeterOnTruth:
     """
-    A VelocityMeter that takes records of the truth.
+    A VelocityMeter that accepts records of the truth.
 
     Without `follow_ins` the true angle of attack is used; the angle of a converged INS differs
     from it by milliradians.
@@ -19,7 +19,7 @@ class MeterOnTruth:
 
     def follow_ins(self, t_ns, v_b):
         """
-        Take the angle of attack from an INS from now on.
+        Use the angle of attack of an INS from now on.
 
         Parameters
         ----------

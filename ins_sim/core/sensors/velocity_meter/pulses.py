@@ -82,7 +82,7 @@ class Field:
         bands = math.ceil(2.0 * SIGMAS * fastest * self.lag_s / (2.0 * math.pi))
         if bands * self._period > MOST_MODES:
             raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz with '
-                             f'signal.pulses_per_lag {signal.pulses_per_lag}: a cycle takes '
+                             f'signal.pulses_per_lag {signal.pulses_per_lag}: a cycle needs '
                              f'{bands * self._period} modes of the field; expected at most '
                              f'{MOST_MODES}')
         modes = np.arange(bands * self._period) - bands * self._period // 2

@@ -22,7 +22,7 @@ class Beginning(NamedTuple):
     steady : Steadiness of the stamps
     judgement : Judgement of the samples
     scheme : Scheme that is chosen
-    samples : the samples, at the instants they stand for
+    samples : the samples, at the instants to which they belong
     clock : NominalClock that continues these instants, or None if stamps are used as they are
     sentence : report for the log
     """
@@ -57,7 +57,7 @@ class FirstLook:
 
     def push(self, sample):
         """
-        Take a Sample; return a Beginning, or None if more samples are needed.
+        Process a Sample; return a Beginning, or None if more samples are needed.
 
         Raises StreamFault if samples before a gap or a jump had to be dropped.
         """
@@ -88,8 +88,8 @@ class FirstLook:
         if len(knots) < FEWEST - 2:
             # The stamps are so irregular that hardly any is half a period after another.
             self._samples = []
-            raise StreamFault(f'{self._name} has stamps from which no rate can be told; expected '
-                              'steady ones; its samples were dropped', restart=False)
+            raise StreamFault(f'{self._name} has irregular stamps, so that its rate is unknown; '
+                              'expected regular stamps; its samples were dropped', restart=False)
         frame = self._settings.twist_frame
         judgement = judged(knots, None if frame == 'auto' else frame == 'parent')
         self._check_steps(knots, judgement.spread_m)

@@ -29,7 +29,7 @@ class KnotFit:
         self._last_ns, self._count = None, 0
 
     def push(self, sample):
-        """Take a Sample; return the knots that it completes, a list of Samples."""
+        """Process a Sample; return the knots that it completes, a list of Samples."""
         self._count += 1
         t_ns = sample.t_ns
         if self._last_ns is None or (self._count >= self._every

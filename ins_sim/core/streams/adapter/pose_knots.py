@@ -19,7 +19,7 @@ class PoseKnots:
         self._before = None
 
     def push(self, sample):
-        """Take a Sample as the next knot; return the Piece that it completes, or None."""
+        """Process a Sample as the next knot; return the Piece that it completes, or None."""
         q = sample.q
         if len(self._last) and _are_opposite(q, self._last[-1].q):
             sample = sample._replace(q=tuple(-x for x in q))

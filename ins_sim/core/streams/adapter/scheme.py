@@ -6,7 +6,7 @@ import math
 from .judgement import Judgement
 from .stamps import Steadiness
 
-# If poses are noisier than this force, m/s^2, a zero twist is taken to mean a vehicle at rest.
+# If poses are noisier than this force, m/s^2, a zero twist means a vehicle at rest.
 UNREST = 0.1
 # Smallest and largest bandwidth of the loop that ties the path to the positions, rad/s.
 LOOSE, TIGHT = 0.53, 1.0
@@ -58,12 +58,12 @@ def chosen(settings, judgement, steady, dt_ns):
     reason = judgement.why_not()
     settled = not judgement.empty or bool(reason)
     if settings.twist == 'ignore':
-        by_twist, reason = False, 'twist is ignore'
+        by_twist, reason = False, 'parameter twist is ignore'
     elif settings.twist == 'use':
         by_twist = True
     elif not settled:
         by_twist = judgement.force_noise(False) > UNREST
-        reason = '' if by_twist else 'it is zero while nothing moves'
+        reason = '' if by_twist else 'it is zero while the vehicle does not move'
     else:
         by_twist = not reason
     half_ns = 0.5 * every * steady.period_ns if every > 1 else 0.0
@@ -101,7 +101,7 @@ def report(name, scheme: Scheme, judgement: Judgement, steady: Steadiness):
     if scheme.by_twist:
         how = 'the twist is believed' + (f' although {scheme.reason}' if scheme.reason else '')
     else:
-        how = f'only the poses are used ({scheme.reason})'
+        how = f'only the poses are used, not the twist ({scheme.reason})'
     dense = f', a knot for every {scheme.every} samples' if scheme.every > 1 else ''
     return (f'{name}: {1e9 / steady.period_ns:.4g} Hz, jitter {1e-6 * steady.jitter_ns:.2g} ms; '
             f'noise by axis: pose {pose}, {twist}; {how}{dense}; expected noise of the force: '

@@ -37,7 +37,7 @@ def sensed(frame, terms, t_ns, motion):
     Return the AdaptedTruth of a motion relative to the map frame.
 
     The map frame is Cartesian and turns with the Earth, so f = a + 2 Omega x v - g. Gravity is
-    that of the ellipsoid at the place; far from the datum it is not parallel to the Up axis.
+    that of the ellipsoid at the position; far from the datum it is not parallel to the Up axis.
 
     Parameters
     ----------

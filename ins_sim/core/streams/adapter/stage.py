@@ -82,7 +82,7 @@ class TruthAdapter:
 
     def push(self, t_ns, r, q, v, w):
         """
-        Take a sample; return a list of the AdaptedTruth that it completes.
+        Process a sample; return a list of the AdaptedTruth that it completes.
 
         The first sample may be repeated. Raises StreamFault for a sample that cannot be used.
 

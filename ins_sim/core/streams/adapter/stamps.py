@@ -1,4 +1,4 @@
-"""The stamps of the input: rate, jitter, gaps, and the instants that they stand for."""
+"""The stamps of the input: rate, jitter, gaps, and the instants to which they belong."""
 
 from dataclasses import dataclass
 import math
@@ -13,7 +13,7 @@ from ..faults import check_later, MOST_PERIODS, StreamFault
 GAP, JITTERS = 1.5, 5.0
 # Bandwidth with which the nominal instants follow the stamps, rad/s.
 FOLLOW = 0.1
-# A period within this many sigmas of a round value is taken to be round.
+# A period within this many sigmas of a round value is treated as round.
 ROUND_SIGMAS = 4.0
 
 

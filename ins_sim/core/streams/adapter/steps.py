@@ -39,8 +39,8 @@ class StepCheck:
         turned = _length(turn_between(last[-2].q, knot.q))
         if turned > MOST_RAD:
             raise StreamFault(f'{self._name} at {seconds(t_ns)} turns {turned:.3g} rad in one '
-                              f'step; expected at most {MOST_RAD:g}: it must come at a higher '
-                              'rate, or rate_hz be higher', restart=True)
+                              f'step; expected at most {MOST_RAD:g}: raise its rate, or '
+                              'rate_hz', restart=True)
         if len(last) < 3:
             return
         h0, h1 = (step * 1e-9 for step in last.steps(0, 3))

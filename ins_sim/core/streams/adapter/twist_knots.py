@@ -39,7 +39,7 @@ class TwistKnots:
         self._a, self._velocities, self._loops = None, None, None
 
     def push(self, sample):
-        """Take a Sample as the next knot; return the Piece that it completes, or None."""
+        """Process a Sample as the next knot; return the Piece that it completes, or None."""
         w = quaternion.rotate_back(sample.q, sample.w) if self._in_parent else sample.w
         self._last.add((sample.t_ns, w, sample))
         if len(self._last) < LOOKED:

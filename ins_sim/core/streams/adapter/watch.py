@@ -44,7 +44,7 @@ class Watch:
         self._judged_ns, self._doubts = None, 0
 
     def push(self, knot):
-        """Take a knot; return a sentence if the scheme has changed, otherwise ''."""
+        """Process a knot; return a sentence if the scheme has changed, otherwise ''."""
         knots, t_ns = self.knots, knot.t_ns
         knots.append(knot)
         while t_ns - knots[0].t_ns > WATCH_NS:
