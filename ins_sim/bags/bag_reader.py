@@ -89,7 +89,7 @@ class BagReader:
         files = sorted((f for f in self.path.iterdir() if f.suffix in SUFFIXES), key=_number)
         storages = {_storage(f) for f in files}
         if len(storages) != 1:
-            raise ValueError(f'{self.path} is no bag; expected {metadata.NAME}, or files of '
+            raise ValueError(f'{self.path} is not a bag; expected {metadata.NAME}, or files of '
                              f'{" or ".join(SUFFIXES)}')
         self.cut = f'it was not closed: there is no {metadata.NAME}'
         return storages.pop(), files
@@ -280,7 +280,7 @@ def _storage(path):
                              f'{", ".join(SUFFIXES)} ("zstd -d" makes it)')
         if not path.exists():
             raise FileNotFoundError(f'{path} does not exist; expected a bag')
-        raise ValueError(f'{path} is no bag; expected a folder or one of {", ".join(SUFFIXES)}')
+        raise ValueError(f'{path} is not a bag; expected a folder or one of {", ".join(SUFFIXES)}')
     return storage
 
 

@@ -87,8 +87,8 @@ class SqliteReader:
         have = self._columns('topics')
         if not {'id', 'name', 'type', 'serialization_format'} <= have or not {
                 'topic_id', 'timestamp', 'data'} <= self._columns('messages'):
-            raise ValueError(f'{self.path} is no bag; expected the tables topics and messages of '
-                             'rosbag2')
+            raise ValueError(f'{self.path} is not a bag; expected the tables topics and messages '
+                             'of rosbag2')
         definitions = {}
         if self._columns('message_definitions'):
             definitions = {row[0]: row[1:] for row in self._rows(

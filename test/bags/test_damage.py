@@ -74,7 +74,7 @@ def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
         write(tmp_path / storage, storage)
     (tmp_path / 'sqlite3' / 'sqlite3_0.db3').rename(tmp_path / 'mcap' / 'x.db3')
     (tmp_path / 'mcap' / 'metadata.yaml').unlink()
-    refused(tmp_path / 'mcap', 'is no bag', capsys)
+    refused(tmp_path / 'mcap', 'is not a bag', capsys)
 
 
 def test_corrupt_chunks_are_found(tmp_path, capsys):

@@ -21,9 +21,9 @@ STAMPS = np.arange(N) * 10**7
 def test_what_is_no_bag(tmp_path, capsys):
     """A missing path, another folder, a text, an empty file, another database."""
     refused(tmp_path / 'absent', 'does not exist', capsys)
-    refused(tmp_path, 'is no bag; expected metadata.yaml', capsys)
+    refused(tmp_path, 'is not a bag; expected metadata.yaml', capsys)
     (tmp_path / 'text.csv').write_text('a,b\n')
-    refused(tmp_path / 'text.csv', 'is no bag; expected a folder', capsys)
+    refused(tmp_path / 'text.csv', 'is not a bag; expected a folder', capsys)
     for suffix, sentence in (('mcap', 'is no MCAP file'), ('db3', 'is no SQLite file')):
         path = tmp_path / f'x.{suffix}'
         path.write_bytes(b'')
@@ -35,7 +35,7 @@ def test_what_is_no_bag(tmp_path, capsys):
     database.commit()
     database.close()
     refused(tmp_path / 'other.db3', 'expected the tables topics and messages', capsys)
-    refused(tmp_path, 'is no bag', capsys)
+    refused(tmp_path, 'is not a bag', capsys)
 
 
 # Ten times ten times ... ten strings, in nine lines.
