@@ -24,7 +24,7 @@ def test_what_is_no_bag(tmp_path, capsys):
     refused(tmp_path, 'is not a bag; expected metadata.yaml', capsys)
     (tmp_path / 'text.csv').write_text('a,b\n')
     refused(tmp_path / 'text.csv', 'is not a bag; expected a folder', capsys)
-    for suffix, sentence in (('mcap', 'is no MCAP file'), ('db3', 'is no SQLite file')):
+    for suffix, sentence in (('mcap', 'expected an MCAP'), ('db3', 'expected an SQLite')):
         path = tmp_path / f'x.{suffix}'
         path.write_bytes(b'')
         refused(path, 'is empty', capsys)
@@ -137,7 +137,7 @@ def test_what_cannot_be_written(tmp_path):
             bag.add_topic('imu', topics.IMU)
         with pytest.raises(ValueError, match="type 'my_msgs/msg/Thing' is not known"):
             bag.add_topic('/x', 'my_msgs/msg/Thing')
-        with pytest.raises(ValueError, match='is no list of quality of service'):
+        with pytest.raises(ValueError, match='is not a list of quality of service'):
             bag.add_topic('/x', topics.IMU, 'a: 1')
         with pytest.raises(ValueError, match='/y is not declared'):
             bag.write('/y', 0, b'')

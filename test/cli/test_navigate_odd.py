@@ -281,4 +281,4 @@ def test_a_bag_of_ros_1_is_named(tmp_path, capsys):
     for words in (['info'], ['navigate', '-o', str(tmp_path / 'out')]):
         assert main([words[0], str(tmp_path / 'run.bag'), *words[1:]]) == 2
         error = capsys.readouterr().err
-        assert 'run.bag is a bag of ROS 1; expected one of rosbag2' in error
+        assert 'run.bag is a bag of ROS 1; expected a rosbag2 bag' in error
