@@ -63,8 +63,8 @@ class OwnFolder:
             try:
                 # The folder was left behind by a killed process.
                 if any(self.work.iterdir()) and ANYTHING not in (_own_names(self.work) or ()):
-                    raise ValueError(f'{self.work} is in the way and not of ins_sim; expected it '
-                                     'to be moved')
+                    raise ValueError(f'{self.work} is in the way and was not written by ins_sim; '
+                                     'expected it to be moved')
                 shutil.rmtree(self.work)
             finally:
                 os.close(lock)
@@ -189,15 +189,15 @@ def check_free(path, replace=False, mark='', option='--force'):
         raise ValueError(f'{path} is the root of all folders; expected a new folder')
     parent = existing_parent(folder)
     if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise ValueError(f'{path} cannot be made in {parent}; expected a folder that may be '
-                         'written')
+        raise ValueError(f'{path} cannot be made in {parent}; expected a writable '
+                         'folder')
     if not folder.exists():
         return
     if not replace:
         raise ValueError(f'{path} exists; expected a new folder (or {option})')
     if folder == here or folder in here.parents:
         raise ValueError(f'{path} holds the current folder, {here}; {option} replaces a folder as '
-                         'a whole: call from outside it')
+                         'a whole: run it from outside this folder')
     foreign = _foreign(folder, mark)
     if foreign:
         raise ValueError(f'{path}: {foreign}; {option} replaces only what the same command wrote')
@@ -212,7 +212,7 @@ def existing_parent(folder):
 def _foreign(folder, mark=''):
     """Return why a folder must not be replaced, or '' if it holds only entries of its marker."""
     if not folder.is_dir():
-        return 'it is no folder'
+        return 'it is not a folder'
     names = sorted(p.name for p in folder.iterdir())
     if not names:
         return ''

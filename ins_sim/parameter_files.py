@@ -116,7 +116,7 @@ def _addressed(name, where, known):
     if not separator:
         return None, name
     if node not in known:
-        raise ValueError(f'{where}: {shown(node)} is no node of ins_sim; the nearest is '
+        raise ValueError(f'{where}: {shown(node)} is not a node of ins_sim; the nearest is '
                          f'{nearest_name(node, known)!r}')
     return node, own
 
@@ -186,14 +186,14 @@ def _namespace(named, given, known):
     plain = any('*' not in section and section.count('/') == 1 for section in ours)
     named = sorted(found - {''})
     if len(named) > 1 and not plain:
-        raise ValueError(f'the sections are of {len(named)} namespaces, '
+        raise ValueError(f'the sections belong to {len(named)} namespaces, '
                          f'{listed(named, MOST_TOLD)}; expected one vehicle')
     namespace = named[0] if named and not plain else ''
     every = dict.fromkeys([*ours, *(section for section, *_ in given.given())])
     strange = [section for section in every if _node_of(section, known)
                and not any(applies(section, f'{namespace}/{node}') for node in known)]
     if strange:
-        warnings.warn(f'ignored, because the nodes stand in the namespace {namespace or "/"!r}: '
+        warnings.warn(f'ignored, because the nodes are in the namespace {namespace or "/"!r}: '
                       f'{listed(strange, MOST_TOLD)}', stacklevel=4)
     return namespace
 
@@ -223,7 +223,7 @@ def _tell_overruled(given, values, known, namespace, order):
         advice = f'; write -p {nodes[0]}:{where[3:]}' if (
             where.startswith('-p ') and ':' not in where.partition(':=')[0]) else ''
         warnings.warn(f'{where}{what}: no effect on {", ".join(nodes)}, because, as in ROS 2, '
-                      f'{winner} says otherwise in a section that comes later, or with another '
+                      f'{winner} sets it in a section that comes later, or with another '
                       f'type{advice}', stacklevel=4)
 
 

@@ -66,7 +66,7 @@ class Parameters:
                 elif isinstance(event, yaml.SequenceEndEvent):
                     reader.listed = False
                 elif isinstance(event, (yaml.AliasEvent, yaml.CollectionStartEvent)):
-                    raise ValueError('is no single value and no list')
+                    raise ValueError('is neither a single value nor a list')
         except ValueError as error:
             raise ValueError(f'{where} {error}') from None
 
@@ -174,7 +174,7 @@ class _File:
                 self._on_scalar(event)
             elif isinstance(event, yaml.SequenceStartEvent):
                 if self._key_next:
-                    raise ValueError(f'has a list for a key at {line_of(event)}; expected a name')
+                    raise ValueError(f'has a list as a key at {line_of(event)}; expected a name')
                 if not self._in_parameters:
                     raise ValueError(_before(event))
                 self._values.begin_list()
@@ -189,7 +189,7 @@ class _File:
             elif isinstance(event, yaml.MappingEndEvent):
                 self._end_mapping()
             elif isinstance(event, yaml.AliasEvent):
-                raise ValueError(f'has an alias at {line_of(event)}; ROS takes none in a '
+                raise ValueError(f'has an alias at {line_of(event)}; ROS accepts none in a '
                                  'parameter file')
 
     def _on_scalar(self, event):

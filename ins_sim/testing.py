@@ -176,8 +176,8 @@ class RunningSimulation:
         for name, came in self._came.items():
             if not listen(self.node, PUBLISHED[name], came.append):
                 raise ValueError(f'topics: nothing publishes {name} in this simulation; expected '
-                                 'aided=True for the topics of the aids, and the settings that '
-                                 'make the others')
+                                 'aided=True for the topics of the aiding nodes, and the '
+                                 'settings that enable the others')
         self._answered = {name: {} for name in self._answers}
         for name, message_class in self._answers.items():
             self.node.create_subscription(message_class, name,
@@ -206,7 +206,7 @@ class RunningSimulation:
         self._serve()
         if self._stop:
             faults = [node.monitor.last_fault for node in self._simulation.members]
-            raise RuntimeError('the simulation has ended, as on_fault says: '
+            raise RuntimeError('a fault has ended the simulation (on_fault is stop): '
                                + next(filter(None, faults), 'stopped'))
         read = {name: list(messages) for name, messages in self._came.items()}
         found = {name: [_message(PUBLISHED[name], data) for data in messages]

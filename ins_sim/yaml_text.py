@@ -180,8 +180,8 @@ class _Tree:
             made = self._new(event, depth)
             self._anchors[event.anchor] = made if event.anchor else None
         if self._count > MOST_VALUES:
-            raise ValueError(f'holds more than {MOST_VALUES} values, each alias counted as what '
-                             f'it stands for, at {line_of(event)}')
+            raise ValueError(f'holds more than {MOST_VALUES} values, with aliases '
+                             f'expanded, at {line_of(event)}')
         return made
 
     def _new(self, event, depth):
@@ -201,7 +201,7 @@ class _Tree:
         if isinstance(event, yaml.MappingStartEvent):
             keys = values[::2]
             if any(isinstance(key, (dict, list)) for key in keys):
-                raise ValueError(f'has a list or a mapping for a key at {line_of(event)}; '
+                raise ValueError(f'has a list or a mapping as a key at {line_of(event)}; '
                                  'expected a text')
             values = dict(zip(keys, values[1::2]))
         return values, self._count - before, height

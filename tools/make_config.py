@@ -14,7 +14,7 @@ HEAD = """\
 # load this file, because the nodes have the same defaults.  It is generated from ins_sim/settings
 # by tools/make_config.py.  Parameters with the same default in all nodes that have them are under
 # "/**", the others under their node.  In lists of noise, biases, scale factors and standard
-# deviations by axis, one number stands for three equal ones.  The other files of this folder hold
+# deviations by axis, one number sets all three.  The other files of this folder hold
 # motions, delays, instruments and studies.
 """
 FLOOR = ('"In-run" is the lowest Allan deviation, as data sheets give it; bias_instability, the B '

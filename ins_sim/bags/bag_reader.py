@@ -75,7 +75,7 @@ class BagReader:
                 known = self.topics.setdefault(channel.name, channel)
                 if known.type_name != channel.type_name:
                     raise ValueError(f'{self.path} has {channel.name} with two types, '
-                                     f'{known.type_name} and {channel.type_name}')
+                                     f'{known.type_name} and {channel.type_name}; expected one')
 
     def _find_files(self):
         info = metadata.read_metadata(self.path)
@@ -83,13 +83,13 @@ class BagReader:
             files = [self.path / name for name in info.files]
             for file in files:
                 if not file.exists():
-                    raise ValueError(f'{self.path} lacks {file.name}, which its {metadata.NAME} '
-                                     'names')
+                    raise ValueError(f'{self.path} lacks {file.name}, which is listed in its '
+                                     f'{metadata.NAME}')
             return info.storage, files
         files = sorted((f for f in self.path.iterdir() if f.suffix in SUFFIXES), key=_number)
         storages = {_storage(f) for f in files}
         if len(storages) != 1:
-            raise ValueError(f'{self.path} is no bag; expected {metadata.NAME}, or files of '
+            raise ValueError(f'{self.path} is not a bag; expected {metadata.NAME}, or files of '
                              f'{" or ".join(SUFFIXES)}')
         self.cut = f'it was not closed: there is no {metadata.NAME}'
         return storages.pop(), files
@@ -113,7 +113,7 @@ class BagReader:
         if name not in self.topics:
             raise ValueError(f'{self.path} has no topic {name}; ' + (
                 f'the nearest is {nearest_name(name, self.topics)}' if self.topics else
-                'it has none at all'))
+                'it has no topics'))
         return self.topics[name]
 
     def spans(self):
@@ -272,15 +272,15 @@ def _ids(part, names):
 def _storage(path):
     storage = SUFFIXES.get(path.suffix)
     if path.suffix == ROS_1 and path.exists():
-        raise ValueError(f'{path} is a bag of ROS 1; expected one of rosbag2 ("rosbags-convert" '
-                         'of the Python package rosbags makes it)')
+        raise ValueError(f'{path} is a bag of ROS 1; expected a rosbag2 bag (convert it with '
+                         '"rosbags-convert" of the Python package rosbags)')
     if storage is None:
         if path.suffix == '.zstd':
             raise ValueError(f'{path} is compressed as a file; expected one of '
-                             f'{", ".join(SUFFIXES)} ("zstd -d" makes it)')
+                             f'{", ".join(SUFFIXES)} (unpack it with "zstd -d")')
         if not path.exists():
             raise FileNotFoundError(f'{path} does not exist; expected a bag')
-        raise ValueError(f'{path} is no bag; expected a folder or one of {", ".join(SUFFIXES)}')
+        raise ValueError(f'{path} is not a bag; expected a folder or one of {", ".join(SUFFIXES)}')
     return storage
 
 

@@ -21,7 +21,7 @@ COMPANIONS = {mcap_writer.SUFFIX: (), sqlite_writer.SUFFIX: ('-wal', '-shm', '-j
 CHUNK_BYTES = 1 << 21
 # A bag of a killed recorder has all messages that are older than this in log time.
 CHUNK_NS = 1_000_000_000
-# Least messages in a chunk; alternating stamps of two clocks would make one of each message.
+# Least messages in a chunk; alternating stamps of two clocks would otherwise fill it with one.
 CHUNK_LEAST = 64
 LATEST_NS = 2**63 - 1
 
@@ -260,7 +260,7 @@ class BagWriter:
 
     @contextmanager
     def _disk(self):
-        """On a disk error close the file as it is, and raise OSError that says what is kept."""
+        """On a disk error close the file as it is, and raise OSError stating what is kept."""
         try:
             yield
         except OSError as error:

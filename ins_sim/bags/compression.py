@@ -48,13 +48,13 @@ def decompress(data, name, size):
     """
     most = min(LARGEST, max(_FREE, _RATIO * len(data))) if name else LARGEST
     if size > most:
-        raise ValueError(f'it says it has {size} bytes; expected at most {most}, from '
-                         f'{len(data)} bytes')
+        raise ValueError(f'it claims {size} bytes; expected at most {most} for its {len(data)} '
+                         'bytes')
     if name == '':
         raw = data
     elif name == 'lz4':
         if size > _LZ4_RATIO * len(data):
-            raise ValueError(f'{len(data)} bytes of lz4 cannot have {size} bytes')
+            raise ValueError(f'{len(data)} bytes of lz4 cannot unpack to {size} bytes')
         raw = _whole(compression_library(name).LZ4FrameDecompressor(), data, size, RuntimeError)
     elif name == 'zstd':
         zstd = compression_library(name)

@@ -76,7 +76,7 @@ class Fields:
         try:
             return str(self.data(), 'utf-8')
         except UnicodeDecodeError:
-            raise ValueError('it holds a string that is no UTF-8') from None
+            raise ValueError('it contains a string that is not UTF-8') from None
 
     def text_map(self):
         """Return a map of strings as a dict."""

@@ -41,8 +41,9 @@ class McapIndex:
     One MCAP file.
 
     Attributes: channels {id: Channel}; chunks; loose, the positions of messages outside of
-    chunks; expected, the number of messages by the summary, or None; cut, a sentence on where an
-    unclosed file ends, else ''.  Raises ValueError if the file is empty, not MCAP, or corrupt.
+    chunks; expected, the number of messages according to the summary, or None; cut, a sentence on
+    where an unclosed file ends, else ''.  Raises ValueError if the file is empty, not MCAP, or
+    corrupt.
     """
 
     def __init__(self, path):
@@ -54,7 +55,7 @@ class McapIndex:
                 raise ValueError(f'{self.path} is empty; expected an MCAP file')
             self.mapped = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         if self.mapped[:8] != form.MAGIC:
-            raise ValueError(f'{self.path} is no MCAP file; it begins with {self.mapped[:8]!r}')
+            raise ValueError(f'{self.path} begins with {self.mapped[:8]!r}; expected an MCAP file')
         self._schemas, self.channels, self.chunks = {}, {}, []
         self.loose, self.expected = [], None
         self.cut = ''
@@ -108,8 +109,8 @@ class McapIndex:
                 held = position
         if closed:
             raise self.corrupt(position, f'a record of {length} bytes is longer than the file')
-        self.cut = (f'{self.path.name} is cut: its last {size - position} of {size} bytes are no '
-                    'whole record' if position < size else
+        self.cut = (f'{self.path.name} is incomplete: its last {size - position} of {size} bytes '
+                    'are not a complete record' if position < size else
                     f'{self.path.name} ends without a summary')
         return False
 
@@ -120,7 +121,7 @@ class McapIndex:
             start_ns, _, size, crc = fields.numbers('QQQI')
             compression, data = fields.text(), fields.data('Q')
             if start_ns > LATEST_NS:
-                raise ValueError(f'a chunk begins at {start_ns} ns')
+                raise ValueError(f'a chunk begins at {start_ns} ns; expected less than 2^63 ns')
             first = stop - fields.left - len(data)
             self.chunks.append(Chunk(position, start_ns, size, crc, compression, first,
                                      first + len(data)))
@@ -130,7 +131,7 @@ class McapIndex:
             entries = fields.data()
             count, rest = divmod(len(entries), form.INDEX_ENTRY.itemsize)
             if rest or not self.chunks:
-                raise ValueError('a message index has no whole entries, or no chunk before it')
+                raise ValueError('a message index has an incomplete entry, or no chunk before it')
             if count:
                 self.chunks[-1].index[number] = (stop - fields.left - len(entries), count)
         elif opcode == form.SCHEMA:
@@ -170,9 +171,10 @@ class McapIndex:
         if not start:
             return
         if not len(form.MAGIC) <= start <= foot:
-            raise self.corrupt(foot, f'the summary begins at byte {start}')
+            raise self.corrupt(foot, f'the summary begins at byte {start}; expected a position '
+                               'before the footer')
         if crc and crc32(memoryview(self.mapped)[start:foot + form.RECORD.size + 16]) != crc:
-            raise self.corrupt(start, 'the summary has another checksum')
+            raise self.corrupt(start, 'the checksum of the summary is wrong')
         position = start
         while position < foot:
             opcode, length = form.RECORD.unpack_from(self.mapped, position)

@@ -21,7 +21,8 @@ class McapReader(McapIndex):
     def __init__(self, path):
         super().__init__(path)
         self._scanned = {}
-        # Import the library here; a missing one would later be reported as a corrupt chunk.
+        # Import the decompression library here; later its absence would be reported as a corrupt
+        # chunk.
         for name in {chunk.compression for chunk in self.chunks} & MODULES.keys():
             try:
                 compression_library(name)
@@ -56,7 +57,7 @@ class McapReader(McapIndex):
             found = sum(n for n, _, _ in self._counted(times=False))
             if found != self.expected:
                 raise ValueError(f'{self.path} is corrupt: its summary counts {self.expected} '
-                                 f'messages, its chunks hold {found}')
+                                 f'messages, its chunks contain {found}')
 
     def _counted(self, times=True):
         """Yield (count, channel, (first, last) log time or None) for every chunk and channel."""
@@ -85,7 +86,7 @@ class McapReader(McapIndex):
 
     def pieces(self, wanted):
         """
-        Yield (time, place in the file, Piece) in rising order of time.
+        Yield (time, position in the file, Piece) by time; later pieces have no earlier messages.
 
         wanted holds the ids of channels.  Raises ValueError on a corrupt chunk.
         """
@@ -131,9 +132,9 @@ class McapReader(McapIndex):
             raw = decompress(memoryview(self.mapped)[chunk.first:chunk.stop], chunk.compression,
                              chunk.size)
             if chunk.crc and crc32(raw) != chunk.crc:
-                raise ValueError('it has another checksum')
+                raise ValueError('its checksum is wrong')
             if not chunk.compression:
-                chunk.crc = 0  # Mapped data need not be checked twice.
+                chunk.crc = 0  # The mapped bytes have now been verified; skip this next time.
         except ValueError as error:
             raise self.corrupt(chunk.position, f'a chunk cannot be read: {error}') from None
         return np.frombuffer(raw, dtype=np.uint8)
@@ -143,7 +144,7 @@ class McapReader(McapIndex):
         offset, count = chunk.index[number]
         entries = np.frombuffer(self.mapped, form.INDEX_ENTRY, count, offset)
         if entries['start'].max() + HEAD.itemsize > len(raw):
-            raise self.corrupt(chunk.position, 'a message index points behind its chunk')
+            raise self.corrupt(chunk.position, 'a message index points beyond its chunk')
         piece, heads = self._piece(chunk.position, raw, entries['start'].astype(np.int64))
         if (heads['opcode'] != form.MESSAGE).any() or (piece.channel != number).any() or \
                 (heads['log_ns'] != entries['log_ns']).any():
@@ -169,7 +170,7 @@ class McapReader(McapIndex):
         unpack, head = form.RECORD.unpack_from, form.RECORD.size
         while position < size:
             if position + head > size:
-                raise self.corrupt(chunk.position, 'the last record of a chunk is cut')
+                raise self.corrupt(chunk.position, 'the last record of a chunk is incomplete')
             opcode, length = unpack(data, position)
             stop = position + head + length
             if stop > size or (opcode == form.MESSAGE and length < BEHIND_LENGTH):

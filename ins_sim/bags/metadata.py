@@ -46,8 +46,8 @@ def read_metadata(folder):
     if mode != 'none':
         codec = cut(str(info.get('compression_format')))
         raise ValueError(f'{folder} is compressed by {cut(mode)} ({codec}); expected a bag '
-                         'without it, or with compressed MCAP chunks '
-                         '("ros2 bag convert" makes one)')
+                         'without this compression, or with compressed MCAP chunks '
+                         '(convert it with "ros2 bag convert")')
     if storage not in ('mcap', 'sqlite3'):
         raise ValueError(f'{path} has the storage {shown(storage)}; expected mcap or sqlite3')
     files = info.get('relative_file_paths')

@@ -43,7 +43,7 @@ class BagPiece:
     Some messages in the order of the file.
 
     data is an uint8 array; channel, log_ns, starts and sizes, (n,) int64, give the channel, the
-    log time and the place in data of each message.
+    log time and the position in data of each message.
     """
 
     data: np.ndarray
@@ -64,8 +64,8 @@ def in_log_order(pieces):
     """
     Yield (channel, log_ns, bytes) of pieces in the order of the log times.
 
-    pieces yields (time, place, Piece), where neither this Piece nor a later one has a message
-    before the time. Messages with equal log times keep the order of the places.
+    pieces yields (time, position, Piece), where neither this Piece nor a later one has a message
+    before the time. Messages with equal log times keep the order of the positions.
     """
     waiting = []
     for not_before_ns, place, piece in pieces:

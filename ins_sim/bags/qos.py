@@ -29,5 +29,5 @@ def read_profiles(text):
     except ValueError as error:
         raise ValueError(f'{shown(text)} {error}') from None
     if not isinstance(tree, list) or not all(isinstance(p, dict) for p in tree):
-        raise ValueError(f'{shown(text)} is no list of quality of service profiles')
+        raise ValueError(f'{shown(text)} is not a list of quality of service profiles')
     return tree

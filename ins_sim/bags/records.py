@@ -30,8 +30,9 @@ class Order:
     """
     Order of the messages of several blocks by log time; ties keep the order of the blocks.
 
-    channel, log_ns and sizes, (n,), describe the records in this order; ranks holds the ascending
-    places of the messages of each block, blocks the messages of each block in this order.
+    channel, log_ns and sizes, (n,), describe the records in this order; ranks holds, for each
+    block, the ascending positions of its messages in this order, and blocks its messages in this
+    order.
     """
 
     channel: np.ndarray

@@ -34,7 +34,7 @@ class SqliteReader:
             raise ValueError(f'{self.path} is empty; expected an SQLite file')
         with open(self.path, 'rb') as stream:
             if (magic := stream.read(16)) != b'SQLite format 3\x00':
-                raise ValueError(f'{self.path} is no SQLite file; it begins with {magic!r}')
+                raise ValueError(f'{self.path} begins with {magic!r}; expected an SQLite file')
         # "immutable" needs neither lock nor further files, so that the folder may be read-only.
         mode = 'mode=ro' if logged else 'immutable=1'
         self._largest = _OPERATIONS_PER_BYTE * (size + logged) + 20 * _TICK
@@ -61,10 +61,10 @@ class SqliteReader:
     def _corrupt(self, error):
         why = ' '.join(str(error).split())
         if why == 'interrupted':
-            why = 'its tables go round in circles'
+            why = 'reading its tables takes too many steps'
         elif why.startswith('Could not decode'):
             # The rest of the row is the text.
-            why = 'it holds a text that is no UTF-8'
+            why = 'it contains a text that is not UTF-8'
         return ValueError(f'{self.path} is corrupt: {why}')
 
     def _rows(self, query, *values):
@@ -87,8 +87,8 @@ class SqliteReader:
         have = self._columns('topics')
         if not {'id', 'name', 'type', 'serialization_format'} <= have or not {
                 'topic_id', 'timestamp', 'data'} <= self._columns('messages'):
-            raise ValueError(f'{self.path} is no bag; expected the tables topics and messages of '
-                             'rosbag2')
+            raise ValueError(f'{self.path} is not a bag; expected the tables topics and messages '
+                             'of rosbag2')
         definitions = {}
         if self._columns('message_definitions'):
             definitions = {row[0]: row[1:] for row in self._rows(
@@ -100,7 +100,7 @@ class SqliteReader:
                               f'{", ".join(optional)} FROM topics ORDER BY id'):
             definition = definitions.get(row[2], ('', 'ros2msg'))
             if [type(x) for x in (*row, *definition)] != [int] + 7 * [str]:
-                raise self._corrupt(f'its topic {row[0]!r} is no number with texts')
+                raise self._corrupt(f'its topic {row[0]!r} has a value of the wrong type')
             number, name, type_name, encoding, type_hash, qos = row
             yield Channel.as_read(number, name, type_name, encoding, *definition, type_hash,
                                   qos)
@@ -111,8 +111,8 @@ class SqliteReader:
         for number, *span in self._rows('SELECT topic_id, COUNT(*), MIN(timestamp), '
                                         'MAX(timestamp) FROM messages GROUP BY topic_id'):
             if [type(x) for x in (number, *span)] != 4 * [int]:
-                raise self._corrupt(f'the messages of topic {number!r} have times that are no '
-                                    'numbers')
+                raise self._corrupt(f'the messages of topic {number!r} have times that are not '
+                                    'integers')
             if number not in self.channels:
                 raise self._corrupt(f'it has messages of topic {number}, which it does not '
                                     'declare')
@@ -120,12 +120,12 @@ class SqliteReader:
         return result
 
     def count(self, wanted):
-        """Return 0 for unknown, because SQLite counts about as slowly as it reads."""
+        """Return 0, which means unknown: SQLite counts about as slowly as it reads."""
         return 0
 
     def pieces(self, wanted):
         """
-        Yield (time, place, Piece) by log time; no later piece has messages before the time.
+        Yield (time, position, Piece) by time; later pieces have no earlier messages.
 
         wanted holds the ids of channels.  Raises ValueError on a corrupt file.
         """
@@ -150,7 +150,7 @@ class SqliteReader:
         for rows in self._blocks('SELECT id, timestamp FROM messages NOT INDEXED WHERE topic_id '
                                  f'IN ({_marks(wanted)}) ORDER BY id', *wanted):
             if {type(x) for row in rows for x in row} != {int}:
-                raise self._corrupt('a message is no time with bytes')
+                raise self._corrupt('a message has a time or data of the wrong type')
             blocks.append(np.array(rows, dtype=np.int64))
         return np.concatenate(blocks).T
 
@@ -168,7 +168,7 @@ class SqliteReader:
     def _piece(self, rows):
         channel, log_ns, blobs = zip(*rows)
         if set(map(type, log_ns)) != {int} or set(map(type, blobs)) != {bytes}:
-            raise self._corrupt('a message is no time with bytes')
+            raise self._corrupt('a message has a time or data of the wrong type')
         sizes = np.fromiter(map(len, blobs), np.int64, len(blobs))
         return BagPiece(np.frombuffer(b''.join(blobs), dtype=np.uint8), np.array(channel),
                         np.array(log_ns, dtype=np.int64), np.cumsum(sizes) - sizes, sizes)

@@ -46,7 +46,7 @@ def write_windows(path, chosen, windows, storage='mcap', compression='none', rep
             bag.write_blocks(messages)
         bag.close()
     except OSError:
-        raise  # The disk is full; the written part is kept, as the message says.
+        raise  # The disk is full; the written part is kept, as the message states.
     except BaseException:
         bag.discard()
         raise

@@ -49,11 +49,11 @@ def _check_measured(name, table, accept, notes):
     what = ' and '.join(f'{count} messages have no {field}' for field, count in said.items()
                         if count)
     if not accept.unmeasured:
-        raise ValueError(f'{name} says by a covariance of -1 that it has no rate or no '
+        raise ValueError(f'{name} states, by a covariance of -1, that it has no rate or no '
                          f'acceleration (REP-145): {what}; expected both'
-                         + ('; there are numbers beside it, which accept.unmeasured:=true takes'
-                            if there else ''))
-    notes.append(f'{name}: by a covariance of -1 {what}: taken as measured')
+                         + ('; the fields contain numbers all the same, which '
+                            'accept.unmeasured:=true accepts' if there else ''))
+    notes.append(f'{name}: by a covariance of -1 {what}; their numbers are used all the same')
 
 
 def _frame(name, frames, accept, notes):
@@ -64,8 +64,8 @@ def _frame(name, frames, accept, notes):
         said = listed((f'{frame!r} ({n} messages)' for frame, n in count.items()), 4)
         if not accept.frames:
             raise ValueError(f'{name} has the frames {said}; expected one IMU on a topic '
-                             '(accept.frames:=true takes them for one)')
-        notes.append(f'{name} has the frames {said}: all taken for {usual!r}')
+                             '(accept.frames:=true treats them as one)')
+        notes.append(f'{name} has the frames {said}: all treated as {usual!r}')
     return usual
 
 
@@ -73,20 +73,20 @@ def _stamps(name, table, source, odd, notes):
     """Return the stamps, (n,) int64 ns, from the source in the settings."""
     t_ns = table['stamp_ns'].copy()
     if source == 'log':
-        notes.append(f'{name}: the times of logging are used')
+        notes.append(f'{name}: the log times are used')
         return table['log_ns'].copy()
     if source == 'auto' and not t_ns.any():
-        notes.append('the stamps of the IMU are all zero: the times of logging are used')
+        notes.append('the stamps of the IMU are all zero: the log times are used')
         return table['log_ns'].copy()
     if odd:
-        notes.append(f'{name}: {odd} stamps have nanosec >= 1e9; it is added to their seconds')
+        notes.append(f'{name}: {odd} stamps have nanosec >= 1e9, which is added to their seconds')
     t_ns, note = unwrap_clock(t_ns)
     if note:
         notes.append(f'{name}: {note}')
     back = int(np.count_nonzero(np.diff(t_ns) < 0))
     if back:
-        notes.append(f'{name}: the stamps go back {back} times; stamps.source:=log uses the times '
-                     'of logging')
+        notes.append(f'{name}: the stamps go back {back} times; stamps.source:=log uses the log '
+                     'times instead')
     return t_ns
 
 
@@ -99,8 +99,8 @@ def _orientation(name, table, accept, notes):
     odd = there & (np.abs(norm - 1.0) >= _UNIT)
     if odd.any():
         k = int(np.argmax(odd))
-        what = (f'{name}: {np.count_nonzero(odd)} orientations are no rotations, the first at '
-                f'{seconds(table["stamp_ns"][k])} has the length {norm[k]:.4g}: ')
+        what = (f'{name}: {np.count_nonzero(odd)} orientations are not rotations, the first at '
+                f'{seconds(table["stamp_ns"][k])} has the norm {norm[k]:.4g}: ')
         notes.append(what + ('normalised' if accept.orientations else
                              'not used (accept.orientations:=true normalises them)'))
     known = there if accept.orientations else there & ~odd

@@ -100,8 +100,8 @@ def _matched(where, table, others):
         found.append(first[k] if len(stamps) else k)
     if not good.any():
         raise ValueError(f'{where} has no stamp in common with '
-                         f'{" and ".join(topic.name for topic in SIBLINGS)} beside it; expected '
-                         'all of every sample')
+                         f'{" and ".join(topic.name for topic in SIBLINGS)} of the same run; '
+                         'expected all three for every sample')
     return table[good], *(other[k[good]] for other, k in zip(others, found))
 
 

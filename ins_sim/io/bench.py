@@ -25,8 +25,8 @@ from .topic_choice import choose_topic
 RATES_ALIKE = 0.01
 # Latest motion time, s.
 LONGEST_S = 1e7
-TUNED = ('channels of tuned gyros see how the rates of other axes change as well, which passes '
-         'for a delay where these change together; rock about each axis of the body in turn')
+TUNED = ('channels of tuned gyros also respond to changes of the rates about other axes, which '
+         'look like a delay if the rates change together; rock about each body axis in turn')
 HOW = ('give it by motion.*, such as "-p motion.kind:=rocking", or motion.kind recording with '
        'the reference in motion.recording.path')
 
@@ -81,15 +81,15 @@ def read_record(path, settings, imu_settings, names=(), topic=None):
                                 'rosbag2 bag or a CSV file')
     if is_csv(path):
         if topic is not None:
-            raise ValueError(f'--topic is {topic}, but {path} is no bag; expected none')
+            raise ValueError(f'--topic is {topic}, but {path} is not a bag; expected no --topic')
         recorded, notes = csv_imu.read_imu(path, imu_settings.columns, imu_settings.units)
     elif is_bag(path):
         with open_bag(path) as bag:
             found = _imu_topic(bag, topic)
             recorded, _, notes = bag_imu.read_imu_messages(bag, found, imu_settings)
     else:
-        raise ValueError(f'{path} is neither a run of "ins_sim simulate" nor a rosbag2 bag nor '
-                         'named .csv or .csv.gz')
+        raise ValueError(f'{path} is not usable; expected a run of "ins_sim simulate", a rosbag2 '
+                         'bag, or a CSV file named .csv or .csv.gz')
     recorded, more = stamped_samples(recorded, imu_settings.stamps)
     recorded, losses = ordered_samples(recorded)
     notes = [*notes, *more]
@@ -136,8 +136,8 @@ def _check_rate(name, t_ns, rate_hz):
 
 def _known_motion(generator):
     if generator.motion.kind == 'guided':
-        raise ValueError('motion.kind is guided, which is steered as it flies; expected a motion '
-                         'that is known beforehand, or a bag with the truth')
+        raise ValueError('motion.kind is guided, which is steered during the run; expected a '
+                         'motion that is known beforehand, or a bag with the truth')
     return read_motion(generator)
 
 
@@ -145,7 +145,7 @@ def _motion(path, settings, named, first_ns):
     """Return the Motion, the stamp of motion time zero, ns, and a note about it."""
     generator = settings.motion_generator
     if not named and is_csv(path):
-        raise ValueError(f'{path} does not say how the bench moved; {HOW}')
+        raise ValueError(f'{path} does not contain the motion of the bench; {HOW}')
     if not named:
         recording = replace(generator.motion.recording, path=str(path))
         generator = replace(generator, motion=MotionSettings(kind='recording',
@@ -153,12 +153,12 @@ def _motion(path, settings, named, first_ns):
         try:
             motion = read_motion(generator)
         except ValueError as error:
-            raise ValueError(f'{error}; the motion of the bench is to be the truth in the bag, or '
+            raise ValueError(f'{error}; expected the motion of the bench as truth in the bag, or '
                              f'{HOW}') from None
         return motion, motion.zero_ns, f'{path}: the motion is the truth in the bag'
     motion = _known_motion(generator)
     if generator.motion.kind == 'recording':
-        return motion, motion.zero_ns, (f'{path}: the stamps are those of the clock of '
+        return motion, motion.zero_ns, (f'{path}: the stamps are assumed to be on the clock of '
                                         f'{generator.motion.recording.path}')
     epoch_ns = 1_000_000_000 * generator.time.epoch_s
     zero_ns = epoch_ns if generator.time.given or first_ns >= epoch_ns else 0
@@ -167,5 +167,5 @@ def _motion(path, settings, named, first_ns):
                          f'{(first_ns - zero_ns) * 1e-9:.9g} s from motion time zero; expected 0 '
                          f'to {LONGEST_S:g} s: set time.epoch to fixed and time.epoch_s to the '
                          'stamp of motion time zero')
-    return motion, zero_ns, (f'{path}: motion time zero is the stamp {seconds(zero_ns)}: an error '
-                             'of it is a delay of all channels alike')
+    return motion, zero_ns, (f'{path}: motion time zero is the stamp {seconds(zero_ns)}; an error '
+                             'of this stamp appears as an equal delay of all channels')

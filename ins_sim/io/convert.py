@@ -67,8 +67,8 @@ def convert_recording(source, target, settings, topic=None, storage='mcap', comp
     if csv_imu.is_imu(source, imu.columns):
         return _imu_to_bag(source, target, settings, topic, how, imu)
     if topic is not None:
-        raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, of which the '
-                         'topics are truth/*; expected none')
+        raise ValueError(f'--topic is {topic}, but {source} is a recorded flight, which becomes '
+                         'the topics truth/*; expected no --topic')
     return _flight_to_bag(source, target, settings, how)
 
 
@@ -150,8 +150,8 @@ def _check_stamps(source, stamps_ns, settings):
                          '(time.epoch_s is added)')
     if first_s >= OLDEST_S or settings.time.given:
         return []
-    return [f'its stamps begin at {first_s:.9g} s, before 2005, as {source} has them, which TF '
-            'and linters take for a clock that was never set; -p time.epoch:=fixed adds '
+    return [f'its stamps begin at {first_s:.9g} s, before 2005, as in {source}; TF and other '
+            'tools may regard this as a clock that was never set; -p time.epoch:=fixed adds '
             f'{settings.time.epoch_s} s (time.epoch_s)']
 
 

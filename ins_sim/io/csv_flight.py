@@ -58,7 +58,7 @@ def read_rows(path, columns=None, key='motion.recording.columns'):
     path = str(path)
     table = CsvTable(path, REQUIRED, UNUSED, columns, key=key)
     if not table.rows:
-        raise ValueError(f'{path} has a header and no rows; expected a recorded flight')
+        raise ValueError(f'{path} has a header but no rows; expected a recorded flight')
     notes, values = list(table.notes), {}
     t_ns = table.stamps_ns()
     for name, bounds in USED.items():
@@ -78,7 +78,7 @@ def read_rows(path, columns=None, key='motion.recording.columns'):
 
 
 def _wrapped(table, name, values, bounds, notes):
-    """Return angles brought within their bounds by whole turns; add a note if any changed."""
+    """Return angles wrapped into their bounds by whole turns; add a note if any changed."""
     low, high = bounds
     beyond = (values < low) | (values > high)
     if not beyond.any():
@@ -87,8 +87,8 @@ def _wrapped(table, name, values, bounds, notes):
     if not ((turned >= low) & (turned <= high)).all():
         # A pitch of 100 degrees is invalid with any number of turns; the message names the row.
         table.numbers(name, bounds)
-    notes.append(f'{table.path}: {np.count_nonzero(beyond)} values of {name} beyond {low:g}..'
-                 f'{high:g} are brought there by whole turns')
+    notes.append(f'{table.path}: {np.count_nonzero(beyond)} values of {name} outside {low:g}..'
+                 f'{high:g} are wrapped into this range by whole turns')
     return turned
 
 

@@ -49,7 +49,7 @@ def read_imu(path, columns=None, units=None):
 def _stamps(table, expected):
     """Return the stamps of a table, (n,) int64 ns, with clock wraps undone, and notes."""
     if not table.rows:
-        raise ValueError(f'{table.path} has a header and no rows; expected {expected}')
+        raise ValueError(f'{table.path} has a header but no rows; expected {expected}')
     t_ns, note = unwrap_clock(table.stamps_ns())
     return t_ns, [f'{table.path}: {note}'] if note else []
 

@@ -57,25 +57,25 @@ def read_lines(path):
                 lines.append(source.line)
                 rows.append(row)
     except csv.Error as error:
-        raise ValueError(f'{path}, line {source.line}: not a line of CSV ({error}); expected '
+        raise ValueError(f'{path}, line {source.line}: this is not CSV ({error}); expected '
                          f'fields separated by {DELIMITERS[delimiter]}') from error
     if not rows:
         raise ValueError(f'{path} holds comments only; expected a header line and rows')
     headless, header_line = _is_row(rows[0], delimiter), lines[0]
     header = [f'column {k}' for k in range(1, len(rows[0]) + 1)] if headless else [
         name.strip() for name in rows[0]]
-    notes = [] if not source.comments else [f'{path}: {source.comments} lines of comment left out']
+    notes = [] if not source.comments else [f'{path}: {source.comments} comment lines skipped']
     repeated = [k for k, row in enumerate(rows) if k and row[0] == rows[0][0] and row == rows[0]
                 and not headless]
     if repeated:
-        notes.append(f'{path}: the header stands in {len(repeated)} more lines, the first of them '
-                     f'line {lines[repeated[0]]}: left out')
+        notes.append(f'{path}: the header is repeated in {len(repeated)} lines, the first of them '
+                     f'line {lines[repeated[0]]}: skipped')
         for k in reversed(repeated):
             del rows[k], lines[k]
     first = 0 if headless else 1
     if delimiter != ',' and any(',' in field for row in rows[first:3] for field in row):
         notes.append(f'{path}: fields are separated by {DELIMITERS[delimiter]}, so a comma is '
-                     'taken for the decimal point')
+                     'read as decimal point')
         rows = [[field.replace(',', '.') for field in row] for row in rows]
     return CsvLines(header, header_line, lines[first:], rows[first:], tuple(notes), headless)
 

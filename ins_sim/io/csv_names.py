@@ -83,7 +83,7 @@ class ColumnFinder:
         if k is None:
             return None
         if self._header.count(self._header[k]) > 1:
-            raise ValueError(f'{self._where}: column {self._header[k]} stands '
+            raise ValueError(f'{self._where}: column {self._header[k]} occurs '
                              f'{self._header.count(self._header[k])} times; expected it once')
         unit = self._units.get(kind, 'auto')
         if unit == 'auto':
@@ -97,7 +97,7 @@ class ColumnFinder:
             for names, text in ((self._header, wanted), (self._bare, _normal(wanted))):
                 if text in names:
                     return names.index(text), ''
-            raise ValueError(f'{self._where}: there is no column {shown(wanted)}, which is '
+            raise ValueError(f'{self._where}: there is no column {shown(wanted)}, the value of '
                              f'{self._key}.{name}; the nearest is '
                              f'{shown(nearest_name(wanted, self._header))}')
         if name in self._header:
@@ -107,7 +107,7 @@ class ColumnFinder:
                      and (unit or _BRACKETS.search(self._header[k])
                           or self._units.get(KNOWN[name][0], 'auto') != 'auto')]
             if len(found) > 1:
-                raise ValueError(f'{self._where}: {len(found)} columns may be {name}: '
+                raise ValueError(f'{self._where}: {len(found)} columns match {name}: '
                                  f'{listed(self._header[k] for k in found)}; expected '
                                  f'{self._key}.{name} to name one')
             if found:

@@ -59,14 +59,14 @@ class CsvTable:
                              'separated by commas, semicolons or tabs')
         missing = [name for name in required if not self._finder.is_known(name)]
         known = (*required, *optional)
-        twice = [f'column {name} stands {header.count(name)} times'
+        twice = [f'column {name} occurs {header.count(name)} times'
                  for name in known if header.count(name) > 1]
         if not missing and not twice:
             return
         if table.headless:
-            raise ValueError(f'{where}: found numbers where the column names belong; {expected}, '
-                             f'or {key}.{missing[0]} "column 1" and so on, which gives each '
-                             'column by its number')
+            raise ValueError(f'{where}: the header line contains numbers; {expected}, '
+                             f'or {key}.{missing[0]} "column 1" and so on, which selects columns '
+                             'by their numbers')
         unknown = [name for name in header if name not in known]
         found = [_unknown(name, known) for name in unknown[:4] if missing]
         if missing and len(unknown) > 4:
@@ -74,7 +74,7 @@ class CsvTable:
         found += twice
         if missing:
             found.append(f'it has no column {listed(missing, 10)}')
-            expected += f'; a column of another name is given by {key}.{missing[0]}'
+            expected += f'; {key}.{missing[0]} selects a column with another name'
         raise ValueError(f'{where}: {"; ".join(found)}; {expected}')
 
     def __contains__(self, name):

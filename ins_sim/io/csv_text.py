@@ -64,10 +64,10 @@ def _unpacked(path, size):
                 count += len(block)
                 if count > most:
                     raise ValueError(f'{path} has {size} bytes and unpacks to more than {most}; '
-                                     'expected a CSV file that shrank to a hundredth at most, '
-                                     f'and has at most {LARGEST} bytes')
+                                     'expected a CSV file that unpacks to at most a hundred times '
+                                     f'its size and {LARGEST} bytes')
     except (OSError, EOFError, zlib.error) as error:
-        raise ValueError(f'{path} is a broken gzip file ({error}); expected a whole '
+        raise ValueError(f'{path} is a damaged gzip file ({error}); expected a complete '
                          'one') from error
     return b''.join(blocks)
 
@@ -82,7 +82,7 @@ def _decoded(path, data):
                          'expected UTF-8 text') from error
     if zero >= 0:
         line = data.count(b'\n', 0, zero) + 1
-        raise ValueError(f'{path}, line {line}: found a zero byte, so this is a binary or UTF-16 '
+        raise ValueError(f'{path}, line {line}: there is a zero byte, as in a binary or UTF-16 '
                          'file; expected UTF-8 text')
     if not text or text.isspace():
         raise ValueError(f'{path} is empty; expected a header line and rows')

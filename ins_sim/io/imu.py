@@ -108,8 +108,8 @@ def _odometry(bag, topic, notes):
         norm = np.linalg.norm(table['orientation'], axis=1)
     good = (norm > 0.99) & (norm < 1.01)
     if not good.all():
-        notes.append(f'{topic}: {np.count_nonzero(~good)} of {len(table)} poses dropped, whose '
-                     f'orientation is no rotation: the first has the length '
+        notes.append(f'{topic}: {np.count_nonzero(~good)} of {len(table)} poses dropped, because '
+                     f'their orientation is not a rotation: the first has the norm '
                      f'{norm[np.argmin(good)]:.4g}')
     table = table[good]
     r, v_b = (positions.plausible(f'{topic} {field}', table[field], most, unit, notes)
@@ -143,4 +143,4 @@ def _rotations(bag, channel):
             yield from transforms.read_rotations(data)
         except ValueError as error:
             raise ValueError(f'{bag.path}: {channel.name} has a message at {log_ns} ns that is '
-                             f'no {TF} ({error})') from None
+                             f'not a {TF} ({error})') from None

@@ -56,7 +56,7 @@ def export_kalibr(path, settings, topic, force=False):
     check_file(path, force)
     if settings.gyro.model != 'ideal':
         raise ValueError(f'gyro.model is {settings.gyro.model}; expected ideal with gyro.errors: '
-                         'the noise of a tuned gyro has no place in imu.yaml')
+                         'imu.yaml cannot describe the noise of a tuned gyro')
     lines, differing = [], []
     for triad, (name, unit) in TRIADS.items():
         model = triad_model(getattr(settings, name).errors, 1.0 / settings.rate_hz,
@@ -65,9 +65,9 @@ def export_kalibr(path, settings, topic, force=False):
         for field, process, text in FIELDS:
             values, key = densities[process], f'{triad}_{field}'
             if max(values) <= 0.0:
-                raise ValueError(f'{key} would be 0, since {name}.errors has no '
+                raise ValueError(f'{key} would be 0, because {name}.errors has no '
                                  f'{"white noise" if process == "white" else "drifting bias"}; '
-                                 'Kalibr expects more: give an instrument, such as '
+                                 'expected more than 0 for Kalibr: give an instrument, such as '
                                  '--params-file imu_tactical_mems')
             if len(set(values)) > 1:
                 differing.append(key)
@@ -77,6 +77,6 @@ def export_kalibr(path, settings, topic, force=False):
     write_whole(path, '\n'.join(content).encode())
     said = [f'written: {path}']
     if differing:
-        said.append(f'the axes differ in {listed(differing)}; Kalibr knows one figure for all '
-                    'three, so that of the worst axis was taken')
+        said.append(f'the axes differ in {listed(differing)}; Kalibr has one value for all three '
+                    'axes, so the value of the worst axis is used')
     return said

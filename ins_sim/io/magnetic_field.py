@@ -41,12 +41,12 @@ def declination_source(initial):
     def modelled(t_ns, place):
         year = 1970.0 + t_ns / _YEAR_NS
         if not FIRST_YEAR <= year <= LAST_YEAR:
-            return 0.0, (f'(the model holds from {FIRST_YEAR:g} to {LAST_YEAR:g}, the stamp is of '
-                         f'{year:.1f}: taken for 0, expected initial.declination given)')
+            return 0.0, (f'(the model is valid from {FIRST_YEAR:g} to {LAST_YEAR:g}, but the '
+                         f'stamp is of {year:.1f}: 0 is used, expected initial.declination given)')
         try:
             east, north, _ = magnetic_field(year)(*place)
         except ValueError:
-            return 0.0, ('(pygeomag cannot be imported: taken for 0, expected it or '
+            return 0.0, ('(pygeomag cannot be imported: 0 is used, expected pygeomag or '
                          'initial.declination given)')
         return elementary.atan2(east, north), 'by the World Magnetic Model'
 
@@ -60,6 +60,6 @@ def _model():
         from pygeomag.wmm.wmm_2025 import WMM_2025
     except ImportError as error:
         raise ValueError(f'magnetometer.publish is true and pygeomag cannot be imported ({error});'
-                         ' expected it for the World Magnetic Model (extra magnetic of '
+                         ' expected this package for the World Magnetic Model (extra magnetic of '
                          'ins_sim)') from None
     return GeoMag(coefficients_data=WMM_2025)

@@ -44,25 +44,25 @@ def map_origin(bag, name, given):
         lat, lon, height = origins[0]
         apart = max(math.dist(_ecef(*origins[0]), _ecef(*other)) for other in origins)
         if apart > STEADY_M:
-            raise ValueError(f'{bag.path}: {odometry} and {fix} put the origin of the map frame '
-                             f'at places {apart:.3g} m apart; expected one place, or '
+            raise ValueError(f'{bag.path}: {odometry} and {fix} give origins of the map frame '
+                             f'that are {apart:.3g} m apart; expected one origin, or '
                              'motion.recording.origin datum')
         datum = Datum(*(float(round(math.degrees(a), 12)) for a in (lat, lon)), height)
         return datum, (f'{bag.path}: the origin of the frame of {name} is at '
                        f'{datum.latitude_deg:.9g}, {datum.longitude_deg:.9g} deg, '
-                       f'{datum.height_m:.6g} m, by {fix}')
+                       f'{datum.height_m:.6g} m, computed from {fix}')
     if given == Datum():
-        raise ValueError(f'{bag.path} has no NavSatFix beside {name}, so that the place of its '
-                         'frame is unknown; expected datum.latitude_deg, datum.longitude_deg and '
-                         'datum.height_m of its origin (the default datum is not assumed '
-                         'unless motion.recording.origin is datum)')
+        raise ValueError(f'{bag.path} has no NavSatFix for {name}, so the origin of its frame is '
+                         'unknown; expected datum.latitude_deg, datum.longitude_deg and '
+                         'datum.height_m of the origin (the default datum is used only if '
+                         'motion.recording.origin is datum)')
     return given_origin(bag, name, given)
 
 
 def given_origin(bag, name, given):
     """Return the given Datum as origin of an Odometry topic, and a sentence about it."""
-    return given, (f'{bag.path}: the origin of the frame of {name} is taken to be the datum '
-                   f'given, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
+    return given, (f'{bag.path}: the origin of the frame of {name} is assumed at the given '
+                   f'datum, {given.latitude_deg:.9g}, {given.longitude_deg:.9g} deg, '
                    f'{given.height_m:.6g} m')
 
 
@@ -101,7 +101,7 @@ def _origins(bag, odometry, fix):
 
 
 def _origin(place, r_m):
-    """Return the origin (lat, lon, height) of the frame in which a place has coordinates r_m."""
+    """Return the origin (lat, lon, height) of the frame in which a position is r_m."""
     x = _ecef(*place)
     origin = place
     for _ in range(ROUNDS):

@@ -34,8 +34,8 @@ def _read_poses(recording, datum):
     from .csv_flight import read_poses
     if recording.topic != 'auto':
         raise ValueError(f'motion.recording.topic is {recording.topic!r}, but {recording.path} is '
-                         'no bag; expected auto')
+                         'not a bag; expected auto')
     if recording.origin != 'fix':
         raise ValueError(f'motion.recording.origin is {recording.origin}, but {recording.path} is '
-                         'no bag; expected fix')
+                         'not a bag; expected fix')
     return read_poses(recording.path, values_of(recording.columns))

@@ -31,7 +31,7 @@ def usable(lat_deg, lon_deg, height_m, status=None, keep_zero=False):
          'whose latitude or longitude is not a number')
     drop(~np.isfinite(height_m), 'whose height is not a number')
     drop((np.abs(lat_deg) > 90.0) | (np.abs(lon_deg) > 540.0) | (np.abs(height_m) > 1e7),
-         'that are no place on Earth')
+         'outside the range of latitude, longitude or height')
     if not keep_zero:
         drop((lat_deg == 0.0) & (lon_deg == 0.0),
              'at latitude 0, longitude 0 (accept.zero_fixes keeps them)')
@@ -44,8 +44,8 @@ def plausible(name, values, most, unit, notes):
     # Comparisons with NaN are false.
     bad = size > most
     if bad.any():
-        notes.append(f'{name}: {np.count_nonzero(bad)} of {len(values)} dropped that are beyond '
-                     f'{most:g} {unit}, the first is {size[np.argmax(bad)]:.6g} {unit}')
+        notes.append(f'{name}: {np.count_nonzero(bad)} of {len(values)} dropped, because they '
+                     f'exceed {most:g} {unit}; the first is {size[np.argmax(bad)]:.6g} {unit}')
         values = np.where(bad if values.ndim == 1 else bad[:, None], np.nan, values)
     return values
 

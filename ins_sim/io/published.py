@@ -21,11 +21,12 @@ def read_errors(path, namespace=''):
         tables = bag.tables(dict.fromkeys(names))
     for name, table in tables.items():
         if not len(table):
-            raise ValueError(f'{path} has no message on {name}')
+            raise ValueError(f'{path} has no message on {name}; expected all four topics of '
+                             'ins/error')
     t_ns = tables[names[0]]['stamp_ns']
     if any(not np.array_equal(t_ns, table['stamp_ns']) for table in tables.values()):
         raise ValueError(f'{path}: the topics under {prefix}ins/error have different stamps; '
-                         'expected all four of every output')
+                         'expected all four topics for every output')
     return NavErrors(t_ns, *(table['vector'] for table in tables.values()))
 
 

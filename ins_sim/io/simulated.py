@@ -55,14 +55,14 @@ def select_topics(settings, names, aided=False):
     """
     if settings.motion_generator.tf.source == 'aided' and not aided:
         raise ValueError('tf.source is aided without velocity_meter, gnss and aided_navigator; '
-                         'expected them to run (--aided), or tf.source truth or ins')
+                         'expected these nodes to run (--aided), or tf.source truth or ins')
     known = {topic.name.lstrip('/'): topic for topic in published_topics(settings, aided)}
     if names is None:
         return tuple(known.values())
     wanted = {name.lstrip('/') for name in names}
     for name in sorted(wanted):
         if name not in known:
-            raise ValueError(f'the nodes publish no topic {name!r}; the nearest is '
+            raise ValueError(f'no node publishes the topic {name!r}; the nearest is '
                              f'{nearest_name(name, known)!r}')
     return tuple(topic for name, topic in known.items() if name in wanted)
 

@@ -40,10 +40,10 @@ def choose_topic(bag, types, wanted, key, ending='', needed=False):
     name = wanted if wanted in bag.topics else '/' + wanted.lstrip('/')
     if name not in bag.topics:
         what = f'; the nearest is {nearest_name(name, known)!r}' if known else ''
-        raise ValueError(f'{bag.path} has no topic {shown(wanted)}, which is {key}{what}')
+        raise ValueError(f'{bag.path} has no topic {shown(wanted)}, the value of {key}{what}')
     type_name = bag.topics[name].type_name
     if type_name not in types:
-        raise ValueError(f'{bag.path}: {name}, which is {key}, has type '
+        raise ValueError(f'{bag.path}: {name}, the value of {key}, has type '
                          f'{short_names([type_name])}; expected {short_names(types)}')
     return name
 

@@ -78,7 +78,7 @@ class Writer:
     def __init__(self, type_name, *strings, runs=None, constants=None, numbers=(0, 0, 0)):
         layout = LAYOUTS[type_name]
         if len(strings) != layout.strings:
-            raise ValueError(f'{type_name} takes {layout.strings} strings, not {len(strings)}')
+            raise ValueError(f'{type_name} has {layout.strings} strings, not {len(strings)}')
         self._name = type_name
         self.runs = layout.runs if runs is None else tuple(runs)
         body = bytearray(8)
@@ -128,7 +128,7 @@ class Writer:
         # The difference of an infinity, or of a NaN, to itself is NaN.
         if total - total != 0.0 and not all(math.isfinite(x) for run in values for x in run):
             raise ValueError(f'{self._name} of {stamp_ns / SECOND:.9f} s would hold {values}; '
-                             'expected finite numbers; it is not sent')
+                             'expected finite numbers; the message is not sent')
         return bytes(buffer)
 
     def block(self, stamps_ns, values=None):
@@ -202,7 +202,7 @@ class Reader:
             return (stamp_ns, *[unpack(buffer, offset) for unpack, offset in slots])
         except struct.error:
             raise ValueError(f'{self._name} of {len(buffer)} bytes ends too early; expected '
-                             f'{self._layout.doubles} doubles behind its header') from None
+                             f'{self._layout.doubles} doubles after its header') from None
 
     def strings(self, buffer):
         """Return the strings (frame ids) of a message as a tuple."""

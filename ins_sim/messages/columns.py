@@ -230,4 +230,4 @@ def _check_sizes(type_name, sizes, needed):
     if (short := sizes < needed).any():
         size = int(sizes[short][0])
         raise ValueError(f'{type_name} of {size} bytes ends too early; expected '
-                         f'{LAYOUTS[type_name].doubles} doubles behind its header')
+                         f'{LAYOUTS[type_name].doubles} doubles after its header')

@@ -52,7 +52,7 @@ def _uses(*all_topics, condition=''):
     return tuple(Use(topic, condition) for topic in all_topics)
 
 
-# What every node that follows a stream has beside its own.
+# What every node that follows a stream has in addition to its own topics and services.
 _RESET = Service('~/reset', TRIGGER, 'Discard all input received so far and start anew.')
 _FOLLOWS = _uses(topics.STATUS, topics.RUN)
 _SAYS = _uses(topics.ACK, DIAGNOSTICS)
@@ -77,7 +77,7 @@ INTERFACES = {
          *(Service(f'~/{name}', f'simulation_interfaces/srv/{kind}', meaning, _STANDARD)
            for name, kind, meaning in (
                ('get_simulator_features', 'GetSimulatorFeatures',
-                'Return which of these services do something.'),
+                'Return which of these services are supported.'),
                ('get_simulation_state', 'GetSimulationState',
                 'Return whether the run is stopped, playing or paused.'),
                ('set_simulation_state', 'SetSimulationState', 'Play, pause, stop or quit.'),
@@ -101,11 +101,11 @@ INTERFACES = {
         (*_uses(topics.INS_ODOMETRY, topics.INS_FIX), *_uses(*topics.ERRORS, condition=_TRUTH),
          Use(topics.IMU_DATA, 'imu_data is true'), Use(topics.TF, 'tf.source is ins or aided'),
          Use(topics.TF_STATIC, 'tf.source is ins'), *_SAYS),
-        (Use(topics.IMU_RAW, 'by the name inputs.imu if initial.source is not truth'),
+        (Use(topics.IMU_RAW, 'named by inputs.imu if initial.source is not truth'),
          Use(topics.TRUTH_ODOMETRY, _TRUTH), Use(topics.RUN, _TRUTH),
-         Use(topics.GNSS_FIX, f'{_ALONE}; by the name inputs.fix'),
-         Use(topics.IMU_PRESSURE, f'{_ALONE}; by the name inputs.pressure'),
-         Use(topics.IMU_MAG, f'{_ALONE}; by the name inputs.magnetic_field'),
+         Use(topics.GNSS_FIX, f'{_ALONE}; named by inputs.fix'),
+         Use(topics.IMU_PRESSURE, f'{_ALONE}; named by inputs.pressure'),
+         Use(topics.IMU_MAG, f'{_ALONE}; named by inputs.magnetic_field'),
          Use(topics.TF_STATIC, f'{_ALONE}: the mounting of the IMU'),
          Use(topics.TF, 'tf.source is ins or aided, to find a second publisher of its frame'),
          Use(topics.STATUS)),

@@ -52,8 +52,8 @@ def read_announcement(data):
     """Return the RunAnnouncement of a message; raise ValueError if it is invalid."""
     _, _, statuses = diagnostic_array.read_diagnostics(data)
     if len(statuses) != 1 or statuses[0].name != NAME:
-        raise ValueError(f'{topics.RUN.name} holds {len(statuses)} statuses; expected one of the '
-                         f'name {NAME!r}')
+        raise ValueError(f'{topics.RUN.name} holds {len(statuses)} statuses; expected one with '
+                         f'the name {NAME!r}')
     given = dict(statuses[0].values)
     try:
         epoch_ns, start_ns, end_ns = (int(given.get(key, '')[:25]) for key in _WHOLE)

@@ -13,7 +13,7 @@ CONTENTS = {
         'map (rad/s) in base_link. The covariances state 1 mm, 0.1 mrad, 1 mm/s and 1 urad/s.'),
     topics.TRUTH_ATTITUDE: (
         'True attitude: the quaternion (x, y, z, w) from base_link to East, North, Up at the '
-        'vehicle. It differs from that of truth/odometry by the angle between vehicle and datum.'),
+        'vehicle. It differs from truth/odometry by the angle between vehicle and datum.'),
     topics.TRUTH_FIX: 'True latitude and longitude (deg) and height above the ellipsoid (m).',
     topics.TRUTH_IMU: (
         'Output of a perfect IMU: inertial angular rate (rad/s) and specific force (m/s^2) at the '
@@ -92,7 +92,7 @@ CONTENTS = {
         'Announcement of the run: epoch, first and last motion time (ns) and rate (Hz). A '
         'subscriber that joins later also gets it.'),
     topics.CLOCK_TOPIC: 'Simulation time, about 100 times a second, for use_sim_time.',
-    topics.TF: 'Transforms of the vehicle, as tf.source says.',
+    topics.TF: 'Transforms of the vehicle, as set by tf.source.',
     topics.TF_STATIC: 'Fixed transforms: mounting of the instruments, and map to odom if the '
                       'strapdown alone places the vehicle.',
     DIAGNOSTICS: 'State, counters and last fault of each node, once a second of wall time.',

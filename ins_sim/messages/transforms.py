@@ -48,7 +48,7 @@ class TransformWriter:
         for (stamp, first), pose in zip(self._places, poses, strict=True):
             if not math.isfinite(sum(pose)):
                 raise ValueError(f'a transform of {stamp_ns / SECOND:.9f} s would hold {pose}; '
-                                 'expected finite numbers; it is not sent')
+                                 'expected finite numbers; the message is not sent')
             _STAMP.pack_into(self._buffer, stamp, *divmod(stamp_ns, SECOND))
             _DOUBLES.pack_into(self._buffer, first, *pose)
         return bytes(self._buffer)
@@ -131,7 +131,7 @@ def read_transforms(data):
     except struct.error:
         raise ValueError(f'it ends too early, after {len(data)} bytes') from None
     if len(body) - offset > _MOST_PADDING:
-        raise ValueError(f'it has {len(body) - offset} bytes behind its last transform')
+        raise ValueError(f'it has {len(body) - offset} bytes after its last transform')
     return found
 
 
@@ -140,6 +140,6 @@ def _string(body, offset):
     length, = _LENGTH(body, offset)
     stop = offset + 4 + length
     if stop > len(body):
-        raise ValueError(f'a frame has {length} bytes, which is more than there are')
+        raise ValueError(f'a frame has {length} bytes, which is more than the message has')
     # The length includes a terminating zero.
     return bytes(body[offset + 4:stop - 1]).decode(), stop

@@ -161,11 +161,11 @@ class AidedNavigatorSettings(SettingsGroup):
         takes_gnss = [name for name, entry in FILTERS.items() if entry.takes_gnss]
         if self.gnss_model.use and self.filter not in takes_gnss:
             raise ValueError(f'gnss_model.use is true with filter {self.filter}; expected a '
-                             f'filter that takes GNSS: {", ".join(takes_gnss)}')
+                             f'filter that processes GNSS: {", ".join(takes_gnss)}')
         self._check_windows()
         if self.filter == 'paper' and self.gain > 1.0:
             raise ValueError(f'gain is {self.gain:g} with filter paper; expected at most 1, '
-                             'beyond which it is unstable')
+                             'because the filter is unstable above that')
         for name, latency_ms in (('window', self.window.latency_ms),
                                  ('gnss', self.gnss.latency_ms)):
             if latency_ms > 1e3 * self.buffer_s:
@@ -185,4 +185,4 @@ class AidedNavigatorSettings(SettingsGroup):
         if self.filter == 'conventional' and self.gain_per_s >= most:
             raise ValueError(f'gain_per_s is {self.gain_per_s:g} 1/s, and {slide}; expected less '
                              f'than {most:g} 1/s, two divided by the time between fixes, because '
-                             'conventional is unstable above that')
+                             'the filter conventional is unstable above that')

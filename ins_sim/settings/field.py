@@ -42,8 +42,9 @@ class SettingsGroup:
     A subclass overrides ``check`` if values must fit each other; ``check`` runs whenever an
     object is created. ``catalogue.build`` checks the range of each single value before that.
 
-    The methods that dataclass(frozen=True) would generate for each class are written here once:
-    generating them for thirty classes takes 25 ms at the start of every node, this a quarter.
+    The methods that dataclass(frozen=True) would generate for each class are written here once,
+    which takes a quarter of the 25 ms that every node would spend at its start to generate them
+    for thirty classes.
 
     ``SETTABLE`` lists the parameters that can be set while the node runs; ``SPANS`` those of its
     groups that hold the lists ``start_s`` and ``end_s``.

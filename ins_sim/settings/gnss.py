@@ -47,7 +47,7 @@ class GnssOutages(SettingsGroup):
         """Raise ValueError unless each outage has a start and a later end."""
         if len(self.start_s) != len(self.end_s):
             raise ValueError(f'outages.start_s has {len(self.start_s)} entries and outages.end_s '
-                             f'{len(self.end_s)}; expected as many')
+                             f'{len(self.end_s)}; expected equal numbers')
         for start, end in zip(self.start_s, self.end_s):
             check_span('outages', start, end)
 
@@ -72,11 +72,11 @@ class GnssReported(SettingsGroup):
     """Reported standard deviations, in the order East, North, Up."""
 
     position_sigma_m: Axes = enu((-1.0, -1.0, -1.0), 'Standard deviation reported for the '
-                                 'position; negative = the one of the simulated errors', 'm', -1.0,
-                                 1e6)
+                                 'position; negative = standard deviation of the simulated errors',
+                                 'm', -1.0, 1e6)
     velocity_sigma_m_s: Axes = enu((-1.0, -1.0, -1.0), 'Standard deviation reported for the '
-                                   'velocity; negative = the one of the simulated errors', 'm/s',
-                                   -1.0, 1e4)
+                                   'velocity; negative = standard deviation of the simulated '
+                                   'errors', 'm/s', -1.0, 1e4)
 
 
 @settings_class

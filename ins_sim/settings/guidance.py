@@ -64,8 +64,9 @@ class GuidanceSettings(SettingsGroup):
                             'autopilot follows. After a larger one it flies straight until the '
                             'new solutions have lasted for timeout_s', 'm', 1.0, 1e6)
     topic: str = setting(AIDED_SOLUTION, 'Topic of the nav_msgs/Odometry that the autopilot uses: '
-                         'that of aided_navigator, ins/odometry of strapdown or, in a live run, '
-                         'that of your own estimator (pose in map, twist in base_link)')
+                         'aided/odometry of aided_navigator, ins/odometry of strapdown or, in a '
+                         'live run, the topic of your own estimator (pose in map, twist in '
+                         'base_link)')
 
     def in_ns(self):
         """Return latency and timeout in nanoseconds."""
@@ -99,7 +100,8 @@ def check_guided(generator, sensor, lead_ns):
         value = getattr(sensor.sampling, key)
         if value:
             raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
-                             'motion.kind guided, which is steered by the solution of an instant')
+                             'motion.kind guided, whose autopilot needs the solution at exact '
+                             'control instants')
     least_s = (lead_ns + control_ns) * 1e-9
     if lead_ns and round(1e9 * latency_s) < lead_ns + control_ns:
         raise ValueError(f'motion_generator: guidance.latency_s is {latency_s:g} s with a channel '

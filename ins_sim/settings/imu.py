@@ -51,8 +51,8 @@ class MagnetometerSettings(SettingsGroup):
     """Magnetometer on imu/mag (World Magnetic Model; pip extra ``magnetic``)."""
 
     publish: bool = setting(False, 'Whether the magnetometer publishes imu/mag')
-    rate_hz: float = setting(50.0, 'Rate of the magnetometer, at most that of the truth', 'Hz',
-                             0.01, 20000.0)
+    rate_hz: float = setting(50.0, 'Rate of the magnetometer, at most the rate of the truth',
+                             'Hz', 0.01, 20000.0)
     noise_nt: float = setting(100.0, 'Standard deviation of the noise of a sample, each axis',
                               'nT', 0.0, 1e6)
     year: float = setting(2025.0, 'Decimal year for which the field is computed; the time stamps '
@@ -64,8 +64,8 @@ class BarometerSettings(SettingsGroup):
     """Barometer on imu/pressure: standard atmosphere."""
 
     publish: bool = setting(False, 'Whether the barometer publishes imu/pressure')
-    rate_hz: float = setting(50.0, 'Rate of the barometer, at most that of the truth', 'Hz', 0.01,
-                             20000.0)
+    rate_hz: float = setting(50.0, 'Rate of the barometer, at most the rate of the truth', 'Hz',
+                             0.01, 20000.0)
     noise_pa: float = setting(2.0, 'Standard deviation of the noise of a sample', 'Pa', 0.0, 1e5)
 
 
@@ -99,15 +99,15 @@ class ImuSensorSettings(SettingsGroup):
     source: str = setting('stream', 'Source of the motion. stream: the truth messages; motion: '
                           'the closed form or recording given by motion.*, the truth messages '
                           'then only set the pace', choices=('stream', 'motion'))
-    output: str = setting('rotation_vector', 'Meaning of a sample, which is a mean over the '
-                          'sampling period. rotation_vector: of the finite rotation, and of the '
-                          'velocity increment rotated to the body axes at the start of the '
-                          'period; integrated: plain integrals of angular rate and specific force '
-                          'in the moving body axes', choices=OUTPUTS)
+    output: str = setting('rotation_vector', 'Meaning of a sample. rotation_vector: rotation '
+                          'vector of the sampling period, and velocity increment in the body axes '
+                          'at its start, both divided by the period; integrated: plain integrals '
+                          'of angular rate and specific force in the moving body axes, divided by '
+                          'the period', choices=OUTPUTS)
     history: str = setting('analytic', 'Motion before the first instant, which delayed channels '
                            'need: continued backward (analytic) or held (frozen). Streamed truth '
-                           'is continued for 50 ms along the straight line through rate and '
-                           'specific force of its first two samples, and with constant values '
+                           'is continued backward by 50 ms with rate and specific force '
+                           'extrapolated linearly from its first two samples, and is constant '
                            'before that', choices=('analytic', 'frozen'))
     on_fault: str = setting('reset', 'What the node does after a gap, a backward time stamp or an '
                             'invalid message: start anew (reset) or end (stop)',
@@ -116,5 +116,6 @@ class ImuSensorSettings(SettingsGroup):
     def check(self):
         """Raise ValueError if tuned gyros are set with another output than integrated."""
         if self.gyro.model == 'dtg' and self.output != 'integrated':
-            raise ValueError(f'output is {self.output} with gyro.model dtg; expected integrated: '
-                             'a tuned gyro reads the integral of its rate')
+            raise ValueError(f'output is {self.output} with gyro.model dtg; expected integrated, '
+                             'because the readings of a tuned gyro are integrals of the angular '
+                             'rate')

@@ -1,7 +1,7 @@
 """
 Settings of the instrument errors; the defaults are error-free.
 
-Lists are by FLU axis (x, y, z); one number stands for three equal ones. Random terms are given as
+Lists are by FLU axis (x, y, z); one number sets all three. Random terms are given as
 densities or as standard deviations of processes, not as the scatter of a sample, so that their
 meaning does not depend on the rate. Both triads have the same keys, apart from the units;
 ``core.sensors.imu.triad_model`` converts both to SI.

@@ -117,8 +117,8 @@ class Recording(SettingsGroup):
                          'in truth/odometry')
     origin: str = setting('fix', 'Origin of the map frame of the odometry in the bag. fix: from '
                           'NavSatFix messages in the bag, or, if it has none, from datum.*, which '
-                          'must then differ from the default; datum: from datum.*, whatever the '
-                          'bag holds', choices=('fix', 'datum'))
+                          'must then differ from the default; datum: from datum.*, even if the '
+                          'bag has NavSatFix messages', choices=('fix', 'datum'))
     start_s: float = setting(3.0, 'Time of the recording that becomes motion time zero, counted '
                              'from the first row', 's', 3.0, 1e7)
     smoothing_s: float = setting(0.0, 'Length of the moving average that smooths the recording; 0 '
@@ -172,8 +172,8 @@ class MotionSettings(SettingsGroup):
     def check(self):
         """Raise ValueError if the kind is recording and no file is given."""
         if self.kind == 'recording' and not self.recording.path:
-            raise ValueError('motion.recording.path is empty; motion.kind recording expects a CSV '
-                             'file or a bag')
+            raise ValueError('motion.recording.path is empty; expected a CSV file or a bag for '
+                             'motion.kind recording')
 
 
 @settings_class

@@ -27,7 +27,8 @@ class LockStepPacing(SettingsGroup):
     def check(self):
         """Raise ValueError if lock-step has no consumer."""
         if not self.required and self.waits:
-            raise ValueError('pacing.required is empty; lock-step expects at least one consumer')
+            raise ValueError('pacing.required is empty; expected at least one consumer in '
+                             'lock-step')
 
     def check_depth(self, depth):
         """Raise ValueError if the window exceeds the queue depth topics.depth."""

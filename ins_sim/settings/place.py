@@ -55,14 +55,14 @@ class Frames(SettingsGroup):
                                  f'in {plain}')
             if ' ' in text or not text.isprintable() or '//' in text or (
                     not text and name != 'prefix'):
-                raise ValueError(f'frames.{name} is {text!r}; expected a name without spaces and '
+                raise ValueError(f'frames.{name} is {text!r}; expected a name without spaces or '
                                  f'empty parts, such as {"uav1" if name == "prefix" else name}')
         seen = {text: text for text in AXES}
         for name in ROLES:
             other = seen.setdefault(given[name], f'frames.{name}')
             if other != f'frames.{name}':
-                raise ValueError(f'frames.{name} is {given[name]!r}, which is {other} too; '
-                                 'expected another name for every frame')
+                raise ValueError(f'frames.{name} is {given[name]!r}, which is already used for '
+                                 f'{other}; expected a different name for every frame')
 
     def names(self):
         """Return {frame of ``messages.topics``: its name, with the prefix}."""
@@ -77,6 +77,6 @@ class Tf(SettingsGroup):
     source: str = setting('none', 'Source of the vehicle pose on /tf. truth: map -> base_link; '
                           'ins: odom -> base_link by strapdown, and map -> odom fixed at the '
                           'start; aided: odom -> base_link by strapdown, and map -> odom by '
-                          'aided_navigator; none: no transforms. With all but none, /tf_static '
+                          'aided_navigator; none: no transforms. Except with none, /tf_static '
                           'holds the frames of the sensors',
                           choices=('none', 'truth', 'ins', 'aided'))

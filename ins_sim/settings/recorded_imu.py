@@ -57,7 +57,7 @@ class StampSettings(SettingsGroup):
         if (self.source == 'even') != (self.rate_hz >= 0.01):
             raise ValueError(f'stamps.source is {self.source} and stamps.rate_hz '
                              f'{self.rate_hz:g} Hz; expected a rate of 0.01 Hz or more '
-                             'with even stamps, and 0 with others')
+                             'with stamps.source even, and 0 with any other')
 
 
 @settings_class

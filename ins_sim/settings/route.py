@@ -18,7 +18,7 @@ class TurningPoints(SettingsGroup):
         latitudes, longitudes = len(self.latitude_deg), len(self.longitude_deg)
         if latitudes != longitudes:
             raise ValueError(f'motion.route.points: the route has {latitudes} latitudes and '
-                             f'{longitudes} longitudes; expected as many of each')
+                             f'{longitudes} longitudes; expected equal numbers')
         if latitudes < 2:
             raise ValueError(f'motion.route.points: the route has {latitudes} turning points; '
                              'expected two or more')

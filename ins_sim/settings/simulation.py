@@ -24,12 +24,12 @@ class SimulationSettings:
         """Raise ValueError on contradictions that a live strapdown would report."""
         sends, expects = self.imu_sensor.rate_hz, self.strapdown.rate_hz
         if sends != expects:
-            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected that of imu_sensor, '
-                             f'{sends:g} Hz')
+            raise ValueError(f'strapdown: rate_hz is {expects:g} Hz; expected the rate of '
+                             f'imu_sensor, {sends:g} Hz')
         if self.strapdown.standalone:
             raise ValueError(f'strapdown: initial.source is {self.strapdown.initial.source}; '
-                             'expected truth in a simulation without nodes, which compares with '
-                             'it (ins_sim navigate needs none)')
+                             'expected truth, because an offline simulation compares the solution '
+                             'with it (ins_sim navigate works without truth)')
         check_frames(self.motion_generator, imu_sensor=self.imu_sensor, strapdown=self.strapdown)
         if self.motion_generator.motion.kind == 'guided':
             check_guided(self.motion_generator, self.imu_sensor, self.lead_ns)
@@ -70,9 +70,9 @@ def check_frames(generator, **nodes):
             ours, theirs = (values_of(getattr(one, group)) for one in (settings, generator))
             for key, value in ours.items():
                 if value != theirs[key]:
-                    raise ValueError(f'{node}: {group}.{key} is {value!r}; expected that of '
-                                     f'motion_generator, {theirs[key]!r}: a vehicle has one tree '
-                                     'of frames')
+                    raise ValueError(f'{node}: {group}.{key} is {value!r}; expected the value of '
+                                     f'motion_generator, {theirs[key]!r}, because all nodes share '
+                                     'one TF tree')
 
 
 # The nodes other than imu_sensor that draw random numbers.
@@ -97,11 +97,12 @@ class AidedSimulationSettings:
             for key in keys:
                 theirs, ours = getattr(getattr(self, name), key), getattr(navigator, key)
                 if theirs != ours:
-                    raise ValueError(f'aided_navigator: {key} is {ours}; expected that of {name}, '
-                                     f'{theirs}: a fix has one schedule on both sides')
+                    raise ValueError(f'aided_navigator: {key} is {ours}; expected the value of '
+                                     f'{name}, {theirs}, because both need the same times of the '
+                                     'fixes')
         if navigator.rate_hz != sensor.rate_hz:
             raise ValueError(f'aided_navigator: rate_hz is {navigator.rate_hz:g} Hz; expected '
-                             f'that of imu_sensor, {sensor.rate_hz:g} Hz')
+                             f'the rate of imu_sensor, {sensor.rate_hz:g} Hz')
         if navigator.input != sensor.output:
             raise ValueError(f'aided_navigator: input is {navigator.input}; expected the output '
                              f'of imu_sensor, {sensor.output}')
@@ -133,8 +134,9 @@ class AidedSimulationSettings:
         for node in DRAWING:
             theirs = getattr(self, node).run
             if theirs != self.run:
-                raise ValueError(f'{node}: run is {theirs}; expected that of imu_sensor, '
-                                 f'{self.run}: all nodes fly one run of an ensemble')
+                raise ValueError(f'{node}: run is {theirs}; expected the value of imu_sensor, '
+                                 f'{self.run}, because all nodes must belong to one run of an '
+                                 'ensemble')
 
     def _check_streams(self):
         """Raise ValueError on rates and stamps that live nodes would report with every message."""
@@ -142,16 +144,17 @@ class AidedSimulationSettings:
         sent = generator.rate_hz
         if self.velocity_meter.rate_hz != sent:
             raise ValueError(f'velocity_meter: rate_hz is {self.velocity_meter.rate_hz:g} Hz; '
-                             f'expected that of motion_generator, {sent:g} Hz: a cycle is from '
-                             'truth to truth')
+                             f'expected the rate of motion_generator, {sent:g} Hz, because a '
+                             'cycle lasts from one truth sample to the next')
         if self.gnss.rate_hz > sent:
-            raise ValueError(f'gnss: rate_hz is {self.gnss.rate_hz:g} Hz; expected at most that '
-                             f'of motion_generator, {sent:g} Hz')
+            raise ValueError(f'gnss: rate_hz is {self.gnss.rate_hz:g} Hz; expected at most the '
+                             f'rate of motion_generator, {sent:g} Hz')
         for key in ('jitter_us', 'latency_us'):
             value = getattr(sensor.sampling, key)
             if value:
                 raise ValueError(f'imu_sensor: sampling.{key} is {value:g} us; expected 0 with '
-                                 'aided_navigator, which needs the truth of the same stamp')
+                                 'aided_navigator, which needs the truth at the stamp of each '
+                                 'IMU sample')
 
     def _check_steering(self):
         """Raise ValueError if fixes, and so the steering, would wait for the strapdown."""
@@ -160,14 +163,15 @@ class AidedSimulationSettings:
                 and self.velocity_meter.attack_angle == 'ins'
                 and simulation.strapdown.output_every != 1):
             raise ValueError(f'strapdown: output_every is {simulation.strapdown.output_every} '
-                             'with motion.kind guided and attack_angle ins; expected 1: the fix '
-                             'of a window waits for the strapdown')
+                             'with motion.kind guided and attack_angle ins; expected 1, because '
+                             'velocity_meter waits for the solution of strapdown at the end of a '
+                             'window')
 
     def _check_route(self):
         """Raise ValueError unless the orthodromic coordinates refer to the route that is flown."""
         points, motion = self.aided_navigator.motion.route.points, \
             self.simulation.motion_generator.motion
         if motion.kind in ('route', 'guided') and points != motion.route.points:
-            raise ValueError('aided_navigator: motion.route.points are not those of '
-                             'motion_generator; expected the route that is flown: give it under '
-                             '"/**", for both')
+            raise ValueError('aided_navigator: motion.route.points differ from those of '
+                             'motion_generator; expected the same route: set it under "/**", for '
+                             'both nodes')

@@ -123,8 +123,8 @@ class StrapdownSettings(SettingsGroup):
     def check(self):
         """Raise ValueError if input or mounting contradict the source of the initial state."""
         if self.input not in OUTPUTS and not self.standalone:
-            raise ValueError(f'input is {self.input} and initial.source truth; expected one of '
-                             f'{", ".join(OUTPUTS)}, as imu_sensor sends them')
+            raise ValueError(f'input is {self.input} with initial.source truth; expected one of '
+                             f'{", ".join(OUTPUTS)}, the outputs of imu_sensor')
         if self.mounting.source == 'level' and self.initial.source != 'alignment':
             raise ValueError(f'mounting.source is level and initial.source {self.initial.source}; '
                              'expected initial.source alignment, which levels the IMU at '

@@ -26,8 +26,8 @@ class TruthAdapterSettings(SettingsGroup):
     world: World = group(World)
     rate_hz: float = setting(100.0, 'Rate of the IMU; denser input is reduced to it by a fit',
                              'Hz', 0.01, 20000.0)
-    truth_rate_hz: float = setting(0.0, 'Rate of the published truth, at least twice that of the '
-                                   'IMU; 0 = twice that of the IMU', 'Hz', 0.0, 40000.0)
+    truth_rate_hz: float = setting(0.0, 'Rate of the published truth, at least twice rate_hz; 0 = '
+                                   'exactly twice rate_hz', 'Hz', 0.0, 40000.0)
     twist: str = setting('auto', 'Whether velocity and angular rate of the input are used: use; '
                          'ignore (they are computed from the poses); auto (decided from the first '
                          'two seconds)', choices=('auto', 'use', 'ignore'))

@@ -133,8 +133,8 @@ class TunedGyroPairSettings(SettingsGroup):
                                choices=('paper', 'turned'))
     method: str = setting('exact', 'Integration of the rotor equations. exact: matrix '
                           'exponential; rk4: fourth-order Runge-Kutta', choices=('exact', 'rk4'))
-    hold: str = setting('quadratic', 'Course of the angular rate within a step of the exact '
-                        'method. quadratic: parabola; linear: straight line',
+    hold: str = setting('quadratic', 'Interpolation of the angular rate within a step of the '
+                        'exact method. quadratic: parabola; linear: straight line',
                         choices=('quadratic', 'linear'))
     steps_per_sample: int = setting(1, 'Number of integration steps of the rotors in a sampling '
                                     'period', 'steps', 1, 1000)

@@ -82,16 +82,16 @@ class Limits(SettingsGroup):
 class Surrogate(SettingsGroup):
     """Errors of the window mean in mode surrogate (N cycles, sideslip beta)."""
 
-    sigma_x_m_s: float = setting(8.0, 'Forward standard deviation of one cycle; that of a fix is '
+    sigma_x_m_s: float = setting(8.0, 'Forward standard deviation sigma_x of one cycle; a fix has '
                                  'sigma_x/sqrt(N) sqrt(1 + (slip_x beta)^2)', 'm/s', 0.0, 1e3)
     slip_x: float = setting(6.0, 'Coefficient slip_x of the sideslip beta in the forward standard '
                             'deviation', '1/rad', 0.0, 1e3)
-    sigma_z_m_s: float = setting(8.7, 'Lateral standard deviation of one cycle; that of a fix is '
+    sigma_z_m_s: float = setting(8.7, 'Lateral standard deviation sigma_z of one cycle; a fix has '
                                  'sqrt(sigma_z^2 + (slip_z beta)^2)/sqrt(N)', 'm/s', 0.0, 1e3)
     slip_z_m_s: float = setting(160.0, 'Coefficient slip_z of the sideslip beta in the lateral '
                                 'standard deviation', 'm/s/rad', 0.0, 1e5)
-    bias_x_m_s: float = setting(-16.0, 'Forward bias of one cycle; that of a fix is this value '
-                                'divided by N', 'm/s', -1e3, 1e3)
+    bias_x_m_s: float = setting(-16.0, 'Forward bias of one cycle; the bias of a fix is this '
+                                'value divided by N', 'm/s', -1e3, 1e3)
     k_x: float = setting(0.0, 'Forward scale error', '', -0.5, 0.5)
     k_z: float = setting(0.0, 'Lateral scale error, in addition to the effect of the beam', '',
                          -0.5, 0.5)
@@ -143,8 +143,8 @@ class VelocityMeterSettings(SettingsGroup):
                         2147483647)
     run: int = setting(0, 'Number of the run in a Monte Carlo ensemble; each number gives other '
                        'random errors', '', 0, 2147483647)
-    rate_hz: float = setting(100.0, 'Rate of the navigation cycles; must equal that of the IMU',
-                             'Hz', 0.01, 20000.0)
+    rate_hz: float = setting(100.0, 'Rate of the navigation cycles; must equal the rate of the '
+                             'IMU', 'Hz', 0.01, 20000.0)
     on_fault: str = setting('reset', 'What the node does after a gap, a backward time stamp or an '
                             'invalid message: start anew (reset) or end (stop)',
                             choices=('reset', 'stop'))
@@ -168,15 +168,15 @@ class VelocityMeterSettings(SettingsGroup):
         step = self.lag_s
         if signal.lags > self.samples:
             raise ValueError(f'signal.lags is {signal.lags}, together {signal.lags * step * 1e3:g}'
-                             f' ms; expected at most the {self.samples} that a cycle of rate_hz '
-                             'holds')
+                             f' ms; expected at most {self.samples}, the number that fits into a '
+                             'cycle of rate_hz')
         offset = antennas.x0_m * (0.5 if antennas.offsets == 'physical' else 1.0)
         longest, shortest = offset / limits.speed_min_m_s, offset / limits.speed_max_m_s
         if longest < step:
-            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz, and a lag of '
-                             f'signal.pulses_per_lag {step * 1e3:g} ms; expected less than '
+            raise ValueError(f'signal.prf_hz is {signal.prf_hz:g} Hz, with which a lag of '
+                             f'signal.pulses_per_lag lasts {step * 1e3:g} ms; expected less than '
                              f'{longest * 1e3:g} ms, the delay at limits.speed_min_m_s')
         if shortest > (signal.lags - 2) * step:
-            raise ValueError(f'signal.lags is {signal.lags}, the last but one at '
+            raise ValueError(f'signal.lags is {signal.lags}, with the last but one at '
                              f'{(signal.lags - 2) * step * 1e3:g} ms; expected more than '
                              f'{shortest * 1e3:g} ms, the delay at limits.speed_max_m_s')

@@ -193,7 +193,7 @@ def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
 def test_gnss_aids_the_eskf_only():
     """The other filters reject gnss_model.use at construction."""
     with pytest.raises(ValueError, match='gnss_model.use is true with filter window_kf; expected '
-                                         'a filter that takes GNSS: eskf'):
+                                         'a filter that processes GNSS: eskf'):
         navigator('window_kf', **{'gnss_model.use': True})
 
 

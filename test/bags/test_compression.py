@@ -57,9 +57,9 @@ def test_bad_data_are_refused(name, module, only):
     only(name, module)
     packed = bytes(compression.compress(DATA, name))
     for stop in (0, 3, 20, len(packed) // 2):
-        with pytest.raises(ValueError, match='corrupt|expected|cannot have'):
+        with pytest.raises(ValueError, match='corrupt|expected|cannot unpack'):
             compression.decompress(packed[:stop], name, len(DATA))
-    with pytest.raises(ValueError, match='corrupt|expected|cannot have'):
+    with pytest.raises(ValueError, match='corrupt|expected|cannot unpack'):
         compression.decompress(DATA[:1000], name, 1000)
     for size in (len(DATA) - 1, len(DATA) + 1):
         with pytest.raises(ValueError, match='expected'):
@@ -127,6 +127,6 @@ def test_a_chunk_that_gains_more_than_messages_do_is_refused_before_it_is_unpack
     """64 MB are unpacked for any ratio; a gigabyte of zeros is not."""
     data = compression.compress(bytes(1 << 20), name)
     assert compression.decompress(data, name, 1 << 20) == bytes(1 << 20)
-    with pytest.raises(ValueError, match='it says it has 1073741824 bytes; expected at most '
-                                         '67108864, from'):
+    with pytest.raises(ValueError, match='it claims 1073741824 bytes; expected at most '
+                                         '67108864 for its'):
         compression.decompress(data, name, 1 << 30)

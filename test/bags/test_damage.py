@@ -22,7 +22,7 @@ def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
         path = tmp_path / 'cut.mcap'
         path.write_bytes(data[:size])
         if size < 8:
-            refused(path, 'is empty' if not size else 'is no MCAP file', capsys)
+            refused(path, 'is empty' if not size else '; expected an MCAP file', capsys)
             continue
         with open_bag(path) as bag:
             assert 'cut.mcap' in bag.cut
@@ -52,7 +52,7 @@ def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
     with open_bag(path) as bag:
         stamps = bag.arrays('imu/data_raw')['stamp_ns']
         assert np.array_equal(stamps, STAMPS[:len(stamps)]) and N / 2 < len(stamps) < N
-        assert 'its last chunk is left out' in bag.cut and 'another checksum' in bag.cut
+        assert 'its last chunk is left out' in bag.cut and 'its checksum is wrong' in bag.cut
 
 
 def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
@@ -74,7 +74,7 @@ def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
         write(tmp_path / storage, storage)
     (tmp_path / 'sqlite3' / 'sqlite3_0.db3').rename(tmp_path / 'mcap' / 'x.db3')
     (tmp_path / 'mcap' / 'metadata.yaml').unlink()
-    refused(tmp_path / 'mcap', 'is no bag', capsys)
+    refused(tmp_path / 'mcap', 'is not a bag', capsys)
 
 
 def test_corrupt_chunks_are_found(tmp_path, capsys):
@@ -87,16 +87,16 @@ def test_corrupt_chunks_are_found(tmp_path, capsys):
 
     chunk = data.index(b'\x00\x01\x00\x00')
     flipped(chunk + 200)
-    refused(path, 'a chunk cannot be read: it has another checksum', capsys, read=True)
+    refused(path, 'a chunk cannot be read: its checksum is wrong', capsys, read=True)
     flipped(len(data) - 200)
-    refused(path, 'the summary has another checksum', capsys)
+    refused(path, 'the checksum of the summary is wrong', capsys)
     flipped(len(data) - 30)
     refused(path, 'is corrupt', capsys)
     index = _first(data, form.MESSAGE_INDEX)
     flipped(index + 9 + 6 + 3)
     refused(path, 'a message index does not fit its chunk', capsys, read=True)
     flipped(index + 9 + 6 + 13)
-    refused(path, 'a message index points behind its chunk', capsys, read=True)
+    refused(path, 'a message index points beyond its chunk', capsys, read=True)
     flipped(_first(data, form.CHUNK) + 5)
     refused(path, 'is longer than the file', capsys)
 
@@ -124,14 +124,14 @@ def test_a_corrupt_database_is_found(tmp_path, capsys):
 def test_values_of_the_wrong_kind_in_a_database(tmp_path, capsys):
     """Strings for bytes, NULL for times, names that are numbers, messages without a topic."""
     for k, (statement, sentence) in enumerate((
-            ("UPDATE messages SET data = 'some text' WHERE id = 5", 'is no time with bytes'),
-            ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'is no time with bytes'),
-            ('UPDATE messages SET timestamp = 1.5 WHERE id = 5', 'is no time with bytes'))):
+            ("UPDATE messages SET data = 'some text' WHERE id = 5", 'data of the wrong type'),
+            ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'data of the wrong type'),
+            ('UPDATE messages SET timestamp = 1.5 WHERE id = 5', 'data of the wrong type'))):
         path = next(write(tmp_path / str(k), 'sqlite3').glob('*.db3'))
         _change(path, statement)
         refused(path, sentence, capsys, read=True)
     for statement, sentence in (
-            ("UPDATE topics SET name = x'ff'", 'is no number with texts'),
+            ("UPDATE topics SET name = x'ff'", 'has a value of the wrong type'),
             ('DELETE FROM topics WHERE id = 1', 'does not declare')):
         path = next(write(tmp_path / statement[:6], 'sqlite3').glob('*.db3'))
         _change(path, statement)
@@ -154,4 +154,4 @@ def test_a_database_that_never_ends(tmp_path, capsys):
                      "id FROM c) SELECT id, 1 AS topic_id, 1 AS timestamp, x'00' AS data FROM c")
     database.commit()
     database.close()
-    refused(path, 'its tables go round in circles', capsys)
+    refused(path, 'reading its tables takes too many steps', capsys)

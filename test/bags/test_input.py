@@ -21,10 +21,10 @@ STAMPS = np.arange(N) * 10**7
 def test_what_is_no_bag(tmp_path, capsys):
     """A missing path, another folder, a text, an empty file, another database."""
     refused(tmp_path / 'absent', 'does not exist', capsys)
-    refused(tmp_path, 'is no bag; expected metadata.yaml', capsys)
+    refused(tmp_path, 'is not a bag; expected metadata.yaml', capsys)
     (tmp_path / 'text.csv').write_text('a,b\n')
-    refused(tmp_path / 'text.csv', 'is no bag; expected a folder', capsys)
-    for suffix, sentence in (('mcap', 'is no MCAP file'), ('db3', 'is no SQLite file')):
+    refused(tmp_path / 'text.csv', 'is not a bag; expected a folder', capsys)
+    for suffix, sentence in (('mcap', 'expected an MCAP'), ('db3', 'expected an SQLite')):
         path = tmp_path / f'x.{suffix}'
         path.write_bytes(b'')
         refused(path, 'is empty', capsys)
@@ -35,7 +35,7 @@ def test_what_is_no_bag(tmp_path, capsys):
     database.commit()
     database.close()
     refused(tmp_path / 'other.db3', 'expected the tables topics and messages', capsys)
-    refused(tmp_path, 'is no bag', capsys)
+    refused(tmp_path, 'is not a bag', capsys)
 
 
 # Ten times ten times ... ten strings, in nine lines.
@@ -48,7 +48,7 @@ BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n' + ''.join(
     ('a: [', 'is not YAML: line '), ('\x00', 'is not UTF-8 text that YAML allows'),
     ('[' * 3000, 'exceeded maximum nesting depth'), ('- ' * 3000, 'is nested deeper than 64 at'),
     ('a: &a [*a]', 'has the alias *a for itself at line 1'),
-    (BOMB, 'holds more than 1000000 values, each alias counted as what it stands for, at line 6'),
+    (BOMB, 'holds more than 1000000 values, with aliases expanded, at line 6'),
     ('rosbag2_bagfile_information: {version: ' + '9' * 400 + '}', "has the version '999"),
     ('rosbag2_bagfile_information: {version: !!timestamp x}', "has the version 'x'"),
     ('rosbag2_bagfile_information: {version: 9, storage_identifier: mcap, relative_file_paths: '
@@ -137,7 +137,7 @@ def test_what_cannot_be_written(tmp_path):
             bag.add_topic('imu', topics.IMU)
         with pytest.raises(ValueError, match="type 'my_msgs/msg/Thing' is not known"):
             bag.add_topic('/x', 'my_msgs/msg/Thing')
-        with pytest.raises(ValueError, match='is no list of quality of service'):
+        with pytest.raises(ValueError, match='is not a list of quality of service'):
             bag.add_topic('/x', topics.IMU, 'a: 1')
         with pytest.raises(ValueError, match='/y is not declared'):
             bag.write('/y', 0, b'')

@@ -94,7 +94,7 @@ def test_bytes_behind_the_last_transform_are_refused():
     """Up to three bytes are padding; more mean that the message is something else."""
     whole = packed([('a', 'b', (0.0, 0.0, 0.0, 1.0))])
     assert read_rotations(whole + b'\0' * 3) == read_rotations(whole)
-    with pytest.raises(ValueError, match='4 bytes behind its last transform'):
+    with pytest.raises(ValueError, match='4 bytes after its last transform'):
         read_rotations(whole + b'\0' * 4)
     with pytest.raises(ValueError, match='expected the encapsulation of little-endian CDR'):
         read_rotations(b'\0\0' + whole[2:])

@@ -114,8 +114,8 @@ def test_topics_rates_and_epochs(tmp_path, capsys):
 
 
 @pytest.mark.parametrize('arguments, sentence', [
-    (['--topics', 'ins/errors'], "publish no topic 'ins/errors'; the nearest is 'ins/error/"),
-    (['--topics', 'clock'], "publish no topic 'clock'"),
+    (['--topics', 'ins/errors'], "publishes the topic 'ins/errors'; the nearest is 'ins/error/"),
+    (['--topics', 'clock'], "publishes the topic 'clock'"),
     (['--storage', 'sqlite3', '--compression', 'lz4'], 'sqlite3 cannot be compressed by lz4'),
     (['-p', 'time.epoch_s:=2147483647'], 'which a ROS stamp can hold')])
 def test_what_is_refused_before_the_run(arguments, sentence, tmp_path, capsys):
@@ -151,7 +151,7 @@ def test_a_bag_is_replaced_with_force_alone(tmp_path, capsys):
 
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch, capsys):
-    """After Ctrl-C while it is written there is no bag; exit code 130."""
+    """After Ctrl-C while it is written there is not a bag; exit code 130."""
     from ins_sim.bags import windows
 
     def interrupt(*arguments):

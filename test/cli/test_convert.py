@@ -189,7 +189,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, capsys):
     assert len(csv_imu.read_imu(tmp_path / 'imu.csv')[0]) == 10
     (tmp_path / 'folder.csv').mkdir()
     assert convert(tmp_path / 'bag', tmp_path / 'folder.csv', '--force') == 2
-    assert 'is no file; --force replaces only a file' in capsys.readouterr().err
+    assert 'is not a file; --force replaces only files' in capsys.readouterr().err
     (tmp_path / 'data').mkdir()
     (tmp_path / 'data' / 'thesis.txt').write_text('years')
     assert convert(tmp_path / 'imu.csv', tmp_path / 'data', '--force') == 2
@@ -220,12 +220,12 @@ def early(path):
     (lambda p: (p / 'x.csv').write_text('x'), ['x.csv', 'y.csv'],
      'x.csv and y.csv are both CSV files; expected a bag and a CSV file'),
     (lambda p: (p / 'x').mkdir(), ['x', 'y'], 'x and y are both bags'),
-    (lambda p: (p / 'x').mkdir(), ['x', 'y.csv'], 'x is no bag'),
+    (lambda p: (p / 'x').mkdir(), ['x', 'y.csv'], 'x is not a bag'),
     (lambda p: (p / 'x.csv').write_text(''), ['x.csv', 'y'], 'x.csv is empty'),
     (lambda p: (p / 'x.csv').write_text('a,b\n1,2\n'), ['x.csv', 'y'],
      "x.csv, line 1: unknown column 'a'"),
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT), ['x.csv', 'y'],
-     'x.csv has a header and no rows'),
+     'x.csv has a header but no rows'),
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT + '-1,0,0,0,0,0,9\n'), ['x.csv', 'y'],
      'x.csv begins at -1 s; expected 0 s or later in a bag (time.epoch_s is added)'),
     (lambda p: (p / 'x.csv').write_text(IMU_TEXT + '1,0,0,zero,0,0,9\n'), ['x.csv', 'y'],
@@ -241,11 +241,11 @@ def early(path):
      'sqlite3 cannot be compressed by lz4'),
     (lambda p: empty_bag(p / 'x'), ['x', 'y.csv'], 'x has neither a nav_msgs/Odometry whose name '
      'ends in truth/odometry nor a sensor_msgs/Imu; it has /odom'),
-    (lambda p: empty_bag(p / 'x'), ['x', 'y.csv', '--topic', 'odom'], 'x: /odom, which is '
+    (lambda p: empty_bag(p / 'x'), ['x', 'y.csv', '--topic', 'odom'], 'x: /odom, the value of '
      '--topic, has type geometry_msgs/Vector3Stamped; expected nav_msgs/Odometry or sensor_msgs'),
     (lambda p: empty_bag(p / 'x', 'imu', topics.IMU), ['x', 'y.csv'], '/imu is empty'),
     (lambda p: empty_bag(p / 'x', 'imu', topics.IMU), ['x', 'y.csv', '--topic', 'none'],
-     "x has no topic 'none', which is --topic; the nearest is '/imu'"),
+     "x has no topic 'none', the value of --topic; the nearest is '/imu'"),
     (lambda p: empty_bag(p / 'x', 'truth/odometry', topics.ODOMETRY), ['x', 'y.csv'],
      '/truth/odometry is empty'),
 ])
@@ -292,9 +292,9 @@ def test_stamps_of_an_unset_clock_are_told(content, tmp_path, capsys):
     path.write_text('\n'.join([head, *rows, '']))
     assert convert(path, tmp_path / 'a') == 0
     said = ' '.join(capsys.readouterr().out.split())
-    assert f'its stamps begin at 0 s, before 2005, as {path} has them' in said
+    assert f'its stamps begin at 0 s, before 2005, as in {path};' in said
     assert '-p time.epoch:=fixed adds 1735689600 s' in said
     assert convert(path, tmp_path / 'b', '-p', 'time.epoch:=fixed') == 0
-    assert 'linters' not in capsys.readouterr().out
+    assert 'before 2005' not in capsys.readouterr().out
     with open_bag(tmp_path / 'b') as bag:
         assert {span.first_ns for span in bag.spans().values()} == {1735689600 * SECOND}

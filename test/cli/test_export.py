@@ -68,17 +68,17 @@ def test_axes_that_differ(tmp_path, capsys):
                   '-p', 'imu_sensor:gyro.errors.angle_random_walk_deg_sqrt_h:=[0.1, 0.3, 0.2]'
                   ) == 0
     said = capsys.readouterr().out.replace('\n', ' ')
-    assert 'the axes differ in gyroscope_noise_density; Kalibr knows one figure' in said
+    assert 'the axes differ in gyroscope_noise_density; Kalibr has one value' in said
     found = yaml.safe_load(path.read_text())
     assert found['gyroscope_noise_density'] == pytest.approx(0.3 * DEG / 60.0, rel=1e-6)
     assert found['rostopic'] == '/left/imu/data_raw'
 
 
 @pytest.mark.parametrize('words, said', [
-    ([], 'gyroscope_noise_density would be 0, since gyro.errors has no white noise; Kalibr '
-         'expects more'),
+    ([], 'gyroscope_noise_density would be 0, because gyro.errors has no white noise; expected '
+         'more than 0'),
     (['-p', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.1, 0.1, 0.1]'],
-     'gyroscope_random_walk would be 0, since gyro.errors has no drifting bias'),
+     'gyroscope_random_walk would be 0, because gyro.errors has no drifting bias'),
     (['--params-file', 'imu_tactical_dtg'], 'gyro.model is dtg; expected ideal'),
     (['--params-file', 'absent'], "no config named 'absent'")])
 def test_refusals(words, said, tmp_path, capsys):
@@ -101,7 +101,7 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     assert export(path, *instrument, '--force') == 0
     assert 'rostopic' in path.read_text()
     assert export(tmp_path, *instrument, '--force') == 2
-    assert 'is no file; --force replaces only a file' in capsys.readouterr().err
+    assert 'is not a file; --force replaces only files' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize('words', [

@@ -254,7 +254,7 @@ def test_stamps_that_were_never_set_give_way_to_the_times_of_logging(tmp_path, c
     assert main(['navigate', str(bag), '-o', str(tmp_path / 'out'), '-p',
                  'initial.position:=given', '-p', 'initial.heading:=given', '-p',
                  'alignment.longest_s:=10.0']) == 0
-    assert 'the times of logging are used' in capsys.readouterr().out
+    assert 'the log times are used' in capsys.readouterr().out
 
 
 def test_a_solution_is_not_overwritten_without_force(tmp_path, capsys):

@@ -24,7 +24,7 @@ def test_transforms_that_are_none_are_one_sentence(data, tmp_path, capsys):
                     writer.write(connection, log_ns, STORE.serialize_cdr(content, type_name))
     assert main(['navigate', str(bag), '-o', str(tmp_path / 'out')]) == 2
     error = capsys.readouterr().err
-    assert '/tf_static has a message at 5 ns that is no tf2_msgs/msg/TFMessage' in error
+    assert '/tf_static has a message at 5 ns that is not a tf2_msgs/msg/TFMessage' in error
     assert error.count('\n') == 1
 
 
@@ -50,9 +50,9 @@ BAD = [
     ({('/a', IMU): resting(), ('/b', IMU): resting()}, [],
      'has 2 topics of sensor_msgs/Imu: /a, /b; expected topic to name one'),
     ({('/imu', IMU): resting(), ('/fix', FIX): []}, ['topic:=fix'],
-     '/fix, which is topic, has type sensor_msgs/NavSatFix; expected sensor_msgs/Imu'),
+     '/fix, the value of topic, has type sensor_msgs/NavSatFix; expected sensor_msgs/Imu'),
     ({('/imu', IMU): resting()}, ['topic:=imo'],
-     "has no topic 'imo', which is topic; the nearest is '/imu'"),
+     "has no topic 'imo', the value of topic; the nearest is '/imu'"),
     ({('/imu', IMU): []}, [], '/imu is empty; expected messages'),
     ({('/imu', IMU): nan_at_rest()}, [], '1000 of them not finite'),
     ({('/imu', IMU): shaken()}, [], 'no stationary interval of 5 s'),
@@ -96,8 +96,8 @@ def test_bad_input_is_one_sentence_and_exit_code_2(recorded, assignments, senten
 
 @pytest.mark.parametrize('make, sentence', [
     (lambda p: None, 'does not exist; expected a rosbag2 bag or a CSV file'),
-    (lambda p: p.mkdir(), 'is no bag'),
-    (lambda p: p.write_text('x'), 'is no bag')])
+    (lambda p: p.mkdir(), 'is not a bag'),
+    (lambda p: p.write_text('x'), 'is not a bag')])
 def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
     """A missing path, an empty folder, another file."""
     make(tmp_path / 'bag')
@@ -108,7 +108,7 @@ def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
 
 @pytest.mark.parametrize('text, sentence', [
     ('t_s,gx_rps\n0,1\n', 'has no column gy_rps'),
-    ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n', 'has a header and no rows'),
+    ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n', 'has a header but no rows'),
     ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n0,1,2,x,4,5,6\n', "gz_rps is 'x'"),
     ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n,1,2,3,4,5,6\n', 't_s is blank'),
     ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n0,1,2,3,4,5\n', '6 fields; expected 7'),

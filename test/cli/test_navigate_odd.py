@@ -71,7 +71,8 @@ BAD_FIXES = {
     'no altitude': (fixes(height=(slice(5), np.nan)),
                     '5 of 20 fixes dropped: 5 whose height is not a number'),
     'no latitude': (fixes(lat=(slice(5), np.nan)), '5 whose latitude or longitude is not a'),
-    'beyond the pole': (fixes(lat=(slice(2), 2.0)), '2 that are no place on Earth'),
+    'beyond the pole': (fixes(lat=(slice(2), 2.0)), '2 outside the range of latitude, longitude '
+                        'or height'),
     'unknown': (with_status(fixes(), range(4), -2), '4 of unknown status'),
     'no fix': (with_status(fixes(), range(7), -1), '7 without a fix by their status')}
 
@@ -170,10 +171,10 @@ def test_a_covariance_of_minus_one_beside_data_can_be_passed(navigated):
     """The message says that there are numbers, and how they are accepted."""
     bag = {('/imu', IMU): changed(at_rest(), linear_acceleration_covariance=lambda k: MINUS_ONE)}
     said = navigated(bag, *GIVEN, *HEADED)
-    assert '1000 messages have no linear_acceleration; expected both; there are numbers beside ' \
-        'it, which accept.unmeasured:=true takes' in said
-    assert 'taken as measured' in notes_of(navigated(bag, *GIVEN, *HEADED,
-                                                     'accept.unmeasured:=true'))
+    assert '1000 messages have no linear_acceleration; expected both; the fields contain ' \
+        'numbers all the same, which accept.unmeasured:=true accepts' in said
+    assert 'their numbers are used all the same' in notes_of(
+        navigated(bag, *GIVEN, *HEADED, 'accept.unmeasured:=true'))
 
 
 def test_a_first_frame_that_differs_can_be_passed(navigated):
@@ -181,17 +182,17 @@ def test_a_first_frame_that_differs_can_be_passed(navigated):
     bag = {('/imu', IMU): at_rest()[3:] + at_rest(frame='')[:3]}
     assert "'imu_link' (997 messages), '' (3 messages); expected one IMU on a topic (accept." \
         in navigated(bag, *GIVEN, *HEADED)
-    assert "all taken for 'imu_link'" in notes_of(navigated(bag, *GIVEN, *HEADED,
-                                                            'accept.frames:=true'))
+    assert "all treated as 'imu_link'" in notes_of(navigated(bag, *GIVEN, *HEADED,
+                                                             'accept.frames:=true'))
 
 
 def test_orientations_of_another_length_can_be_taken(navigated):
     """A norm of 1.27 is reported, and normalised on request."""
     bag = {('/imu', IMU): at_rest(q=np.tile([0.0, 0.0, 0.9, 0.9], (1000, 1)))}
     start = (*GIVEN, 'initial.attitude:=imu', 'initial.velocity:=given')
-    assert '1000 orientations are no rotations, the first at 1700000000.000000000 s has the ' \
-        'length 1.273: not used (accept.orientations:=true' in navigated(bag, *start)
-    assert 'has the length 1.273: normalised' in notes_of(
+    assert '1000 orientations are not rotations, the first at 1700000000.000000000 s has the ' \
+        'norm 1.273: not used (accept.orientations:=true' in navigated(bag, *start)
+    assert 'has the norm 1.273: normalised' in notes_of(
         navigated(bag, *start, 'accept.orientations:=true'))
 
 
@@ -247,7 +248,7 @@ def test_stamps_that_go_back_say_where_and_offer_the_log_time(navigated):
     said = navigated(bag, *GIVEN, *HEADED)
     assert '; expected a longer recording or a shorter alignment' in said
     assert 'out of order (the first by 0.98 s after 17' in said
-    assert 'stamps.source:=log uses the times of logging' in said
+    assert 'stamps.source:=log uses the log times instead' in said
     assert navigated(bag, *GIVEN, *HEADED, 'stamps.source:=log')['figures']['out_of_order'] == 0
 
 
@@ -262,7 +263,7 @@ def test_nanoseconds_of_more_than_a_second_are_named(navigated):
     bag = {('/imu', IMU): [(t, replace(content, header=late(content)))
                            for t, content in at_rest()]}
     got = navigated(bag, *GIVEN, *HEADED)
-    assert '500 stamps have nanosec >= 1e9; it is added to their seconds' in notes_of(got)
+    assert '500 stamps have nanosec >= 1e9, which is added to their seconds' in notes_of(got)
     assert got['figures']['step_ms'] == 20.0 and got['figures']['gaps'] == 0
 
 
@@ -280,4 +281,4 @@ def test_a_bag_of_ros_1_is_named(tmp_path, capsys):
     for words in (['info'], ['navigate', '-o', str(tmp_path / 'out')]):
         assert main([words[0], str(tmp_path / 'run.bag'), *words[1:]]) == 2
         error = capsys.readouterr().err
-        assert 'run.bag is a bag of ROS 1; expected one of rosbag2' in error
+        assert 'run.bag is a bag of ROS 1; expected a rosbag2 bag' in error

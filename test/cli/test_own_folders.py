@@ -111,7 +111,7 @@ def test_the_current_folder_and_the_root_are_refused(tmp_path, monkeypatch, caps
         assert main([*RUN, '-o', name, '--force']) == 2
         said = capsys.readouterr().err
         assert f'simulate: {name} holds the current folder, ' in said
-        assert 'call from outside it' in said and contents(out) == before
+        assert 'run it from outside this folder' in said and contents(out) == before
     for words in ([*RUN, '-o', '/'], [*RUN, '-o', '/', '--force'], ['dtg-study', '-o', '/'],
                   [*RUN, '-o', str(tmp_path / 'new'), '--bag', '/']):
         assert main(words) == 2
@@ -145,7 +145,7 @@ def test_what_a_killed_process_left_is_in_nobodys_way(tmp_path):
         assert [p.name for p in work.iterdir()] == [MARKER]
     (tmp_path / '.out.part').mkdir()
     (tmp_path / '.out.part' / 'mine').write_text('x')
-    with pytest.raises(ValueError, match='is in the way and not of ins_sim'):
+    with pytest.raises(ValueError, match='is in the way and was not written by ins_sim'):
         with whole_folder(out, replace=True):
             pass
     assert (tmp_path / '.out.part' / 'mine').exists() and out.exists()

@@ -211,7 +211,7 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
 
 
 @pytest.mark.parametrize('assignments, sentence', [
-    (['gnss_model.use:=true', 'filter:=window_kf'], 'expected a filter that takes GNSS: eskf'),
+    (['gnss_model.use:=true', 'filter:=window_kf'], 'expected a filter that processes GNSS: eskf'),
     (['outages.start_s:=[1.0]'], 'outages.start_s has 1 entries and outages.end_s 2'),
     (['motion.route.points.latitude_deg:=[55.0]'], 'motion_generator: motion.route.points: the '
      'route has 1 latitudes and 7 longitudes'),
@@ -233,11 +233,11 @@ def test_bad_input_is_one_sentence(assignments, sentence, tmp_path, capsys):
 @pytest.mark.parametrize('node, parameters, sentence', [
     ('velocity_meter', 'window: {cycles: 50}', 'aided_navigator: window is Window(cycles=1000'),
     ('gnss', 'gnss: {rate_hz: 5.0}', 'aided_navigator: gnss is GnssTiming(rate_hz=1.0'),
-    ('imu_sensor', 'rate_hz: 50.0', 'rate_hz is 100 Hz; expected that of imu_sensor, 50 Hz'),
-    ('motion_generator', 'rate_hz: 200.0', 'velocity_meter: rate_hz is 100 Hz; expected that of '
-     'motion_generator, 200 Hz'),
+    ('imu_sensor', 'rate_hz: 50.0', 'rate_hz is 100 Hz; expected the rate of imu_sensor, 50 Hz'),
+    ('motion_generator', 'rate_hz: 200.0', 'velocity_meter: rate_hz is 100 Hz; expected the rate '
+     'of motion_generator, 200 Hz'),
     ('aided_navigator', 'motion: {route: {points: {latitude_deg: [1.0, 2.0], longitude_deg: [1.0, '
-     '2.0]}}}', 'aided_navigator: motion.route.points are not those of motion_generator')])
+     '2.0]}}}', 'aided_navigator: motion.route.points differ from those of motion_generator')])
 def test_nodes_that_do_not_agree(node, parameters, sentence, tmp_path, capsys):
     """A file that sets a common parameter for one node only is refused before the run."""
     file = tmp_path / 'one.yaml'

@@ -88,7 +88,7 @@ def wrong_fix(path):
      'has no nav_msgs/Odometry whose name ends in truth/odometry; it has /truth/fix, /truth/imu'),
     (two_namespaces, [], '/left/truth/odometry, /right/truth/odometry; expected '
      'motion.recording.topic to name one'),
-    (two_namespaces, ['motion.recording.topic:=odometri'], "has no topic 'odometri', which is "
+    (two_namespaces, ['motion.recording.topic:=odometri'], "has no topic 'odometri', the value of "
      "motion.recording.topic; the nearest is '/left/truth/odometry'"),
     (wrong_type, [], 'has no nav_msgs/Odometry'),
     (wrong_type, ['motion.recording.topic:=truth/odometry'],
@@ -103,7 +103,7 @@ def wrong_fix(path):
     (changed(no_quaternion), [], 'at 2.000000000 s: norm of the orientation is 0.0; expected 1'),
     (changed(at_the_pole), [], 'lat_deg is 89.95'),
     (changed(other_stamps), [], 'has no stamp in common with truth/fix and truth/attitude'),
-    (lambda path: path.mkdir(), [], 'is no bag'),
+    (lambda path: path.mkdir(), [], 'is not a bag'),
 ])
 def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path, capsys):
     """A bag without a valid motion gives exit code 2; nothing is written."""
@@ -136,5 +136,5 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
 def test_a_topic_without_a_bag_is_refused(tmp_path):
     """motion.recording.topic with a CSV file is refused."""
     chosen = recorded(tmp_path / 'x.csv', MOTION_2, **{'motion.recording.topic': 'odom'})
-    with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is no bag"):
+    with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is not a bag"):
         read_motion(chosen.motion_generator)

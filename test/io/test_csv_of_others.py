@@ -77,7 +77,7 @@ def test_a_map_of_columns_with_units(tmp_path):
                        atol=0.0)
     assert any('1 columns are not used: host name' in note for note in notes)
     assert any('gx_rps from p times 0.0174532925' in note for note in notes)
-    with pytest.raises(ValueError, match=r"no column 'P1', which is columns.gx_rps; the nearest"):
+    with pytest.raises(ValueError, match=r"no column 'P1', the value of columns.gx_rps; the near"):
         read(tmp_path, text, columns={**columns, 'gx_rps': 'P1'})
     with pytest.raises(ValueError, match='furlong/s.; expected one of rad/s.*or units.rate'):
         read(tmp_path, text.replace(',q,', ',q [furlong/s],'),
@@ -90,7 +90,7 @@ def test_a_repeated_header_and_capital_letters(tmp_path):
     lines = text.split('\n')
     twice = '\n'.join([*lines[:20], lines[0], *lines[20:]])
     t_ns, _, notes = read(tmp_path, twice)
-    assert np.array_equal(t_ns, T_NS) and 'the header stands in 1 more lines, the first of them ' \
+    assert np.array_equal(t_ns, T_NS) and 'the header is repeated in 1 lines, the first of them ' \
         'line 21' in notes[0]
     for name, data in (('IMU.CSV', text.encode()), ('IMU.CSV.GZ', gzip.compress(text.encode()))):
         (tmp_path / name).write_bytes(data)
@@ -101,7 +101,7 @@ def test_a_repeated_header_and_capital_letters(tmp_path):
 def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
     """The refusal names the parameter; nothing of the first line is lost."""
     text = SHAPES[shape][0].partition('\n')[2]
-    with pytest.raises(ValueError, match='line 1: found numbers where the column names belong; '
+    with pytest.raises(ValueError, match='line 1: the header line contains numbers; '
                        'expected t_s, .*, or columns.t_s "column 1" and so on'):
         read(tmp_path, text)
     columns = {name: f'column {k}' for k, name in enumerate(PLAIN, 1)}
@@ -110,7 +110,7 @@ def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
     assert np.allclose(values[:, :3], np.radians(VALUES[:, :3]), rtol=1e-15, atol=0.0)
     assert np.array_equal(values[:, 3:], VALUES[:, 3:])
     assert any('t_s from column 1' in note for note in notes)
-    with pytest.raises(ValueError, match="no column 'column 8', which is columns.az_mps2"):
+    with pytest.raises(ValueError, match="no column 'column 8', the value of columns.az_mps2"):
         read(tmp_path, text, columns={**columns, 'az_mps2': 'column 8'})
 
 
@@ -119,7 +119,7 @@ def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
     (table(PLAIN, ['9300000000'] * N), "t_s is '9300000000'; expected"),
     (table(PLAIN, ['9' * 400] * N), 'not finite; expected'),
     (table(ROS_1, ['1e30'] * N), "t_s is '1e30'; expected"),
-    (table(PLAIN, SECONDS)[len(','.join(PLAIN)) + 1:], 'found numbers where the column names'),
+    (table(PLAIN, SECONDS)[len(','.join(PLAIN)) + 1:], 'the header line contains numbers'),
     (table([*PLAIN[:-1], 'az'], SECONDS), 'it has no column az_mps2; expected'),
     (table(['t_s', *(f'/{b}/angular_velocity/{a}' for b in 'lr' for a in 'xyz')], SECONDS),
      'columns.gx_rps to name one')])
@@ -170,8 +170,8 @@ def test_a_reference_with_other_names_and_bad_rows(tmp_path):
     assert len(reference.position.t_ns) == 17
     assert reference.position.values[0] == pytest.approx([0.960001, 0.65, 1001 * 0.3048])
     assert reference.velocity is None and reference.attitude is None
-    assert any('3 of 20 rows dropped: 1 whose height is not a number, 1 that are no place on '
-               'Earth, 1 at latitude 0' in note for note in notes)
+    assert any('3 of 20 rows dropped: 1 whose height is not a number, 1 outside the range of '
+               'latitude, longitude or height, 1 at latitude 0' in note for note in notes)
 
 
 def test_gzip_that_fills_the_memory_is_refused(tmp_path, capsys):

@@ -46,7 +46,7 @@ def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_pa
     assert main(['convert', str(tmp_path / 'bag'), str(target), '--topic', 'ins/odometry']) == 0
     said = capsys.readouterr().out
     assert 'origin of the frame of /ins/odometry is at 55, 37 deg' in said
-    assert ('by /truth/fix' if others else 'by /ins/fix') in said
+    assert ('computed from /truth/fix' if others else 'computed from /ins/fix') in said
     # The solution starts at the truth; only rounding of 1e-9 m is in between.
     assert apart_m(read_poses(target), 55.0, 37.0) < 1e-6
 
@@ -57,12 +57,12 @@ def test_no_datum_is_assumed(tmp_path, capsys):
     words = ['convert', str(tmp_path / 'bag'), str(tmp_path / 'x.csv'), '--topic', 'ins/odometry']
     capsys.readouterr()
     assert main(words) == 2
-    assert ('has no NavSatFix beside /ins/odometry, so that the place of its frame is unknown; '
+    assert ('has no NavSatFix for /ins/odometry, so the origin of its frame is unknown; '
             'expected datum.latitude_deg') in capsys.readouterr().err
     assert not (tmp_path / 'x.csv').exists()
     given = ['-p', 'datum.latitude_deg:=55.0', '-p', 'datum.longitude_deg:=37.0']
     assert main([*words, *given]) == 0
-    assert 'taken to be the datum given, 55, 37 deg, 0 m' in capsys.readouterr().out
+    assert 'assumed at the given datum, 55, 37 deg, 0 m' in capsys.readouterr().out
     assert apart_m(read_poses(tmp_path / 'x.csv'), 55.0, 37.0) < 1e-6
 
 
@@ -76,7 +76,7 @@ def test_the_default_datum_can_be_meant(tmp_path, capsys):
         target = tmp_path / f'{name}_{topic}.csv'
         assert main(['convert', str(tmp_path / name), str(target), '--topic',
                      f'{topic}/odometry', *origin]) == 0
-        assert 'taken to be the datum given, 55.75, 37.62 deg, 0 m' in capsys.readouterr().out
+        assert 'assumed at the given datum, 55.75, 37.62 deg, 0 m' in capsys.readouterr().out
         assert apart_m(read_poses(target), 55.75, 37.62) < 1e-6
 
 
@@ -84,7 +84,7 @@ def test_a_flight_in_degrees_has_no_origin(tmp_path):
     """A value that would be ignored is refused."""
     (tmp_path / 'x.csv').write_text('t_s\n')
     values = {'motion.recording.origin': 'datum'}
-    with pytest.raises(ValueError, match='origin is datum, but .*x.csv is no bag; expected fix'):
+    with pytest.raises(ValueError, match='origin is datum, but .*x.csv is not a bag; expected'):
         read_motion(recorded(tmp_path / 'x.csv', {}, **values).motion_generator)
 
 
@@ -95,7 +95,7 @@ def test_an_origin_that_wanders_is_refused(tmp_path):
 
     record(tmp_path / 'bag', FLIGHT, 10.0, only=(topics.TRUTH_ODOMETRY, topics.TRUTH_FIX),
            change=shifted)
-    with pytest.raises(ValueError, match='put the origin of the map frame at places 111 m apart'):
+    with pytest.raises(ValueError, match='give origins of the map frame that are 111 m apart'):
         read_motion(recorded(tmp_path / 'bag', {}).motion_generator)
 
 

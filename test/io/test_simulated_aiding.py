@@ -228,7 +228,7 @@ def test_what_is_refused(tmp_path, capsys):
     assert main(['simulate', '-p', 'duration_s:=5.0', '-o', str(tmp_path / 'run'), '--bag',
                  str(tmp_path / 'bag'), '--topics', 'aided/fix']) == 2
     said = capsys.readouterr().err
-    assert "publish no topic 'aided/fix'" in said and said.count('\n') == 1
+    assert "publishes the topic 'aided/fix'" in said and said.count('\n') == 1
     assert list(tmp_path.iterdir()) == []
 
 

@@ -136,7 +136,7 @@ def test_big_endian_is_refused():
 
 
 def test_the_wrong_number_of_strings_is_refused():
-    with pytest.raises(ValueError, match='takes 2 strings'):
+    with pytest.raises(ValueError, match='has 2 strings'):
         Writer('nav_msgs/msg/Odometry', 'map')
 
 

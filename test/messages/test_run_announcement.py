@@ -36,7 +36,7 @@ def test_a_run_comes_back_bit_for_bit():
     (changed(rate_hz='0'), 'at 0 Hz'), (changed(end_ns='1'), 'expected stamps that ROS can hold'),
     (changed(epoch_ns='9' * 400), 'expected stamps that ROS can hold, in order'),
     (changed(epoch_ns='-6000000000'), 'expected stamps that ROS can hold, in order'),
-    (pack_diagnostics(0, '', [Status(0, 'x', '', '')]), "expected one of the name 'run'"),
+    (pack_diagnostics(0, '', [Status(0, 'x', '', '')]), "expected one with the name 'run'"),
     (pack_diagnostics(0, '', []), 'sim/run holds 0 statuses'),
     (RUN.pack()[:40], 'ends too early')])
 def test_what_is_no_announcement(data, sentence):

@@ -40,7 +40,7 @@ def test_empty_and_header_only(folder):
     for content in ('', '\n\n', ' \r\n', '\ufeff'):
         path.write_text(content, encoding='utf-8')
         assert f'{path} is empty' in refusal(path)
-    assert 'has a header and no rows' in refusal(save(folder / 'header.csv', []))
+    assert 'has a header but no rows' in refusal(save(folder / 'header.csv', []))
 
 
 def test_wrong_encoding_and_broken_gzip(folder):
@@ -51,12 +51,12 @@ def test_wrong_encoding_and_broken_gzip(folder):
     path.write_bytes(text.encode('utf-16'))
     assert 'is not UTF-8' in refusal(path)
     path.write_bytes(text.encode('utf-16-le'))
-    assert 'line 1: found a zero byte' in refusal(path)
+    assert 'line 1: there is a zero byte' in refusal(path)
     whole = gzip.compress(text.encode())
     for broken in (whole[:-20], whole[:40], whole[:2], whole[:100] + b'\0' * 50 + whole[150:],
                    whole + b'tail'):
         path.write_bytes(broken)
-        assert 'broken gzip' in refusal(path)
+        assert 'damaged gzip' in refusal(path)
     packed = folder / 'text.csv.gz'
     packed.write_text(text)
     assert 'is named .gz and begins with' in refusal(packed)
@@ -95,10 +95,10 @@ def test_columns(folder):
     # velocities are not used, and need not be there
     assert not accepted(save(path, [r[:-1] for r in table], HEADER[:-7])).warnings
     assert not accepted(save(path, [r[:-3] for r in table], HEADER[:-21])).warnings
-    assert 'column t_s stands 2 times' in refusal(save(path, [r + ['1'] for r in table],
+    assert 'column t_s occurs 2 times' in refusal(save(path, [r + ['1'] for r in table],
                                                        HEADER + ',t_s'))
     assert 'is a single column' in refusal(save(path, table, HEADER.replace(',', ';')))
-    assert 'found numbers where the column names belong' in refusal(
+    assert 'the header line contains numbers' in refusal(
         save(path, table, ','.join(table[0])))
     accepted(save(path, [r + ['0'] for r in table], HEADER + ',att_gap'))
     reverse = save(path, [r[::-1] for r in table], ','.join(COLUMNS[::-1]))

@@ -275,7 +275,7 @@ def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
     ({'rate_hz': 0.5}, 'gnss.rate_hz is 1 Hz, a period of 1 s; expected a multiple of the period '
      'of rate_hz, 2 s'),
     ({'outages.start_s': (1.0, 2.0), 'outages.end_s': (3.0,)},
-     'outages.start_s has 2 entries and outages.end_s 1; expected as many'),
+     'outages.start_s has 2 entries and outages.end_s 1; expected equal numbers'),
     ({'outages.start_s': (5.0,), 'outages.end_s': (5.0,)},
      'outages.end_s is 5 s with outages.start_s 5 s; expected a later end'),
     ({'jump.start_s': 5.0, 'jump.offset_m': (1.0, 0.0, 0.0)},

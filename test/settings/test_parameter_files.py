@@ -108,8 +108,8 @@ BAD_ASSIGNMENTS = [
     ('motion.kind:=recording', 'motion.recording.path is empty'),
     ('rate_hz=5', "-p 'rate_hz=5' has no \":=\"; expected NAME:=VALUE"),
     ('rate_hz:=[', '-p rate_hz:=[ is not YAML: line '),
-    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is no single value and no '),
-    ('rate_hz:=*a', 'is no single value and no list'),
+    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is neither a single '),
+    ('rate_hz:=*a', 'is neither a single value nor a list'),
     ('rate_hz:=' + '9' * 400, "'999"), ('rate_hz:=1:30', "rate_hz is '1:30'; expected a number"),
 ]
 
@@ -124,12 +124,12 @@ def test_bad_assignments(assignment, sentence):
 
 
 BAD_FILES = [
-    (b'', 'holds no parameters'), (b'[]', 'has a list for a key at line 1; expected a name'),
+    (b'', 'holds no parameters'), (b'[]', 'has a list as a key at line 1; expected a name'),
     (b'/**: {ros__parameters: {a: [', 'is not YAML: line '),
     (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
     (b'strapdown:\n  rate_hz: 1.0', 'has \'1.0\' before "ros__parameters" at line 2; expected '
      'sections such as "/**: ros__parameters: ..."'),
-    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS takes none'),
+    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS accepts none'),
     (b'/**:\n  ros__parameters: {rate_hz: [1.0, 2]}', "has '2' in a list of numbers with a point "
      "at line 2, 'rate_hz'; ROS expects values of one type, such as [1.0, 0.0, 0.0]"),
     (b'/**:\n  ros__parameters: {rate_hz: }', 'has no value at line 2; expected one'),
@@ -138,7 +138,7 @@ BAD_FILES = [
     (b'/**/gnss:\n  ros__parameters: {sed: 1}', "bad.yaml: unknown parameter 'sed'; the nearest "
      "known one is 'seed'"),
     (b'/a/gnss: {ros__parameters: {seed: 1}}\n/b/gnss: {ros__parameters: {seed: 2}}',
-     'the sections are of 2 namespaces, /a, /b; expected one vehicle'),
+     'the sections belong to 2 namespaces, /a, /b; expected one vehicle'),
     (b'strapdown:\n  ros__parameters: {gyro: {delay_us: {x: 1.0}}}',
      "unknown parameter 'gyro.delay_us.x'"),
     (b'strapdown:\n  ros__parameters: {rate_hz: .inf}', 'rate_hz is inf; expected a finite'),
@@ -218,7 +218,7 @@ def test_an_assignment_may_name_its_node():
     settings = parameter_files.read_aided([], ['velocity_meter:seed:=7', 'gnss:seed:=8'])
     assert (settings.velocity_meter.seed, settings.gnss.seed) == (7, 8)
     assert settings.simulation.imu_sensor.seed == 0
-    with pytest.raises(ValueError, match="-p meter:seed:=7: 'meter' is no node of ins_sim; the "
+    with pytest.raises(ValueError, match="-p meter:seed:=7: 'meter' is not a node of ins_sim; the "
                        "nearest is 'velocity_meter'"):
         parameter_files.read_aided([], ['meter:seed:=7'])
 
@@ -259,7 +259,7 @@ def test_sections_within_sections(tmp_path, text, namespace):
                     '/strapdown: {ros__parameters: {output_every: 8}}')
     settings, said = told([path])
     assert settings.strapdown.output_every == 8
-    assert len(said) == 1 and "stand in the namespace '/': " in said[0]
+    assert len(said) == 1 and "are in the namespace '/': " in said[0]
     assert '/imu2/strapdown' in said[0] and (namespace in said[0])
 
 
@@ -271,20 +271,20 @@ def test_an_assignment_that_ros_overrules_is_said(tmp_path):
     settings, said = told([path], ['duration_s:=1.0', 'rate_hz:=50.0'])
     assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 50.0)
     assert said == ['-p duration_s:=1.0: no effect on motion_generator, because, as in ROS 2, '
-                    f'{path} says otherwise in a section that comes later, or with another type; '
+                    f'{path} sets it in a section that comes later, or with another type; '
                     'write -p motion_generator:duration_s:=1.0']
     other = tmp_path / 'other.yaml'
     other.write_text('/**: {ros__parameters: {duration_s: 7.0, rate_hz: 100}}')
     settings, said = told([path, other])
     assert (settings.motion_generator.duration_s, settings.strapdown.rate_hz) == (0.2, 100.0)
     assert said == [f'{other}: duration_s: no effect on motion_generator, because, as in ROS 2, '
-                    f'{path} says otherwise in a section that comes later, or with another type']
+                    f'{path} sets it in a section that comes later, or with another type']
     settings, said = told([path], ['motion_generator:duration_s:=1.0'])
     assert settings.motion_generator.duration_s == 1.0 and said == []
     path.write_text('imu1: {motion_generator: {ros__parameters: {duration_s: 0.2}}}')
     settings, said = told([path], ['motion_generator:duration_s:=1.0', 'duration_s:=3.0'])
     assert settings.motion_generator.duration_s == 3.0
-    assert said == ["ignored, because the nodes stand in the namespace '/imu1': /motion_generator"]
+    assert said == ["ignored, because the nodes are in the namespace '/imu1': /motion_generator"]
     assert parameter_files.read([path], {'duration_s': 1.0}).motion_generator.duration_s == 1.0
 
 

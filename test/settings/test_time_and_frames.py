@@ -55,13 +55,14 @@ def test_names_of_frames():
      'which makes uav1/map'),
     ({'prefix': 'uav1/'}, "frames.prefix is 'uav1/'; expected no slash at its ends"),
     ({'map': '/map'}, "frames.map is '/map'; expected no slash at its ends, as in map"),
-    ({'odom': 'map'}, "frames.odom is 'map', which is frames.map too; expected another name for "
-     'every frame'),
-    ({'gnss_link': 'imu_link'}, "frames.gnss_link is 'imu_link', which is frames.imu_link too"),
-    ({'base_link': 'enu'}, "frames.base_link is 'enu', which is enu too"),
-    ({'base_link': ''}, "frames.base_link is ''; expected a name without spaces and empty parts"),
+    ({'odom': 'map'}, "frames.odom is 'map', which is already used for frames.map; expected a "
+     'different name for every frame'),
+    ({'gnss_link': 'imu_link'}, "frames.gnss_link is 'imu_link', which is already used for "
+     'frames.imu_link; expected'),
+    ({'base_link': 'enu'}, "frames.base_link is 'enu', which is already used for enu; expected"),
+    ({'base_link': ''}, "frames.base_link is ''; expected a name without spaces or empty parts"),
     ({'base_link': 'a b'}, "frames.base_link is 'a b'; expected a name without spaces"),
-    ({'prefix': 'a\nb'}, r"frames.prefix is 'a\\nb'; expected a name without spaces and empty "
+    ({'prefix': 'a\nb'}, r"frames.prefix is 'a\\nb'; expected a name without spaces or empty "
      'parts, such as uav1'),
     ({'imu_link': 'a//b'}, "frames.imu_link is 'a//b'; expected a name without spaces")])
 def test_frames_that_tf_does_not_take(values, sentence):
@@ -70,10 +71,11 @@ def test_frames_that_tf_does_not_take(values, sentence):
 
 
 @pytest.mark.parametrize('word, sentence', [
-    ('strapdown:frames.prefix:=a', "strapdown: frames.prefix is 'a'; expected that of "
-     "motion_generator, '': a vehicle has one tree of frames"),
-    ('gnss:frames.map:=world', "gnss: frames.map is 'world'; expected that of motion_generator"),
-    ('imu_sensor:tf.source:=ins', "imu_sensor: tf.source is 'ins'; expected that of "
+    ('strapdown:frames.prefix:=a', "strapdown: frames.prefix is 'a'; expected the value of "
+     "motion_generator, '', because all nodes share one TF tree"),
+    ('gnss:frames.map:=world', "gnss: frames.map is 'world'; expected the value of "
+     "motion_generator, 'map', because"),
+    ('imu_sensor:tf.source:=ins', "imu_sensor: tf.source is 'ins'; expected the value of "
      "motion_generator, 'none'"),
     ('tf.source:=inss', r"tf.source is 'inss'; expected one of none, truth, ins, aided "
      r'\(nearest: ins\)')])

@@ -14,9 +14,9 @@ from ins_sim.settings.velocity_meter import Limits, Signal, VelocityMeterSetting
     ({'antennas.x0_m': 0.0}, 'antennas.x0_m is 0 m; expected 0.001 to 10 m'),
     ({'antennas.y0_m': 0.0}, 'antennas.y0_m is 0 m; expected 0.001 to 10 m'),
     ({'antennas.antenna_2': 'up'}, "antennas.antenna_2 is 'up'; expected one of right, left"),
-    ({'signal.lags': 167}, 'signal.lags is 167, together 10.02 ms; expected at most the 166 '
-     'that a cycle of rate_hz holds'),
-    ({'signal.prf_hz': 1e7}, 'signal.lags is 64, the last but one at 0.0372 ms; expected '
+    ({'signal.lags': 167}, 'signal.lags is 167, together 10.02 ms; expected at most 166, the '
+     'number that fits into a cycle of rate_hz'),
+    ({'signal.prf_hz': 1e7}, 'signal.lags is 64, with the last but one at 0.0372 ms; expected '
      'more than 0.25 ms, the delay at limits.speed_max_m_s'),
     ({'signal.prf_hz': 0.0}, 'signal.prf_hz is 0 Hz; expected 1 to 1e+07 Hz'),
     ({'signal.snr_db': math.nan}, 'signal.snr_db is nan; expected a finite number'),
@@ -55,8 +55,8 @@ def test_lags_too_long_for_the_fastest_delay():
         VelocityMeter(meter_settings(mode='signal', signal__prf_hz=5000.0, signal__lags=8,
                                      limits__speed_min_m_s=100.0))
     assert str(raised.value) == (
-        'signal.prf_hz is 5000 Hz, and a lag of signal.pulses_per_lag 1.2 ms; expected less than '
-        '1 ms, the delay at limits.speed_min_m_s')
+        'signal.prf_hz is 5000 Hz, with which a lag of signal.pulses_per_lag lasts 1.2 ms; '
+        'expected less than 1 ms, the delay at limits.speed_min_m_s')
 
 
 def test_a_cycle_that_takes_too_much():

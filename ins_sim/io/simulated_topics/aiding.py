@@ -11,10 +11,10 @@ from ins_sim.messages.gnss_fixes import GnssWriter
 
 class AidingSource:
     """
-    The topics of the three nodes that aid, by spans of motion time.
+    Messages of velocity_meter, gnss and aided_navigator, by spans of motion time.
 
-    settings: AidedSimulationSettings; flown: AidedResult of ``simulate_aided``; omega (n, 3):
-    readings of the gyros at its states; epoch_ns: stamp of motion time zero.
+    settings: AidedSimulationSettings; flown: AidedResult of ``simulate_aided``; omega (n, 3): gyro
+    readings at the instants of the result; epoch_ns: stamp of motion time zero.
     """
 
     def __init__(self, settings, flown, omega, epoch_ns):
@@ -29,7 +29,7 @@ class AidingSource:
                           **_gnss_messages(flown.gnss_fixes, epoch_ns, self._names)}
 
     def as_published(self, topic):
-        """Return the Topic as it is written: its frames, the covariance type of the filter."""
+        """Return the Topic with the names of the frames and the covariance type of the filter."""
         written = topics.AIDED_FIX_ALONE if topic is topics.AIDED_FIX and not self._knows \
             else topic
         return written.named(self._names)
@@ -46,13 +46,13 @@ class AidingSource:
         for topic, values in rows.items():
             found[topic] = states.t_ns, values
         for topic, values in convert.aided_error_blocks(errors).items():
-            # a filter that knows no sigma publishes none
+            # A filter without covariance publishes no standard deviations.
             silent = topic in topics.AIDED_SIGMAS and not self._knows
             found[topic] = (states.t_ns[:0], values[:0]) if silent else (states.t_ns, values)
         return found
 
     def _rows(self, states, errors, omega):
-        """Return {Topic: values (n, k)} of what depends on the whole solution."""
+        """Return {Topic: values (n, k)} of the topics that need the whole solution."""
         columns = zip(zip(states.lat.tolist(), states.lon.tolist(), states.height.tolist(),
                           states.v_n.tolist(), states.q_nb.tolist()), omega.tolist(),
                       errors.position_sigma.tolist(), errors.velocity_sigma.tolist(),

@@ -1,4 +1,4 @@
-"""The covariances of ins/* of an offline run, which are found as its messages are written."""
+"""Covariances on the topics ins/* of an offline run, computed while its messages are written."""
 
 from collections import deque
 import warnings
@@ -15,7 +15,7 @@ class CovarianceSource:
     """
     PublishedCovariances of a SimulationResult, in the order of its states.
 
-    settings: SimulationSettings; run, motion: the result, and the motion that it was flown on.
+    settings: SimulationSettings; run, motion: the result, and the motion of this run.
     The strapdown runs once more over the readings, together with the covariance, and gives the
     same bits.
     """
@@ -36,7 +36,7 @@ class CovarianceSource:
         return self._steps[-1]
 
     def at(self, t_ns):
-        """Return the PublishedCovariance, arrays of n rows, of instants (n,) of states."""
+        """Return the PublishedCovariance (arrays of n rows) at instants t_ns (n,) of states."""
         last_ns = int(t_ns[-1]) if len(t_ns) else None
         while last_ns is not None and (self._done_ns is None or self._done_ns < last_ns):
             truth, _, _ = next(self._blocks)

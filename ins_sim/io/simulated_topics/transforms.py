@@ -10,7 +10,7 @@ from .aiding import message_columns
 
 class SimulatedTransforms:
     """
-    The transforms of a run, by windows.
+    Transforms of a run, window by window.
 
     settings: SimulationSettings; aided: AidedSimulationSettings, or None.
     """
@@ -30,9 +30,9 @@ class SimulatedTransforms:
         """
         Return {Topic: (stamps_ns (n,), messages (n,))} of a window.
 
-        stamped: {Topic: (stamps_ns, values)} of its other topics; is_first: whether it begins the
-        run, of which what is fixed has the first stamp.  Transforms of one instant are in one
-        message.
+        stamped: {Topic: (stamps_ns, values)} of the other topics of the window; is_first: whether
+        the window begins the run: the fixed transforms are then included, with its first stamp.
+        Transforms of the same instant are in one message.
         """
         first_ns = int(stamped[topics.TRUTH_ODOMETRY][0][0])
         fixed = [(first_ns, (parent, child), pose)
@@ -47,7 +47,7 @@ class SimulatedTransforms:
             free = dict(_poses(stamped[topics.INS_ODOMETRY]))
             moving += [(t, pair, pose_between(pose, free[t]))
                        for t, pose in _poses(stamped[topics.AIDED_ODOMETRY]) if t in free]
-        # Stable: of one instant the strapdown stands before the navigator.
+        # The sort is stable: at the same instant the strapdown precedes the navigator.
         moving.sort(key=lambda one: one[0])
         return {topics.TF_STATIC: message_columns(self._messages(fixed)),
                 topics.TF: message_columns(self._messages(moving))}

@@ -176,7 +176,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
 @pytest.mark.parametrize('values, sentence', [
     ({'filters': 'eskf'}, "the nearest known one is 'filter'"),
     ({'filter': 'ekf'}, 'nearest: eskf'),
-    ({'filter': 'paper', 'gnss_model.use': True}, 'expected a filter that takes GNSS: eskf'),
+    ({'filter': 'paper', 'gnss_model.use': True}, 'expected a filter that processes GNSS: eskf'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
     chain = Chain(ros_domain, tmp_path)

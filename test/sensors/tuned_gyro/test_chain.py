@@ -67,5 +67,5 @@ def test_closed_form_in_any_cutting():
 
 def test_rotation_vectors_are_refused():
     """A tuned gyro refuses output rotation_vector, because it integrates its rate."""
-    with pytest.raises(ValueError, match='expected integrated: a tuned gyro reads the integral'):
+    with pytest.raises(ValueError, match='expected integrated, because the readings of a tuned'):
         settings({**DTG, 'output': 'rotation_vector'})

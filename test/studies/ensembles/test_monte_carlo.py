@@ -141,7 +141,7 @@ def test_python_refuses_other_settings():
 
 def test_nodes_fly_one_run():
     """The nodes of a simulation must agree on the number of the run; runs share one truth."""
-    with pytest.raises(ValueError, match='^gnss: run is 3; expected that of imu_sensor, 0: all'):
+    with pytest.raises(ValueError, match='^gnss: run is 3; expected the value of imu_sensor, 0, '):
         ins_sim.read_settings(['route_flight'], {'gnss:run': 3}, aided=True)
     settings = ins_sim.read_settings(['route_flight'], {'run': 3}, aided=True)
     assert isinstance(settings, AidedSimulationSettings) and settings.run == 3

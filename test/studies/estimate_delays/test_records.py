@@ -76,7 +76,7 @@ def test_an_ins_log_with_its_reference(made, tmp_path):
     assert main(['convert', str(made / 'bag'), str(reference)]) == 0
     found = ins_sim.estimate_delays(made / 'imu.csv', {
         'motion.kind': 'recording', 'motion.recording.path': str(reference)}, 'imu_tactical_fog')
-    assert any('of the clock of' in note for note in found.notes)
+    assert any('on the clock of' in note for note in found.notes)
     assert np.abs(1e6 * (found.delays - found.lags) - [2.0, 1.0, 3.0]).max() < (
         4e6 * found.delay_sigmas.max())
 
@@ -130,7 +130,7 @@ def test_bad_input_is_one_sentence(made, tmp_path, capsys):
     out = ['-o', tmp_path / 'out']
     csv, run, bag = made / 'imu.csv', made / 'run', made / 'bag'
     cases = [
-        ([csv], 'does not say how the bench moved'),
+        ([csv], 'does not contain the motion of the bench'),
         ([csv, *MOTION, '-p', 'rate_hz:=200.0'], '100 readings a second'),
         ([run, '-p', 'rate_hz:=200.0'], '100 readings a second'),
         ([csv, *MOTION, '-p', 'motion.rocking.frequency_hz:=1.3'],
@@ -138,13 +138,13 @@ def test_bad_input_is_one_sentence(made, tmp_path, capsys):
         ([csv, '-p', 'motion.kind:=static'], 'not observable'),
         ([csv, *MOTION, '-p', 'time.epoch:=fixed', '-p', 'time.epoch_s:=5'],
          'from motion time zero'),
-        ([csv, '-p', 'motion.kind:=guided'], 'steered as it flies'),
-        ([csv, *MOTION, '--topic', 'imu'], 'no bag'),
+        ([csv, '-p', 'motion.kind:=guided'], 'steered during the run'),
+        ([csv, *MOTION, '--topic', 'imu'], 'not a bag'),
         ([run, '--topic', 'imu'], 'is a run'),
         ([bag, '--topic', 'truth/odom'], 'no topic'),
         ([run, '--duration', '60'], 'but a SOURCE is given'),
         ([tmp_path / 'nix'], 'does not exist'),
-        ([tmp_path], 'is no bag'),
+        ([tmp_path], 'is not a bag'),
         (['--topic', 'imu'], 'expected a bag'),
         (['--duration', '-1'], '--duration is -1'),
         (['--duration', '1'], 'expected at least 640'),
