@@ -145,6 +145,6 @@ def test_the_net_takes_whatever_is_raised():
     assert guarded(4, 2) == 2 and not told
     assert guarded(1, 0) is None
     assert told[0].startswith('ZeroDivisionError (division by zero) at line ')
-    assert 'of test_what_nodes_say.py; what was being computed is dropped and the node' in told[0]
+    assert 'of test_what_nodes_say.py; the current computation is discarded and' in told[0]
     with pytest.raises(KeyboardInterrupt):
         caught(lambda: (_ for _ in ()).throw(KeyboardInterrupt()), told.append)()
