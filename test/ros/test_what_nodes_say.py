@@ -102,7 +102,7 @@ def test_losses_are_told_from_a_wrong_rate():
     assert losses.describe()[0] == ''
     queue.gaps.take(50)
     wrong, values = losses.describe()
-    assert wrong.startswith('46 messages of truth/odometry were lost: this node cannot keep up')
+    assert wrong.startswith('46 messages of truth/odometry were lost: this node or the transport')
     assert wrong.endswith('or a topics.depth above 500') and values[0][1] == 46
     assert losses.describe()[0] == ''
     queue.dropped = 7

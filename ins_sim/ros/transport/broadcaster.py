@@ -85,8 +85,8 @@ class Broadcaster:
                 wrong = f'{topics.TF.name}: {error}'
             else:
                 if others:
-                    wrong = (f'another node publishes {child!r} in {others[0]!r} on '
-                             f'{topics.TF.name}, and this node publishes it in {parent!r}; '
+                    wrong = (f'{topics.TF.name}: another node publishes {child!r} in '
+                             f'{others[0]!r}, and this node publishes it in {parent!r}; '
                              'expected one source for each frame: the same tf.source in all '
                              'nodes, no other localization node at the same time, and a separate '
                              'frames.prefix for each vehicle')

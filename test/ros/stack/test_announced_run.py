@@ -100,7 +100,7 @@ def test_where_nobody_announces_motion_time_is_the_stamp(flight):
     assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
     for node in ('imu_sensor', 'strapdown', 'gnss', 'velocity_meter', 'aided_navigator'):
         assert flight.said(node).count('no node announces a run on sim/run: motion time is the '
-                                       'stamp itself') == 1
+                                       'stamp of the messages') == 1
 
 
 def test_readings_may_come_before_the_generator_is_found(flight):

@@ -84,9 +84,9 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
     fixed = {tuple(one[:2]): one[3:] for one in heard['/tf_static']}
     assert fixed == dict.fromkeys([('uav1/map', 'uav1/odom'), ('uav1/base_link', 'uav1/imu_link')],
                                   [[0.0] * 3, [0.0, 0.0, 0.0, 1.0]])
-    chain.wait_text(nodes['strapdown'], "another node publishes 'uav1/base_link' in 'uav1/map' on "
-                    "/tf, and this node publishes it in 'uav1/odom'; expected one source for each "
-                    'frame', GUARD_S)
+    chain.wait_text(nodes['strapdown'], "/tf: another node publishes 'uav1/base_link' in "
+                    "'uav1/map', and this node publishes it in 'uav1/odom'; expected one source "
+                    'for each frame', GUARD_S)
     said = chain.text(nodes['strapdown'])
     assert said.count('another node publishes') == 1 and 'tf2_msgs' not in said
     listener.kill()

@@ -139,7 +139,7 @@ def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domai
         flight.fed.bus.put('/tf', TransformWriter(('uav2/map', 'uav2/base_link')).pack(0, POSE))
         flight.look()
         mine = 'map' if child.endswith('odom') else 'odom'
-        assert f"another node publishes '{child}' in '{parent}' on /tf, and this node publishes " \
+        assert f"/tf: another node publishes '{child}' in '{parent}', and this node publishes " \
             f"it in 'uav1/{mine}'; expected one source for each frame: the same tf.source in " \
             'all nodes' in flight.said(node)
         others = [name for name in flight.fed.nodes if name != node]
