@@ -152,7 +152,7 @@ def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
     (['absent'], 'absent is neither a run of "ins_sim simulate" (run.npz) nor a rosbag2 bag'),
     ([*FOG, '--duration', '1'], '--duration is 1 s; expected 4 to'),
     ([*FOG, '--duration', 'nan'], '--duration is nan s; expected 4 to'),
-    ([*FOG, '--topic', 'imu'], '--topic is imu; expected a bag as SOURCE'),
+    ([*FOG, '--topic', 'imu'], '--topic is imu, but there is no SOURCE; expected a bag'),
     (['absent', '--duration', '5'], '--duration is 5, but a SOURCE is given; expected only one'),
     (['-p', 'gyro.errors.angle_random_walk:=1'], "known one is 'gyro.errors.angle_random_walk_"),
 ])

@@ -258,7 +258,7 @@ def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
         assert steerer._motion.known_ns <= newest_ns + SECOND // 10
     # It waits for the next solution.
     assert steerer._motion.known_ns == newest_ns + SECOND // 10
-    assert flight.why == '' and 'no solution of' not in flight.said
+    assert flight.why == '' and 'no solution for' not in flight.said
 
 
 def test_solutions_that_are_always_late_are_said_once(flight):

@@ -104,7 +104,7 @@ def test_what_cannot_be_answered_is_refused(study, tmp_path, capsys):
         capsys, *FILES, '--require', 'horizontal rms 1 m at 61 s', *out)
     assert 'expected at least 2' in refused(capsys, *FILES, '--runs', '1', *out)
     assert 'expected at least 2' in refused(capsys, *FILES, '--runs', '-3', *out)
-    assert 'other settings of imu_sensor' in refused(
+    assert 'the settings of imu_sensor' in refused(
         capsys, *FILES, '-p', 'gyro.errors.bias_deg_h:=[1.0, 0.0, 0.0]', '--beside', str(study),
         *out)
     assert 'holds no ensemble.npz' in refused(capsys, *FILES, '--beside', str(tmp_path), *out)
